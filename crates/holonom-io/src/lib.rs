@@ -1,0 +1,1 @@
+//! The outside of the engine: model files in, tables out.

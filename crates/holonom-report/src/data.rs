@@ -1,0 +1,94 @@
+//! The numbers of a report as the viewer reads them; the other side is `viewer/src/payload.ts`.
+
+use crate::Run;
+use crate::base64;
+use crate::thin::{Keep, Thinning};
+use holonom::record::{Recording, Scene};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Columns that go into the page as they are, and how they are thinned.
+const COLUMNS: [(&str, Keep); 11] = [
+    ("t", Keep::Last),
+    ("energy", Keep::Last),
+    ("kinetic", Keep::Last),
+    ("potential", Keep::Last),
+    ("work", Keep::Last),
+    ("dE_integrator", Keep::Extreme),
+    ("dE_projection", Keep::Extreme),
+    ("phi", Keep::Max),
+    ("phi_dot", Keep::Max),
+    ("phi_ddot", Keep::Max),
+    ("iterations", Keep::Max),
+];
+
+/// One run.
+#[derive(Serialize)]
+pub struct RunData<'a> {
+    label: &'a str,
+    scene: &'a Scene,
+    /// Rows in the recording, before thinning.
+    pub recorded: usize,
+    /// Every `stride`-th row is here.
+    pub stride: usize,
+    /// Name → values, base64 of 64-bit floats. Besides those of the recording: `drift` = E − E(0) − W, and the running sums
+    /// `sum_dE_integrator`, `sum_dE_projection`; they are formed here because thinning would falsify them.
+    columns: BTreeMap<&'static str, String>,
+    /// Name of a point → its coordinates along `scene.axes`, row after row, base64 of 32-bit floats.
+    points: BTreeMap<&'a str, String>,
+}
+
+impl<'a> RunData<'a> {
+    pub fn new(run: &Run<'a>) -> Self {
+        let (recording, scene) = (run.recording, run.scene);
+        let thinning = Thinning::new(recording.rows(), scene.points.len() * scene.axes.len());
+        Self {
+            label: run.label,
+            scene,
+            recorded: recording.rows(),
+            stride: thinning.stride,
+            columns: columns(recording, &thinning),
+            points: points(recording, scene, &thinning),
+        }
+    }
+}
+
+fn columns(recording: &Recording, thinning: &Thinning) -> BTreeMap<&'static str, String> {
+    let recorded = COLUMNS.iter().filter_map(|&(name, keep)| Some((name, recording.column(name)?.to_vec(), keep)));
+    let derived = [
+        ("drift", drift(recording), Keep::Extreme),
+        ("sum_dE_integrator", running_sum(recording.column("dE_integrator")), Keep::Last),
+        ("sum_dE_projection", running_sum(recording.column("dE_projection")), Keep::Last),
+    ];
+    let derived = derived.into_iter().filter_map(|(name, values, keep)| Some((name, values?, keep)));
+    recorded.chain(derived).map(|(name, values, keep)| (name, base64::doubles(&thinning.apply(&values, keep)))).collect()
+}
+
+/// E − E(0) − W, J; a recording without the column `work` has W = 0.
+fn drift(recording: &Recording) -> Option<Vec<f64>> {
+    let energy = recording.column("energy")?;
+    let start = *energy.first()?;
+    let work = recording.column("work");
+    Some(energy.iter().enumerate().map(|(row, e)| e - start - work.map_or(0.0, |w| w[row])).collect())
+}
+
+fn running_sum(values: Option<&[f64]>) -> Option<Vec<f64>> {
+    let mut sum = 0.0;
+    let add = |v: &f64| {
+        sum += v;
+        sum
+    };
+    Some(values?.iter().map(add).collect())
+}
+
+/// Points that the recording has no coordinates of are left out; the viewer then draws nothing that hangs on them.
+fn points<'a>(recording: &Recording, scene: &'a Scene, thinning: &Thinning) -> BTreeMap<&'a str, String> {
+    let path = |name: &str| -> Option<String> {
+        let axes = scene.axes.chars().map(|axis| recording.column(&format!("{name}.{axis}")));
+        let axes: Vec<Vec<f64>> = axes.map(|values| Some(thinning.apply(values?, Keep::Last))).collect::<Option<_>>()?;
+        let rows = 0..thinning.kept();
+        let places: Vec<f32> = rows.flat_map(|row| axes.iter().map(move |values| values[row] as f32)).collect();
+        Some(base64::singles(&places))
+    };
+    scene.points.iter().filter_map(|point| Some((point.name.as_str(), path(&point.name)?))).collect()
+}

@@ -1,0 +1,44 @@
+//! The HTML report of one or several runs: one file that needs no network and opens from disk.
+//!
+//! The page is made of three parts. What can be read without a script (title, key figures, summary, model file) is written as
+//! HTML here. The numbers go in as JSON ([`data`]). The viewer, bundled by `build.rs` from `viewer/`, turns them into the moving
+//! mechanism and the plots; without the feature `viewer` the page consists of the first part alone.
+
+mod base64;
+mod data;
+mod escape;
+mod figures;
+mod format;
+mod page;
+mod summary;
+#[cfg(test)]
+mod tests;
+mod thin;
+
+use holonom::record::{Recording, Scene};
+use std::io;
+
+/// What is known of one run.
+pub struct Run<'a> {
+    /// How the run is called in legends and table headings; unique within a report.
+    pub label: &'a str,
+    pub recording: &'a Recording,
+    pub scene: &'a Scene,
+    /// Content of `summary.json`.
+    pub summary: &'a serde_json::Value,
+}
+
+/// A page about one run, or about several that are compared.
+pub struct Report<'a> {
+    pub title: &'a str,
+    /// The model file, shown at the bottom.
+    pub model_text: &'a str,
+    pub runs: &'a [Run<'a>],
+}
+
+impl Report<'_> {
+    /// Writes the page.
+    pub fn write(&self, out: &mut dyn io::Write) -> io::Result<()> {
+        page::write(self, out)
+    }
+}

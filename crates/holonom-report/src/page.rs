@@ -1,0 +1,99 @@
+//! Puts the page together.
+
+use crate::data::RunData;
+use crate::escape::{html, json_in_script};
+use crate::{Report, figures, summary};
+use std::io::{self, Write};
+
+/// Nothing may be loaded from anywhere: what is not in the file does not exist.
+const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
+
+const ICON: &str = "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 16 16'%3E\
+    %3Cpath d='M3 2h10M8 2l4 9' stroke='%23888' stroke-width='1.5'/%3E%3Ccircle cx='12' cy='12' r='3' fill='%230072b2'/%3E%3C/svg%3E";
+
+const STYLE: &str = include_str!("style.css");
+
+/// Style sheet and script of the viewer, if it is part of this build.
+#[cfg(feature = "viewer")]
+const VIEWER: Option<(&str, &str)> = Some((
+    include_str!(concat!(env!("OUT_DIR"), "/bundle/viewer.css")),
+    include_str!(concat!(env!("OUT_DIR"), "/bundle/viewer.js")),
+));
+#[cfg(not(feature = "viewer"))]
+const VIEWER: Option<(&str, &str)> = None;
+
+const WITHOUT_VIEWER: &str = "<p class=\"note\">The moving picture and the plots were left out when this program was built \
+    (feature <code>viewer</code>).</p>";
+
+pub fn write(report: &Report, out: &mut dyn Write) -> io::Result<()> {
+    head(report, out)?;
+    writeln!(out, "<header>\n<h1>{}</h1>", html(report.title))?;
+    figures::write(report.runs, out)?;
+    writeln!(out, "</header>\n<main>")?;
+    match VIEWER {
+        Some(_) => stage(report, out)?,
+        None => writeln!(out, "{WITHOUT_VIEWER}")?,
+    }
+    writeln!(out, "<section>\n<h2>Summary</h2>")?;
+    summary::write(report.runs, out)?;
+    writeln!(out, "</section>\n<section>\n<h2>Model</h2>\n<pre class=\"model\">{}</pre>\n</section>\n</main>", html(report.model_text))?;
+    if let Some((_, script)) = VIEWER {
+        scripts(report, script, out)?;
+    }
+    writeln!(out, "</body>\n</html>")
+}
+
+fn head(report: &Report, out: &mut dyn Write) -> io::Result<()> {
+    let viewer_style = VIEWER.map_or("", |(style, _)| style);
+    write!(
+        out,
+        r#"<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{POLICY}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta name="generator" content="holonom {version}">
+<title>{title}</title>
+<link rel="icon" href="{ICON}">
+<style>
+{viewer_style}{STYLE}</style>
+</head>
+<body>
+"#,
+        version = env!("CARGO_PKG_VERSION"),
+        title = html(report.title),
+    )
+}
+
+/// Empty places which the viewer fills.
+fn stage(report: &Report, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(
+        out,
+        r#"<noscript><p class="note">The moving picture and the plots need JavaScript.</p></noscript>
+<nav id="legend" aria-label="Runs"></nav>
+<section id="motion" aria-label="Motion"></section>
+<section id="plots" aria-label="Plots"></section>"#
+    )?;
+    for run in report.runs {
+        let data = RunData::new(run);
+        if data.stride > 1 {
+            let label = if report.runs.len() > 1 { format!("{}: ", html(run.label)) } else { String::new() };
+            let (stride, recorded) = (data.stride, data.recorded);
+            writeln!(
+                out,
+                "<p class=\"note\">{label}picture and plots show one in {stride} of {recorded} recorded rows; violations, iterations and \
+                 energy errors are the largest since the row before.</p>"
+            )?;
+        }
+    }
+    Ok(())
+}
+
+fn scripts(report: &Report, script: &str, out: &mut dyn Write) -> io::Result<()> {
+    let runs: Vec<RunData> = report.runs.iter().map(RunData::new).collect();
+    let json = serde_json::to_string(&serde_json::json!({ "runs": runs })).map_err(io::Error::other)?;
+    writeln!(out, "<script type=\"application/json\" id=\"holonom-data\">{}</script>", json_in_script(&json))?;
+    writeln!(out, "<script>\n{script}</script>")
+}

@@ -1,0 +1,137 @@
+//! The page as a whole.
+
+use crate::{Report, Run};
+use holonom::record::{Anchor, Line, LineKind, PointKind, Recording, Scene, ScenePoint};
+use serde_json::{Value, json};
+
+const COLUMNS: [&str; 11] = [
+    "t",
+    "energy",
+    "kinetic",
+    "potential",
+    "work",
+    "dE_integrator",
+    "dE_projection",
+    "phi",
+    "phi_dot",
+    "phi_ddot",
+    "iterations",
+];
+
+fn recording(rows: usize, poison: f64) -> Recording {
+    let point = ["x", "y", "vx", "vy"].map(|axis| format!("tip.{axis}"));
+    let mut recording = Recording::new(COLUMNS.map(str::to_owned).into_iter().chain(point));
+    for row in 0..rows {
+        recording.push(&[row as f64, poison, 1.0, poison, 0.0, poison, 0.0, 1e-12, poison, 0.0, 2.0, 1.0, poison, 0.0, 0.0]);
+    }
+    recording
+}
+
+fn scene() -> Scene {
+    Scene {
+        axes: "xy".to_owned(),
+        gravity: [0.0, -9.81, 0.0],
+        points: vec![
+            ScenePoint { name: "tip".to_owned(), kind: PointKind::Free, mass: 1.0 },
+            ScenePoint { name: "unrecorded".to_owned(), kind: PointKind::Free, mass: 1.0 },
+        ],
+        lines: vec![Line {
+            name: "rod".to_owned(),
+            kind: LineKind::Rod,
+            from: Anchor::Fixed([0.0; 3]),
+            to: Anchor::Point("tip".to_owned()),
+        }],
+    }
+}
+
+fn page(title: &str, model_text: &str, recording: &Recording, summary: &Value) -> String {
+    let scene = scene();
+    let runs = [Run { label: title, recording, scene: &scene, summary }];
+    let mut out = Vec::new();
+    Report { title, model_text, runs: &runs }.write(&mut out).unwrap();
+    String::from_utf8(out).unwrap()
+}
+
+#[cfg(feature = "viewer")]
+fn embedded(page: &str) -> Value {
+    let (_, rest) = page.split_once(r#"id="holonom-data">"#).expect("the data are in the page");
+    serde_json::from_str(rest.split_once("</script>").unwrap().0).expect("valid JSON")
+}
+
+#[test]
+fn foreign_text_stays_text() {
+    let nasty = "</script></pre><script>alert(1)</script><!-- & \"'";
+    let page = page(nasty, nasty, &recording(3, 0.0), &json!({"reason": nasty, "status": nasty, nasty: nasty}));
+    assert!(!page.contains("alert(1)</script>"));
+    assert!(!page.contains("</pre><script>"));
+    assert_eq!(page.matches("<!--").count(), 0);
+    assert!(page.contains("&lt;/script&gt;"));
+}
+
+#[test]
+fn status_and_figures_are_readable_without_a_script() {
+    let summary = json!({
+        "status": "stopped", "stopped_at": 1.5, "reason": "no convergence", "step": 0.01, "steps": 150,
+        "method": {"name": "conserving"}, "energy": {"max_drift": 1.5e-9}, "dof": 2, "redundant": 0,
+    });
+    let page = page("t", "m", &recording(3, 0.0), &summary);
+    for part in ["stopped at 1.5 s", "no convergence", "conserving", "10<sup>\u{2212}9</sup>", "degrees of freedom", "energy.max_drift"] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(!page.contains("time per step"), "the summary has no time");
+}
+
+#[test]
+fn nothing_is_loaded_from_elsewhere() {
+    let page = page("t", "m", &recording(3, 0.0), &json!({}));
+    for way in ["<link rel=\"stylesheet", "<script src", "@import", "url(http", "src=\"http", "href=\"http"] {
+        assert!(!page.contains(way), "{way}");
+    }
+    assert!(page.contains("default-src 'none'"));
+}
+
+#[test]
+#[cfg(feature = "viewer")]
+fn every_column_is_in_the_page() {
+    let page = page("t", "m", &recording(5, 0.5), &json!({}));
+    let run = &embedded(&page)["runs"][0];
+    for name in COLUMNS.into_iter().chain(["drift", "sum_dE_integrator", "sum_dE_projection"]) {
+        // 5 rows of 8 bytes
+        assert_eq!(run["columns"][name].as_str().map(str::len), Some(56), "{name}");
+    }
+    // 5 rows of 2 coordinates of 4 bytes
+    assert_eq!(run["points"]["tip"].as_str().map(str::len), Some(56));
+    assert!(run["points"].get("unrecorded").is_none());
+    assert_eq!(run["scene"]["lines"][0]["to"], json!({"point": "tip"}));
+}
+
+#[test]
+#[cfg(feature = "viewer")]
+fn not_a_number_does_not_break_the_page() {
+    for poison in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let page = page("t", "m", &recording(5, poison), &json!({}));
+        assert_eq!(embedded(&page)["runs"][0]["recorded"], 5);
+    }
+}
+
+#[test]
+#[cfg(feature = "viewer")]
+fn long_recordings_are_thinned_and_say_so() {
+    let page = page("t", "m", &recording(40_001, 0.0), &json!({}));
+    assert_eq!(embedded(&page)["runs"][0]["stride"], 11);
+    assert!(page.contains("one in 11 of 40001 recorded rows"));
+}
+
+#[test]
+#[cfg(not(feature = "viewer"))]
+fn without_the_viewer_the_page_says_so() {
+    let page = page("t", "m", &recording(5, f64::NAN), &json!({}));
+    assert!(page.contains("left out") && !page.contains("<script"));
+}
+
+#[test]
+fn no_rows_and_no_runs_are_fine() {
+    page("t", "m", &recording(0, 0.0), &json!({}));
+    let mut out = Vec::new();
+    Report { title: "t", model_text: "m", runs: &[] }.write(&mut out).unwrap();
+}

@@ -1,0 +1,117 @@
+//! Opens reports in a browser and uses them: they load without a complaint, show something, and react.
+//!
+//! Needs Chromium (`apt install chromium`), or a relative of it named in the environment variable `CHROMIUM`. To look at the
+//! pages yourself, name a folder in `HOLONOM_KEEP_PAGES`.
+#![cfg(feature = "viewer")]
+
+mod sample;
+
+use holonom_report::{Report, Run};
+use sample::Sample;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+const ERRORS: &str = include_str!("checks/errors.js");
+const CHECKS: &str = include_str!("checks/checks.js");
+const MODEL: &str = "title = \"Spherical compound pendulum\"\n\n[point.m1]\nmass = 1.0\nposition = [1, 0, 0]\n";
+
+#[test]
+fn one_run() {
+    let seen = open("single", &[sample::pendulum("conserving-ggl", 0.025, 800, 1.0)]);
+    loads(&seen, 8);
+    moves(&seen, 20.0);
+    // A legend entry belongs to one plot here.
+    assert_eq!((&seen["legend"]["pressed"], &seen["legend"]["changed"]), (&Value::from("false"), &Value::from(1)), "{seen:#}");
+    assert_eq!(seen["legendBack"], 0, "{seen:#}");
+}
+
+#[test]
+fn two_runs_compared() {
+    let runs = [sample::pendulum("conserving-ggl", 0.025, 800, 1.0), sample::pendulum("trapezoidal", 0.04, 500, 30.0)];
+    let seen = open("compare", &runs);
+    loads(&seen, 10);
+    moves(&seen, 20.0);
+    // The legend switches a run off in every plot.
+    assert_eq!((&seen["legend"]["pressed"], &seen["legend"]["changed"]), (&Value::from("false"), &Value::from(10)), "{seen:#}");
+    assert_eq!(seen["legendBack"], 0, "{seen:#}");
+}
+
+#[test]
+fn planar_and_stopped_early() {
+    let seen = open("slider", &[sample::slider()]);
+    loads(&seen, 3);
+    let place = &seen["middle"]["points"]["block"];
+    assert_eq!((&place[1], &place[2]), (&Value::from(0), &Value::from(0)), "the missing coordinate is 0: {seen:#}");
+}
+
+fn loads(seen: &Value, plots: u64) {
+    assert_eq!(seen["faults"], Value::Array(Vec::new()), "{seen:#}");
+    assert_eq!(seen["ready"], true);
+    assert_eq!((&seen["plots"], &seen["emptyPlots"]), (&Value::from(plots), &Value::from(0)), "{seen:#}");
+    let drawn = seen["start"]["picture"]["different"].as_u64().unwrap();
+    assert!(drawn > 1000, "the picture is blank: {seen:#}");
+}
+
+fn moves(seen: &Value, end: f64) {
+    assert_eq!((&seen["start"]["time"], &seen["middle"]["time"]), (&Value::from(0), &Value::from(end / 2.0)), "{seen:#}");
+    assert_ne!(seen["start"]["picture"]["hash"], seen["middle"]["picture"]["hash"], "the picture does not follow the slider");
+    assert_ne!(seen["start"]["points"]["m2"], seen["middle"]["points"]["m2"]);
+    let place = seen["middle"]["points"]["m2"].as_array().unwrap();
+    let length = place.iter().map(|x| x.as_f64().unwrap().powi(2)).sum::<f64>().sqrt();
+    assert!((length - 2.0).abs() < 1e-5, "m2 is 2 m from the origin, not {length} m");
+    let reached = seen["end"]["time"].as_f64().unwrap();
+    assert!((reached - end).abs() < 1e-9 && seen["end"]["slider"] == true, "{seen:#}");
+    let playing = seen["playing"].as_f64().unwrap();
+    assert!(playing > 0.0 && playing < end, "playing moves time: {seen:#}");
+}
+
+/// What the checks saw in the page.
+fn open(name: &str, samples: &[Sample]) -> Value {
+    let runs: Vec<Run> = samples
+        .iter()
+        .map(|s| Run { label: &s.label, recording: &s.recording, scene: &s.scene, summary: &s.summary })
+        .collect();
+    let mut page = Vec::new();
+    Report { title: samples[0].summary["model"].as_str().unwrap(), model_text: MODEL, runs: &runs }.write(&mut page).unwrap();
+    assert!(page.len() < 3_000_000, "the page has {} bytes", page.len());
+    if let Some(folder) = std::env::var_os("HOLONOM_KEEP_PAGES") {
+        fs::write(Path::new(&folder).join(format!("{name}.html")), &page).unwrap();
+    }
+    let page = String::from_utf8(page).unwrap();
+    let page = page.replacen("<head>", &format!("<head><script>{ERRORS}</script>"), 1);
+    let (body, tail) = page.rsplit_once("</body>").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("page.html");
+    fs::write(&file, format!("{body}<script>{CHECKS}</script></body>{tail}")).unwrap();
+    checks_in(&dump_dom(&file, folder.path()))
+}
+
+fn checks_in(dom: &str) -> Value {
+    let found = dom.split_once(r#"id="checks">"#).and_then(|(_, rest)| rest.split_once("</script>"));
+    let (json, _) = found.unwrap_or_else(|| panic!("the checks did not finish; the page ends with:\n{}", tail(dom, 2000)));
+    serde_json::from_str(json).unwrap()
+}
+
+fn dump_dom(file: &Path, folder: &Path) -> String {
+    let browser = std::env::var("CHROMIUM").unwrap_or_else(|_| "chromium".to_owned());
+    let quiet = "--headless --no-sandbox --no-first-run --disable-background-networking --disable-component-update --disable-sync";
+    // WebGL in software: a machine that runs tests has no graphics card.
+    let software = "--disable-gpu --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader --disable-dev-shm-usage";
+    let output = Command::new(&browser)
+        .args(quiet.split(' ').chain(software.split(' ')))
+        .arg(format!("--user-data-dir={}", folder.join("profile").display()))
+        .args(["--window-size=1400,1000", "--virtual-time-budget=20000", "--dump-dom"])
+        .arg(format!("file://{}", file.display()))
+        .output()
+        .unwrap_or_else(|e| panic!("cannot start `{browser}`: {e}\nThis test needs Chromium: apt install chromium"));
+    let dom = String::from_utf8_lossy(&output.stdout).into_owned();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && !dom.is_empty(), "`{browser}` failed ({}):\n{}", output.status, tail(&errors, 4000));
+    dom
+}
+
+fn tail(text: &str, length: usize) -> &str {
+    &text[text.ceil_char_boundary(text.len().saturating_sub(length))..]
+}

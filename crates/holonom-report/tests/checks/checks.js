@@ -1,0 +1,65 @@
+// Goes behind everything: uses the page as a reader would, and leaves what it saw in #checks.
+(async () => {
+  const seen = {};
+  const frames = async (count) => {
+    for (let i = 0; i < count; i++) await new Promise((done) => requestAnimationFrame(done));
+  };
+  /** How many pixels of a WebGL canvas differ from its first one, and a fingerprint of all. */
+  const picture = () => {
+    const gl = document.querySelector(".stage canvas").getContext("webgl2");
+    const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+    const pixels = new Uint8Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    let [different, hash] = [0, 0];
+    for (let i = 0; i < pixels.length; i += 4) {
+      const same = pixels[i] === pixels[0] && pixels[i + 1] === pixels[1] && pixels[i + 2] === pixels[2];
+      if (!same) different++;
+      hash = (31 * hash + 7 * pixels[i] + 3 * pixels[i + 1] + pixels[i + 2]) | 0;
+    }
+    return { different, hash };
+  };
+  const plots = () => [...document.querySelectorAll(".plot canvas")].map((canvas) => canvas.toDataURL());
+  const changed = (before, after) => before.filter((image, i) => image !== after[i]).length;
+  try {
+    await frames(3);
+    seen.ready = window.holonom.ready;
+    seen.plots = document.querySelectorAll(".plot").length;
+    seen.emptyPlots = plots().filter((image) => image.length < 2000).length;
+    seen.start = { time: holonom.time(), points: holonom.pointsAt(), picture: picture() };
+
+    const slider = document.querySelector("input#time");
+    slider.value = String(Number(slider.max) / 2);
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+    await frames(3);
+    seen.middle = { time: holonom.time(), points: holonom.pointsAt(), picture: picture() };
+
+    holonom.setTime(1e9);
+    await frames(3);
+    seen.end = { time: holonom.time(), slider: slider.value === slider.max };
+    holonom.setTime(0);
+    document.querySelector(".play").click();
+    await new Promise((done) => setTimeout(done, 300));
+    seen.playing = holonom.time();
+    document.querySelector(".play").click();
+
+    const before = plots();
+    await frames(3);
+    const legend = document.querySelector("#legend button, button.entry");
+    if (legend) {
+      legend.click();
+      await frames(3);
+      seen.legend = { pressed: legend.getAttribute("aria-pressed"), changed: changed(before, plots()) };
+      legend.click();
+      await frames(3);
+      seen.legendBack = changed(before, plots());
+    }
+  } catch (fault) {
+    faults.push(String(fault.stack ?? fault));
+  }
+  seen.faults = faults;
+  const node = document.createElement("script");
+  node.type = "application/json";
+  node.id = "checks";
+  node.textContent = JSON.stringify(seen).replaceAll("<", "\\u003c");
+  document.body.append(node);
+})();

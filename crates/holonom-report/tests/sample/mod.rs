@@ -1,0 +1,135 @@
+//! Synthetic runs: the spherical compound pendulum, integrated here in the plainest way, with made-up errors.
+
+use holonom::record::{Anchor, Line, LineKind, PointKind, Recording, Scene, ScenePoint};
+use serde_json::{Value, json};
+
+const GRAVITY: f64 = 9.81;
+const LENGTHS: [f64; 2] = [1.0, 2.0];
+
+/// What `Run` borrows.
+pub struct Sample {
+    pub label: String,
+    pub recording: Recording,
+    pub scene: Scene,
+    pub summary: Value,
+}
+
+/// `size` scales the made-up errors and how fast energy gets lost.
+pub fn pendulum(label: &str, step: f64, steps: usize, size: f64) -> Sample {
+    let recording = recording(step, steps, size);
+    let scene = scene();
+    let summary = summary(label, step, steps, &recording);
+    Sample { label: label.to_owned(), recording, scene, summary }
+}
+
+/// A planar slider on a spring, which stops early.
+pub fn slider() -> Sample {
+    let names = ["t", "energy", "phi", "block.x", "block.z", "block.vx", "block.vz"];
+    let mut recording = Recording::new(names.map(str::to_owned));
+    for i in 0..300 {
+        let t = 0.01 * i as f64;
+        let x = 1.0 + 0.4 * (5.0 * t).sin();
+        recording.push(&[t, 1.0, 0.0, x, 0.0, 2.0 * (5.0 * t).cos(), 0.0]);
+    }
+    let line = |name: &str, kind, from| Line { name: name.to_owned(), kind, from: Anchor::Fixed(from), to: point("block") };
+    let scene = Scene {
+        axes: "xz".to_owned(),
+        gravity: [0.0, 0.0, -GRAVITY],
+        points: vec![ScenePoint { name: "block".to_owned(), kind: PointKind::Free, mass: 1.0 }],
+        lines: vec![line("spring", LineKind::Spring, [0.0; 3]), line("rail", LineKind::Guide, [2.0, 0.0, 0.0])],
+    };
+    let summary = json!({
+        "model": "Slider", "method": {"name": "baumgarte"}, "status": "stopped", "stopped_at": 2.99,
+        "reason": "the iteration did not converge", "step": 0.01, "end": 20.0, "steps": 299, "dof": 1, "redundant": 0,
+    });
+    Sample { label: "baumgarte".to_owned(), recording, scene, summary }
+}
+
+fn point(name: &str) -> Anchor {
+    Anchor::Point(name.to_owned())
+}
+
+fn scene() -> Scene {
+    let mass = |name: &str| ScenePoint { name: name.to_owned(), kind: PointKind::Free, mass: 1.0 };
+    let line = |name: &str, kind, from, to| Line { name: name.to_owned(), kind, from, to };
+    Scene {
+        axes: "xyz".to_owned(),
+        gravity: [0.0, 0.0, -GRAVITY],
+        points: vec![mass("m1"), mass("m2")],
+        lines: vec![
+            line("inner-rod", LineKind::Rod, Anchor::Fixed([0.0; 3]), point("m1")),
+            line("outer-rod", LineKind::Rod, point("m1"), point("m2")),
+            line("straight", LineKind::Guide, Anchor::Fixed([0.0; 3]), point("m2")),
+        ],
+    }
+}
+
+fn recording(step: f64, steps: usize, size: f64) -> Recording {
+    let columns = "t energy kinetic potential work dE_integrator dE_projection phi phi_dot phi_ddot iterations";
+    let axes = ["x", "y", "z", "vx", "vy", "vz"];
+    let points = ["m1", "m2"].into_iter().flat_map(|name| axes.map(|axis| format!("{name}.{axis}")));
+    let mut recording = Recording::new(columns.split(' ').map(str::to_owned).chain(points));
+    let (mut direction, mut rate, mut lost) = ([1.0, 0.0, 0.0], [0.0, 0.5, 0.0], 0.0);
+    for i in 0..=steps {
+        let t = step * i as f64;
+        let kinetic: f64 = LENGTHS.iter().map(|l| 0.5 * l * l * dot(rate, rate)).sum();
+        let potential: f64 = LENGTHS.iter().map(|l| GRAVITY * l * direction[2]).sum();
+        let wave = (3.0 * t).sin();
+        let loss = if i == 0 { 0.0 } else { size * 1e-6 * (1.0 + wave) };
+        lost += loss;
+        let noise = if i == 0 { 0.0 } else { size * 1e-13 * (1.2 + (17.0 * t).sin()) };
+        let iterations = if i == 0 { 0.0 } else { 2.0 + f64::from(u8::from(wave > 0.8)) };
+        let mut row = vec![t, kinetic + potential - lost, kinetic, potential - lost, 0.0];
+        row.extend([2.0 * loss * wave, -loss - 2.0 * loss * wave, noise, 8.0 * noise, size * 3e-6 * (1.1 + wave), iterations]);
+        row.extend(LENGTHS.iter().flat_map(|l| direction.map(|x| l * x).into_iter().chain(rate.map(|v| l * v))));
+        recording.push(&row);
+        (direction, rate) = advance(direction, rate, step);
+    }
+    recording
+}
+
+/// Small explicit steps with the length corrected after each.
+fn advance(mut direction: [f64; 3], mut rate: [f64; 3], step: f64) -> ([f64; 3], [f64; 3]) {
+    // Gravity on both masses over their moment of inertia about the origin.
+    let pull = GRAVITY * LENGTHS.iter().sum::<f64>() / LENGTHS.iter().map(|l| l * l).sum::<f64>();
+    let small = step / 200.0;
+    for _ in 0..200 {
+        let along = pull * direction[2] - dot(rate, rate);
+        let acceleration = [along * direction[0], along * direction[1], along * direction[2] - pull];
+        for i in 0..3 {
+            rate[i] += small * acceleration[i];
+            direction[i] += small * rate[i];
+        }
+        let length = dot(direction, direction).sqrt();
+        direction = direction.map(|x| x / length);
+    }
+    (direction, rate)
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+fn summary(method: &str, step: f64, steps: usize, recording: &Recording) -> Value {
+    let most = |name: &str| recording.column(name).unwrap().iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+    let energy = recording.column("energy").unwrap();
+    let (first, last) = (energy[0], energy[steps]);
+    json!({
+        "model": "Spherical compound pendulum",
+        "method": {
+            "name": method, "formulation": "ggl", "index": 2, "integrator": "energy-conserving", "iteration": "newton",
+            "projection": {"levels": ["velocity", "acceleration"], "matrix": "mass", "solve": "exact"},
+        },
+        "status": "completed", "stopped_at": null, "reason": null,
+        "step": step, "end": step * steps as f64, "steps": steps,
+        "coordinates": 6, "constraints": 5, "rank": 4, "redundant": 1, "dof": 2,
+        "energy": {
+            "initial": first, "final": last, "max_drift": first - last, "max_rise": 0.0,
+            "integrator_total": 1.2e-4, "projection_total": -1.2e-4, "work_total": 0.0, "audit_residual": 2.1e-14,
+        },
+        "momentum": {"linear_drift": 0.0, "angular_drift": 3.2e-13},
+        "violation": {"position": most("phi"), "velocity": most("phi_dot"), "acceleration": most("phi_ddot")},
+        "work": {"iterations": 1720, "iterations_per_step": 2.15, "factorizations": 1720, "rejected_steps": 0},
+        "time": {"cpu_s": 0.0104, "us_per_step": 12.96, "realtime_factor": 1923.1},
+    })
+}

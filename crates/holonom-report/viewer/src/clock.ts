@@ -1,0 +1,72 @@
+// The time that everything on the page shows.
+
+type Listener = (t: number) => void;
+
+export class Clock {
+  /** Simulated seconds per second of playing. */
+  speed: number;
+  private now: number;
+  private running = false;
+  private lastFrame = 0;
+  private readonly listeners: Listener[] = [];
+  private readonly stateListeners: ((playing: boolean) => void)[] = [];
+
+  constructor(readonly start: number, readonly end: number) {
+    this.now = start;
+    this.speed = comfortableSpeed(end - start);
+  }
+
+  get time(): number {
+    return this.now;
+  }
+
+  get playing(): boolean {
+    return this.running;
+  }
+
+  onTime(listener: Listener): void {
+    this.listeners.push(listener);
+  }
+
+  onPlaying(listener: (playing: boolean) => void): void {
+    this.stateListeners.push(listener);
+  }
+
+  setTime(t: number): void {
+    this.now = Math.min(Math.max(t, this.start), this.end);
+    for (const listener of this.listeners) listener(this.now);
+  }
+
+  play(): void {
+    if (this.running || this.end <= this.start) return;
+    if (this.now >= this.end) this.setTime(this.start);
+    this.setRunning(true);
+    this.lastFrame = performance.now();
+    requestAnimationFrame(this.frame);
+  }
+
+  pause(): void {
+    if (this.running) this.setRunning(false);
+  }
+
+  private setRunning(running: boolean): void {
+    this.running = running;
+    for (const listener of this.stateListeners) listener(running);
+  }
+
+  private readonly frame = (moment: number): void => {
+    if (!this.running) return;
+    // The first frame may carry a moment from before `play`.
+    const elapsed = Math.max(moment - this.lastFrame, 0) / 1000;
+    this.lastFrame = moment;
+    this.setTime(this.now + elapsed * this.speed);
+    if (this.now >= this.end) this.pause();
+    else requestAnimationFrame(this.frame);
+  };
+}
+
+/** Real time where that takes between 2 s and a minute, else a round factor that takes about ten seconds. */
+function comfortableSpeed(duration: number): number {
+  if (!(duration > 0) || (duration >= 2 && duration <= 60)) return 1;
+  return 10 ** Math.round(Math.log10(duration / 10));
+}

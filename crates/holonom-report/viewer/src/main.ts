@@ -1,0 +1,62 @@
+// Entry: reads the numbers in the page and fills the places that `src/page.rs` left.
+
+import "uplot/dist/uPlot.min.css";
+import "./licences";
+import "./viewer.css";
+import { Clock } from "./clock";
+import { element, place } from "./dom";
+import { Motion } from "./motion";
+import { readPayload, type Vec3 } from "./payload";
+import { charts } from "./plots/charts";
+import { buildPlot } from "./plots/plot";
+import { buildTransport } from "./transport";
+import { buildStage } from "./view/stage";
+import { buildLegend, Visibility } from "./visibility";
+
+/** What a page offers to scripts and tests. */
+interface Handle {
+  ready: boolean;
+  time(): number;
+  setTime(t: number): void;
+  /** World places of the points of the first run at the current time, m. */
+  pointsAt(): Record<string, Vec3>;
+}
+
+declare global {
+  interface Window {
+    holonom: Handle;
+  }
+}
+
+function main(): void {
+  const motions = readPayload().map((run) => new Motion(run));
+  const start = Math.min(...motions.map((motion) => motion.run.times[0] ?? 0));
+  const clock = new Clock(start, Math.max(start, ...motions.map((motion) => motion.end)));
+  const visibility = new Visibility();
+  window.holonom = { ready: false, time: () => clock.time, setTime: (t) => clock.setTime(t), pointsAt: () => pointsAt(motions[0], clock.time) };
+  if (motions.length > 0) build(motions, clock, visibility);
+  window.holonom.ready = true;
+}
+
+function build(motions: Motion[], clock: Clock, visibility: Visibility): void {
+  const runs = motions.map((motion) => motion.run);
+  buildLegend(place("legend"), runs.map((run) => run.label), visibility);
+
+  const stage = element("div", { class: "stage" });
+  place("motion").append(stage, buildTransport(clock));
+  buildStage(stage, motions, clock, visibility);
+
+  const plots = element("div", { class: "plots" });
+  place("plots").append(plots);
+  for (const chart of charts(runs)) buildPlot(plots, chart, clock, visibility, runs.length > 1);
+}
+
+function pointsAt(motion: Motion | undefined, t: number): Record<string, Vec3> {
+  const places = motion?.run.scene.points.flatMap(({ name }) => {
+    const at = motion.at(name, t);
+    return at ? [[name, at] as const] : [];
+  });
+  return Object.fromEntries(places ?? []);
+}
+
+main();

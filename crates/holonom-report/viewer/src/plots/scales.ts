@@ -1,0 +1,58 @@
+// Ranges and ticks of the axes.
+
+import uPlot from "uplot";
+import { power, ticks } from "../format";
+
+/** What is smaller than this is zero to a computer. */
+const FLOOR = 1e-18;
+
+/** A logarithmic axis has no zero: zeros are drawn at the lower end of the decade of the smallest value. */
+export function logFloor(values: Iterable<number>): number {
+  let smallest = Infinity;
+  for (const value of values) if (value > 0 && value < smallest) smallest = value;
+  return Number.isFinite(smallest) ? Math.max(FLOOR, decade(smallest)) : FLOOR;
+}
+
+export function logRange(_: uPlot, min: number | null, max: number | null): uPlot.Range.MinMax {
+  if (min === null || max === null) return [FLOOR, 1];
+  const low = decade(min);
+  let high = decade(max);
+  if (high < max * 0.999) high *= 10;
+  return high / low < 50 ? [low / 10, high * 10] : [low, high];
+}
+
+export function linearRange(leastSpan: number, fromZero: boolean): uPlot.Range.Function {
+  return (_, min, max) => {
+    if (min === null || max === null) return [0, 1];
+    if (fromZero) return [0, Math.max(1, max) * 1.1];
+    const missing = Math.max(leastSpan - (max - min), 0);
+    const span = max - min + missing || Math.abs(max) * 0.1 || 1;
+    const margin = 0.07 * span + (max === min && missing === 0 ? span / 2 : missing / 2);
+    return [min - margin, max + margin];
+  };
+}
+
+/** Whole decades, no more labels than fit. */
+export function logSplits(_: uPlot, __: number, min: number, max: number): number[] {
+  const [low, high] = [exponent(min), exponent(max)];
+  const step = Math.max(1, Math.ceil((high - low) / 5));
+  const splits: number[] = [];
+  for (let e = Math.ceil(low / step) * step; e <= high; e += step) splits.push(10 ** e);
+  return splits;
+}
+
+export function logLabels(_: uPlot, splits: number[]): string[] {
+  return splits.map((value) => power(exponent(value)));
+}
+
+export function linearLabels(_: uPlot, splits: number[], __: number, ___: number, increment: number): string[] {
+  return ticks(splits, increment);
+}
+
+function exponent(value: number): number {
+  return Math.round(Math.log10(value));
+}
+
+function decade(value: number): number {
+  return 10 ** Math.floor(Math.log10(value) + 1e-9);
+}

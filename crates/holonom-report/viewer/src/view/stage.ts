@@ -1,0 +1,106 @@
+// The picture: renderer, camera, light, ground, and the mechanisms of all runs.
+
+import { AmbientLight, Color, DirectionalLight, HemisphereLight, Scene, WebGLRenderer } from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { Clock } from "../clock";
+import { element } from "../dom";
+import type { Motion } from "../motion";
+import { onThemeChange, theme } from "../theme";
+import type { Visibility } from "../visibility";
+import { buildCamera, fitLens, frame, viewpoint } from "./camera";
+import { boundingBox, diagonal } from "./frame";
+import { buildGrid } from "./grid";
+import { Mechanism } from "./mechanism";
+
+const WITHOUT_WEBGL = "The picture in 3D needs WebGL, which this browser does not offer here. The plots below do not.";
+
+export function buildStage(container: HTMLElement, motions: Motion[], clock: Clock, visibility: Visibility): void {
+  const canvas = element("canvas", { "aria-label": "The mechanism in 3D" });
+  const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
+  if (!gl) {
+    container.append(element("p", { class: "note" }, WITHOUT_WEBGL));
+    return;
+  }
+  container.append(canvas);
+  // The buffer is preserved so that the picture can be saved from the browser's menu.
+  const renderer = new WebGLRenderer({ canvas, context: gl, antialias: true, preserveDrawingBuffer: true });
+  const scene = new Scene();
+  const view = viewpoint(motions[0].run.scene.axes);
+  const box = boundingBox(motions);
+  const camera = buildCamera(view);
+  const mechanisms = motions.map((motion, i) => new Mechanism(motion, diagonal(box), i, motions.length));
+  const grid = buildGrid(view, box);
+  scene.add(camera, grid.object, ...mechanisms.map((mechanism) => mechanism.group));
+  container.append(element("p", { class: "hint" }, `grid ${Number(grid.cell.toPrecision(2))} m · drag to turn, scroll to zoom`));
+  addLight(scene, camera);
+
+  const controls = new OrbitControls(camera, canvas);
+  const render = drawOnDemand(() => renderer.render(scene, camera));
+  const home = (): void => {
+    frame(camera, view, box, shape(container));
+    fitLens(camera, view, box, shape(container));
+    box.getCenter(controls.target);
+    controls.update();
+    render();
+  };
+  const resize = (): void => {
+    renderer.setPixelRatio(devicePixelRatio);
+    renderer.setSize(container.clientWidth, container.clientHeight, false);
+    fitLens(camera, view, box, shape(container));
+    render();
+  };
+  const paint = (): void => {
+    scene.background = new Color(theme().page);
+    grid.object.material.color.set(theme().line);
+    for (const mechanism of mechanisms) mechanism.paint();
+    render();
+  };
+  const show = (t: number): void => {
+    for (const mechanism of mechanisms) mechanism.update(t);
+    render();
+  };
+  container.append(homeButton(home));
+  controls.addEventListener("change", render);
+  new ResizeObserver(resize).observe(container);
+  onThemeChange(paint);
+  clock.onTime(show);
+  visibility.onChange(() => {
+    mechanisms.forEach((mechanism, run) => (mechanism.group.visible = visibility.shows(run)));
+    render();
+  });
+  resize();
+  home();
+  paint();
+  show(clock.time);
+}
+
+/** Many changes within a frame make one drawing. */
+function drawOnDemand(draw: () => void): () => void {
+  let waiting = false;
+  return () => {
+    if (waiting) return;
+    waiting = true;
+    requestAnimationFrame(() => {
+      waiting = false;
+      draw();
+    });
+  };
+}
+
+function shape(container: HTMLElement): number {
+  return container.clientWidth / Math.max(container.clientHeight, 1);
+}
+
+function homeButton(home: () => void): HTMLElement {
+  const button = element("button", { type: "button", class: "home" }, "reset view");
+  button.addEventListener("click", home);
+  return button;
+}
+
+function addLight(scene: Scene, camera: ReturnType<typeof buildCamera>): void {
+  scene.add(new AmbientLight(0xffffff, 0.9), new HemisphereLight(0xffffff, 0x8090a0, 1.1));
+  // The key light goes with the camera, so that no side is ever dark.
+  const key = new DirectionalLight(0xffffff, 1.8);
+  key.position.set(-0.6, 1, 0.8);
+  camera.add(key);
+}

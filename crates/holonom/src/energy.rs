@@ -1,0 +1,164 @@
+//! The energy audit: T, V, what was done on the system, and momenta (§6).
+
+use crate::formulation::{Sampling, Stage, Workspace};
+use crate::system::{Evaluation, MAX_ARGUMENTS, System};
+
+/// Kinetic energy ½ vᵀ M v, J.
+pub fn kinetic(system: &System, v: &[f64]) -> f64 {
+    system.mass.half_product(system.dim, v, v)
+}
+
+/// Kinetic energy of `v` minus that of `before`, as (29) has it, J.
+pub fn kinetic_difference(system: &System, v: &[f64], before: &[f64], scratch: &mut [f64]) -> f64 {
+    for ((out, v), b) in scratch.iter_mut().zip(v).zip(before) {
+        *out = v - b;
+    }
+    system.mass.half_product(system.dim, v, scratch) + system.mass.half_product(system.dim, before, scratch)
+}
+
+/// Potential energy of gravity and of the laws, and with a penalty that of the rows (14), J.
+pub fn potential(system: &System, weight: &[f64], x: &[f64], at: &Evaluation, penalty: Option<(f64, &[f64])>) -> f64 {
+    let mut energy: f64 = weight.iter().zip(x).map(|(w, x)| w * x).sum();
+    for law in system.laws.iter().filter(|law| law.law.conservative()) {
+        let mut value = [0.0; MAX_ARGUMENTS];
+        law.invariants.iter().zip(&mut value).for_each(|(id, out)| *out = at.value[id.0 as usize]);
+        energy += law.law.energy(&value[..law.invariants.len()]);
+    }
+    if let Some((alpha, phi)) = penalty {
+        energy += 0.5 * alpha * phi.iter().map(|phi| phi * phi).sum::<f64>();
+    }
+    energy
+}
+
+/// Work in a step with forces between its ends: loads, dissipation, and known motion through inertia, forces and rows,
+/// J. The rows take part through their targets alone: work of a violated row is the integrator's (25)–(27).
+pub fn work_between(system: &System, stage: &Stage, work: &Workspace) -> f64 {
+    let (n, dim, h) = (system.coordinates(), system.dim, stage.step);
+    let mut sum = loads_along(system, work, |i| work.d[i]);
+    for (law, response) in system.laws.iter().zip(&work.responses).filter(|(law, _)| !law.law.conservative()) {
+        for (k, id) in law.invariants.iter().enumerate() {
+            let rise = match stage.sampling {
+                Sampling::Between => work.at_end.value[id.0 as usize] - work.at_start.value[id.0 as usize],
+                _ => h * system.along(&system.invariants.slots_of(*id), &work.kkt.slot_nodes, &work.sampled, &work.vs),
+            };
+            sum -= response.force[k] * rise;
+        }
+    }
+    for i in n..work.x1.len() {
+        sum += work.force[i] * (work.x1[i] - work.x0[i]);
+    }
+    for node in system.free..system.nodes() {
+        for (b, mass) in system.mass.row(node) {
+            for c in 0..dim {
+                let (i, j) = (node * dim + c, b * dim + c);
+                sum += 0.5 * (work.v0[i] + work.v1[i]) * mass * (work.v1[j] - work.v0[j]);
+            }
+        }
+    }
+    for (row, &lambda) in work.lambda.iter().enumerate() {
+        sum += lambda * match system.rows.get(row) {
+            Some(row) => row.target.at(stage.start)[0] - row.target.at(stage.end())[0],
+            None => h * system.explicit_rate(row, &work.sampled, stage.time()),
+        };
+    }
+    sum
+}
+
+/// Power of everything that [`work_between`] counts, at a state with its accelerations, W. Needs the state sampled.
+pub fn power(system: &System, t: f64, v: &[f64], a: &[f64], work: &Workspace) -> f64 {
+    let (n, dim) = (system.coordinates(), system.dim);
+    let mut sum = loads_along(system, work, |i| v[i]);
+    for (law, response) in system.laws.iter().zip(&work.responses).filter(|(law, _)| !law.law.conservative()) {
+        for (k, id) in law.invariants.iter().enumerate() {
+            sum -= response.force[k] * system.along(&system.invariants.slots_of(*id), &work.kkt.slot_nodes, &work.sampled, v);
+        }
+    }
+    sum += (n..v.len()).map(|i| work.force[i] * v[i]).sum::<f64>();
+    for node in system.free..system.nodes() {
+        for (b, mass) in system.mass.row(node) {
+            sum += (0..dim).map(|c| v[node * dim + c] * mass * a[b * dim + c]).sum::<f64>();
+        }
+    }
+    for (row, &lambda) in work.lambda.iter().enumerate() {
+        sum += lambda * system.explicit_rate(row, &work.sampled, t);
+    }
+    sum
+}
+
+/// Σ F·motion over the loads on free nodes.
+fn loads_along(system: &System, work: &Workspace, motion: impl Fn(usize) -> f64) -> f64 {
+    let (mut sum, mut first) = (0.0, 0);
+    for load in &system.loads {
+        for (k, node) in load.nodes.iter().enumerate() {
+            if node.index() < system.free {
+                for c in 0..system.dim {
+                    sum += work.load_force[first + k * system.dim + c] * motion(node.index() * system.dim + c);
+                }
+            }
+        }
+        first += load.nodes.len() * system.dim;
+    }
+    sum
+}
+
+/// Linear momentum (3) and angular momentum about the origin (3), kg·m/s and kg·m²/s.
+pub fn momenta(system: &System, x: &[f64], v: &[f64], scratch: &mut [f64]) -> [f64; 6] {
+    let dim = system.dim;
+    system.mass.times(dim, v, scratch);
+    let mut sum = [0.0; 6];
+    for (x, p) in x.chunks_exact(dim).zip(scratch.chunks_exact(dim)) {
+        let at = |v: &[f64], c: usize| if c < dim { v[c] } else { 0.0 };
+        for c in 0..3 {
+            let (i, j) = ((c + 1) % 3, (c + 2) % 3);
+            sum[c] += at(p, c);
+            sum[3 + c] += at(x, i) * at(p, j) - at(x, j) * at(p, i);
+        }
+    }
+    sum
+}
+
+/// Which of the six momenta nothing outside changes at the state sampled: the forces of gravity, laws, rows and loads
+/// neither push nor turn that way, whatever their size. `kept` loses those that do.
+pub fn drop_driven_momenta(system: &System, work: &Workspace, x: &[f64], kept: &mut [bool; 6]) {
+    let dim = system.dim;
+    let flow = |k: usize, x: &[f64]| -> [f64; 3] {
+        let at = |c: usize| if c < dim { x[c] } else { 0.0 };
+        let mut flow = [0.0; 3];
+        if k < 3 {
+            flow[k] = 1.0;
+        } else {
+            let (i, j) = ((k - 2) % 3, (k - 1) % 3);
+            flow[j] = at(i);
+            flow[i] = -at(j);
+        }
+        flow
+    };
+    let moves_out = |k: usize| (dim == 2 && (2..5).contains(&k)) && k != 5;
+    for (k, kept) in kept.iter_mut().enumerate() {
+        if moves_out(k) || system.free < system.nodes() || !system.loads.is_empty() {
+            *kept = false;
+            continue;
+        }
+        let pushes = |slots: std::ops::Range<usize>| {
+            let (mut sum, mut size) = (0.0_f64, 0.0_f64);
+            for s in slots {
+                let node = work.kkt.slot_nodes[s] as usize * dim;
+                let direction = flow(k, &x[node..node + dim]);
+                for c in 0..dim {
+                    sum += work.at_start.gradient[s * dim + c] * direction[c];
+                    size += work.at_start.gradient[s * dim + c].abs() * (1.0 + direction[c].abs());
+                }
+            }
+            sum.abs() > 1e-9 * size
+        };
+        let rows = work.kkt.row_slots.iter().cloned();
+        let laws = system.laws.iter().flat_map(|law| law.invariants.iter().map(|&id| system.invariants.slots_of(id)));
+        let pushed = rows.chain(laws).any(|slots| pushes(slots));
+        let turned: f64 = x.chunks_exact(dim).zip(work.weight.chunks_exact(dim)).map(|(x, w)| {
+            let direction = flow(k, x);
+            (0..dim).map(|c| w[c] * direction[c]).sum::<f64>()
+        }).sum();
+        let size: f64 = work.weight.iter().map(|w| w.abs()).sum();
+        *kept &= !pushed && turned.abs() <= 1e-9 * size;
+    }
+}

@@ -1,0 +1,194 @@
+//! The nonlinear solve of a stage: exact Newton, and the paper's nested and simultaneous loops (§4).
+
+use super::stage::Stage;
+use super::workspace::Workspace;
+use crate::system::System;
+
+/// Where multipliers come from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Multipliers {
+    /// λ = αΦ (5), (14).
+    Penalty(f64),
+    /// λ sought with Φ = 0 (7), (17); the penalty α steers the iteration only. Without one it follows from the step.
+    Augmented(Option<f64>),
+}
+
+/// How the multipliers of the augmented Lagrangian are iterated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Iteration {
+    /// Proximal-KKT Newton: coordinates and multipliers together, quadratic convergence.
+    Newton,
+    /// One loop; λ ← λ + αΦ after each Newton increment of the coordinates.
+    Simultaneous,
+    /// Newton on the coordinates at fixed λ inside, λ ← λ + αΦ outside.
+    Nested,
+}
+
+/// Name, value and one line of documentation of every formulation.
+pub const NAMES: &[(&str, &str, &str)] = &[
+    ("augmented-lagrangian", "(7), (17)–(18)", "M a + Gᵀλ + Gᵀ(αΦ) = Q with Φ = 0 by iterated multipliers; index 3"),
+    ("penalty", "(5), (14)", "M a + Gᵀ(αΦ) = Q: constraints as stiff springs; Φ → 0 as α → ∞"),
+];
+
+/// Name, value and one line of documentation of every iteration.
+pub const ITERATIONS: &[(&str, Iteration, &str)] = &[
+    ("newton", Iteration::Newton, "proximal-KKT Newton: quadratic convergence, no penalty to tune (default)"),
+    ("simultaneous", Iteration::Simultaneous, "the paper's single loop: λ ← λ + αΦ after every increment (§4)"),
+    ("nested", Iteration::Nested, "the paper's two loops: Newton inside, λ ← λ + αΦ outside (§4)"),
+];
+
+/// Numbers that steer the solve.
+#[derive(Clone, Copy, Debug)]
+pub struct SolveSettings {
+    pub multipliers: Multipliers,
+    pub iteration: Iteration,
+    /// Newton: estimated remaining increment relative to the size of the mechanism. The paper's loops: 2-norm of the
+    /// increment, m (and of Φ in the outer loop).
+    pub tolerance: f64,
+    /// Most factorisations in one step.
+    pub max_iterations: usize,
+}
+
+/// Why a stage was not solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Failure {
+    #[error("the iteration did not converge in {0} steps")]
+    NotConverged(usize),
+    #[error("the iteration produced numbers that are not finite")]
+    NotFinite,
+}
+
+/// Violation and momentum residual, relative, at which a stalled increment is accepted: near singular configurations
+/// the nearly free directions keep moving while everything that matters is met (methods §11).
+const STALLED: f64 = 1e-12;
+
+/// Dimensionless penalty of the paper's loops where the user gives none (methods §1.2).
+const LOOP_RHO: f64 = 1e6;
+
+/// Solves a stage from the increment and multipliers in the workspace; says how many iterations it took.
+pub fn solve(system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<usize, Failure> {
+    match (settings.multipliers, settings.iteration) {
+        (Multipliers::Penalty(alpha), _) => newton(system, stage, settings, Some(alpha), work),
+        (Multipliers::Augmented(_), Iteration::Newton) => newton(system, stage, settings, None, work),
+        (Multipliers::Augmented(alpha), Iteration::Simultaneous) => simultaneous(system, stage, settings, alpha, work),
+        (Multipliers::Augmented(alpha), Iteration::Nested) => nested(system, stage, settings, alpha, work),
+    }
+}
+
+/// Newton on coordinates and multipliers together. With `soft` the rows are Φ − λ/α = 0, the penalty formulation.
+fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option<f64>, work: &mut Workspace) -> Result<usize, Failure> {
+    let n = system.coordinates();
+    match (soft, settings.multipliers) {
+        (Some(alpha), _) => work.delta.fill(1.0 / (stage.inertia * alpha)),
+        (None, Multipliers::Augmented(penalty)) => work.proximal(stage.inertia, penalty),
+        (None, Multipliers::Penalty(_)) => unreachable!("a penalty is soft"),
+    }
+    let mut previous = f64::INFINITY;
+    for iteration in 1..=settings.max_iterations {
+        work.place(system, stage);
+        work.evaluate(system, stage);
+        if let Some(alpha) = soft {
+            work.phi.iter_mut().zip(&work.lambda).for_each(|(phi, lambda)| *phi -= lambda / alpha);
+        }
+        work.residual(system, stage);
+        let contraction = previous;
+        if iteration > 3 && contraction < 1e-6 && is_met(n, work) {
+            return Ok(iteration - 1);
+        }
+        work.tangent(system, stage, 1.0);
+        if !work.solve() {
+            return Err(Failure::NotFinite);
+        }
+        let increment = advance(n, work);
+        work.lambda.iter_mut().zip(&work.unknowns[n..]).for_each(|(lambda, mu)| *lambda += mu / stage.inertia);
+        if remaining(increment, previous) <= settings.tolerance {
+            return Ok(iteration);
+        }
+        previous = increment;
+    }
+    Err(Failure::NotConverged(settings.max_iterations))
+}
+
+/// What is left to go after an increment, from how much smaller it was than the one before; the first one says nothing
+/// of that and counts as a whole.
+pub(super) fn remaining(increment: f64, previous: f64) -> f64 {
+    if previous.is_finite() { increment * (increment / previous).min(1.0) } else { increment }
+}
+
+/// Adds the solution to the increment; its largest entry over the size of the mechanism.
+fn advance(n: usize, work: &mut Workspace) -> f64 {
+    let mut largest = 0.0_f64;
+    for (d, step) in work.d.iter_mut().zip(&work.unknowns[..n]) {
+        *d += step;
+        largest = largest.max(step.abs());
+    }
+    largest / work.length
+}
+
+/// Whether rows and momentum are met although increments go on.
+fn is_met(n: usize, work: &Workspace) -> bool {
+    let momentum = work.unknowns[..n].iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+    momentum <= STALLED * work.heaviest * work.length && work.scaled_violation() <= STALLED
+}
+
+/// Sets δ to what a penalty stands for, and says how λ changes with Φ: α for each row.
+fn penalties(stage: &Stage, penalty: Option<f64>, work: &mut Workspace) {
+    for (delta, &softness) in work.delta.iter_mut().zip(&work.softness) {
+        *delta = penalty.map_or(softness / LOOP_RHO, |alpha| 1.0 / (stage.inertia * alpha));
+    }
+}
+
+/// One increment of the coordinates at the multipliers λ + αΦ; its 2-norm, m.
+fn increment(system: &System, stage: &Stage, work: &mut Workspace) -> Result<f64, Failure> {
+    work.place(system, stage);
+    work.evaluate(system, stage);
+    work.residual(system, stage);
+    work.tangent(system, stage, 0.0);
+    if !work.solve() {
+        return Err(Failure::NotFinite);
+    }
+    let n = system.coordinates();
+    advance(n, work);
+    Ok(work.unknowns[..n].iter().map(|u| u * u).sum::<f64>().sqrt())
+}
+
+/// λ ← λ + αΦ at the present position; the 2-norm of Φ.
+fn update_multipliers(system: &System, stage: &Stage, work: &mut Workspace) -> f64 {
+    work.place(system, stage);
+    work.evaluate(system, stage);
+    for ((lambda, phi), delta) in work.lambda.iter_mut().zip(&work.phi).zip(&work.delta) {
+        *lambda += phi / (delta * stage.inertia);
+    }
+    work.phi.iter().map(|phi| phi * phi).sum::<f64>().sqrt()
+}
+
+fn simultaneous(system: &System, stage: &Stage, settings: &SolveSettings, penalty: Option<f64>, work: &mut Workspace) -> Result<usize, Failure> {
+    penalties(stage, penalty, work);
+    for iteration in 1..=settings.max_iterations {
+        let size = increment(system, stage, work)?;
+        update_multipliers(system, stage, work);
+        if size < settings.tolerance {
+            return Ok(iteration);
+        }
+    }
+    Err(Failure::NotConverged(settings.max_iterations))
+}
+
+fn nested(system: &System, stage: &Stage, settings: &SolveSettings, penalty: Option<f64>, work: &mut Workspace) -> Result<usize, Failure> {
+    penalties(stage, penalty, work);
+    let mut iterations = 0;
+    loop {
+        loop {
+            iterations += 1;
+            if iterations > settings.max_iterations {
+                return Err(Failure::NotConverged(settings.max_iterations));
+            }
+            if increment(system, stage, work)? < settings.tolerance {
+                break;
+            }
+        }
+        if update_multipliers(system, stage, work) < settings.tolerance {
+            return Ok(iterations);
+        }
+    }
+}

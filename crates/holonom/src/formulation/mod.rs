@@ -1,0 +1,21 @@
+//! Constraints in a stage: what the rows' multipliers are and how they are iterated.
+//!
+//! Every iteration solves the same matrix (methods §1.3)
+//! ```text
+//! [ A   Ḡᵀ ] [Δd ]      [ ϖ(M a + Ḡᵀλ − Q) ]
+//! [ G   −δ ] [Δμ ]  = − [        Φ         ]
+//! ```
+//! Eliminating Δμ gives the classical tangent A + GᵀG/δ of penalty and augmented Lagrangian with ϖα = 1/δ, so that
+//! the paper's loops and the exact Newton iteration differ only in δ and in what becomes of λ.
+
+mod iteration;
+mod kkt;
+mod stabilized;
+mod stage;
+mod workspace;
+
+pub use iteration::{Failure, ITERATIONS, Iteration, Multipliers, NAMES, SolveSettings, solve};
+pub use kkt::{Block, Kkt};
+pub use stabilized::Stabilized;
+pub use stage::{RowsAt, Sampling, Stage};
+pub use workspace::{RHO, Workspace};

@@ -1,0 +1,230 @@
+//! Rows at both levels, Φ = 0 and Φ̇ = 0, with a multiplier each (Gear–Gupta–Leimkuhler), for the conserving scheme
+//! (methods §2.4; Kinon, Betsch and Schneider 2023).
+//!
+//! Unknowns in units of length and mass × length: d = Δq, u = ½h v_{n+1}, μ = ϖλ − hγ and γ' = hγ with ϖ = ½h². With
+//! w = h v̄ the equations are
+//! ```text
+//! M (d − h v_n) + ϖ (DV − f) + Ḡᵀμ + ½ K_Φ(γ') w = 0        M (w − d) + Ḡᵀγ' = 0
+//! Φ(q_{n+1}) = 0                                             G(q_{n+1}) u + ½h Φ_t = 0
+//! ```
+
+use super::iteration::{Failure, SolveSettings, remaining};
+use super::kkt::{Block, Kkt};
+use super::stage::Stage;
+use super::workspace::Workspace;
+use crate::system::{SIZE, System, gather};
+
+/// Scratch of the doubled system.
+pub struct Stabilized {
+    kkt: Kkt,
+    /// ½h v_{n+1} of all nodes (full), m; known nodes in place.
+    pub u: Vec<f64>,
+    /// Multiplier of the position rows, ϖλ − hγ (r).
+    pub mu: Vec<f64>,
+    /// Multiplier of the velocity rows, hγ (r).
+    pub gamma: Vec<f64>,
+    /// h v̄ of all nodes (full), m.
+    w: Vec<f64>,
+    /// H w and H u, D a slot.
+    turned_w: Vec<f64>,
+    turned_u: Vec<f64>,
+    /// ½h Φ̇ (r).
+    rate: Vec<f64>,
+    unknowns: Vec<f64>,
+}
+
+/// As for positions alone; velocity rows have no history to carry, so they get a softer term.
+const STALLED: f64 = 1e-12;
+
+impl Stabilized {
+    /// Allocates everything for a system.
+    pub fn new(system: &System) -> Self {
+        let (r, all) = (system.constraints(), system.nodes() * system.dim);
+        let kkt = Kkt::new(system, 2);
+        let slots = kkt.slot_nodes.len() * system.dim;
+        Self {
+            unknowns: vec![0.0; kkt.size()],
+            kkt,
+            u: vec![0.0; all],
+            mu: vec![0.0; r],
+            gamma: vec![0.0; r],
+            w: vec![0.0; all],
+            turned_w: vec![0.0; slots],
+            turned_u: vec![0.0; slots],
+            rate: vec![0.0; r],
+        }
+    }
+
+    /// Newton on increments, velocities and both multipliers from the values in the workspaces.
+    pub fn solve(&mut self, system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<usize, Failure> {
+        work.proximal(stage.inertia, None);
+        let mut previous = f64::INFINITY;
+        for iteration in 1..=settings.max_iterations {
+            work.lambda.iter_mut().zip(&self.mu).for_each(|(lambda, mu)| *lambda = mu / stage.inertia);
+            work.place(system, stage);
+            work.evaluate(system, stage);
+            self.turn(system, stage, work);
+            self.residual(system, stage, work);
+            if iteration > 3 && previous < 1e-6 && self.is_met(system, work) {
+                return Ok(iteration - 1);
+            }
+            self.tangent(system, stage, work);
+            work.factorizations += 1;
+            if self.kkt.factor().is_err() {
+                return Err(Failure::NotFinite);
+            }
+            self.kkt.solver.solve(&mut self.unknowns);
+            let increment = self.advance(system, work);
+            if !increment.is_finite() {
+                return Err(Failure::NotFinite);
+            }
+            if remaining(increment, previous) <= settings.tolerance {
+                return Ok(iteration);
+            }
+            previous = increment;
+        }
+        Err(Failure::NotConverged(settings.max_iterations))
+    }
+
+    /// w, and H times w and u.
+    fn turn(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
+        for i in 0..self.w.len() {
+            self.w[i] = self.u[i] + 0.5 * stage.step * work.v0[i];
+        }
+        system.invariants.curvature(&self.w, &mut work.half, &mut self.turned_w);
+        system.invariants.curvature(&self.u, &mut work.half, &mut self.turned_u);
+        self.turn_custom(system, stage, work);
+    }
+
+    /// The same for custom rows, by their second derivatives at the middle of the step.
+    fn turn_custom(&mut self, system: &System, stage: &Stage, work: &Workspace) {
+        let dim = system.dim;
+        let mut slot = system.invariants.slots() * dim;
+        let (mut hessian, mut x, mut w, mut u) = ([0.0; SIZE * SIZE], [0.0; SIZE], [0.0; SIZE], [0.0; SIZE]);
+        for entry in &system.custom {
+            let width = gather(dim, &entry.nodes, &work.xs, &mut x);
+            gather(dim, &entry.nodes, &self.w, &mut w);
+            gather(dim, &entry.nodes, &self.u, &mut u);
+            for row in 0..entry.rows.rows() {
+                let mut unit = [0.0; SIZE];
+                unit[row] = 1.0;
+                entry.rows.hessian(&x[..width], stage.time(), &unit[..entry.rows.rows()], &mut hessian[..width * width]);
+                for i in 0..width {
+                    let line = &hessian[i * width..(i + 1) * width];
+                    self.turned_w[slot + i] = line.iter().zip(&w).map(|(h, w)| h * w).sum();
+                    self.turned_u[slot + i] = line.iter().zip(&u).map(|(h, u)| h * u).sum();
+                }
+                slot += width;
+            }
+        }
+    }
+
+    fn residual(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
+        let (n, dim) = (system.coordinates(), system.dim);
+        work.residual(system, stage);
+        // The second equation takes the same path through the mass matrix, over all nodes.
+        for i in 0..work.full.len() {
+            let increment = if i < n { work.d[i] } else { work.x1[i] - work.x0[i] };
+            work.full[i] = self.w[i] - increment;
+        }
+        system.mass.times(dim, &work.full, &mut work.inertial);
+        for node in 0..system.free {
+            for c in 0..dim {
+                let (from, to) = (node * dim + c, self.kkt.coordinate(node, 0, c));
+                self.unknowns[to] = work.unknowns[from];
+                self.unknowns[to + dim] = -work.inertial[from];
+            }
+        }
+        let plan = &self.kkt.row_slots;
+        for row in 0..self.rate.len() {
+            let explicit = 0.5 * stage.step * system.explicit_rate(row, &work.at_end, stage.end());
+            self.rate[row] = system.along(&plan[row], &self.kkt.slot_nodes, &work.at_end, &self.u) + explicit;
+            let first = self.kkt.multiplier(row, 0);
+            self.unknowns[first] = -work.phi[row];
+            self.unknowns[first + 1] = -self.rate[row];
+            let gamma = self.gamma[row];
+            for s in plan[row].clone().filter(|&s| (self.kkt.slot_nodes[s] as usize) < system.free) {
+                let to = self.kkt.coordinate(self.kkt.slot_nodes[s] as usize, 0, 0);
+                for c in 0..dim {
+                    self.unknowns[to + c] -= 0.5 * gamma * self.turned_w[s * dim + c];
+                    self.unknowns[to + dim + c] -= gamma * work.sampled.gradient[s * dim + c];
+                }
+            }
+        }
+    }
+
+    fn tangent(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
+        let kkt = &mut self.kkt;
+        kkt.clear();
+        // Velocities by positions and positions by velocities: curvature of the velocity rows.
+        kkt.start_with_mass(0.0);
+        kkt.add_row_hessians(Block(0, 1), &self.gamma, 0.5);
+        kkt.write_sum(Block(0, 1));
+        kkt.start_with_mass(-1.0);
+        kkt.add_row_hessians(Block(1, 0), &self.gamma, 0.5);
+        kkt.write_sum(Block(1, 0));
+        kkt.start_with_mass(1.0);
+        kkt.write_sum(Block(1, 1));
+        kkt.add_row_hessians(Block(0, 0), &self.mu, 0.5);
+        std::mem::swap(&mut work.kkt, kkt);
+        work.add_laws(system, stage);
+        work.add_loads(system, stage);
+        std::mem::swap(&mut work.kkt, kkt);
+        kkt.write_sum(Block(0, 0));
+        kkt.add_columns(Block(0, 0), &work.sampled.gradient, 1.0);
+        kkt.add_columns(Block(0, 1), &self.turned_w, 0.5);
+        kkt.add_columns(Block(1, 1), &work.sampled.gradient, 1.0);
+        kkt.add_rows(Block(0, 0), &work.at_end.gradient, 1.0);
+        kkt.add_rows(Block(1, 0), &self.turned_u, 1.0);
+        kkt.add_rows(Block(1, 1), &work.at_end.gradient, 1.0);
+        kkt.regularise(0, &work.delta);
+        kkt.regularise(1, &work.delta);
+    }
+
+    /// Adds the solution to the unknowns; the largest increment over the size of the mechanism.
+    fn advance(&mut self, system: &System, work: &mut Workspace) -> f64 {
+        let dim = system.dim;
+        let mut largest = 0.0_f64;
+        for node in 0..system.free {
+            let from = self.kkt.coordinate(node, 0, 0);
+            for c in 0..dim {
+                let (step, turn) = (self.unknowns[from + c], self.unknowns[from + dim + c]);
+                work.d[node * dim + c] += step;
+                self.u[node * dim + c] += turn;
+                largest = if step.is_finite() && turn.is_finite() { largest.max(step.abs()).max(turn.abs()) } else { f64::NAN };
+            }
+        }
+        for row in 0..self.mu.len() {
+            let from = self.kkt.multiplier(row, 0);
+            self.mu[row] += self.unknowns[from];
+            self.gamma[row] += self.unknowns[from + 1];
+        }
+        largest / work.length
+    }
+
+    fn is_met(&self, system: &System, work: &Workspace) -> bool {
+        let momentum = self.unknowns[..2 * system.coordinates()].iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+        let scaled = self.rate.iter().zip(&work.softness).map(|(rate, softness)| rate.abs() / (softness * work.heaviest).sqrt());
+        let rate = scaled.fold(0.0, f64::max) / work.length;
+        momentum <= STALLED * work.heaviest * work.length && work.scaled_violation() <= STALLED && rate <= STALLED
+    }
+
+    /// Work done by known motion through the velocity rows in the step: γ·(Ḡ Δv + H v̄ Δx − Δċ) over the known nodes, J.
+    pub fn work(&self, system: &System, stage: &Stage, work: &Workspace) -> f64 {
+        let (dim, h) = (system.dim, stage.step);
+        let mut sum = 0.0;
+        for (row, slots) in self.kkt.row_slots.iter().enumerate() {
+            let rate_change = system.explicit_rate(row, &work.at_end, stage.end()) - system.explicit_rate(row, &work.at_start, stage.start);
+            let mut along = rate_change;
+            for s in slots.clone().filter(|&s| self.kkt.slot_nodes[s] as usize >= system.free) {
+                let node = self.kkt.slot_nodes[s] as usize * dim;
+                for c in 0..dim {
+                    let (g, turned) = (work.sampled.gradient[s * dim + c], self.turned_w[s * dim + c] / h);
+                    along += g * (work.v1[node + c] - work.v0[node + c]) + turned * (work.x1[node + c] - work.x0[node + c]);
+                }
+            }
+            sum += self.gamma[row] / h * along;
+        }
+        sum
+    }
+}

@@ -1,0 +1,45 @@
+//! The energy-momentum conserving scheme (14)–(18): midpoint kinematics with discrete gradients (methods §2.1).
+
+use super::{Integrator, Step};
+use crate::formulation::{Failure, RowsAt, Sampling, SolveSettings, Stage, Workspace, solve};
+use crate::system::System;
+
+pub(super) struct Conserving {
+    pub rows: RowsAt,
+}
+
+impl Integrator for Conserving {
+    fn step(&mut self, system: &System, start: f64, step: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
+        let stage = midpoint_kinematics(system, start, step, Sampling::Between, self.rows, work);
+        let iterations = solve(system, &stage, settings, work)?;
+        finish(system, step, work);
+        Ok(Step { iterations, stage, extra_work: 0.0 })
+    }
+}
+
+/// Sets up v̄ = Δq/h and M Δv/h: the start of every scheme with midpoint kinematics. The prediction follows the mean
+/// acceleration of the step before.
+pub(super) fn midpoint_kinematics(system: &System, start: f64, h: f64, sampling: Sampling, rows: RowsAt, work: &mut Workspace) -> Stage {
+    let n = system.coordinates();
+    let stage = Stage { sampling, rows, start, step: h, inertia: 0.5 * h * h, rate: 1.0 / h };
+    for i in 0..n {
+        work.drift[i] = h * work.v0[i];
+        work.offset[i] = 0.0;
+        work.d[i] = h * work.v0[i] + 0.5 * h * h * work.a1[i];
+    }
+    system.place_known(stage.end(), &mut work.x1, &mut work.v1, &mut work.a1);
+    for i in n..work.x1.len() {
+        work.xs[i] = 0.5 * (work.x0[i] + work.x1[i]);
+        work.vs[i] = (work.x1[i] - work.x0[i]) / h;
+        work.a1[i] = (work.v1[i] - work.v0[i]) / h;
+    }
+    stage
+}
+
+/// Velocity at the end and mean acceleration from the increment.
+pub(super) fn finish(system: &System, h: f64, work: &mut Workspace) {
+    for i in 0..system.coordinates() {
+        work.v1[i] = 2.0 / h * work.d[i] - work.v0[i];
+        work.a1[i] = (work.v1[i] - work.v0[i]) / h;
+    }
+}

@@ -1,0 +1,36 @@
+//! Newmark's family on index-3 rows; β = 1/4, γ = 1/2 is the trapezoidal rule (methods §1.1).
+
+use super::{Integrator, Step};
+use crate::formulation::{Failure, RowsAt, Sampling, SolveSettings, Stage, Workspace, solve};
+use crate::system::System;
+
+pub(super) struct Newmark {
+    pub beta: f64,
+    pub gamma: f64,
+}
+
+impl Integrator for Newmark {
+    fn step(&mut self, system: &System, start: f64, step: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
+        let (n, h, beta, gamma) = (system.coordinates(), step, self.beta, self.gamma);
+        let rate = gamma / (beta * h);
+        let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start, step, inertia: beta * h * h, rate };
+        for i in 0..n {
+            let (v, a) = (work.v0[i], work.a1[i]);
+            work.drift[i] = h * v + h * h * (0.5 - beta) * a;
+            work.offset[i] = v + h * (1.0 - gamma) * a - rate * work.drift[i];
+            work.d[i] = h * v + 0.5 * h * h * a;
+            work.inertial[i] = v + h * (1.0 - gamma) * a;
+        }
+        // `inertial` is scratch of the residual, so the velocity without its new acceleration moves to v1.
+        work.v1[..n].copy_from_slice(&work.inertial);
+        system.place_known(stage.end(), &mut work.x1, &mut work.v1, &mut work.a1);
+        work.xs[n..].copy_from_slice(&work.x1[n..]);
+        work.vs[n..].copy_from_slice(&work.v1[n..]);
+        let iterations = solve(system, &stage, settings, work)?;
+        for i in 0..n {
+            work.a1[i] = (work.d[i] - work.drift[i]) / stage.inertia;
+            work.v1[i] += h * gamma * work.a1[i];
+        }
+        Ok(Step { iterations, stage, extra_work: 0.0 })
+    }
+}

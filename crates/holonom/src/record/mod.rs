@@ -1,0 +1,56 @@
+//! What is kept of a run: named columns in memory, one row per recorded step, and how the mechanism is drawn.
+
+mod scene;
+mod summary;
+
+pub use scene::{Anchor, Line, LineKind, PointKind, Scene, ScenePoint};
+pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, ProjectionSummary, Summary, ViolationSummary, WorkSummary};
+
+/// A table of columns of equal length; row 0 is the start.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recording {
+    columns: Vec<Column>,
+}
+
+/// One channel over time, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Name as in the header of `trajectory.csv`, e.g. `energy` or `m1.x`.
+    pub name: String,
+    /// Values, one per recorded step.
+    pub values: Vec<f64>,
+}
+
+impl Recording {
+    /// An empty table with the given column names.
+    pub fn new(names: impl IntoIterator<Item = String>) -> Self {
+        let columns = names.into_iter().map(|name| Column { name, values: Vec::new() }).collect();
+        Self { columns }
+    }
+
+    /// Appends one row.
+    ///
+    /// # Panics
+    /// When `row` has not one value per column.
+    pub fn push(&mut self, row: &[f64]) {
+        assert_eq!(row.len(), self.columns.len(), "one value per column");
+        for (column, &value) in self.columns.iter_mut().zip(row) {
+            column.values.push(value);
+        }
+    }
+
+    /// All columns, in the order of the file.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// The values of one column, if there is one of that name.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        self.columns.iter().find(|c| c.name == name).map(|c| c.values.as_slice())
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, |c| c.values.len())
+    }
+}

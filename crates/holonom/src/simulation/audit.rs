@@ -1,0 +1,237 @@
+//! The energy balance of every step (20)–(30), violations, momenta and work counters.
+
+use super::{Method, State};
+use crate::energy;
+use crate::formulation::{Multipliers, Sampling, Workspace};
+use crate::integrator::Step;
+use crate::record::{EnergySummary, MomentumSummary, ViolationSummary, WorkSummary};
+use crate::system::System;
+
+/// Everything that is booked of a run. Energies in J; sums over parts of a step where it was taken in parts.
+#[derive(Clone, Debug)]
+pub struct Audit {
+    /// T and V at the present state.
+    pub kinetic: f64,
+    pub potential: f64,
+    /// Work done on the system since the start.
+    pub work: f64,
+    /// ΔE_i and ΔE_p of the last nominal step (21).
+    pub integrator: f64,
+    pub projection: f64,
+    /// 2-norms of Φ, Φ̇, Φ̈ after the last step.
+    pub phi: f64,
+    pub phi_dot: f64,
+    pub phi_ddot: f64,
+    /// Iterations of the last nominal step.
+    pub iterations: u64,
+    /// Linear and angular momentum about the origin.
+    pub momenta: [f64; 6],
+    first_momenta: [f64; 6],
+    kept_momenta: [bool; 6],
+    momentum_drift: [f64; 6],
+    initial: f64,
+    before: f64,
+    work_before: f64,
+    max_drift: f64,
+    max_rise: f64,
+    integrator_total: f64,
+    projection_total: f64,
+    violation: ViolationSummary,
+    total_iterations: u64,
+    factorizations: u64,
+    rejected: u64,
+    power: f64,
+    penalty: Option<f64>,
+}
+
+/// T, V and work of a step before its projection.
+#[derive(Clone, Copy)]
+pub(super) struct Accounts {
+    potential: f64,
+}
+
+impl Audit {
+    pub(super) fn new(system: &System, method: &Method, work: &mut Workspace, state: &State) -> Self {
+        let penalty = match method.settings.multipliers {
+            Multipliers::Penalty(alpha) => Some(alpha),
+            Multipliers::Augmented(_) => None,
+        };
+        work.sample_end(system, state.t);
+        let power = energy::power(system, state.t, &state.v, &state.a, work);
+        system.constraint_values(&work.at_end, state.t, &mut work.phi);
+        let potential = energy::potential(system, &work.weight, &state.x, &work.at_end, penalty.map(|alpha| (alpha, work.phi.as_slice())));
+        let kinetic = energy::kinetic(system, &state.v);
+        let momenta = energy::momenta(system, &state.x, &state.v, &mut work.full);
+        let mut kept_momenta = [true; 6];
+        energy::drop_driven_momenta(system, work, &state.x, &mut kept_momenta);
+        let mut audit = Self {
+            kinetic,
+            potential,
+            work: 0.0,
+            integrator: 0.0,
+            projection: 0.0,
+            phi: norm(&work.phi),
+            phi_dot: 0.0,
+            phi_ddot: 0.0,
+            iterations: 0,
+            momenta,
+            first_momenta: momenta,
+            kept_momenta,
+            momentum_drift: [0.0; 6],
+            initial: kinetic + potential,
+            before: kinetic + potential,
+            work_before: 0.0,
+            max_drift: 0.0,
+            max_rise: 0.0,
+            integrator_total: 0.0,
+            projection_total: 0.0,
+            violation: ViolationSummary::default(),
+            total_iterations: 0,
+            factorizations: 0,
+            rejected: 0,
+            power,
+            penalty,
+        };
+        work.rate_violation(system, state.t);
+        audit.phi_dot = norm(&work.rows);
+        work.acceleration_violation(system, state.t);
+        audit.phi_ddot = norm(&work.rows);
+        audit.keep_violations();
+        audit
+    }
+
+    /// Energy of the present state, J.
+    pub fn energy(&self) -> f64 {
+        self.kinetic + self.potential
+    }
+
+    pub(super) fn begin_step(&mut self) {
+        self.before = self.energy();
+        self.work_before = self.work;
+        self.integrator = 0.0;
+        self.projection = 0.0;
+        self.iterations = 0;
+    }
+
+    pub(super) fn reject(&mut self) {
+        self.rejected += 1;
+    }
+
+    /// Books what the integrator did: ΔE_i is the change of energy that no work accounts for (21).
+    pub(super) fn integrated(&mut self, system: &System, taken: &Step, state: &State, work: &mut Workspace) -> Accounts {
+        self.iterations += taken.iterations as u64;
+        let done = match taken.stage.sampling {
+            Sampling::End => {
+                let power = energy::power(system, state.t, &work.v1, &work.a1, work);
+                let done = 0.5 * taken.stage.step * (self.power + power);
+                self.power = power;
+                done
+            }
+            _ => energy::work_between(system, &taken.stage, work) + taken.extra_work,
+        };
+        system.constraint_values(&work.at_end, state.t, &mut work.phi);
+        self.phi = norm(&work.phi);
+        let penalty = self.penalty.map(|alpha| (alpha, work.phi.as_slice()));
+        let potential = energy::potential(system, &work.weight, &state.x, &work.at_end, penalty);
+        let kinetic = energy::kinetic(system, &work.v1);
+        let change = (kinetic - self.kinetic) + (potential - self.potential);
+        self.integrator += change - done;
+        self.work += done;
+        self.kinetic = kinetic;
+        Accounts { potential }
+    }
+
+    /// ‖Φ̈‖ of the accelerations the integrator found, where it takes its forces.
+    pub(super) fn violate_acceleration(&mut self, system: &System, method: &Method, taken: &Step, target: f64, work: &mut Workspace) {
+        if method.projection.acceleration {
+            return;
+        }
+        match taken.stage.sampling {
+            Sampling::End => work.acceleration_violation(system, target),
+            _ => work.sampled_acceleration_violation(system, taken.stage.time()),
+        }
+        self.phi_ddot = norm(&work.rows);
+    }
+
+    /// Books what the projection did: ΔE_p (29), and the violations after it. `before` are the unprojected velocities.
+    pub(super) fn projected(&mut self, system: &System, method: &Method, before: &[f64], accounts: Accounts, target: f64, work: &mut Workspace) {
+        self.potential = accounts.potential;
+        if method.projection.velocity {
+            let change = energy::kinetic_difference(system, &work.v1, before, &mut work.full);
+            if !method.projection.shadow {
+                self.projection += change;
+                self.kinetic = energy::kinetic(system, &work.v1);
+            }
+        }
+        work.rate_violation(system, target);
+        self.phi_dot = norm(&work.rows);
+        if method.projection.acceleration {
+            work.acceleration_violation(system, target);
+            self.phi_ddot = norm(&work.rows);
+        }
+        self.factorizations = work.factorizations;
+        self.keep_violations();
+    }
+
+    fn keep_violations(&mut self) {
+        let kept = &mut self.violation;
+        kept.position = kept.position.max(self.phi);
+        kept.velocity = kept.velocity.max(self.phi_dot);
+        kept.acceleration = kept.acceleration.max(self.phi_ddot);
+    }
+
+    pub(super) fn end_step(&mut self, system: &System, work: &mut Workspace, state: &State, steps: u64) {
+        self.total_iterations += self.iterations;
+        self.integrator_total += self.integrator;
+        self.projection_total += self.projection;
+        self.max_drift = self.max_drift.max((self.energy() - self.initial - self.work).abs());
+        self.max_rise = self.max_rise.max(self.energy() - self.before - (self.work - self.work_before));
+        self.momenta = energy::momenta(system, &state.x, &state.v, &mut work.full);
+        if steps.is_power_of_two() {
+            energy::drop_driven_momenta(system, work, &state.x, &mut self.kept_momenta);
+        }
+        for k in 0..6 {
+            self.momentum_drift[k] = self.momentum_drift[k].max((self.momenta[k] - self.first_momenta[k]).abs());
+        }
+    }
+
+    /// The energies of the summary.
+    pub fn energy_summary(&self) -> EnergySummary {
+        let rise = self.energy() - self.initial;
+        EnergySummary {
+            initial: self.initial,
+            last: self.energy(),
+            max_drift: self.max_drift,
+            max_rise: self.max_rise,
+            integrator_total: self.integrator_total,
+            projection_total: self.projection_total,
+            work_total: self.work,
+            audit_residual: (rise - self.work - self.integrator_total - self.projection_total).abs(),
+        }
+    }
+
+    /// Drift of the momenta that nothing outside changes.
+    pub fn momentum_summary(&self) -> MomentumSummary {
+        let largest = |range: std::ops::Range<usize>| range.filter(|&k| self.kept_momenta[k]).map(|k| self.momentum_drift[k]).fold(0.0, f64::max);
+        MomentumSummary { linear_drift: largest(0..3), angular_drift: largest(3..6) }
+    }
+
+    /// Largest violations so far.
+    pub fn violation_summary(&self) -> ViolationSummary {
+        self.violation.clone()
+    }
+
+    /// Work counters after `steps` nominal steps.
+    pub fn work_summary(&self, steps: u64) -> WorkSummary {
+        WorkSummary {
+            iterations: self.total_iterations,
+            iterations_per_step: self.total_iterations as f64 / steps.max(1) as f64,
+            factorizations: self.factorizations,
+            rejected_steps: self.rejected,
+        }
+    }
+}
+
+fn norm(values: &[f64]) -> f64 {
+    values.iter().map(|v| v * v).sum::<f64>().sqrt()
+}

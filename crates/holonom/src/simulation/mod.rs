@@ -1,0 +1,250 @@
+//! A method at work on a system: the step loop, step control, and how a run ended.
+
+mod audit;
+mod method;
+mod start;
+
+pub use audit::Audit;
+pub use method::{Choice, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, PENALTY, ProjectionChoice, TOLERANCE};
+pub use start::{Start, StartError};
+
+use crate::formulation::{Failure, Workspace};
+use crate::integrator::Integrator;
+use crate::system::System;
+
+/// Why words do not make a method.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MethodError {
+    #[error("there is no {kind} `{given}`; there are: {known}")]
+    Unknown { kind: &'static str, given: String, known: String },
+    #[error("the {kind} `{name}` does not go with the {with} `{given}`; it goes with: {partners}")]
+    Pair { kind: &'static str, name: String, with: &'static str, given: String, partners: String },
+    #[error("`{key}` cannot be {given}; it can be: {allowed}")]
+    Value { key: &'static str, given: String, allowed: String },
+}
+
+/// Numbers of a moment. A clone is a checkpoint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// s
+    pub t: f64,
+    /// Positions of all nodes (D × nodes), m.
+    pub x: Vec<f64>,
+    /// Velocities of all nodes (D × nodes), m/s.
+    pub v: Vec<f64>,
+    /// Accelerations of all nodes (D × nodes), m/s²; with midpoint kinematics the mean of the last step.
+    pub a: Vec<f64>,
+    /// Multipliers λ (r), in N over the unit of the row's gradient.
+    pub lambda: Vec<f64>,
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Status {
+    Completed,
+    Stopped { at: f64, reason: String },
+}
+
+/// What an observer answers after each step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    GoOn,
+    Stop,
+}
+
+/// Is shown the start and every nominal step.
+pub trait Observer {
+    /// Looks at the simulation after a step.
+    fn after_step(&mut self, simulation: &Simulation<'_>) -> Verdict;
+}
+
+impl<F: FnMut(&Simulation<'_>) -> Verdict> Observer for F {
+    fn after_step(&mut self, simulation: &Simulation<'_>) -> Verdict {
+        self(simulation)
+    }
+}
+
+/// Halvings of a step before a run gives up.
+const MOST_HALVINGS: u32 = 12;
+
+/// A method at work on a system. Everything a step needs is allocated when it is made.
+pub struct Simulation<'a> {
+    system: &'a System,
+    method: Method,
+    integrator: Box<dyn Integrator>,
+    work: Workspace,
+    state: State,
+    /// Velocities and accelerations to show: those of the state, or their projections.
+    shown_v: Vec<f64>,
+    shown_a: Vec<f64>,
+    audit: Audit,
+    start: Start,
+    step: f64,
+    steps: u64,
+}
+
+impl<'a> Simulation<'a> {
+    /// Prepares a run with nominal step `step` (s): corrects positions and velocities that miss their constraints a
+    /// little, and finds accelerations and multipliers to start with.
+    pub fn new(system: &'a System, method: Method, step: f64) -> Result<Self, StartError> {
+        let mut work = Workspace::new(system);
+        let start = start::prepare(system, &mut work)?;
+        let state = State { t: 0.0, x: work.x1.clone(), v: work.v1.clone(), a: work.a1.clone(), lambda: work.lambda.clone() };
+        let audit = Audit::new(system, &method, &mut work, &state);
+        Ok(Self {
+            integrator: (method.integrator.make)(system, method.parameters),
+            shown_v: state.v.clone(),
+            shown_a: state.a.clone(),
+            system,
+            method,
+            work,
+            state,
+            audit,
+            start,
+            step,
+            steps: 0,
+        })
+    }
+
+    /// Runs to time `end` (s) and shows the start and every nominal step to the observer.
+    pub fn run(&mut self, end: f64, observer: &mut dyn Observer) -> Status {
+        if observer.after_step(self) == Verdict::Stop {
+            return self.interrupted();
+        }
+        let first = self.state.t;
+        let count = ((end - first) / self.step - 1e-9).ceil().max(0.0) as u64;
+        for k in 1..=count {
+            let target = if k == count { end } else { first + k as f64 * self.step };
+            if let Err(failure) = self.advance(target) {
+                return Status::Stopped { at: self.state.t, reason: self.reason(failure) };
+            }
+            if observer.after_step(self) == Verdict::Stop {
+                return self.interrupted();
+            }
+        }
+        Status::Completed
+    }
+
+    fn interrupted(&self) -> Status {
+        Status::Stopped { at: self.state.t, reason: "interrupted".into() }
+    }
+
+    /// Takes the nominal step to `target`, in parts where it fails as a whole.
+    fn advance(&mut self, target: f64) -> Result<(), Failure> {
+        self.audit.begin_step();
+        let whole = target - self.state.t;
+        let smallest = whole / f64::from(1u32 << MOST_HALVINGS);
+        let mut part = whole;
+        while self.state.t < target {
+            let left = target - self.state.t;
+            let is_last = part >= left * (1.0 - 1e-12);
+            let step = if is_last { left } else { part };
+            match self.substep(step, if is_last { target } else { self.state.t + step }) {
+                Ok(()) => part = 2.0 * step,
+                Err(failure) if !self.method.subdivide || step <= smallest => return Err(failure),
+                Err(_) => {
+                    part = 0.5 * step;
+                    self.audit.reject();
+                }
+            }
+        }
+        self.steps += 1;
+        self.audit.end_step(self.system, &mut self.work, &self.state, self.steps);
+        Ok(())
+    }
+
+    /// One step of the method: integrate, audit, project.
+    fn substep(&mut self, step: f64, target: f64) -> Result<(), Failure> {
+        let (system, work) = (self.system, &mut self.work);
+        self.state.load(work);
+        system.constraint_values(&work.at_start, self.state.t, &mut work.phi_start);
+        let taken = self.integrator.step(system, self.state.t, step, &self.method.settings, work)?;
+        self.state.land(system, target, work);
+        let accounts = self.audit.integrated(system, &taken, &self.state, work);
+        self.audit.violate_acceleration(system, &self.method, &taken, target, work);
+        self.state.v.copy_from_slice(&work.v1);
+        if !self.method.projection.apply(system, target, step, work) {
+            return Err(Failure::NotFinite);
+        }
+        self.audit.projected(system, &self.method, &self.state.v, accounts, target, work);
+        self.shown_v.copy_from_slice(&work.v1);
+        self.shown_a.copy_from_slice(&work.a1);
+        if !self.method.projection.shadow {
+            self.state.v.copy_from_slice(&work.v1);
+            self.state.a.copy_from_slice(&work.a1);
+        }
+        std::mem::swap(&mut work.at_start, &mut work.at_end);
+        Ok(())
+    }
+
+    fn reason(&mut self, failure: Failure) -> String {
+        let worst = self.work.phi.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        let row = worst.map_or(String::new(), |(k, phi)| format!("; the worst row is `{}` with {phi:.1e}", self.system.row_names[k]));
+        format!("{failure} at t = {:.6} s{row}", self.state.t)
+    }
+
+    /// The system that is simulated.
+    pub fn system(&self) -> &System {
+        self.system
+    }
+
+    /// The method at work.
+    pub fn method(&self) -> &Method {
+        &self.method
+    }
+
+    /// The present state.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Velocities to show (D × nodes), m/s: the state's, or with shadow projections the projected ones.
+    pub fn velocities(&self) -> &[f64] {
+        &self.shown_v
+    }
+
+    /// The energy audit so far.
+    pub fn audit(&self) -> &Audit {
+        &self.audit
+    }
+
+    /// What was corrected before the start.
+    pub fn start(&self) -> &Start {
+        &self.start
+    }
+
+    /// Nominal step, s.
+    pub fn nominal_step(&self) -> f64 {
+        self.step
+    }
+
+    /// Nominal steps taken.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+}
+
+impl State {
+    /// Copies the start of a step into a workspace.
+    fn load(&self, work: &mut Workspace) {
+        work.x0.copy_from_slice(&self.x);
+        work.v0.copy_from_slice(&self.v);
+        work.x1.copy_from_slice(&self.x);
+        work.v1.copy_from_slice(&self.v);
+        work.a1.copy_from_slice(&self.a);
+        work.lambda.copy_from_slice(&self.lambda);
+    }
+
+    /// Takes over the end of a step: its position, evaluated there, its acceleration and multipliers.
+    fn land(&mut self, system: &System, target: f64, work: &mut Workspace) {
+        let n = system.coordinates();
+        for i in 0..n {
+            work.x1[i] = work.x0[i] + work.d[i];
+        }
+        system.evaluate(&work.x1, target, &mut work.at_end);
+        self.t = target;
+        self.x.copy_from_slice(&work.x1);
+        self.a.copy_from_slice(&work.a1);
+        self.lambda.copy_from_slice(&work.lambda);
+    }
+}

@@ -1,0 +1,151 @@
+//! The start: positions and velocities put on their constraints, accelerations and multipliers found.
+
+use crate::formulation::{Block, Workspace};
+use crate::system::System;
+
+/// What was corrected before the start.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Start {
+    /// Largest move of a coordinate, m; zero when the model met its constraints.
+    pub moved: f64,
+    /// Largest change of a velocity, m/s.
+    pub turned: f64,
+}
+
+/// Why a model cannot start.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StartError {
+    #[error("the positions at the start miss their constraints and cannot be corrected; worst: {rows}")]
+    Position { rows: String },
+    #[error("the velocities at the start cannot meet their constraints; worst: {rows}")]
+    Velocity { rows: String },
+    #[error("the accelerations at the start cannot be found: the mass matrix is singular where nothing holds it")]
+    Acceleration,
+}
+
+/// Violation over the size of the mechanism that counts as met: what a model file written with ten digits leaves.
+const MET: f64 = 1e-9;
+
+/// Violation that is left alone: round-off.
+const ROUND_OFF: f64 = 1e-14;
+
+/// Largest correction of a position that is made, over the size of the mechanism.
+const LARGEST_MOVE: f64 = 0.05;
+
+/// Puts a workspace at the start of a run: x1, v1, a1, λ and the evaluation `at_start`.
+pub(super) fn prepare(system: &System, work: &mut Workspace) -> Result<Start, StartError> {
+    work.x1.copy_from_slice(&system.start_position);
+    work.v1.copy_from_slice(&system.start_velocity);
+    system.place_known(0.0, &mut work.x1, &mut work.v1, &mut work.a1);
+    let mut start = Start::default();
+    correct_positions(system, work, &mut start)?;
+    correct_velocities(system, work, &mut start)?;
+    accelerate(system, work)?;
+    work.at_start.copy_from(&work.at_end);
+    Ok(start)
+}
+
+/// Writes [M Gᵀ; G −δ] at the evaluation `at_end` and factors it.
+fn factor(work: &mut Workspace) -> bool {
+    let block = Block(0, 0);
+    work.kkt.clear();
+    work.kkt.start_with_mass(1.0);
+    work.kkt.write_sum(block);
+    work.kkt.add_columns(block, &work.at_end.gradient, 1.0);
+    work.kkt.add_rows(block, &work.at_end.gradient, 1.0);
+    work.proximal(1.0, None);
+    work.kkt.regularise(0, &work.delta);
+    work.kkt.factor().is_ok()
+}
+
+/// Mass-weighted Newton on Φ = 0.
+fn correct_positions(system: &System, work: &mut Workspace, start: &mut Start) -> Result<(), StartError> {
+    let n = system.coordinates();
+    for _ in 0..30 {
+        system.evaluate(&work.x1, 0.0, &mut work.at_end);
+        system.constraint_values(&work.at_end, 0.0, &mut work.phi);
+        if work.scaled_violation() <= ROUND_OFF || !factor(work) {
+            break;
+        }
+        work.unknowns[..n].fill(0.0);
+        work.unknowns[n..].iter_mut().zip(&work.phi).for_each(|(unknown, phi)| *unknown = -phi);
+        work.kkt.solver.solve(&mut work.unknowns);
+        work.x1[..n].iter_mut().zip(&work.unknowns).for_each(|(x, step)| *x += step);
+        start.moved = work.x1.iter().zip(&system.start_position).fold(0.0, |m, (x, x0)| f64::max(m, (x - x0).abs()));
+        if start.moved.is_nan() || start.moved > LARGEST_MOVE * work.length {
+            system.evaluate(&system.start_position, 0.0, &mut work.at_end);
+            system.constraint_values(&work.at_end, 0.0, &mut work.phi);
+            return Err(StartError::Position { rows: worst(system, &work.phi) });
+        }
+    }
+    match work.scaled_violation() <= MET {
+        true => Ok(()),
+        false => Err(StartError::Position { rows: worst(system, &work.phi) }),
+    }
+}
+
+/// Velocity projection with A = M (10).
+fn correct_velocities(system: &System, work: &mut Workspace, start: &mut Start) -> Result<(), StartError> {
+    let n = system.coordinates();
+    if !factor(work) {
+        return Err(StartError::Acceleration);
+    }
+    let mut violation = f64::INFINITY;
+    for _ in 0..4 {
+        work.rate_violation(system, 0.0);
+        let size = work.v1.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        violation = work.rows.iter().zip(&work.softness).fold(0.0, |m, (row, softness)| f64::max(m, row.abs() / (softness * work.heaviest).sqrt()));
+        if violation <= ROUND_OFF * size {
+            break;
+        }
+        work.unknowns[..n].fill(0.0);
+        work.unknowns[n..].iter_mut().zip(&work.rows).for_each(|(unknown, rate)| *unknown = -rate);
+        work.kkt.solver.solve(&mut work.unknowns);
+        work.v1[..n].iter_mut().zip(&work.unknowns).for_each(|(v, step)| *v += step);
+    }
+    start.turned = work.v1.iter().zip(&system.start_velocity).fold(0.0, |m, (v, v0)| f64::max(m, (v - v0).abs()));
+    let size = work.v1.iter().fold(work.length, |m: f64, v| m.max(v.abs()));
+    match violation <= MET * size {
+        true => Ok(()),
+        false => Err(StartError::Velocity { rows: worst(system, &work.rows) }),
+    }
+}
+
+/// Index-1 solve for accelerations and multipliers (3).
+fn accelerate(system: &System, work: &mut Workspace) -> Result<(), StartError> {
+    let n = system.coordinates();
+    work.lambda.fill(0.0);
+    work.a1[..n].fill(0.0);
+    work.sample_end(system, 0.0);
+    for _ in 0..3 {
+        // M a + Gᵀλ = Q and G a = −c, for what is still missing of both.
+        work.acceleration_violation(system, 0.0);
+        system.mass.times(system.dim, &work.a1, &mut work.inertial);
+        work.full.copy_from_slice(&work.force);
+        for (slots, &lambda) in work.kkt.row_slots.iter().zip(&work.lambda) {
+            for s in slots.clone() {
+                let node = work.kkt.slot_nodes[s] as usize * system.dim;
+                (0..system.dim).for_each(|c| work.full[node + c] += lambda * work.at_end.gradient[s * system.dim + c]);
+            }
+        }
+        for i in 0..n {
+            work.unknowns[i] = -(work.inertial[i] + work.full[i]);
+        }
+        work.unknowns[n..].iter_mut().zip(&work.rows).for_each(|(unknown, row)| *unknown = -row);
+        work.kkt.solver.solve(&mut work.unknowns);
+        work.a1[..n].iter_mut().zip(&work.unknowns).for_each(|(a, step)| *a += step);
+        work.lambda.iter_mut().zip(&work.unknowns[n..]).for_each(|(lambda, step)| *lambda += step);
+    }
+    match work.a1.iter().all(|a| a.is_finite()) {
+        true => Ok(()),
+        false => Err(StartError::Acceleration),
+    }
+}
+
+/// The three rows with the largest violation, by name.
+fn worst(system: &System, rows: &[f64]) -> String {
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    order.sort_by(|&a, &b| rows[b].abs().total_cmp(&rows[a].abs()));
+    let name = |&k: &usize| format!("`{}` by {:.3e}", system.row_names[k], rows[k]);
+    order.iter().take(3).filter(|&&k| rows[k] != 0.0).map(name).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,179 @@
+//! From nodes, invariants and laws, one call each, to a [`System`].
+
+use std::sync::Arc;
+
+use super::{Constant, CustomEntry, CustomRows, InvariantId, Invariants, Law, LawEntry, Load, LoadEntry, Mass, Row, Signal, System};
+
+/// A node of a [`SystemBuilder`] and of the system it makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct NodeId(pub(crate) u32);
+
+impl NodeId {
+    /// Position of the node in the vector `x = [q | known]`, in nodes.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Something with a position: a node, or a place that never moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    Node(NodeId),
+    /// World coordinates (the first D are used), m.
+    Fixed([f64; 3]),
+}
+
+/// Collects a system piece by piece. Free nodes must be added before known ones.
+pub struct SystemBuilder {
+    dim: usize,
+    free: usize,
+    gravity: [f64; 3],
+    mass: Vec<(u32, u32, f64)>,
+    invariants: Invariants,
+    rows: Vec<Row>,
+    custom: Vec<CustomEntry>,
+    laws: Vec<LawEntry>,
+    loads: Vec<LoadEntry>,
+    motions: Vec<[Arc<dyn Signal>; 3]>,
+    position: Vec<f64>,
+    velocity: Vec<f64>,
+}
+
+impl SystemBuilder {
+    /// An empty system of `dim` = 2 or 3 coordinates a node with gravity in its axes, m/s².
+    pub fn new(dim: usize, gravity: [f64; 3]) -> Self {
+        assert!(dim == 2 || dim == 3, "a node has two or three coordinates");
+        Self {
+            dim,
+            free: 0,
+            gravity,
+            mass: Vec::new(),
+            invariants: Invariants::new(dim),
+            rows: Vec::new(),
+            custom: Vec::new(),
+            laws: Vec::new(),
+            loads: Vec::new(),
+            motions: Vec::new(),
+            position: Vec::new(),
+            velocity: Vec::new(),
+        }
+    }
+
+    /// Coordinates a node.
+    pub fn dimension(&self) -> usize {
+        self.dim
+    }
+
+    /// Adds a node whose motion is sought, with its position (m) and velocity (m/s) at the start.
+    ///
+    /// # Panics
+    /// When a known node has been added before.
+    pub fn free_node(&mut self, position: [f64; 3], velocity: [f64; 3]) -> NodeId {
+        assert!(self.motions.is_empty(), "free nodes come before known ones");
+        self.position.extend_from_slice(&position[..self.dim]);
+        self.velocity.extend_from_slice(&velocity[..self.dim]);
+        self.free += 1;
+        NodeId(self.free as u32 - 1)
+    }
+
+    /// Adds a node whose motion is a known function of time, one signal a coordinate (m).
+    pub fn known_node(&mut self, motion: [Arc<dyn Signal>; 3]) -> NodeId {
+        for signal in &motion[..self.dim] {
+            let [position, velocity, _] = signal.at(0.0);
+            self.position.push(position);
+            self.velocity.push(velocity);
+        }
+        self.motions.push(motion);
+        NodeId((self.free + self.motions.len()) as u32 - 1)
+    }
+
+    /// Adds `m` (kg) to the entries (a, b) and (b, a) of the mass matrix, once when a = b. What belongs to a fixed
+    /// place never moves and is left out.
+    pub fn mass(&mut self, a: Place, b: Place, m: f64) {
+        if let (Place::Node(a), Place::Node(b)) = (a, b) {
+            self.mass.push((a.0, b.0, m));
+            if a != b {
+                self.mass.push((b.0, a.0, m));
+            }
+        }
+    }
+
+    /// π = ½ |Σ u_a x_a|².
+    pub fn square(&mut self, u: &[(Place, f64)]) -> InvariantId {
+        self.invariants.square(u)
+    }
+
+    /// π = (Σ u_a x_a) · (Σ w_b x_b).
+    pub fn dot(&mut self, u: &[(Place, f64)], w: &[(Place, f64)]) -> InvariantId {
+        self.invariants.dot(u, w)
+    }
+
+    /// π = e · (Σ u_a x_a): one component of a sum of points.
+    pub fn linear(&mut self, e: [f64; 3], u: &[(Place, f64)]) -> InvariantId {
+        self.invariants.dot(u, &[(Place::Fixed(e), 1.0)])
+    }
+
+    /// π = e · ((Σ u_a x_a) × (Σ w_b x_b)); in the plane the scalar cross product, and `e` is not read.
+    ///
+    /// In space a row of this kind is only equivariant: it may cost angular momentum (methods §2.2).
+    pub fn cross(&mut self, e: [f64; 3], u: &[(Place, f64)], w: &[(Place, f64)]) -> InvariantId {
+        self.invariants.cross(e, u, w)
+    }
+
+    /// Value of an invariant at the start.
+    pub fn value(&self, invariant: InvariantId) -> f64 {
+        self.invariants.value_of(invariant, &self.position)
+    }
+
+    /// Adds the row Φ = π − c(t).
+    pub fn row(&mut self, name: impl Into<String>, invariant: InvariantId, target: Arc<dyn Signal>) {
+        self.rows.push(Row { name: name.into(), invariant, target });
+    }
+
+    /// Adds the row Φ = π − c with a constant c.
+    pub fn constant_row(&mut self, name: impl Into<String>, invariant: InvariantId, target: f64) {
+        self.row(name, invariant, Arc::new(Constant(target)));
+    }
+
+    /// Adds a potential or dissipative law of some invariants.
+    pub fn law(&mut self, name: impl Into<String>, invariants: &[InvariantId], law: Arc<dyn Law>) {
+        assert!(invariants.len() <= super::MAX_ARGUMENTS, "a law has at most {} arguments", super::MAX_ARGUMENTS);
+        self.laws.push(LawEntry { name: name.into(), invariants: invariants.to_vec(), law });
+    }
+
+    /// Adds a load on nodes.
+    pub fn load(&mut self, name: impl Into<String>, nodes: &[NodeId], load: Arc<dyn Load>) {
+        self.loads.push(LoadEntry { name: name.into(), nodes: nodes.to_vec(), load });
+    }
+
+    /// Adds rows that are functions of the coordinates of `nodes` and of time.
+    pub fn custom_rows(&mut self, name: impl Into<String>, nodes: &[NodeId], rows: Arc<dyn CustomRows>) {
+        self.custom.push(CustomEntry { name: name.into(), nodes: nodes.to_vec(), rows });
+    }
+
+    /// The finished system.
+    pub fn build(self) -> System {
+        let mut row_names: Vec<String> = self.rows.iter().map(|row| row.name.clone()).collect();
+        for custom in &self.custom {
+            match custom.rows.rows() {
+                1 => row_names.push(custom.name.clone()),
+                several => row_names.extend((0..several).map(|k| format!("{}[{k}]", custom.name))),
+            }
+        }
+        System {
+            dim: self.dim,
+            free: self.free,
+            mass: Mass::new(self.free + self.motions.len(), self.mass),
+            gravity: self.gravity,
+            invariants: self.invariants,
+            rows: self.rows,
+            custom: self.custom,
+            laws: self.laws,
+            loads: self.loads,
+            motions: self.motions,
+            row_names,
+            start_position: self.position,
+            start_velocity: self.velocity,
+        }
+    }
+}

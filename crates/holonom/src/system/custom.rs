@@ -1,0 +1,138 @@
+//! Constraints and forces that no invariant expresses: functions of coordinates and time, differentiated by dual numbers.
+
+use num_dual::{Dual2_64, Dual64, DualNum, HyperDual64};
+
+use super::Load;
+
+/// A number that carries derivatives along, or a plain one.
+pub trait Number: DualNum<Primitive = f64> + Copy {}
+
+impl<N: DualNum<Primitive = f64> + Copy> Number for N {}
+
+/// Constraint rows Φ(q, t) as an engine sees them: values and derivatives. Made from a [`ConstraintFunction`] by
+/// [`Differentiated`], or written by hand.
+pub trait CustomRows: Send + Sync {
+    /// Number of rows.
+    fn rows(&self) -> usize;
+
+    /// Φ (rows) at the coordinates `x` (k numbers) of its nodes.
+    fn value(&self, x: &[f64], t: f64, phi: &mut [f64]);
+
+    /// ∂Φ/∂x (rows × k, row-major) and ∂Φ/∂t (rows).
+    fn gradient(&self, x: &[f64], t: f64, by_position: &mut [f64], by_time: &mut [f64]);
+
+    /// Σ λ_k ∂²Φ_k/∂x² (k × k, row-major).
+    fn hessian(&self, x: &[f64], t: f64, lambda: &[f64], out: &mut [f64]);
+
+    /// d²Φ/ds² along (x + s v, t + s): all of Φ̈ but G a (rows).
+    fn curvature(&self, x: &[f64], v: &[f64], t: f64, out: &mut [f64]);
+}
+
+/// A constraint written once over any number type; [`Differentiated`] takes its derivatives.
+pub trait ConstraintFunction: Send + Sync {
+    /// Number of rows.
+    fn rows(&self) -> usize;
+
+    /// Φ at coordinates `x` of the nodes, D numbers a node, and time `t`.
+    fn evaluate<N: Number>(&self, x: &[N], t: N, phi: &mut [N]);
+}
+
+/// A force written once over any number type; [`Differentiated`] takes its derivatives.
+pub trait ForceFunction: Send + Sync {
+    /// Force at coordinates `x` and velocities `v` of the nodes, D numbers a node, and time `t`, N.
+    fn evaluate<N: Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]);
+}
+
+/// Derivatives of a function by dual numbers, for at most [`SIZE`] coordinates, so that nothing is allocated in a step.
+pub struct Differentiated<F>(pub F);
+
+/// Most coordinates, and most rows, of one function.
+pub const SIZE: usize = 24;
+
+impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
+    fn rows(&self) -> usize {
+        self.0.rows()
+    }
+
+    fn value(&self, x: &[f64], t: f64, phi: &mut [f64]) {
+        self.0.evaluate(x, t, phi);
+    }
+
+    fn gradient(&self, x: &[f64], t: f64, by_position: &mut [f64], by_time: &mut [f64]) {
+        let (mut point, mut phi) = ([Dual64::from(0.0); SIZE], [Dual64::from(0.0); SIZE]);
+        let (k, rows) = (x.len(), self.0.rows());
+        for direction in 0..=k {
+            for (p, &x) in point.iter_mut().zip(x) {
+                *p = Dual64::from(x);
+            }
+            let mut time = Dual64::from(t);
+            match point[..k].get_mut(direction) {
+                Some(p) => p.eps = 1.0,
+                None => time.eps = 1.0,
+            }
+            self.0.evaluate(&point[..k], time, &mut phi[..rows]);
+            for row in 0..rows {
+                match direction < k {
+                    true => by_position[row * k + direction] = phi[row].eps,
+                    false => by_time[row] = phi[row].eps,
+                }
+            }
+        }
+    }
+
+    fn hessian(&self, x: &[f64], t: f64, lambda: &[f64], out: &mut [f64]) {
+        let (mut point, mut phi) = ([HyperDual64::from(0.0); SIZE], [HyperDual64::from(0.0); SIZE]);
+        let k = x.len();
+        for i in 0..k {
+            for j in 0..=i {
+                for (p, &x) in point.iter_mut().zip(x) {
+                    *p = HyperDual64::from(x);
+                }
+                point[i].eps1 = 1.0;
+                point[j].eps2 = 1.0;
+                self.0.evaluate(&point[..k], HyperDual64::from(t), &mut phi[..lambda.len()]);
+                let sum: f64 = phi.iter().zip(lambda).map(|(phi, lambda)| lambda * phi.eps1eps2).sum();
+                out[i * k + j] = sum;
+                out[j * k + i] = sum;
+            }
+        }
+    }
+
+    fn curvature(&self, x: &[f64], v: &[f64], t: f64, out: &mut [f64]) {
+        let (mut point, mut phi) = ([Dual2_64::from(0.0); SIZE], [Dual2_64::from(0.0); SIZE]);
+        for ((p, &x), &v) in point.iter_mut().zip(x).zip(v) {
+            *p = Dual2_64::new(x, v, 0.0);
+        }
+        self.0.evaluate(&point[..x.len()], Dual2_64::new(t, 1.0, 0.0), &mut phi[..out.len()]);
+        for (out, phi) in out.iter_mut().zip(&phi) {
+            *out = phi.v2;
+        }
+    }
+}
+
+impl<F: ForceFunction> Load for Differentiated<F> {
+    fn force(&self, x: &[f64], v: &[f64], t: f64, force: &mut [f64]) {
+        self.0.evaluate(x, v, t, force);
+    }
+
+    fn tangent(&self, x: &[f64], v: &[f64], t: f64, by_position: &mut [f64], by_velocity: &mut [f64]) {
+        let k = x.len();
+        let zero = Dual64::from(0.0);
+        let (mut point, mut rate, mut force) = ([zero; SIZE], [zero; SIZE], [zero; SIZE]);
+        for direction in 0..2 * k {
+            for i in 0..k {
+                point[i] = Dual64::from(x[i]);
+                rate[i] = Dual64::from(v[i]);
+            }
+            let (varied, out) = match direction < k {
+                true => (&mut point[direction], &mut *by_position),
+                false => (&mut rate[direction - k], &mut *by_velocity),
+            };
+            varied.eps = 1.0;
+            self.0.evaluate(&point[..k], &rate[..k], Dual64::from(t), &mut force[..k]);
+            for i in 0..k {
+                out[i * k + direction % k] = force[i].eps;
+            }
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! Values and gradients of all invariants and constraint rows, *at* one position and *between* two.
+
+use super::{CustomEntry, NodeId, System};
+
+/// Values and gradients at one position, or between two.
+///
+/// Gradients are kept in slots of D numbers, one for each pair of an invariant (or custom row) and a node it names.
+#[derive(Clone, Debug, Default)]
+pub struct Evaluation {
+    /// Values of the invariants, then Φ of the custom rows.
+    pub(crate) value: Vec<f64>,
+    /// Gradients, D a slot.
+    pub(crate) gradient: Vec<f64>,
+    /// ∂Φ/∂t of the custom rows.
+    pub(crate) by_time: Vec<f64>,
+    /// Where between the two positions each custom row has its gradient: the paper's β (15).
+    pub(crate) beta: Vec<f64>,
+}
+
+impl Evaluation {
+    /// Takes over the numbers of another evaluation of the same system, without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.value.copy_from_slice(&other.value);
+        self.gradient.copy_from_slice(&other.gradient);
+        self.by_time.copy_from_slice(&other.by_time);
+        self.beta.copy_from_slice(&other.beta);
+    }
+}
+
+/// Two positions of all nodes and the times they belong to.
+#[derive(Clone, Copy)]
+pub struct Between<'a> {
+    pub from: &'a [f64],
+    pub to: &'a [f64],
+    pub start: f64,
+    pub step: f64,
+}
+
+/// Most Newton steps on the scalar equation for β; halving the bracket alone would need 53.
+const BETA_ITERATIONS: usize = 60;
+
+impl System {
+    /// Room for one evaluation of this system.
+    pub fn evaluation(&self) -> Evaluation {
+        let customs = self.constraints() - self.rows.len();
+        Evaluation {
+            value: vec![0.0; self.invariants.len() + customs],
+            gradient: vec![0.0; self.slot_nodes().count() * self.dim],
+            by_time: vec![0.0; customs],
+            beta: vec![0.5; customs],
+        }
+    }
+
+    /// The node of each slot: those of the invariants, then row by row those of the custom rows.
+    pub(crate) fn slot_nodes(&self) -> impl Iterator<Item = usize> + '_ {
+        let of_custom = |entry: &'_ CustomEntry| -> Vec<usize> {
+            let nodes: Vec<usize> = entry.nodes.iter().map(|node| node.index()).collect();
+            nodes.repeat(entry.rows.rows())
+        };
+        self.invariants.slot_nodes().iter().map(|&node| node as usize).chain(self.custom.iter().flat_map(of_custom))
+    }
+
+    /// The slots of each constraint row (r).
+    pub(crate) fn row_slots(&self) -> Vec<std::ops::Range<usize>> {
+        let mut slots: Vec<_> = self.rows.iter().map(|row| self.invariants.slots_of(row.invariant)).collect();
+        let mut start = self.invariants.slots();
+        for entry in &self.custom {
+            for _ in 0..entry.rows.rows() {
+                slots.push(start..start + entry.nodes.len());
+                start += entry.nodes.len();
+            }
+        }
+        slots
+    }
+
+    /// Evaluates everything at the positions `x` of all nodes and time `t`.
+    pub fn evaluate(&self, x: &[f64], t: f64, out: &mut Evaluation) {
+        self.invariants.evaluate(x, &mut out.value, &mut out.gradient);
+        self.each_custom(out, |entry, local, out| {
+            let k = gather(self.dim, &entry.nodes, x, local);
+            entry.rows.value(&local[..k], t, out.value);
+            entry.rows.gradient(&local[..k], t, out.gradient, out.by_time);
+        });
+    }
+
+    /// The gradients between two positions whose evaluations are `from` and `to`, such that gradient · Δx (+ ∂Φ/∂t Δt)
+    /// is the difference of the values: half way for quadratic forms, at the paper's β (15) for custom rows.
+    pub fn evaluate_between(&self, span: Between<'_>, from: &Evaluation, to: &Evaluation, out: &mut Evaluation) {
+        for ((out, a), b) in out.gradient.iter_mut().zip(&from.gradient).zip(&to.gradient) {
+            *out = 0.5 * (a + b);
+        }
+        for ((out, a), b) in out.value.iter_mut().zip(&from.value).zip(&to.value) {
+            *out = 0.5 * (a + b);
+        }
+        let mut first = self.invariants.len();
+        self.each_custom(out, |entry, local, mut out| {
+            let rows = entry.rows.rows();
+            for row in 0..rows {
+                let rise = to.value[first + row] - from.value[first + row];
+                out.beta[row] = directional_point(self.dim, entry, span, row, rise, local, &mut out);
+            }
+            first += rows;
+        });
+    }
+
+    /// Φ (r) from an evaluation and the time it belongs to.
+    pub fn constraint_values(&self, at: &Evaluation, t: f64, phi: &mut [f64]) {
+        for (phi, row) in phi.iter_mut().zip(&self.rows) {
+            *phi = at.value[row.invariant.0 as usize] - row.target.at(t)[0];
+        }
+        phi[self.rows.len()..].copy_from_slice(&at.value[self.invariants.len()..]);
+    }
+
+    /// Φ̇ = G v + Φ_t (r), `v` over all nodes.
+    pub fn constraint_rates(&self, plan: &[std::ops::Range<usize>], nodes: &[u32], at: &Evaluation, v: &[f64], t: f64, out: &mut [f64]) {
+        for (k, out) in out.iter_mut().enumerate() {
+            *out = self.along(&plan[k], nodes, at, v) + self.explicit_rate(k, at, t);
+        }
+    }
+
+    /// ∂Φ_k/∂t with all nodes held.
+    pub(crate) fn explicit_rate(&self, row: usize, at: &Evaluation, t: f64) -> f64 {
+        match self.rows.get(row) {
+            Some(row) => -row.target.at(t)[1],
+            None => at.by_time[row - self.rows.len()],
+        }
+    }
+
+    /// Gradient of a row along a direction over all nodes.
+    #[inline]
+    pub(crate) fn along(&self, slots: &std::ops::Range<usize>, nodes: &[u32], at: &Evaluation, v: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        for s in slots.clone() {
+            let node = nodes[s] as usize * self.dim;
+            for c in 0..self.dim {
+                sum += at.gradient[s * self.dim + c] * v[node + c];
+            }
+        }
+        sum
+    }
+
+    /// Everything in Φ̈ but G a (r): (G v)_q v + 2 Φ_qt v + Φ_tt. `half` has room for one number an invariant and
+    /// `product` for D numbers a slot.
+    pub fn constraint_curvatures(&self, x: &[f64], v: &[f64], t: f64, half: &mut [f64], product: &mut [f64], out: &mut [f64]) {
+        self.invariants.curvature(v, half, product);
+        for (out, row) in out.iter_mut().zip(&self.rows) {
+            *out = 2.0 * half[row.invariant.0 as usize] - row.target.at(t)[2];
+        }
+        let mut first = self.rows.len();
+        let (mut position, mut velocity) = ([0.0; super::SIZE], [0.0; super::SIZE]);
+        for entry in &self.custom {
+            let k = gather(self.dim, &entry.nodes, x, &mut position);
+            gather(self.dim, &entry.nodes, v, &mut velocity);
+            let rows = entry.rows.rows();
+            entry.rows.curvature(&position[..k], &velocity[..k], t, &mut out[first..first + rows]);
+            first += rows;
+        }
+    }
+
+    /// Calls `f` for every custom entry with its part of an evaluation.
+    fn each_custom(&self, out: &mut Evaluation, mut f: impl FnMut(&CustomEntry, &mut [f64; super::SIZE], CustomPart<'_>)) {
+        let (mut row, mut slot) = (0, self.invariants.slots() * self.dim);
+        let mut local = [0.0; super::SIZE];
+        for entry in &self.custom {
+            let (rows, width) = (entry.rows.rows(), entry.nodes.len() * self.dim);
+            let first = self.invariants.len() + row;
+            let part = CustomPart {
+                value: &mut out.value[first..first + rows],
+                gradient: &mut out.gradient[slot..slot + rows * width],
+                by_time: &mut out.by_time[row..row + rows],
+                beta: &mut out.beta[row..row + rows],
+            };
+            f(entry, &mut local, part);
+            row += rows;
+            slot += rows * width;
+        }
+    }
+}
+
+struct CustomPart<'a> {
+    value: &'a mut [f64],
+    gradient: &'a mut [f64],
+    by_time: &'a mut [f64],
+    beta: &'a mut [f64],
+}
+
+/// Copies the coordinates of some nodes to `local` and says how many they are.
+pub(crate) fn gather(dim: usize, nodes: &[NodeId], x: &[f64], local: &mut [f64]) -> usize {
+    for (k, node) in nodes.iter().enumerate() {
+        let from = node.index() * dim;
+        local[k * dim..k * dim + dim].copy_from_slice(&x[from..from + dim]);
+    }
+    nodes.len() * dim
+}
+
+/// The paper's β (15): where on the way from one position to the other a row's gradient times the way is its rise.
+/// Writes the gradient there. Half way is taken when it serves, as it does for every quadratic row.
+fn directional_point(
+    dim: usize,
+    entry: &CustomEntry,
+    span: Between<'_>,
+    row: usize,
+    rise: f64,
+    local: &mut [f64; super::SIZE],
+    out: &mut CustomPart<'_>,
+) -> f64 {
+    let (mut from, mut rate) = ([0.0; super::SIZE], [0.0; super::SIZE]);
+    let k = gather(dim, &entry.nodes, span.from, &mut from);
+    gather(dim, &entry.nodes, span.to, &mut rate);
+    for i in 0..k {
+        rate[i] = (rate[i] - from[i]) / span.step;
+    }
+    let rows = entry.rows.rows();
+    let (mut gradient, mut by_time, mut curvature) = ([0.0; super::SIZE * super::SIZE], [0.0; super::SIZE], [0.0; super::SIZE]);
+    let (mut beta, mut low, mut high, mut low_sign) = (0.5, 0.0, 1.0, 0.0);
+    for _ in 0..BETA_ITERATIONS {
+        for i in 0..k {
+            local[i] = from[i] + beta * span.step * rate[i];
+        }
+        let t = span.start + beta * span.step;
+        entry.rows.gradient(&local[..k], t, &mut gradient[..rows * k], &mut by_time[..rows]);
+        let along: f64 = (0..k).map(|i| gradient[row * k + i] * rate[i]).sum::<f64>() + by_time[row];
+        let excess = span.step * along - rise;
+        if excess.abs() <= 4.0 * f64::EPSILON * (rise.abs() + span.step * along.abs()) {
+            break;
+        }
+        entry.rows.curvature(&local[..k], &rate[..k], t, &mut curvature[..rows]);
+        let slope = span.step * span.step * curvature[row];
+        if low_sign == 0.0 {
+            // The mean of the gradient along the way is the rise, so its excess changes sign between the ends.
+            low_sign = if slope > 0.0 { -1.0 } else { 1.0 };
+        }
+        if excess * low_sign > 0.0 {
+            low = beta;
+        } else {
+            high = beta;
+        }
+        let newton = beta - excess / slope;
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        if next == beta {
+            break;
+        }
+        beta = next;
+    }
+    out.gradient[row * k..row * k + k].copy_from_slice(&gradient[row * k..row * k + k]);
+    out.by_time[row] = by_time[row];
+    beta
+}

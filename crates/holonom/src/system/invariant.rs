@@ -1,0 +1,267 @@
+//! Quadratic forms of nodes: values, gradients and constant Hessians (design: the idea).
+//!
+//! Every invariant is one product of two sums of nodes, `f U·W` or `f e·(U × W)`, with `U = Σ u_a x_a + u₀`. Differences of
+//! nodes are taken before they are multiplied, so that a row far from the origin loses no digits.
+
+use super::Place;
+
+/// An invariant of a system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct InvariantId(pub(crate) u32);
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Product {
+    /// ½ U·U
+    Square,
+    /// U·W
+    Dot,
+    /// e·(U × W); in the plane the scalar cross product.
+    Cross([f64; 3]),
+}
+
+/// One of the two sums of an invariant: a range of terms and a constant.
+#[derive(Clone, Copy, Debug)]
+struct Sum {
+    start: u32,
+    end: u32,
+    constant: [f64; 3],
+}
+
+#[derive(Clone, Debug)]
+struct Invariant {
+    product: Product,
+    u: Sum,
+    w: Sum,
+}
+
+/// All invariants of a system, with one *slot* (node, gradient) for each term of each sum.
+#[derive(Clone, Debug)]
+pub struct Invariants {
+    dim: usize,
+    items: Vec<Invariant>,
+    term_node: Vec<u32>,
+    term_factor: Vec<f64>,
+}
+
+/// A constant block of a Hessian: ∂²π/∂x_a∂x_b.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum HessianBlock {
+    /// c 1
+    Isotropic(f64),
+    /// The skew matrix E with U·E·W = e·(U × W), times a factor.
+    Skew(f64, [f64; 3]),
+}
+
+impl Invariants {
+    pub(crate) fn new(dim: usize) -> Self {
+        Self { dim, items: Vec::new(), term_node: Vec::new(), term_factor: Vec::new() }
+    }
+
+    pub(crate) fn square(&mut self, u: &[(Place, f64)]) -> InvariantId {
+        self.add(Product::Square, u, &[])
+    }
+
+    pub(crate) fn dot(&mut self, u: &[(Place, f64)], w: &[(Place, f64)]) -> InvariantId {
+        self.add(Product::Dot, u, w)
+    }
+
+    pub(crate) fn cross(&mut self, e: [f64; 3], u: &[(Place, f64)], w: &[(Place, f64)]) -> InvariantId {
+        let e = if self.dim == 2 { [0.0, 0.0, 1.0] } else { e };
+        self.add(Product::Cross(e), u, w)
+    }
+
+    fn add(&mut self, product: Product, u: &[(Place, f64)], w: &[(Place, f64)]) -> InvariantId {
+        let (u, w) = (self.sum(u), self.sum(w));
+        self.items.push(Invariant { product, u, w });
+        InvariantId(self.items.len() as u32 - 1)
+    }
+
+    fn sum(&mut self, terms: &[(Place, f64)]) -> Sum {
+        let start = self.term_node.len() as u32;
+        let mut constant = [0.0; 3];
+        for &(place, factor) in terms {
+            match place {
+                Place::Node(node) => {
+                    self.term_node.push(node.0);
+                    self.term_factor.push(factor);
+                }
+                Place::Fixed(x) => {
+                    for c in 0..self.dim {
+                        constant[c] += factor * x[c];
+                    }
+                }
+            }
+        }
+        Sum { start, end: self.term_node.len() as u32, constant }
+    }
+
+    /// Number of invariants.
+    pub fn len(&self) -> usize {
+        self.items.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.items.is_empty()
+    }
+
+    /// Number of slots of all invariants together.
+    pub(crate) fn slots(&self) -> usize {
+        self.term_node.len()
+    }
+
+    /// The node of each slot.
+    pub(crate) fn slot_nodes(&self) -> &[u32] {
+        &self.term_node
+    }
+
+    /// The slots of one invariant.
+    pub(crate) fn slots_of(&self, id: InvariantId) -> std::ops::Range<usize> {
+        let item = &self.items[id.0 as usize];
+        item.u.start as usize..item.w.end as usize
+    }
+
+    /// The blocks ∂²π/∂x_a∂x_b of an invariant, both triangles; a pair of nodes may come more than once.
+    pub(crate) fn hessian(&self, id: InvariantId) -> Vec<(u32, u32, HessianBlock)> {
+        let item = &self.items[id.0 as usize];
+        let terms = |sum: &Sum| (sum.start as usize..sum.end as usize).map(|s| (self.term_node[s], self.term_factor[s]));
+        let mut blocks = Vec::new();
+        if item.product == Product::Square {
+            for (a, u) in terms(&item.u) {
+                blocks.extend(terms(&item.u).map(|(b, w)| (a, b, HessianBlock::Isotropic(u * w))));
+            }
+            return blocks;
+        }
+        for (a, u) in terms(&item.u) {
+            for (b, w) in terms(&item.w) {
+                let (forth, back) = match item.product {
+                    Product::Cross(e) => (HessianBlock::Skew(u * w, e), HessianBlock::Skew(-u * w, e)),
+                    _ => (HessianBlock::Isotropic(u * w), HessianBlock::Isotropic(u * w)),
+                };
+                blocks.push((a, b, forth));
+                blocks.push((b, a, back));
+            }
+        }
+        blocks
+    }
+
+    pub(crate) fn value_of(&self, id: InvariantId, x: &[f64]) -> f64 {
+        match self.dim {
+            2 => self.items[id.0 as usize].value(&self.sums::<2>(id.0 as usize, x)),
+            _ => self.items[id.0 as usize].value(&self.sums::<3>(id.0 as usize, x)),
+        }
+    }
+
+    /// Values (one an invariant) and gradients (D a slot) at the positions `x`.
+    pub(crate) fn evaluate(&self, x: &[f64], value: &mut [f64], gradient: &mut [f64]) {
+        match self.dim {
+            2 => self.evaluate_in::<2>(x, value, gradient),
+            _ => self.evaluate_in::<3>(x, value, gradient),
+        }
+    }
+
+    fn evaluate_in<const D: usize>(&self, x: &[f64], value: &mut [f64], gradient: &mut [f64]) {
+        for (k, item) in self.items.iter().enumerate() {
+            let sums = self.sums::<D>(k, x);
+            value[k] = item.value(&sums);
+            self.gradient_of(item, &sums, gradient);
+        }
+    }
+
+    /// H v of every invariant (D a slot) and ½ vᵀ H v (one an invariant): the part of value and gradient that is
+    /// homogeneous in the nodes, at `v` in place of positions.
+    pub(crate) fn curvature(&self, v: &[f64], half: &mut [f64], product: &mut [f64]) {
+        match self.dim {
+            2 => self.curvature_in::<2>(v, half, product),
+            _ => self.curvature_in::<3>(v, half, product),
+        }
+    }
+
+    fn curvature_in<const D: usize>(&self, v: &[f64], half: &mut [f64], product: &mut [f64]) {
+        for (k, item) in self.items.iter().enumerate() {
+            let sums = self.rates::<D>(k, v);
+            half[k] = item.value(&sums);
+            self.gradient_of(item, &sums, product);
+        }
+    }
+
+    #[inline]
+    fn sums<const D: usize>(&self, k: usize, x: &[f64]) -> [[f64; D]; 2] {
+        let item = &self.items[k];
+        let mut sums = self.rates(k, x);
+        for c in 0..D {
+            sums[0][c] += item.u.constant[c];
+            sums[1][c] += item.w.constant[c];
+        }
+        sums
+    }
+
+    #[inline]
+    fn rates<const D: usize>(&self, k: usize, v: &[f64]) -> [[f64; D]; 2] {
+        let item = &self.items[k];
+        let mut sums = [[0.0; D]; 2];
+        for (sum, range) in sums.iter_mut().zip([&item.u, &item.w]) {
+            for s in range.start as usize..range.end as usize {
+                let (node, factor) = (self.term_node[s] as usize * D, self.term_factor[s]);
+                let x = &v[node..node + D];
+                for c in 0..D {
+                    sum[c] += factor * x[c];
+                }
+            }
+        }
+        sums
+    }
+
+    #[inline]
+    fn gradient_of<const D: usize>(&self, item: &Invariant, [u, w]: &[[f64; D]; 2], gradient: &mut [f64]) {
+        let (by_u, by_w) = match item.product {
+            Product::Square => (*u, *u),
+            Product::Dot => (*w, *u),
+            Product::Cross(e) => (cross(w, &e), cross_left(&e, u)),
+        };
+        for (sum, direction) in [(&item.u, by_u), (&item.w, by_w)] {
+            for s in sum.start as usize..sum.end as usize {
+                let factor = self.term_factor[s];
+                let slot = &mut gradient[s * D..s * D + D];
+                for c in 0..D {
+                    slot[c] = factor * direction[c];
+                }
+            }
+        }
+    }
+}
+
+impl Invariant {
+    #[inline]
+    fn value<const D: usize>(&self, [u, w]: &[[f64; D]; 2]) -> f64 {
+        match self.product {
+            Product::Square => 0.5 * dot(u, u),
+            Product::Dot => dot(u, w),
+            Product::Cross(e) => dot(u, &cross(w, &e)),
+        }
+    }
+}
+
+#[inline]
+fn dot<const D: usize>(u: &[f64; D], w: &[f64; D]) -> f64 {
+    (0..D).map(|c| u[c] * w[c]).sum()
+}
+
+/// w × e; in the plane e is the normal.
+#[inline]
+fn cross<const D: usize>(w: &[f64; D], e: &[f64; 3]) -> [f64; D] {
+    let w = [w[0], w[1], if D == 3 { w[2] } else { 0.0 }];
+    let full = [w[1] * e[2] - w[2] * e[1], w[2] * e[0] - w[0] * e[2], w[0] * e[1] - w[1] * e[0]];
+    std::array::from_fn(|c| full[c])
+}
+
+/// e × u
+#[inline]
+fn cross_left<const D: usize>(e: &[f64; 3], u: &[f64; D]) -> [f64; D] {
+    cross(u, e).map(|c| -c)
+}
+
+/// The matrix E with U·E·W = e·(U × W).
+pub(crate) fn skew(e: &[f64; 3]) -> [[f64; 3]; 3] {
+    [[0.0, e[2], -e[1]], [-e[2], 0.0, e[0]], [e[1], -e[0], 0.0]]
+}

@@ -1,0 +1,137 @@
+//! What is simulated: nodes, invariants, the laws acting on them, constant mass and known motion.
+//!
+//! A *node* is a point in space (or in the plane). Free nodes come first, nodes of known motion behind them, in one
+//! vector `x = [q | known]` of `D` numbers a node, so that no formula asks which of the two a node is. Fixed places are
+//! folded into the invariants as constants.
+
+mod builder;
+mod custom;
+mod evaluate;
+mod invariant;
+mod law;
+mod mass;
+mod motion;
+
+pub use builder::{NodeId, Place, SystemBuilder};
+pub use custom::{ConstraintFunction, CustomRows, Differentiated, ForceFunction, Number, SIZE};
+pub(crate) use evaluate::gather;
+pub use evaluate::{Between, Evaluation};
+pub use invariant::{InvariantId, Invariants};
+pub(crate) use invariant::{HessianBlock, skew};
+pub use law::{Law, Load, Reach, Response, MAX_ARGUMENTS};
+pub use mass::Mass;
+pub use motion::{Constant, Signal};
+
+use std::sync::Arc;
+
+/// A constraint row Φ_k = π_k − c_k(t).
+pub(crate) struct Row {
+    pub name: String,
+    pub invariant: InvariantId,
+    pub target: Arc<dyn Signal>,
+}
+
+/// A law acting on the invariants `invariants`.
+pub(crate) struct LawEntry {
+    pub name: String,
+    pub invariants: Vec<InvariantId>,
+    pub law: Arc<dyn Law>,
+}
+
+/// A load acting on `nodes`.
+pub(crate) struct LoadEntry {
+    pub name: String,
+    pub nodes: Vec<NodeId>,
+    pub load: Arc<dyn Load>,
+}
+
+/// Constraint rows given as functions of coordinates and time.
+pub(crate) struct CustomEntry {
+    pub name: String,
+    pub nodes: Vec<NodeId>,
+    pub rows: Arc<dyn CustomRows>,
+}
+
+/// A mechanism ready to be simulated. It never changes during a run.
+pub struct System {
+    pub(crate) dim: usize,
+    pub(crate) free: usize,
+    pub(crate) mass: Mass,
+    pub(crate) gravity: [f64; 3],
+    pub(crate) invariants: Invariants,
+    pub(crate) rows: Vec<Row>,
+    pub(crate) custom: Vec<CustomEntry>,
+    pub(crate) laws: Vec<LawEntry>,
+    pub(crate) loads: Vec<LoadEntry>,
+    pub(crate) motions: Vec<[Arc<dyn Signal>; 3]>,
+    pub(crate) row_names: Vec<String>,
+    pub(crate) start_position: Vec<f64>,
+    pub(crate) start_velocity: Vec<f64>,
+}
+
+impl System {
+    /// Coordinates a node: 3 in space, 2 in the plane.
+    pub fn dimension(&self) -> usize {
+        self.dim
+    }
+
+    /// Number of unknown coordinates n.
+    pub fn coordinates(&self) -> usize {
+        self.dim * self.free
+    }
+
+    /// Number of nodes, free and known.
+    pub fn nodes(&self) -> usize {
+        self.free + self.motions.len()
+    }
+
+    /// Number of free nodes.
+    pub fn free_nodes(&self) -> usize {
+        self.free
+    }
+
+    /// Number of constraint rows r.
+    pub fn constraints(&self) -> usize {
+        self.row_names.len()
+    }
+
+    /// Names of the constraint rows (r), as `constraint` or `constraint[component]`.
+    pub fn row_names(&self) -> &[String] {
+        &self.row_names
+    }
+
+    /// Names of the forces that do work beside the energy: dissipative laws, then loads.
+    pub fn working_forces(&self) -> impl Iterator<Item = &str> {
+        let laws = self.laws.iter().filter(|law| !law.law.conservative()).map(|law| law.name.as_str());
+        laws.chain(self.loads.iter().map(|load| load.name.as_str()))
+    }
+
+    /// Positions of all nodes as the model gives them (D × nodes), m.
+    pub fn start_position(&self) -> &[f64] {
+        &self.start_position
+    }
+
+    /// Velocities of all nodes as the model gives them (D × nodes), m/s.
+    pub fn start_velocity(&self) -> &[f64] {
+        &self.start_velocity
+    }
+
+    /// Constant mass matrix over nodes.
+    pub fn mass(&self) -> &Mass {
+        &self.mass
+    }
+
+    /// Writes position, velocity and acceleration of the known nodes at time `t` into the tails of `x`, `v`, `a`.
+    pub fn place_known(&self, t: f64, x: &mut [f64], v: &mut [f64], a: &mut [f64]) {
+        let n = self.coordinates();
+        for (k, motion) in self.motions.iter().enumerate() {
+            for c in 0..self.dim {
+                let [position, velocity, acceleration] = motion[c].at(t);
+                let i = n + k * self.dim + c;
+                x[i] = position;
+                v[i] = velocity;
+                a[i] = acceleration;
+            }
+        }
+    }
+}
