@@ -68,3 +68,48 @@ fn show() {
     }
     let _ = ProjectionChoice::default();
 }
+
+#[test]
+fn probe_steps() {
+    for (name, iteration) in [("conserving-ggl", "newton"), ("conserving", "newton"), ("conserving-projected", "newton"), ("trapezoidal-projected", "newton"), ("conserving", "simultaneous"), ("trapezoidal-projected", "simultaneous"), ("trapezoidal-projected", "nested"), ("conserving", "nested")] {
+        for h in [0.025, 0.1, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.25] {
+            let mut c = named(name);
+            c.iteration = Some(iteration.into());
+            c.subdivide = Some(false);
+            if iteration != "newton" { c.penalty = Some(1e7); }
+            let r = run(&c, h, 20.0);
+            let max = |k: usize| r.rows.iter().fold(0.0, |m, row| f64::max(m, row[k].abs()));
+            println!("{name} {iteration} {h}: {} E {:.1e} its {:.2} {:?}", r.status == Status::Completed, max(1), r.iterations, r.position.get(3));
+        }
+    }
+}
+
+#[test]
+fn probe_paper() {
+    for name in ["trapezoidal", "trapezoidal-projected"] {
+        let mut c = named(name);
+        c.iteration = Some("simultaneous".into());
+        c.penalty = Some(1e7);
+        c.subdivide = Some(false);
+        let r = run(&c, 0.025, 20.0);
+        let first = r.rows.iter().find(|row| row[3] > 1e-2);
+        println!("{name} {:?} crossing {:?} E at 3.5 {:?} its {}", r.status, first, r.rows.iter().find(|row| row[0] > 3.4999), r.iterations);
+    }
+    for alpha in [1e3, 1e5, 1e7, 1e9, 1e12] {
+        for name in ["conserving", "trapezoidal-projected"] {
+        let mut c = named(name);
+        c.penalty = Some(alpha);
+        let r = run(&c, 0.025, 20.0);
+        println!("{name} {alpha:e} its {} x {:?}", r.iterations, r.position);
+        }
+    }
+    for i in ["newton", "simultaneous", "nested"] {
+        for name in ["conserving", "trapezoidal-projected"] {
+        let mut c = named(name);
+        if i != "newton" { c.penalty = Some(1e7);}
+        c.iteration = Some(i.into());
+        let r = run(&c, 0.025, 20.0);
+        println!("{name} {i} its {} x {:?}", r.iterations, r.position);
+        }
+    }
+}

@@ -65,14 +65,45 @@ const STALLED: f64 = 1e-12;
 /// Dimensionless penalty of the paper's loops where the user gives none (methods §1.2).
 const LOOP_RHO: f64 = 1e6;
 
+/// Tolerance of the outer loop on ‖Φ‖ over that of the inner one on ‖Δq‖: λ moves by αΦ, so that with the paper's α
+/// the force is only as exact as the position when Φ is this much smaller.
+const OUTER_SHARE: f64 = 1e-3;
+
+/// Shares of the free flight h v from which Newton starts again where the prediction led nowhere: with large steps the
+/// acceleration of the last step says little of this one.
+pub(super) const RESTARTS: [f64; 3] = [1.0, 0.5, 0.0];
+
 /// Solves a stage from the increment and multipliers in the workspace; says how many iterations it took.
 pub fn solve(system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<usize, Failure> {
     match (settings.multipliers, settings.iteration) {
-        (Multipliers::Penalty(alpha), _) => newton(system, stage, settings, Some(alpha), work),
-        (Multipliers::Augmented(_), Iteration::Newton) => newton(system, stage, settings, None, work),
+        (Multipliers::Penalty(alpha), _) => newton_from_predictions(system, stage, settings, Some(alpha), work),
+        (Multipliers::Augmented(_), Iteration::Newton) => newton_from_predictions(system, stage, settings, None, work),
         (Multipliers::Augmented(alpha), Iteration::Simultaneous) => simultaneous(system, stage, settings, alpha, work),
         (Multipliers::Augmented(alpha), Iteration::Nested) => nested(system, stage, settings, alpha, work),
     }
+}
+
+/// Newton from the prediction in the workspace, and from the free flight and shares of it where that fails.
+fn newton_from_predictions(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option<f64>, work: &mut Workspace) -> Result<usize, Failure> {
+    let mut outcome = newton(system, stage, settings, soft, work);
+    let mut spent = 0;
+    for share in RESTARTS {
+        if outcome.is_ok() {
+            break;
+        }
+        spent += settings.max_iterations;
+        restart(share, work);
+        outcome = newton(system, stage, settings, soft, work);
+    }
+    outcome.map(|iterations| spent + iterations)
+}
+
+/// Puts the increment at a share of the free flight, without multipliers.
+pub(super) fn restart(share: f64, work: &mut Workspace) {
+    for (d, drift) in work.d.iter_mut().zip(&work.drift) {
+        *d = share * drift;
+    }
+    work.lambda.fill(0.0);
 }
 
 /// Newton on coordinates and multipliers together. With `soft` the rows are Φ − λ/α = 0, the penalty formulation.
@@ -83,7 +114,7 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
         (None, Multipliers::Augmented(penalty)) => work.proximal(stage.inertia, penalty),
         (None, Multipliers::Penalty(_)) => unreachable!("a penalty is soft"),
     }
-    let mut previous = f64::INFINITY;
+    let (mut previous, mut stalls) = (f64::INFINITY, false);
     for iteration in 1..=settings.max_iterations {
         work.place(system, stage);
         work.evaluate(system, stage);
@@ -91,8 +122,7 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
             work.phi.iter_mut().zip(&work.lambda).for_each(|(phi, lambda)| *phi -= lambda / alpha);
         }
         work.residual(system, stage);
-        let contraction = previous;
-        if iteration > 3 && contraction < 1e-6 && is_met(n, work) {
+        if stalls && is_met(n, work) {
             return Ok(iteration - 1);
         }
         work.tangent(system, stage, 1.0);
@@ -104,6 +134,7 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
         if remaining(increment, previous) <= settings.tolerance {
             return Ok(iteration);
         }
+        stalls = is_stalled(increment, previous);
         previous = increment;
     }
     Err(Failure::NotConverged(settings.max_iterations))
@@ -113,6 +144,11 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
 /// of that and counts as a whole.
 pub(super) fn remaining(increment: f64, previous: f64) -> f64 {
     if previous.is_finite() { increment * (increment / previous).min(1.0) } else { increment }
+}
+
+/// Whether increments are small but no longer shrink.
+pub(super) fn is_stalled(increment: f64, previous: f64) -> bool {
+    increment < 1e-6 && increment > 0.1 * previous
 }
 
 /// Adds the solution to the increment; its largest entry over the size of the mechanism.
@@ -187,7 +223,7 @@ fn nested(system: &System, stage: &Stage, settings: &SolveSettings, penalty: Opt
                 break;
             }
         }
-        if update_multipliers(system, stage, work) < settings.tolerance {
+        if update_multipliers(system, stage, work) < OUTER_SHARE * settings.tolerance {
             return Ok(iterations);
         }
     }

@@ -8,7 +8,7 @@
 //! Φ(q_{n+1}) = 0                                             G(q_{n+1}) u + ½h Φ_t = 0
 //! ```
 
-use super::iteration::{Failure, SolveSettings, remaining};
+use super::iteration::{Failure, RESTARTS, SolveSettings, is_stalled, remaining, restart};
 use super::kkt::{Block, Kkt};
 use super::stage::Stage;
 use super::workspace::Workspace;
@@ -55,17 +55,37 @@ impl Stabilized {
         }
     }
 
-    /// Newton on increments, velocities and both multipliers from the values in the workspaces.
+    /// Newton on increments, velocities and both multipliers from the values in the workspaces, and from the free flight
+    /// and shares of it where that fails.
     pub fn solve(&mut self, system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<usize, Failure> {
+        let mut outcome = self.newton(system, stage, settings, work);
+        let mut spent = 0;
+        for share in RESTARTS {
+            if outcome.is_ok() {
+                break;
+            }
+            spent += settings.max_iterations;
+            restart(share, work);
+            for i in 0..system.coordinates() {
+                self.u[i] = work.d[i] - 0.5 * stage.step * work.v0[i];
+            }
+            self.mu.fill(0.0);
+            self.gamma.fill(0.0);
+            outcome = self.newton(system, stage, settings, work);
+        }
+        outcome.map(|iterations| spent + iterations)
+    }
+
+    fn newton(&mut self, system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<usize, Failure> {
         work.proximal(stage.inertia, None);
-        let mut previous = f64::INFINITY;
+        let (mut previous, mut stalls) = (f64::INFINITY, false);
         for iteration in 1..=settings.max_iterations {
             work.lambda.iter_mut().zip(&self.mu).for_each(|(lambda, mu)| *lambda = mu / stage.inertia);
             work.place(system, stage);
             work.evaluate(system, stage);
             self.turn(system, stage, work);
             self.residual(system, stage, work);
-            if iteration > 3 && previous < 1e-6 && self.is_met(system, work) {
+            if stalls && self.is_met(system, work) {
                 return Ok(iteration - 1);
             }
             self.tangent(system, stage, work);
@@ -81,6 +101,7 @@ impl Stabilized {
             if remaining(increment, previous) <= settings.tolerance {
                 return Ok(iteration);
             }
+            stalls = is_stalled(increment, previous);
             previous = increment;
         }
         Err(Failure::NotConverged(settings.max_iterations))
