@@ -73,8 +73,7 @@ impl Workspace {
         let evaluation = system.evaluation();
         let mut weight = vec![0.0; all];
         for (a, weight) in weight.chunks_exact_mut(system.dim).enumerate() {
-            let mass: f64 = system.mass.row(a).map(|(_, m)| m).sum();
-            (0..system.dim).for_each(|c| weight[c] = -mass * system.gravity[c]);
+            (0..system.dim).for_each(|c| weight[c] = -system.weighing[a] * system.gravity[c]);
         }
         let loads: usize = system.loads.iter().map(|load| load.nodes.len() * system.dim).sum();
         let mut workspace = Self {

@@ -29,6 +29,7 @@ pub struct SystemBuilder {
     free: usize,
     gravity: [f64; 3],
     mass: Vec<(u32, u32, f64)>,
+    weight: Vec<(u32, f64)>,
     invariants: Invariants,
     rows: Vec<Row>,
     custom: Vec<CustomEntry>,
@@ -48,6 +49,7 @@ impl SystemBuilder {
             free: 0,
             gravity,
             mass: Vec::new(),
+            weight: Vec::new(),
             invariants: Invariants::new(dim),
             rows: Vec::new(),
             custom: Vec::new(),
@@ -88,8 +90,14 @@ impl SystemBuilder {
     }
 
     /// Adds `m` (kg) to the entries (a, b) and (b, a) of the mass matrix, once when a = b. What belongs to a fixed
-    /// place never moves and is left out.
+    /// place never moves; only its share of the weight of the other is kept.
     pub fn mass(&mut self, a: Place, b: Place, m: f64) {
+        let ends = if a == b { vec![a] } else { vec![a, b] };
+        for end in ends {
+            if let Place::Node(node) = end {
+                self.weight.push((node.0, m));
+            }
+        }
         if let (Place::Node(a), Place::Node(b)) = (a, b) {
             self.mass.push((a.0, b.0, m));
             if a != b {
@@ -160,7 +168,10 @@ impl SystemBuilder {
                 several => row_names.extend((0..several).map(|k| format!("{}[{k}]", custom.name))),
             }
         }
+        let mut weighing = vec![0.0; self.free + self.motions.len()];
+        self.weight.iter().for_each(|&(node, m)| weighing[node as usize] += m);
         System {
+            weighing,
             dim: self.dim,
             free: self.free,
             mass: Mass::new(self.free + self.motions.len(), self.mass),

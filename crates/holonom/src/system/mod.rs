@@ -57,6 +57,8 @@ pub struct System {
     pub(crate) dim: usize,
     pub(crate) free: usize,
     pub(crate) mass: Mass,
+    /// Mass that weighs on each node, kg: the row of M and what couples it to fixed places.
+    pub(crate) weighing: Vec<f64>,
     pub(crate) gravity: [f64; 3],
     pub(crate) invariants: Invariants,
     pub(crate) rows: Vec<Row>,
