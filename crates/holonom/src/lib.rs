@@ -1,5 +1,6 @@
 //! The engine of holonom: dynamics of constrained mechanical systems in dependent Cartesian coordinates.
 
+pub mod analysis;
 pub mod energy;
 pub mod formulation;
 pub mod integrator;

@@ -1,9 +1,27 @@
-//! Eigenvalues of small dense matrices, for analysis only.
+//! Eigenvalues and inverses of small dense matrices, for analysis only.
 
+use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, Side};
 
 /// Eigenvalues of a symmetric matrix (size × size, row-major), ascending. `None` when the iteration does not end.
 pub fn symmetric_eigenvalues(size: usize, values: &[f64]) -> Option<Vec<f64>> {
-    let matrix = Mat::from_fn(size, size, |i, j| values[i * size + j]);
-    matrix.self_adjoint_eigenvalues(Side::Lower).ok()
+    matrix(size, values).self_adjoint_eigenvalues(Side::Lower).ok()
+}
+
+/// Eigenvalues of M⁻¹A for symmetric A and positive definite M, ascending. `None` when M is not positive definite.
+pub fn relative_eigenvalues(size: usize, a: &[f64], m: &[f64]) -> Option<Vec<f64>> {
+    let factor = matrix(size, m).llt(Side::Lower).ok()?;
+    let lower = factor.L().to_owned().partial_piv_lu().inverse();
+    let reduced = &lower * matrix(size, a) * lower.transpose();
+    reduced.self_adjoint_eigenvalues(Side::Lower).ok()
+}
+
+/// Inverse of a regular matrix (size × size, row-major), row-major.
+pub fn inverse(size: usize, values: &[f64]) -> Vec<f64> {
+    let inverse = matrix(size, values).partial_piv_lu().inverse();
+    (0..size * size).map(|k| inverse[(k / size, k % size)]).collect()
+}
+
+fn matrix(size: usize, values: &[f64]) -> Mat<f64> {
+    Mat::from_fn(size, size, |i, j| values[i * size + j])
 }

@@ -7,7 +7,7 @@ mod eigen;
 mod ordering;
 mod sparse;
 
-pub use eigen::symmetric_eigenvalues;
+pub use eigen::{inverse, relative_eigenvalues, symmetric_eigenvalues};
 pub use ordering::fill_reducing_order;
 
 use dense::DenseLu;
@@ -53,6 +53,14 @@ impl Solver {
         match &self.form {
             Form::Dense(lu) => lu.position(row, column),
             Form::Sparse(lu) => lu.position(row, column),
+        }
+    }
+
+    /// The value of an entry, zero outside the pattern.
+    pub fn entry(&self, row: usize, column: usize) -> f64 {
+        match &self.form {
+            Form::Dense(lu) => lu.values[lu.position(row, column) as usize],
+            Form::Sparse(lu) => lu.find(row, column).map_or(0.0, |at| lu.values[at as usize]),
         }
     }
 

@@ -60,14 +60,22 @@ impl SparseLu {
     }
 
     fn at_places(&self, i: u32, j: u32) -> u32 {
+        self.find_places(i, j).expect("the entry is in the pattern")
+    }
+
+    fn find_places(&self, i: u32, j: u32) -> Option<u32> {
         if i == j {
-            return i;
+            return Some(i);
         }
         let (pivot, other) = (i.min(j) as usize, i.max(j));
         let range = self.row(pivot);
-        let offset = self.index[range.clone()].binary_search(&other).expect("the entry is in the pattern");
+        let offset = self.index[range.clone()].binary_search(&other).ok()?;
         let lower = if i > j { self.index.len() } else { 0 };
-        (self.size + lower + range.start + offset) as u32
+        Some((self.size + lower + range.start + offset) as u32)
+    }
+
+    pub(super) fn find(&self, row: usize, column: usize) -> Option<u32> {
+        self.find_places(self.place[row], self.place[column])
     }
 
     pub(super) fn position(&self, row: usize, column: usize) -> u32 {

@@ -93,7 +93,7 @@ impl Projection {
     }
 
     /// Writes [A Gᵀ; G 0]; says how much softer than M the metric lets the rows be.
-    fn assemble(&self, system: &System, time: f64, step: f64, work: &mut Workspace) -> f64 {
+    pub(crate) fn assemble(&self, system: &System, time: f64, step: f64, work: &mut Workspace) -> f64 {
         let block = Block(0, 0);
         work.kkt.clear();
         let mut scale = 1.0;

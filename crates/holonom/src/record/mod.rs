@@ -1,10 +1,10 @@
 //! What is kept of a run: named columns in memory, one row per recorded step, and how the mechanism is drawn.
 
+mod recorder;
 mod scene;
-mod summary;
 
+pub use recorder::{COLUMNS, RecordedPoint, Recorder};
 pub use scene::{Anchor, Line, LineKind, PointKind, Scene, ScenePoint};
-pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, ProjectionSummary, Summary, ViolationSummary, WorkSummary};
 
 /// A table of columns of equal length; row 0 is the start.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -4,7 +4,7 @@ use super::{Method, State};
 use crate::energy;
 use crate::formulation::{Multipliers, Sampling, Workspace};
 use crate::integrator::Step;
-use crate::record::{EnergySummary, MomentumSummary, ViolationSummary, WorkSummary};
+use super::{EnergySummary, MomentumSummary, ViolationSummary, WorkSummary};
 use crate::system::System;
 
 /// Everything that is booked of a run. Energies in J; sums over parts of a step where it was taken in parts.

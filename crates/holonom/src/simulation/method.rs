@@ -1,10 +1,9 @@
 //! A method is a formulation, an integrator and projections; the names people choose, and what may go together.
 
-use super::MethodError;
+use super::{MethodError, MethodSummary, ProjectionSummary};
 use crate::formulation::{ITERATIONS, Iteration, Multipliers, NAMES, RowsAt, SolveSettings};
 use crate::integrator::{Entry, INTEGRATORS, Parameters};
 use crate::projection::{METRICS, Metric, Projection, SOLVES, Solve};
-use crate::record::{MethodSummary, ProjectionSummary};
 
 /// What a user says of a method, in words; everything may be left out.
 #[derive(Clone, Debug, Default, PartialEq)]

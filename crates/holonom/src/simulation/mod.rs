@@ -3,10 +3,12 @@
 mod audit;
 mod method;
 mod start;
+mod summary;
 
 pub use audit::Audit;
 pub use method::{Choice, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, PENALTY, ProjectionChoice, TOLERANCE};
 pub use start::{Start, StartError};
+pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, ProjectionSummary, Summary, ViolationSummary, WorkSummary};
 
 use crate::formulation::{Failure, Workspace};
 use crate::integrator::Integrator;
@@ -211,6 +213,29 @@ impl<'a> Simulation<'a> {
     /// What was corrected before the start.
     pub fn start(&self) -> &Start {
         &self.start
+    }
+
+    /// The summary of a run to `end` that ended with `status`, with what is known of the model's size.
+    pub fn summary(&self, model: &str, end: f64, status: &Status, size: ModelSize) -> Summary {
+        let (word, stopped_at, reason) = match status {
+            Status::Completed => ("completed", None, None),
+            Status::Stopped { at, reason } => ("stopped", Some(*at), Some(reason.clone())),
+        };
+        Summary {
+            model: model.into(),
+            method: self.method.summary(),
+            status: word.into(),
+            stopped_at,
+            reason,
+            step: self.step,
+            end,
+            steps: self.steps,
+            size,
+            energy: self.audit.energy_summary(),
+            momentum: self.audit.momentum_summary(),
+            violation: self.audit.violation_summary(),
+            work: self.audit.work_summary(self.steps),
+        }
     }
 
     /// Nominal step, s.
