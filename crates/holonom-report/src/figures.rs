@@ -13,7 +13,7 @@ const FIGURES: [(&str, &str, &str); 7] = [
     ("/work/iterations_per_step", "iterations per step", ""),
     ("/time/us_per_step", "time per step", "µs"),
     ("/dof", "degrees of freedom", ""),
-    ("/redundant", "redundant constraints", ""),
+    ("/redundant", "redundant rows", ""),
 ];
 
 /// Method, status and key figures: a line and tiles for one run, a table for several.
@@ -25,7 +25,7 @@ pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
 }
 
 fn one(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
-    writeln!(out, r#"<p class="method">{} {}</p>"#, badge(run.summary), method(run))?;
+    writeln!(out, r#"<p class="method">{} {}</p>"#, badge(run.summary), method(run, true))?;
     writeln!(out, r#"<dl class="figures">"#)?;
     for (pointer, name, unit) in shown(std::slice::from_ref(run)) {
         let value = figure(run.summary, pointer);
@@ -45,7 +45,7 @@ fn several(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
     writeln!(out, "</tr></thead><tbody>")?;
     for (index, run) in runs.iter().enumerate() {
         // The viewer fills the swatch with the colour of the run.
-        let name = format!(r#"<span class="swatch" data-run="{index}"></span>{}<small>{}</small>"#, html(run.label), method(run));
+        let name = format!(r#"<span class="swatch" data-run="{index}"></span>{}<small>{}</small>"#, html(run.label), method(run, false));
         write!(out, r#"<tr><th scope="row">{name}</th><td>{}</td>"#, badge(run.summary))?;
         for (pointer, ..) in &figures {
             write!(out, r#"<td class="number">{}</td>"#, figure(run.summary, pointer))?;
@@ -69,11 +69,11 @@ fn figure(summary: &Value, pointer: &str) -> String {
     }
 }
 
-/// Method name, step and end of a run as HTML.
-fn method(run: &Run) -> String {
+/// Method name, step and number of steps as HTML; no name where the label, which stands beside it, says the same.
+fn method(run: &Run, always_name: bool) -> String {
     let text = |key: &str| run.summary.pointer(key).map(|v| html(&format::value(v)));
     let parts = [
-        text("/method/name").filter(|name| *name != html(run.label)),
+        text("/method/name").filter(|name| always_name || *name != html(run.label)),
         text("/step").map(|step| format!("step {step} s")),
         text("/steps").map(|steps| format!("{steps} steps")),
     ];

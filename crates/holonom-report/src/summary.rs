@@ -25,18 +25,31 @@ const UNITS: [(&str, &str); 13] = [
 /// Writes the table.
 pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
     let columns: Vec<Vec<(String, &Value)>> = runs.iter().map(|run| flatten(run.summary)).collect();
-    writeln!(out, r#"<div class="scroll"><table class="summary">"#)?;
+    let keys = union_of_keys(&columns);
+    // The table of a single run is narrow: two halves side by side.
+    let halves = if runs.len() == 1 { keys.split_at(keys.len().div_ceil(2)) } else { (&keys[..], &[][..]) };
+    writeln!(out, r#"<div class="scroll halves">"#)?;
+    for keys in [halves.0, halves.1] {
+        if !keys.is_empty() {
+            table(runs, &columns, keys, out)?;
+        }
+    }
+    writeln!(out, "</div>")
+}
+
+fn table(runs: &[Run], columns: &[Vec<(String, &Value)>], keys: &[&str], out: &mut dyn io::Write) -> io::Result<()> {
+    writeln!(out, r#"<table class="summary">"#)?;
     if runs.len() > 1 {
         let heads: String = runs.iter().map(|run| format!("<th scope=\"col\">{}</th>", html(run.label))).collect();
-        writeln!(out, "<thead><tr><th></th><th></th>{heads}</tr></thead>")?;
+        writeln!(out, "<thead><tr><th></th>{heads}<th></th></tr></thead>")?;
     }
     writeln!(out, "<tbody>")?;
-    for key in union_of_keys(&columns) {
+    for key in keys {
         let cells: String = columns.iter().map(|column| cell(column, key)).collect();
         let unit = unit(key);
-        writeln!(out, r#"<tr><th scope="row">{}</th><td class="unit">{unit}</td>{cells}</tr>"#, html(key))?;
+        writeln!(out, r#"<tr><th scope="row">{}</th>{cells}<td class="unit">{unit}</td></tr>"#, html(key))?;
     }
-    writeln!(out, "</tbody></table></div>")
+    writeln!(out, "</tbody></table>")
 }
 
 /// `{"energy": {"initial": 1}}` → `energy.initial`, 1; in the order of the file.

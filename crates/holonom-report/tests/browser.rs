@@ -55,14 +55,14 @@ fn loads(seen: &Value, plots: u64) {
 }
 
 fn moves(seen: &Value, end: f64) {
-    assert_eq!((&seen["start"]["time"], &seen["middle"]["time"]), (&Value::from(0), &Value::from(end / 2.0)), "{seen:#}");
+    let time = |moment: &str| seen[moment]["time"].as_f64().unwrap();
+    assert_eq!((time("start"), time("middle")), (0.0, end / 2.0), "{seen:#}");
     assert_ne!(seen["start"]["picture"]["hash"], seen["middle"]["picture"]["hash"], "the picture does not follow the slider");
     assert_ne!(seen["start"]["points"]["m2"], seen["middle"]["points"]["m2"]);
     let place = seen["middle"]["points"]["m2"].as_array().unwrap();
     let length = place.iter().map(|x| x.as_f64().unwrap().powi(2)).sum::<f64>().sqrt();
     assert!((length - 2.0).abs() < 1e-5, "m2 is 2 m from the origin, not {length} m");
-    let reached = seen["end"]["time"].as_f64().unwrap();
-    assert!((reached - end).abs() < 1e-9 && seen["end"]["slider"] == true, "{seen:#}");
+    assert!((time("end") - end).abs() < 1e-9 && seen["end"]["slider"] == true, "{seen:#}");
     let playing = seen["playing"].as_f64().unwrap();
     assert!(playing > 0.0 && playing < end, "playing moves time: {seen:#}");
 }

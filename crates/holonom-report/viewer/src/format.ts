@@ -21,13 +21,22 @@ export function reading(value: number | null | undefined): string {
 export function ticks(values: number[], increment: number): string[] {
   const largest = Math.max(...values.map(Math.abs));
   if (largest === 0 || (largest >= 1e-2 && largest < 1e5)) {
-    const decimals = Math.min(Math.max(-Math.floor(Math.log10(increment) + 1e-9), 0), 12);
-    return values.map((v) => minus(v.toFixed(decimals)));
+    const digits = decimals(increment);
+    return values.map((v) => minus(v.toFixed(digits)));
   }
   const exponent = Math.floor(Math.log10(largest));
   const scale = 10 ** exponent;
-  const decimals = Math.min(Math.max(-Math.floor(Math.log10(increment / scale) + 1e-9), 0), 8);
-  return values.map((v) => (v === 0 ? "0" : `${minus((v / scale).toFixed(decimals))}·${power(exponent)}`));
+  const digits = decimals(increment / scale);
+  return values.map((v) => (v === 0 ? "0" : `${minus((v / scale).toFixed(digits))}·${power(exponent)}`));
+}
+
+/** As many as it takes to write multiples of the increment; 2.5 takes one. */
+function decimals(increment: number): number {
+  for (let digits = 0; digits < 12; digits++) {
+    const scaled = increment * 10 ** digits;
+    if (scaled > 0.5 && Math.abs(scaled - Math.round(scaled)) < 1e-6 * scaled) return digits;
+  }
+  return 12;
 }
 
 function minus(text: string): string {

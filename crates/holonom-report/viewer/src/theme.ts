@@ -32,7 +32,7 @@ export interface Theme {
 export function theme(): Theme {
   return dark.matches
     ? { page: "#181c21", ink: "#e6e9ed", soft: "#98a2ae", line: "#313840", bar: "#8d9aa8", rod: "#a7b1bc", spring: "#2fc79a", ground: "#7b8794", driven: "#ff8a3d" }
-    : { page: "#fafbfc", ink: "#1b1f24", soft: "#5c6672", line: "#e3e7eb", bar: "#75828f", rod: "#8a96a3", spring: "#009e73", ground: "#4b5561", driven: "#d55e00" };
+    : { page: "#fafbfc", ink: "#1b1f24", soft: "#5c6672", line: "#d9dee4", bar: "#75828f", rod: "#8a96a3", spring: "#009e73", ground: "#4b5561", driven: "#d55e00" };
 }
 
 export function onThemeChange(listener: () => void): void {

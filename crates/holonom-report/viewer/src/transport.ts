@@ -58,6 +58,7 @@ function speedSelect(clock: Clock): HTMLElement {
   return element("label", { class: "speed" }, "speed", select);
 }
 
+/** Four digits of the whole duration. */
 function decimals(duration: number): number {
-  return Math.min(Math.max(3 - Math.floor(Math.log10(duration || 1)) - 1, 0), 6);
+  return Math.min(Math.max(3 - Math.floor(Math.log10(duration || 1)), 0), 7);
 }

@@ -108,7 +108,7 @@ impl Stabilized {
     }
 
     /// w, and H times w and u.
-    fn turn(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
+    pub fn turn(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
         for i in 0..self.w.len() {
             self.w[i] = self.u[i] + 0.5 * stage.step * work.v0[i];
         }
@@ -230,10 +230,21 @@ impl Stabilized {
         momentum <= STALLED * work.heaviest * work.length && work.scaled_violation() <= STALLED && rate <= STALLED
     }
 
-    /// Work done by known motion through the velocity rows in the step: γ·(Ḡ Δv + H v̄ Δx − Δċ) over the known nodes, J.
+    /// Work of known motion in the step that the stage's forces do not show, J: through the velocity rows,
+    /// γ·(Ḡ Δv + H v̄ Δx − Δċ) over the known nodes, and through inertia, as Δq/h is not v̄ here.
     pub fn work(&self, system: &System, stage: &Stage, work: &Workspace) -> f64 {
         let (dim, h) = (system.dim, stage.step);
         let mut sum = 0.0;
+        for known in system.free..system.nodes() {
+            for (node, mass) in system.mass.row(known).filter(|&(node, _)| node < system.free) {
+                for c in 0..dim {
+                    let (k, i) = (known * dim + c, node * dim + c);
+                    let slip = (self.w[i] - work.d[i]) / h;
+                    let lag = (work.x1[k] - work.x0[k]) / h - 0.5 * (work.v0[k] + work.v1[k]);
+                    sum += mass * ((work.v1[k] - work.v0[k]) * slip + (work.v1[i] - work.v0[i]) * lag);
+                }
+            }
+        }
         for (row, slots) in self.kkt.row_slots.iter().enumerate() {
             let rate_change = system.explicit_rate(row, &work.at_end, stage.end()) - system.explicit_rate(row, &work.at_start, stage.start);
             let mut along = rate_change;

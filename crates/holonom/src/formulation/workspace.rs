@@ -63,6 +63,8 @@ pub struct Workspace {
     /// Factorisations so far.
     pub factorizations: u64,
     dissipative: bool,
+    /// Whether anything does work on the system from outside its energy.
+    works: bool,
 }
 
 impl Workspace {
@@ -111,6 +113,7 @@ impl Workspace {
             heaviest: (0..system.free).map(|a| system.mass.diagonal(a)).fold(0.0, f64::max),
             factorizations: 0,
             dissipative: system.laws.iter().any(|law| !law.law.conservative()),
+            works: system.is_worked_on(),
         };
         system.evaluate(&workspace.x0, 0.0, &mut workspace.at_start);
         workspace.measure_softness(system);
@@ -158,6 +161,15 @@ impl Workspace {
         let share = stage.share();
         for i in 0..n {
             self.xs[i] = self.x0[i] + share * self.d[i];
+        }
+    }
+
+    /// Brings forces and gradients to the solution of a stage, for the balance of work. The last increment is tiny, so
+    /// this is left out where nothing does work.
+    pub fn settle(&mut self, system: &System, stage: &Stage) {
+        if self.works {
+            self.place(system, stage);
+            self.evaluate(system, stage);
         }
     }
 

@@ -1,7 +1,7 @@
 //! The energy-momentum conserving scheme (14)–(18): midpoint kinematics with discrete gradients (methods §2.1).
 
 use super::{Integrator, Step};
-use crate::formulation::{Failure, RowsAt, Sampling, SolveSettings, Stage, Workspace, solve};
+use crate::formulation::{Failure, Multipliers, RowsAt, Sampling, SolveSettings, Stage, Workspace, solve};
 use crate::system::System;
 
 pub(super) struct Conserving {
@@ -10,9 +10,12 @@ pub(super) struct Conserving {
 
 impl Integrator for Conserving {
     fn step(&mut self, system: &System, start: f64, step: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
-        let stage = midpoint_kinematics(system, start, step, Sampling::Between, self.rows, work);
+        // λ = αΦ̄ in the penalty formulation: its energy ½αΦ² is then kept (14).
+        let rows = if matches!(settings.multipliers, Multipliers::Penalty(_)) { RowsAt::Mean } else { self.rows };
+        let stage = midpoint_kinematics(system, start, step, Sampling::Between, rows, work);
         let iterations = solve(system, &stage, settings, work)?;
         finish(system, step, work);
+        work.settle(system, &stage);
         Ok(Step { iterations, stage, extra_work: 0.0 })
     }
 }

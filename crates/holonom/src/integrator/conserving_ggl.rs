@@ -48,6 +48,8 @@ impl Integrator for ConservingGgl {
         for row in 0..both.mu.len() {
             work.lambda[row] = (both.mu[row] + both.gamma[row]) / stage.inertia;
         }
+        work.settle(system, &stage);
+        both.turn(system, &stage, work);
         let extra_work = both.work(system, &stage, work);
         Ok(Step { iterations, stage, extra_work })
     }

@@ -15,6 +15,7 @@ impl Integrator for Midpoint {
         system.place_known(stage.time(), xs, vs, full);
         let iterations = solve(system, &stage, settings, work)?;
         finish(system, step, work);
+        work.settle(system, &stage);
         Ok(Step { iterations, stage, extra_work: 0.0 })
     }
 }

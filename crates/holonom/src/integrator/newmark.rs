@@ -31,6 +31,7 @@ impl Integrator for Newmark {
             work.a1[i] = (work.d[i] - work.drift[i]) / stage.inertia;
             work.v1[i] += h * gamma * work.a1[i];
         }
+        work.settle(system, &stage);
         Ok(Step { iterations, stage, extra_work: 0.0 })
     }
 }

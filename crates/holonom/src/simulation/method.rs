@@ -156,7 +156,7 @@ impl Method {
                     Some(other) => return Err(MethodError::Value { key: "constraint_at", given: other.into(), allowed: "end, mean".into() }),
                 },
             },
-            projection: projection(choice.projection.as_ref(), &levels)?,
+            projection: projection(choice.projection.as_ref(), &levels, formulation)?,
             subdivide: choice.subdivide.unwrap_or(true),
         })
     }
@@ -201,7 +201,9 @@ fn name(choice: &Choice, named: &Named, integrator: &str, formulation: &str, lev
     if choice.method.as_deref() == Some(named.name) && base == named.name { named.name.to_string() } else { base }
 }
 
-fn projection(choice: Option<&ProjectionChoice>, levels: &[String]) -> Result<Projection, MethodError> {
+/// Off the manifold redundant rows are no longer so, and an exact projection would take motion away that the mechanism
+/// has: with the penalty formulation the penalty solve is the default.
+fn projection(choice: Option<&ProjectionChoice>, levels: &[String], formulation: &str) -> Result<Projection, MethodError> {
     let default = ProjectionChoice::default();
     let choice = choice.unwrap_or(&default);
     for level in levels {
@@ -218,7 +220,7 @@ fn projection(choice: Option<&ProjectionChoice>, levels: &[String]) -> Result<Pr
             _ => return Err(MethodError::Value { key: "projection.weights", given: "none".into(), allowed: "a positive weight for each free point".into() }),
         },
     };
-    let solve = match pick("projection solve", choice.solve.as_deref().unwrap_or("exact"), SOLVES, |s| s.0)?.0 {
+    let solve = match pick("projection solve", choice.solve.as_deref().unwrap_or(if formulation == "penalty" { "penalty" } else { "exact" }), SOLVES, |s| s.0)?.0 {
         "exact" => Solve::Exact,
         _ => Solve::Penalty(positive("projection.penalty", choice.penalty, PENALTY)?),
     };

@@ -102,6 +102,14 @@ impl System {
         &self.row_names
     }
 
+    /// Whether anything does work on the system that its energy does not show: known motion, dissipation, loads, rows
+    /// that depend on time.
+    pub(crate) fn is_worked_on(&self) -> bool {
+        let dissipates = self.laws.iter().any(|law| !law.law.conservative());
+        let drives = self.rows.iter().any(|row| !row.target.is_constant());
+        dissipates || drives || !(self.motions.is_empty() && self.loads.is_empty() && self.custom.is_empty())
+    }
+
     /// Names of the forces that do work beside the energy: dissipative laws, then loads.
     pub fn working_forces(&self) -> impl Iterator<Item = &str> {
         let laws = self.laws.iter().filter(|law| !law.law.conservative()).map(|law| law.name.as_str());

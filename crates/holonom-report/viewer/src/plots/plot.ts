@@ -13,7 +13,7 @@ import { linearLabels, linearRange, logFloor, logLabels, logRange, logSplits } f
 const HEIGHT = 215;
 const FONT = "11px system-ui, sans-serif";
 /** Wide enough for the longest label, equal in all plots so that their time axes are in line. */
-const LABEL_WIDTH = 76;
+const LABEL_WIDTH = 66;
 /** A press that moves less is a click, not the choice of a range; px. */
 const CLICK = 3;
 

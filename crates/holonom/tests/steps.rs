@@ -1,0 +1,35 @@
+//! What holds for every step of every method: it allocates nothing and gives the same bits again.
+
+mod common;
+
+use common::*;
+use holonom::simulation::{Method, Simulation, Status, Verdict};
+use holonom::system::System;
+
+fn systems() -> [(&'static str, System); 4] {
+    [("pendulum", pendulum()), ("four-bar", four_bar(3)), ("driven", driven_pendulum()), ("surface", surface())]
+}
+
+#[test]
+fn a_step_allocates_nothing() {
+    for (model, system) in systems() {
+        for (name, choice) in every_method() {
+            let mut simulation = Simulation::new(&system, Method::resolve(&choice).unwrap(), 0.005).unwrap();
+            let mut go_on = |_: &Simulation<'_>| Verdict::GoOn;
+            let allocations = allocation_counter::measure(|| {
+                assert_eq!(simulation.run(0.2, &mut go_on), Status::Completed, "{model}, {name}");
+            });
+            assert_eq!(allocations.count_total, 0, "{model}, {name}");
+        }
+    }
+}
+
+#[test]
+fn a_second_run_gives_the_same_bits() {
+    for (model, system) in systems() {
+        for (name, choice) in every_method() {
+            let bits = || -> Vec<u64> { run(&system, &choice, 0.005, 0.2).position.iter().map(|x| x.to_bits()).collect() };
+            assert_eq!(bits(), bits(), "{model}, {name}");
+        }
+    }
+}
