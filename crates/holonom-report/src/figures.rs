@@ -25,7 +25,7 @@ pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
 }
 
 fn one(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
-    writeln!(out, r#"<p class="method">{} {}</p>"#, badge(run.summary), method(run, true))?;
+    writeln!(out, r#"<p class="method">{} {}{}</p>"#, badge(run.summary), method(run, true), reason(run.summary))?;
     writeln!(out, r#"<dl class="figures">"#)?;
     for (pointer, name, unit) in shown(std::slice::from_ref(run)) {
         let value = figure(run.summary, pointer);
@@ -46,7 +46,7 @@ fn several(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
     for (index, run) in runs.iter().enumerate() {
         // The viewer fills the swatch with the colour of the run.
         let name = format!(r#"<span class="swatch" data-run="{index}"></span>{}<small>{}</small>"#, html(run.label), method(run, false));
-        write!(out, r#"<tr><th scope="row">{name}</th><td>{}</td>"#, badge(run.summary))?;
+        write!(out, r#"<tr><th scope="row">{name}</th><td>{}{}</td>"#, badge(run.summary), reason(run.summary))?;
         for (pointer, ..) in &figures {
             write!(out, r#"<td class="number">{}</td>"#, figure(run.summary, pointer))?;
         }
@@ -82,12 +82,19 @@ fn method(run: &Run, always_name: bool) -> String {
 }
 
 fn badge(summary: &Value) -> String {
-    let text = |key: &str| summary.get(key).filter(|v| !v.is_null()).map(|v| html(&format::value(v)));
-    let status = text("status").unwrap_or_else(|| "unknown".to_owned());
+    let status = text(summary, "status").unwrap_or_else(|| "unknown".to_owned());
     if status == "completed" {
         return r#"<span class="badge completed">completed</span>"#.to_owned();
     }
-    let when = text("stopped_at").map_or(String::new(), |t| format!(" at {t} s"));
-    let why = text("reason").map_or(String::new(), |reason| format!(r#"<span class="reason">{reason}</span>"#));
-    format!(r#"<span class="badge stopped">{status}{when}</span>{why}"#)
+    let when = text(summary, "stopped_at").map_or(String::new(), |t| format!(" at {t} s"));
+    format!(r#"<span class="badge stopped">{status}{when}</span>"#)
+}
+
+fn reason(summary: &Value) -> String {
+    text(summary, "reason").map_or(String::new(), |reason| format!(r#"<span class="reason">{reason}</span>"#))
+}
+
+/// A key of the summary as HTML, unless it is null.
+fn text(summary: &Value, key: &str) -> Option<String> {
+    summary.get(key).filter(|v| !v.is_null()).map(|v| html(&format::value(v)))
 }

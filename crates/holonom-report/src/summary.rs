@@ -41,13 +41,12 @@ fn table(runs: &[Run], columns: &[Vec<(String, &Value)>], keys: &[&str], out: &m
     writeln!(out, r#"<table class="summary">"#)?;
     if runs.len() > 1 {
         let heads: String = runs.iter().map(|run| format!("<th scope=\"col\">{}</th>", html(run.label))).collect();
-        writeln!(out, "<thead><tr><th></th>{heads}<th></th></tr></thead>")?;
+        writeln!(out, "<thead><tr><th></th>{heads}</tr></thead>")?;
     }
     writeln!(out, "<tbody>")?;
     for key in keys {
         let cells: String = columns.iter().map(|column| cell(column, key)).collect();
-        let unit = unit(key);
-        writeln!(out, r#"<tr><th scope="row">{}</th>{cells}<td class="unit">{unit}</td></tr>"#, html(key))?;
+        writeln!(out, r#"<tr><th scope="row">{}</th>{cells}</tr>"#, html(key))?;
     }
     writeln!(out, "</tbody></table>")
 }
@@ -87,7 +86,7 @@ fn cell(column: &[(String, &Value)], key: &str) -> String {
     let text = html(&format::value(value));
     match value {
         // The title holds every digit.
-        Value::Number(n) => format!(r#"<td class="number" title="{n}">{text}</td>"#),
+        Value::Number(n) => format!(r#"<td class="number" title="{n}">{text} <small>{}</small></td>"#, unit(key)),
         _ => format!("<td>{text}</td>"),
     }
 }

@@ -131,7 +131,8 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
         }
         let increment = advance(n, work);
         work.lambda.iter_mut().zip(&work.unknowns[n..]).for_each(|(lambda, mu)| *lambda += mu / stage.inertia);
-        if remaining(increment, previous) <= settings.tolerance {
+        let turned = work.scaled_multipliers(&work.unknowns[n..]);
+        if remaining(increment, previous, turned) <= settings.tolerance {
             return Ok(iteration);
         }
         stalls = is_stalled(increment, previous);
@@ -140,10 +141,12 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
     Err(Failure::NotConverged(settings.max_iterations))
 }
 
-/// What is left to go after an increment, from how much smaller it was than the one before; the first one says nothing
-/// of that and counts as a whole.
-pub(super) fn remaining(increment: f64, previous: f64) -> f64 {
-    if previous.is_finite() { increment * (increment / previous).min(1.0) } else { increment }
+/// What is left to go after an increment: as much smaller again as it was than the one before, and at least its
+/// product with the increment of the multipliers, which is what Newton's linearisation of Gᵀλ leaves out. The first
+/// increment says nothing of the former and counts as a whole.
+pub(super) fn remaining(increment: f64, previous: f64, multipliers: f64) -> f64 {
+    let linear = if previous.is_finite() { increment * (increment / previous).min(1.0) } else { increment };
+    linear.max(increment * multipliers)
 }
 
 /// Whether increments are small but no longer shrink.

@@ -98,7 +98,10 @@ impl Stabilized {
             if !increment.is_finite() {
                 return Err(Failure::NotFinite);
             }
-            if remaining(increment, previous) <= settings.tolerance {
+            let multipliers = &self.unknowns[self.kkt.multiplier(0, 0)..];
+            let of_level = |level| work.scaled_multipliers(multipliers.iter().skip(level).step_by(2));
+            let turned = of_level(0).max(of_level(1));
+            if remaining(increment, previous, turned) <= settings.tolerance {
                 return Ok(iteration);
             }
             stalls = is_stalled(increment, previous);

@@ -409,6 +409,12 @@ impl Workspace {
         self.unknowns.iter().all(|u| u.is_finite())
     }
 
+    /// Largest multiplier in units of mass × length: each times its row's own gradient.
+    pub fn scaled_multipliers<'a>(&self, multipliers: impl IntoIterator<Item = &'a f64>) -> f64 {
+        let scaled = multipliers.into_iter().zip(&self.softness).map(|(mu, softness)| mu.abs() * (softness * self.heaviest).sqrt());
+        scaled.fold(0.0, f64::max) / (self.heaviest * self.length)
+    }
+
     /// Largest |Φ_k| in units of length: each row over its own gradient.
     pub fn scaled_violation(&self) -> f64 {
         let scaled = self.phi.iter().zip(&self.softness).map(|(phi, softness)| phi.abs() / (softness * self.heaviest).sqrt());

@@ -45,8 +45,8 @@ const SINGLE: Plan[] = [
   { title: "Energy (J)", scale: "linear", sources: [["energy", "total"], ["kinetic", "kinetic"], ["potential", "potential"]] },
   ...DRIFT,
   ...VIOLATIONS,
-  { title: "Energy from each step (J)", scale: "linear", sources: [["dE_integrator", "integrator ΔEᵢ"], ["dE_projection", "projection ΔEₚ"]] },
-  { title: "Energy from all steps so far (J)", scale: "linear", sources: [["sum_dE_integrator", "integrator ΣΔEᵢ"], ["sum_dE_projection", "projection ΣΔEₚ"]] },
+  { title: "ΔE per step (J)", scale: "linear", sources: [["dE_integrator", "integrator"], ["dE_projection", "projection"]] },
+  { title: "ΔE summed (J)", scale: "linear", sources: [["sum_dE_integrator", "integrator"], ["sum_dE_projection", "projection"]] },
   ...ITERATIONS,
 ];
 
@@ -56,10 +56,10 @@ const COMPARED: Plan[] = [
   ...DRIFT,
   ...VIOLATIONS,
   ...ITERATIONS,
-  { title: "Energy from the integrator, each step ΔEᵢ (J)", scale: "linear", sources: [["dE_integrator", ""]] },
-  { title: "Energy from the projection, each step ΔEₚ (J)", scale: "linear", sources: [["dE_projection", ""]] },
-  { title: "Energy from the integrator so far ΣΔEᵢ (J)", scale: "linear", sources: [["sum_dE_integrator", ""]] },
-  { title: "Energy from the projection so far ΣΔEₚ (J)", scale: "linear", sources: [["sum_dE_projection", ""]] },
+  { title: "Integrator ΔEᵢ per step (J)", scale: "linear", sources: [["dE_integrator", ""]] },
+  { title: "Projection ΔEₚ per step (J)", scale: "linear", sources: [["dE_projection", ""]] },
+  { title: "Integrator ΔEᵢ summed (J)", scale: "linear", sources: [["sum_dE_integrator", ""]] },
+  { title: "Projection ΔEₚ summed (J)", scale: "linear", sources: [["sum_dE_projection", ""]] },
 ];
 
 /** Only plots that some run has data for. */

@@ -32,7 +32,9 @@ export function buildGrid(view: Viewpoint, box: Box3): Grid {
     add(cells, i);
   }
   const geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(points, 3));
-  return { object: new LineSegments(geometry, new LineBasicMaterial()), cell };
+  const object = new LineSegments(geometry, new LineBasicMaterial({ depthWrite: false }));
+  object.renderOrder = -2; // under everything
+  return { object, cell };
 }
 
 /** The nearest of 1, 2, 5 · 10ᵏ. */

@@ -19,14 +19,16 @@ export class Mechanism {
   private readonly paints: ((colours: Theme) => void)[] = [];
   /** Colour of the run when several are compared. */
   private readonly runColour: (() => string) | undefined;
-  /** Runs that coincide must not flicker: each is drawn a little thinner than the one before. */
+  /** Runs that coincide must neither flicker nor hide each other: the first is solid, the others are clear hulls around it. */
+  private readonly opacity: number;
   private readonly scale: number;
   private readonly scene: Scene;
 
   constructor(private readonly motion: Motion, size: number, index: number, runs: number) {
     this.scene = motion.run.scene;
     this.runColour = runs > 1 ? () => curveColor(index) : undefined;
-    this.scale = size * (1 - (0.45 * index) / runs);
+    this.scale = size * (1 + (0.9 * index) / runs);
+    this.opacity = index === 0 ? 1 : 0.45;
     for (const line of this.scene.lines) this.addLine(line.kind, line.from, line.to);
     this.addPoints();
     this.addGround();
@@ -109,7 +111,7 @@ export class Mechanism {
   }
 
   private solid(geometry: BufferGeometry, colour: (colours: Theme) => string): Mesh {
-    const material = new MeshStandardMaterial({ roughness: 0.55, metalness: 0.05 });
+    const material = new MeshStandardMaterial({ roughness: 0.55, metalness: 0.05, opacity: this.opacity, transparent: this.opacity < 1, depthWrite: this.opacity === 1 });
     const mesh = new Mesh(geometry, material);
     this.group.add(mesh);
     this.paints.push((colours) => material.color.set(colour(colours)));

@@ -17,7 +17,9 @@ export class Trail {
   constructor(private readonly motion: Motion, private readonly name: string, private readonly window: number) {
     this.geometry.setPositions(this.places);
     this.geometry.setColors(new Float32Array(6 * SEGMENTS));
-    this.object = new LineSegments2(this.geometry, new LineMaterial({ linewidth: 2, vertexColors: true }));
+    this.object = new LineSegments2(this.geometry, new LineMaterial({ linewidth: 2.2, vertexColors: true, depthWrite: false }));
+    // Drawn before all solids, which then cover it.
+    this.object.renderOrder = -1;
     this.object.frustumCulled = false;
   }
 
@@ -27,7 +29,7 @@ export class Trail {
     const mixed = new Color();
     for (let end = 0; end < 2 * SEGMENTS; end++) {
       const age = Math.ceil(end / 2) / SEGMENTS; // 0 now, 1 long ago
-      mixed.lerpColors(page, point, 0.75 * (1 - age) ** 1.5).toArray(colours, 3 * end);
+      mixed.lerpColors(page, point, 0.95 * (1 - age) ** 0.9).toArray(colours, 3 * end);
     }
     this.geometry.setColors(colours);
   }
