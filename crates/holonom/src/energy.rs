@@ -56,10 +56,11 @@ pub fn work_between(system: &System, stage: &Stage, work: &Workspace) -> f64 {
         }
     }
     for (row, &lambda) in work.lambda.iter().enumerate() {
-        sum += lambda * match system.rows.get(row) {
-            Some(row) => row.target.at(stage.start)[0] - row.target.at(stage.end())[0],
-            None => h * system.explicit_rate(row, &work.sampled, stage.time()),
-        };
+        sum += lambda
+            * match system.rows.get(row) {
+                Some(row) => row.target.at(stage.start)[0] - row.target.at(stage.end())[0],
+                None => h * system.explicit_rate(row, &work.sampled, stage.time()),
+            };
     }
     sum
 }
@@ -153,11 +154,15 @@ pub fn drop_driven_momenta(system: &System, work: &Workspace, x: &[f64], kept: &
         };
         let rows = work.kkt.row_slots.iter().cloned();
         let laws = system.laws.iter().flat_map(|law| law.invariants.iter().map(|&id| system.invariants.slots_of(id)));
-        let pushed = rows.chain(laws).any(|slots| pushes(slots));
-        let turned: f64 = x.chunks_exact(dim).zip(work.weight.chunks_exact(dim)).map(|(x, w)| {
-            let direction = flow(k, x);
-            (0..dim).map(|c| w[c] * direction[c]).sum::<f64>()
-        }).sum();
+        let pushed = rows.chain(laws).any(pushes);
+        let turned: f64 = x
+            .chunks_exact(dim)
+            .zip(work.weight.chunks_exact(dim))
+            .map(|(x, w)| {
+                let direction = flow(k, x);
+                (0..dim).map(|c| w[c] * direction[c]).sum::<f64>()
+            })
+            .sum();
         let size: f64 = work.weight.iter().map(|w| w.abs()).sum();
         *kept &= !pushed && turned.abs() <= 1e-9 * size;
     }

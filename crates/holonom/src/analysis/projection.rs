@@ -44,9 +44,8 @@ pub fn projection_form(system: &System, projection: &Projection, alpha: f64, ste
             (0..dim).for_each(|c| g[row * n + node + c] += work.at_end.gradient[s * dim + c]);
         }
     }
-    let times = |a: &[f64], b: &[f64]| -> Vec<f64> {
-        (0..n * n).map(|k| (0..n).map(|l| a[k / n * n + l] * b[l * n + k % n]).sum()).collect()
-    };
+    let times =
+        |a: &[f64], b: &[f64]| -> Vec<f64> { (0..n * n).map(|k| (0..n).map(|l| a[k / n * n + l] * b[l * n + k % n]).sum()).collect() };
     let gram: Vec<f64> = (0..n * n).map(|k| (0..rows).map(|r| g[r * n + k / n] * g[r * n + k % n]).sum()).collect();
     // P = 1 + X, so that D = −½ (2 + X)ᵀ M X.
     let x: Vec<f64> = times(&inverse(n, &a), &gram).iter().map(|x| alpha * x).collect();

@@ -84,7 +84,13 @@ pub fn solve(system: &System, stage: &Stage, settings: &SolveSettings, work: &mu
 }
 
 /// Newton from the prediction in the workspace, and from the free flight and shares of it where that fails.
-fn newton_from_predictions(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option<f64>, work: &mut Workspace) -> Result<usize, Failure> {
+fn newton_from_predictions(
+    system: &System,
+    stage: &Stage,
+    settings: &SolveSettings,
+    soft: Option<f64>,
+    work: &mut Workspace,
+) -> Result<usize, Failure> {
     let mut outcome = newton(system, stage, settings, soft, work);
     let mut spent = 0;
     for share in RESTARTS {
@@ -201,7 +207,13 @@ fn update_multipliers(system: &System, stage: &Stage, work: &mut Workspace) -> f
     work.phi.iter().map(|phi| phi * phi).sum::<f64>().sqrt()
 }
 
-fn simultaneous(system: &System, stage: &Stage, settings: &SolveSettings, penalty: Option<f64>, work: &mut Workspace) -> Result<usize, Failure> {
+fn simultaneous(
+    system: &System,
+    stage: &Stage,
+    settings: &SolveSettings,
+    penalty: Option<f64>,
+    work: &mut Workspace,
+) -> Result<usize, Failure> {
     penalties(stage, penalty, work);
     for iteration in 1..=settings.max_iterations {
         let size = increment(system, stage, work)?;

@@ -10,12 +10,14 @@
 
 mod iteration;
 mod kkt;
+mod plan;
 mod stabilized;
 mod stage;
+mod terms;
 mod workspace;
 
 pub use iteration::{Failure, ITERATIONS, Iteration, Multipliers, NAMES, SolveSettings, solve};
-pub use kkt::{Block, Kkt};
+pub use kkt::{Block, Kkt, LawFactors};
 pub use stabilized::Stabilized;
 pub use stage::{RowsAt, Sampling, Stage};
 pub use workspace::{RHO, Workspace};

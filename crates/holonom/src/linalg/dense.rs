@@ -21,9 +21,7 @@ impl DenseLu {
     pub(super) fn factor(&mut self) -> Result<(), Singular> {
         let n = self.size;
         for k in 0..n {
-            let pivot_row = (k..n).fold(k, |best, i| {
-                if self.values[i * n + k].abs() > self.values[best * n + k].abs() { i } else { best }
-            });
+            let pivot_row = (k..n).fold(k, |best, i| if self.values[i * n + k].abs() > self.values[best * n + k].abs() { i } else { best });
             self.exchange[k] = pivot_row as u32;
             if pivot_row != k {
                 let (upper, lower) = self.values.split_at_mut(pivot_row * n);

@@ -109,7 +109,14 @@ impl Projection {
             }
             Metric::Tangent => {
                 work.kkt.start_with_mass(1.0);
-                let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start: time - step, step, inertia: 0.25 * step * step, rate: 2.0 / step };
+                let stage = Stage {
+                    sampling: Sampling::End,
+                    rows: RowsAt::End,
+                    start: time - step,
+                    step,
+                    inertia: 0.25 * step * step,
+                    rate: 2.0 / step,
+                };
                 work.respond_at_end(system, &stage);
                 work.add_laws(system, &stage);
                 work.add_loads(system, &stage);

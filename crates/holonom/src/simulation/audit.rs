@@ -1,10 +1,10 @@
 //! The energy balance of every step (20)–(30), violations, momenta and work counters.
 
+use super::{EnergySummary, MomentumSummary, ViolationSummary, WorkSummary};
 use super::{Method, State};
 use crate::energy;
 use crate::formulation::{Multipliers, Sampling, Workspace};
 use crate::integrator::Step;
-use super::{EnergySummary, MomentumSummary, ViolationSummary, WorkSummary};
 use crate::system::System;
 
 /// Everything that is booked of a run. Energies in J; sums over parts of a step where it was taken in parts.
@@ -154,7 +154,15 @@ impl Audit {
     }
 
     /// Books what the projection did: ΔE_p (29), and the violations after it. `before` are the unprojected velocities.
-    pub(super) fn projected(&mut self, system: &System, method: &Method, before: &[f64], accounts: Accounts, target: f64, work: &mut Workspace) {
+    pub(super) fn projected(
+        &mut self,
+        system: &System,
+        method: &Method,
+        before: &[f64],
+        accounts: Accounts,
+        target: f64,
+        work: &mut Workspace,
+    ) {
         self.potential = accounts.potential;
         if method.projection.velocity {
             let change = energy::kinetic_difference(system, &work.v1, before, &mut work.full);
@@ -212,7 +220,8 @@ impl Audit {
 
     /// Drift of the momenta that nothing outside changes.
     pub fn momentum_summary(&self) -> MomentumSummary {
-        let largest = |range: std::ops::Range<usize>| range.filter(|&k| self.kept_momenta[k]).map(|k| self.momentum_drift[k]).fold(0.0, f64::max);
+        let largest =
+            |range: std::ops::Range<usize>| range.filter(|&k| self.kept_momenta[k]).map(|k| self.momentum_drift[k]).fold(0.0, f64::max);
         MomentumSummary { linear_drift: largest(0..3), angular_drift: largest(3..6) }
     }
 

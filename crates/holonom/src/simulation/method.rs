@@ -58,7 +58,13 @@ pub const NAMED: &[Named] = &[
         doc: "long runs, everything exact (default)",
         keeps: "energy, momentum, Φ, Φ̇",
     },
-    Named { name: "conserving", integrator: "conserving", levels: &[], doc: "the paper's conserving scheme (17)–(18)", keeps: "energy, momentum, Φ" },
+    Named {
+        name: "conserving",
+        integrator: "conserving",
+        levels: &[],
+        doc: "the paper's conserving scheme (17)–(18)",
+        keeps: "energy, momentum, Φ",
+    },
     Named {
         name: "conserving-projected",
         integrator: "conserving",
@@ -73,7 +79,13 @@ pub const NAMED: &[Named] = &[
         doc: "real time: (7) with trapezoidal rule and projections, A = M",
         keeps: "Φ, Φ̇, Φ̈",
     },
-    Named { name: "trapezoidal", integrator: "trapezoidal", levels: &[], doc: "(7) alone: the paper's unstable case, for comparison", keeps: "Φ" },
+    Named {
+        name: "trapezoidal",
+        integrator: "trapezoidal",
+        levels: &[],
+        doc: "(7) alone: the paper's unstable case, for comparison",
+        keeps: "Φ",
+    },
 ];
 
 /// Tolerance of the Newton iteration: estimated remaining increment over the size of the mechanism. Convergence is
@@ -110,7 +122,8 @@ impl Method {
             None => &NAMED[0],
         };
         // Parts that are spelled out replace those of the named method; a formulation alone needs an integrator that takes it.
-        let fallback = if choice.method.is_none() && choice.formulation.as_deref() == Some("penalty") { "conserving" } else { named.integrator };
+        let fallback =
+            if choice.method.is_none() && choice.formulation.as_deref() == Some("penalty") { "conserving" } else { named.integrator };
         let integrator = pick("integrator", choice.integrator.as_deref().unwrap_or(fallback), INTEGRATORS, |entry| entry.name)?;
         let formulation = pick("formulation", choice.formulation.as_deref().unwrap_or(NAMES[0].0), NAMES, |f| f.0)?.0;
         let iteration = pick("iteration", choice.iteration.as_deref().unwrap_or("newton"), ITERATIONS, |i| i.0)?;
@@ -130,7 +143,13 @@ impl Method {
         };
         if !levels.is_empty() && !integrator.projects {
             let partners: Vec<&str> = INTEGRATORS.iter().filter(|entry| entry.projects).map(|entry| entry.name).collect();
-            return Err(MethodError::Pair { kind: "projection", name: levels.join(", "), with: "integrator", given: integrator.name.into(), partners: partners.join(", ") });
+            return Err(MethodError::Pair {
+                kind: "projection",
+                name: levels.join(", "),
+                with: "integrator",
+                given: integrator.name.into(),
+                partners: partners.join(", "),
+            });
         }
         let loops = iteration.1 != Iteration::Newton;
         Ok(Self {
@@ -153,7 +172,9 @@ impl Method {
                 rows: match choice.constraint_at.as_deref() {
                     None | Some("end") => RowsAt::End,
                     Some("mean") => RowsAt::Mean,
-                    Some(other) => return Err(MethodError::Value { key: "constraint_at", given: other.into(), allowed: "end, mean".into() }),
+                    Some(other) => {
+                        return Err(MethodError::Value { key: "constraint_at", given: other.into(), allowed: "end, mean".into() });
+                    }
                 },
             },
             projection: projection(choice.projection.as_ref(), &levels, formulation)?,
@@ -217,10 +238,23 @@ fn projection(choice: Option<&ProjectionChoice>, levels: &[String], formulation:
         "tangent" => Metric::Tangent,
         _ => match &choice.weights {
             Some(weights) if weights.iter().all(|w| *w > 0.0) => Metric::Custom(weights.clone()),
-            _ => return Err(MethodError::Value { key: "projection.weights", given: "none".into(), allowed: "a positive weight for each free point".into() }),
+            _ => {
+                return Err(MethodError::Value {
+                    key: "projection.weights",
+                    given: "none".into(),
+                    allowed: "a positive weight for each free point".into(),
+                });
+            }
         },
     };
-    let solve = match pick("projection solve", choice.solve.as_deref().unwrap_or(if formulation == "penalty" { "penalty" } else { "exact" }), SOLVES, |s| s.0)?.0 {
+    let solve = match pick(
+        "projection solve",
+        choice.solve.as_deref().unwrap_or(if formulation == "penalty" { "penalty" } else { "exact" }),
+        SOLVES,
+        |s| s.0,
+    )?
+    .0
+    {
         "exact" => Solve::Exact,
         _ => Solve::Penalty(positive("projection.penalty", choice.penalty, PENALTY)?),
     };

@@ -92,8 +92,25 @@ impl<'a> Simulation<'a> {
         let mut work = Workspace::new(system);
         let start = start::prepare(system, &mut work)?;
         let state = State { t: 0.0, x: work.x1.clone(), v: work.v1.clone(), a: work.a1.clone(), lambda: work.lambda.clone() };
+        Ok(Self::assemble(system, method, step, work, state, start))
+    }
+
+    /// Goes on from a state of an earlier run of the same system. `None` when the state is of another size.
+    pub fn resume(system: &'a System, method: Method, step: f64, state: State) -> Option<Self> {
+        let all = system.nodes() * system.dim;
+        let fits = [&state.x, &state.v, &state.a].iter().all(|values| values.len() == all) && state.lambda.len() == system.constraints();
+        if !fits {
+            return None;
+        }
+        let mut work = Workspace::new(system);
+        state.load(&mut work);
+        system.evaluate(&state.x, state.t, &mut work.at_start);
+        Some(Self::assemble(system, method, step, work, state, Start::default()))
+    }
+
+    fn assemble(system: &'a System, method: Method, step: f64, mut work: Workspace, state: State, start: Start) -> Self {
         let audit = Audit::new(system, &method, &mut work, &state);
-        Ok(Self {
+        Self {
             integrator: (method.integrator.make)(system, method.parameters),
             shown_v: state.v.clone(),
             shown_a: state.a.clone(),
@@ -105,7 +122,7 @@ impl<'a> Simulation<'a> {
             start,
             step,
             steps: 0,
-        })
+        }
     }
 
     /// Runs to time `end` (s) and shows the start and every nominal step to the observer.
@@ -203,6 +220,11 @@ impl<'a> Simulation<'a> {
     /// Velocities to show (D × nodes), m/s: the state's, or with shadow projections the projected ones.
     pub fn velocities(&self) -> &[f64] {
         &self.shown_v
+    }
+
+    /// Accelerations to show (D × nodes), m/s².
+    pub fn accelerations(&self) -> &[f64] {
+        &self.shown_a
     }
 
     /// The energy audit so far.

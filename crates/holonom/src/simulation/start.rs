@@ -94,7 +94,8 @@ fn correct_velocities(system: &System, work: &mut Workspace, start: &mut Start) 
     for _ in 0..4 {
         work.rate_violation(system, 0.0);
         let size = work.v1.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        violation = work.rows.iter().zip(&work.softness).fold(0.0, |m, (row, softness)| f64::max(m, row.abs() / (softness * work.heaviest).sqrt()));
+        violation =
+            work.rows.iter().zip(&work.softness).fold(0.0, |m, (row, softness)| f64::max(m, row.abs() / (softness * work.heaviest).sqrt()));
         if violation <= ROUND_OFF * size {
             break;
         }

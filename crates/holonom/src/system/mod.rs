@@ -16,9 +16,9 @@ pub use builder::{NodeId, Place, SystemBuilder};
 pub use custom::{ConstraintFunction, CustomRows, Differentiated, ForceFunction, Number, SIZE};
 pub(crate) use evaluate::gather;
 pub use evaluate::{Between, Evaluation};
-pub use invariant::{InvariantId, Invariants};
 pub(crate) use invariant::{HessianBlock, skew};
-pub use law::{Law, Load, Reach, Response, MAX_ARGUMENTS};
+pub use invariant::{InvariantId, Invariants};
+pub use law::{Law, Load, MAX_ARGUMENTS, Reach, Response};
 pub use mass::Mass;
 pub use motion::{Constant, Signal};
 

@@ -1,0 +1,234 @@
+//! The terms of a stage: rows, laws, loads and inertia, their residual and their tangent.
+
+use super::kkt::{Block, LawFactors};
+use super::stage::{RowsAt, Sampling, Stage};
+use super::workspace::Workspace;
+use crate::system::{Between, LoadEntry, MAX_ARGUMENTS, Reach, Response, SIZE, System, gather};
+
+impl Workspace {
+    /// Evaluates rows, laws and loads of a stage; leaves Φ in `phi` and the sum of forces in `force`.
+    pub fn evaluate(&mut self, system: &System, stage: &Stage) {
+        let Self { at_start, at_end, sampled, .. } = self;
+        match stage.sampling {
+            Sampling::End => {
+                system.evaluate(&self.x1, stage.end(), at_end);
+                sampled.copy_from(at_end);
+            }
+            Sampling::Middle => system.evaluate(&self.xs, stage.time(), sampled),
+            Sampling::Between => {
+                system.evaluate(&self.x1, stage.end(), at_end);
+                let span = Between { from: &self.x0, to: &self.x1, start: stage.start, step: stage.step };
+                system.evaluate_between(span, at_start, at_end, sampled);
+            }
+        }
+        match stage.rows {
+            RowsAt::Middle => system.constraint_values(sampled, stage.time(), &mut self.phi),
+            RowsAt::End => system.constraint_values(at_end, stage.end(), &mut self.phi),
+            RowsAt::Mean => {
+                system.constraint_values(at_end, stage.end(), &mut self.phi);
+                self.phi.iter_mut().zip(&self.phi_start).for_each(|(phi, start)| *phi = 0.5 * (*phi + start));
+            }
+        }
+        self.sum_forces(system, stage);
+    }
+
+    /// Sums gravity, laws, loads and λᵀG at the sampled state into `force`.
+    fn sum_forces(&mut self, system: &System, stage: &Stage) {
+        let dim = system.dim;
+        self.force.copy_from_slice(&self.weight);
+        self.respond(system, stage);
+        for (law, response) in system.laws.iter().zip(&self.responses) {
+            for (k, &id) in law.invariants.iter().enumerate() {
+                for s in system.invariants.slots_of(id) {
+                    let node = self.kkt.slot_nodes[s] as usize * dim;
+                    for c in 0..dim {
+                        self.force[node + c] += response.force[k] * self.sampled.gradient[s * dim + c];
+                    }
+                }
+            }
+        }
+        let mut first = 0;
+        for load in &system.loads {
+            let width = load.nodes.len() * dim;
+            let (x, v) = self.load_arguments(system, load);
+            load.load.force(&x[..width], &v[..width], stage.time(), &mut self.load_force[first..first + width]);
+            for (k, node) in load.nodes.iter().enumerate().filter(|(_, node)| node.index() < system.free) {
+                for c in 0..dim {
+                    self.force[node.index() * dim + c] -= self.load_force[first + k * dim + c];
+                }
+            }
+            first += width;
+        }
+        for (slots, &lambda) in self.kkt.row_slots.iter().zip(&self.lambda) {
+            for s in slots.clone() {
+                let node = self.kkt.slot_nodes[s] as usize * dim;
+                for c in 0..dim {
+                    self.force[node + c] += lambda * self.sampled.gradient[s * dim + c];
+                }
+            }
+        }
+    }
+
+    /// Responses of all laws at the sampled state.
+    fn respond(&mut self, system: &System, stage: &Stage) {
+        if self.dissipative && stage.sampling != Sampling::Between {
+            system.invariants.curvature(&self.vs, &mut self.half, &mut self.motion);
+        }
+        for (law, response) in system.laws.iter().zip(&mut self.responses) {
+            *response = Response::default();
+            let m = law.invariants.len();
+            let pick = |values: &[f64]| -> [f64; MAX_ARGUMENTS] {
+                let mut picked = [0.0; MAX_ARGUMENTS];
+                law.invariants.iter().zip(&mut picked).for_each(|(id, out)| *out = values[id.0 as usize]);
+                picked
+            };
+            if stage.sampling == Sampling::Between {
+                let (from, to) = (pick(&self.at_start.value), pick(&self.at_end.value));
+                let reach = Reach { from: &from[..m], to: &to[..m], step: stage.step, middle: stage.time() };
+                law.law.between(reach, response);
+            } else {
+                let value = pick(&self.sampled.value);
+                let mut rate = [0.0; MAX_ARGUMENTS];
+                if !law.law.conservative() {
+                    for (rate, &id) in rate.iter_mut().zip(&law.invariants) {
+                        *rate = system.along(&system.invariants.slots_of(id), &self.kkt.slot_nodes, &self.sampled, &self.vs);
+                    }
+                }
+                law.law.at(&value[..m], &rate[..m], stage.time(), response);
+            }
+        }
+    }
+
+    /// Sampled positions and velocities of a load's nodes.
+    fn load_arguments(&self, system: &System, load: &LoadEntry) -> ([f64; SIZE], [f64; SIZE]) {
+        let (mut x, mut v) = ([0.0; SIZE], [0.0; SIZE]);
+        gather(system.dim, &load.nodes, &self.xs, &mut x);
+        gather(system.dim, &load.nodes, &self.vs, &mut v);
+        (x, v)
+    }
+
+    /// Writes minus the residual of the stage to `unknowns`: ϖ(M a + f) for the coordinates, Φ for the rows.
+    pub fn residual(&mut self, system: &System, stage: &Stage) {
+        let n = system.coordinates();
+        for i in 0..n {
+            self.full[i] = self.d[i] - self.drift[i];
+        }
+        for i in n..self.full.len() {
+            self.full[i] = stage.inertia * self.a1[i];
+        }
+        system.mass.times(system.dim, &self.full, &mut self.inertial);
+        for i in 0..n {
+            self.unknowns[i] = -(self.inertial[i] + stage.inertia * self.force[i]);
+        }
+        for (unknown, phi) in self.unknowns[n..].iter_mut().zip(&self.phi) {
+            *unknown = -phi;
+        }
+    }
+
+    /// Assembles the tangent of the stage without its proximal term. `geometric` is 1 for the full tangent and 0 for
+    /// that of Gauss and Newton, which leaves out the curvature of the rows.
+    pub fn tangent(&mut self, system: &System, stage: &Stage, geometric: f64) {
+        let share = stage.share();
+        let weight = stage.inertia * share;
+        self.kkt.clear();
+        self.kkt.start_with_mass(1.0);
+        if geometric != 0.0 {
+            self.kkt.add_row_hessians(Block(0, 0), &self.lambda, geometric * weight);
+            self.add_custom_hessians(system, stage, geometric * weight);
+        }
+        self.add_laws(system, stage);
+        self.add_loads(system, stage);
+        self.kkt.write_sum(Block(0, 0));
+        self.kkt.add_columns(Block(0, 0), &self.sampled.gradient, 1.0);
+        let (gradient, factor) = match stage.rows {
+            RowsAt::End => (&self.at_end.gradient, 1.0),
+            RowsAt::Mean => (&self.at_end.gradient, 0.5),
+            RowsAt::Middle => (&self.sampled.gradient, 0.5),
+        };
+        self.kkt.add_rows(Block(0, 0), gradient, factor);
+    }
+
+    /// Adds the tangents of all laws, times ϖ.
+    pub fn add_laws(&mut self, system: &System, stage: &Stage) {
+        let between = stage.sampling == Sampling::Between;
+        let share = stage.inertia * stage.share();
+        for (law, entry) in system.laws.iter().enumerate() {
+            let dissipates = !between && !entry.law.conservative();
+            let factors = LawFactors {
+                force: share,
+                value: if between { stage.inertia } else { share },
+                rate: if dissipates { stage.inertia * stage.rate } else { 0.0 },
+                motion: if dissipates { share } else { 0.0 },
+            };
+            let right = if between { &self.at_end.gradient } else { &self.sampled.gradient };
+            self.kkt.add_law(law, &self.responses[law], factors, &self.sampled.gradient, right, &self.motion);
+        }
+    }
+
+    /// Adds the tangents of all loads, times ϖ.
+    pub fn add_loads(&mut self, system: &System, stage: &Stage) {
+        for (k, load) in system.loads.iter().enumerate() {
+            let width = load.nodes.len() * system.dim;
+            let (x, v) = self.load_arguments(system, load);
+            let (by_position, by_velocity) = self.dense.split_at_mut(SIZE * SIZE);
+            let (by_position, by_velocity) = (&mut by_position[..width * width], &mut by_velocity[..width * width]);
+            by_position.fill(0.0);
+            by_velocity.fill(0.0);
+            load.load.tangent(&x[..width], &v[..width], stage.time(), by_position, by_velocity);
+            self.kkt.add_load(k, by_position, -stage.inertia * stage.share());
+            self.kkt.add_load(k, by_velocity, -stage.inertia * stage.rate);
+        }
+    }
+
+    fn add_custom_hessians(&mut self, system: &System, stage: &Stage, factor: f64) {
+        let mut first = system.rows.len();
+        for (k, entry) in system.custom.iter().enumerate() {
+            let rows = entry.rows.rows();
+            let mut x = [0.0; SIZE];
+            let width = gather(system.dim, &entry.nodes, &self.xs, &mut x);
+            let hessian = &mut self.dense[..width * width];
+            entry.rows.hessian(&x[..width], stage.time(), &self.lambda[first..first + rows], hessian);
+            self.kkt.add_custom(k, hessian, factor);
+            first += rows;
+        }
+    }
+
+    /// Responses of all laws at the end of the step, whatever was sampled before.
+    pub fn respond_at_end(&mut self, system: &System, stage: &Stage) {
+        self.xs.copy_from_slice(&self.x1);
+        self.vs.copy_from_slice(&self.v1);
+        self.sampled.copy_from(&self.at_end);
+        self.respond(system, stage);
+    }
+
+    /// Samples forces at the end position with the multipliers as they are, and evaluates there.
+    pub fn sample_end(&mut self, system: &System, time: f64) {
+        system.evaluate(&self.x1, time, &mut self.at_end);
+        self.sampled.copy_from(&self.at_end);
+        self.xs.copy_from_slice(&self.x1);
+        self.vs.copy_from_slice(&self.v1);
+        let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start: time, step: 0.0, inertia: 1.0, rate: 0.0 };
+        self.sum_forces(system, &stage);
+    }
+
+    /// Leaves Φ̈ at the sampled position, with the accelerations `a1`, in `rows`.
+    pub fn sampled_acceleration_violation(&mut self, system: &System, time: f64) {
+        system.constraint_curvatures(&self.xs, &self.vs, time, &mut self.half, &mut self.motion, &mut self.rows);
+        for (row, slots) in self.rows.iter_mut().zip(&self.kkt.row_slots) {
+            *row += system.along(slots, &self.kkt.slot_nodes, &self.sampled, &self.a1);
+        }
+    }
+
+    /// Leaves Φ̇ at the end of the step in `rows`.
+    pub fn rate_violation(&mut self, system: &System, time: f64) {
+        system.constraint_rates(&self.kkt.row_slots, &self.kkt.slot_nodes, &self.at_end, &self.v1, time, &mut self.rows);
+    }
+
+    /// Leaves Φ̈ at the end of the step in `rows`.
+    pub fn acceleration_violation(&mut self, system: &System, time: f64) {
+        system.constraint_curvatures(&self.x1, &self.v1, time, &mut self.half, &mut self.motion, &mut self.rows);
+        for (row, slots) in self.rows.iter_mut().zip(&self.kkt.row_slots) {
+            *row += system.along(slots, &self.kkt.slot_nodes, &self.at_end, &self.a1);
+        }
+    }
+}
