@@ -15,10 +15,8 @@ const STYLE: &str = include_str!("style.css");
 
 /// Style sheet and script of the viewer, if it is part of this build.
 #[cfg(feature = "viewer")]
-const VIEWER: Option<(&str, &str)> = Some((
-    include_str!(concat!(env!("OUT_DIR"), "/bundle/viewer.css")),
-    include_str!(concat!(env!("OUT_DIR"), "/bundle/viewer.js")),
-));
+const VIEWER: Option<(&str, &str)> =
+    Some((include_str!(concat!(env!("OUT_DIR"), "/bundle/viewer.css")), include_str!(concat!(env!("OUT_DIR"), "/bundle/viewer.js"))));
 #[cfg(not(feature = "viewer"))]
 const VIEWER: Option<(&str, &str)> = None;
 

@@ -82,7 +82,9 @@ fn union_of_keys<'a>(columns: &'a [Vec<(String, &Value)>]) -> Vec<&'a str> {
 }
 
 fn cell(column: &[(String, &Value)], key: &str) -> String {
-    let Some((_, value)) = column.iter().find(|(name, _)| name == key) else { return "<td></td>".to_owned() };
+    let Some((_, value)) = column.iter().find(|(name, _)| name == key) else {
+        return "<td></td>".to_owned();
+    };
     let text = html(&format::value(value));
     match value {
         // The title holds every digit.

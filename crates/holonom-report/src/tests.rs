@@ -4,19 +4,8 @@ use crate::{Report, Run};
 use holonom::record::{Anchor, Line, LineKind, PointKind, Recording, Scene, ScenePoint};
 use serde_json::{Value, json};
 
-const COLUMNS: [&str; 11] = [
-    "t",
-    "energy",
-    "kinetic",
-    "potential",
-    "work",
-    "dE_integrator",
-    "dE_projection",
-    "phi",
-    "phi_dot",
-    "phi_ddot",
-    "iterations",
-];
+const COLUMNS: [&str; 11] =
+    ["t", "energy", "kinetic", "potential", "work", "dE_integrator", "dE_projection", "phi", "phi_dot", "phi_ddot", "iterations"];
 
 fn recording(rows: usize, poison: f64) -> Recording {
     let point = ["x", "y", "vx", "vy"].map(|axis| format!("tip.{axis}"));

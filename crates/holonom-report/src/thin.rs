@@ -45,7 +45,9 @@ impl Thinning {
 
     /// One column, shortened.
     pub fn apply(&self, values: &[f64], keep: Keep) -> Vec<f64> {
-        let Some((first, rest)) = values.split_first() else { return Vec::new() };
+        let Some((first, rest)) = values.split_first() else {
+            return Vec::new();
+        };
         let groups = rest.chunks(self.stride).map(|group| represent(group, keep));
         std::iter::once(*first).chain(groups).collect()
     }

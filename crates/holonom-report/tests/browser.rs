@@ -46,6 +46,17 @@ fn planar_and_stopped_early() {
     assert_eq!((&place[1], &place[2]), (&Value::from(0), &Value::from(0)), "the missing coordinate is 0: {seen:#}");
 }
 
+#[test]
+fn numbers_out_of_all_bounds() {
+    loads(&open("blown-up", &[sample::blown_up()]), 3);
+}
+
+#[test]
+fn nothing_to_show() {
+    let seen = open("empty", &[sample::empty()]);
+    assert_eq!((&seen["faults"], &seen["ready"]), (&Value::Array(Vec::new()), &Value::Bool(true)), "{seen:#}");
+}
+
 fn loads(seen: &Value, plots: u64) {
     assert_eq!(seen["faults"], Value::Array(Vec::new()), "{seen:#}");
     assert_eq!(seen["ready"], true);
@@ -69,10 +80,8 @@ fn moves(seen: &Value, end: f64) {
 
 /// What the checks saw in the page.
 fn open(name: &str, samples: &[Sample]) -> Value {
-    let runs: Vec<Run> = samples
-        .iter()
-        .map(|s| Run { label: &s.label, recording: &s.recording, scene: &s.scene, summary: &s.summary })
-        .collect();
+    let runs: Vec<Run> =
+        samples.iter().map(|s| Run { label: &s.label, recording: &s.recording, scene: &s.scene, summary: &s.summary }).collect();
     let mut page = Vec::new();
     Report { title: samples[0].summary["model"].as_str().unwrap(), model_text: MODEL, runs: &runs }.write(&mut page).unwrap();
     assert!(page.len() < 3_000_000, "the page has {} bytes", page.len());

@@ -22,6 +22,23 @@ pub fn pendulum(label: &str, step: f64, steps: usize, size: f64) -> Sample {
     Sample { label: label.to_owned(), recording, scene, summary }
 }
 
+/// The slider with last rows as a run leaves them that blew up.
+pub fn blown_up() -> Sample {
+    let mut sample = slider();
+    for (i, value) in [1e30, 1e300, f64::INFINITY, f64::NAN].into_iter().enumerate() {
+        sample.recording.push(&[3.0 + 0.01 * i as f64, value, value, value, value, value, value]);
+    }
+    sample
+}
+
+/// A run that stopped before its first row, of a model without points.
+pub fn empty() -> Sample {
+    let mut sample = slider();
+    sample.recording = Recording::new(["t", "energy", "phi"].map(str::to_owned));
+    sample.scene = Scene { axes: "xyz".to_owned(), ..Scene::default() };
+    sample
+}
+
 /// A planar slider on a spring, which stops early.
 pub fn slider() -> Sample {
     let names = ["t", "energy", "phi", "block.x", "block.z", "block.vx", "block.vz"];

@@ -1,6 +1,6 @@
 // One run's mechanism: points, what connects them, and trails.
 
-import { BoxGeometry, BufferGeometry, Color, Group, Line, LineBasicMaterial, Mesh, MeshStandardMaterial, SphereGeometry, Vector3 } from "three";
+import { BackSide, BoxGeometry, BufferGeometry, Color, FrontSide, Group, Line, LineBasicMaterial, Mesh, MeshStandardMaterial, SphereGeometry, Vector3, type Side } from "three";
 import type { Motion } from "../motion";
 import type { Anchor, LineKind, Scene, Vec3 } from "../payload";
 import { curveColor, theme, type Theme } from "../theme";
@@ -19,16 +19,19 @@ export class Mechanism {
   private readonly paints: ((colours: Theme) => void)[] = [];
   /** Colour of the run when several are compared. */
   private readonly runColour: (() => string) | undefined;
-  /** Runs that coincide must neither flicker nor hide each other: the first is solid, the others are clear hulls around it. */
-  private readonly opacity: number;
+  /**
+   * Runs that coincide must neither flicker nor hide each other. The first is a solid; each of the others is a little larger, and
+   * only its far side is drawn: alone it looks like a solid, around another one like a rim.
+   */
+  private readonly side: Side;
   private readonly scale: number;
   private readonly scene: Scene;
 
-  constructor(private readonly motion: Motion, size: number, index: number, runs: number) {
+  constructor(private readonly motion: Motion, private readonly size: number, index: number, runs: number) {
     this.scene = motion.run.scene;
     this.runColour = runs > 1 ? () => curveColor(index) : undefined;
-    this.scale = size * (1 + (0.9 * index) / runs);
-    this.opacity = index === 0 ? 1 : 0.45;
+    this.scale = size * (1 + (0.8 * index) / runs);
+    this.side = index === 0 ? FrontSide : BackSide;
     for (const line of this.scene.lines) this.addLine(line.kind, line.from, line.to);
     this.addPoints();
     this.addGround();
@@ -85,8 +88,8 @@ export class Mechanism {
 
   /** Cubes where something is held: fixed points and the fixed ends of what carries load. */
   private addGround(): void {
-    const edge = RADIUS.ground * this.scale;
-    const cube = (): Mesh => this.solid(new BoxGeometry(edge, edge, edge), (colours) => colours.ground);
+    const edge = RADIUS.ground * this.size;
+    const cube = (): Mesh => this.solid(new BoxGeometry(edge, edge, edge), (colours) => colours.ground, FrontSide);
     for (const { name, kind } of this.scene.points) {
       if (kind !== "fixed") continue;
       const mesh = cube();
@@ -110,8 +113,8 @@ export class Mechanism {
     }
   }
 
-  private solid(geometry: BufferGeometry, colour: (colours: Theme) => string): Mesh {
-    const material = new MeshStandardMaterial({ roughness: 0.55, metalness: 0.05, opacity: this.opacity, transparent: this.opacity < 1, depthWrite: this.opacity === 1 });
+  private solid(geometry: BufferGeometry, colour: (colours: Theme) => string, side: Side = this.side): Mesh {
+    const material = new MeshStandardMaterial({ roughness: 0.55, metalness: 0.05, side });
     const mesh = new Mesh(geometry, material);
     this.group.add(mesh);
     this.paints.push((colours) => material.color.set(colour(colours)));
