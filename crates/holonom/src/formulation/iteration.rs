@@ -131,10 +131,11 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
         if stalls && is_met(n, work) {
             return Ok(iteration - 1);
         }
-        work.tangent(system, stage, 1.0);
-        if !work.solve() {
-            return Err(Failure::NotFinite);
+        if !keeps_factors(previous, settings.tolerance) {
+            work.tangent(system, stage, 1.0);
+            work.factor()?;
         }
+        work.solve()?;
         let increment = advance(n, work);
         work.lambda.iter_mut().zip(&work.unknowns[n..]).for_each(|(lambda, mu)| *lambda += mu / stage.inertia);
         let turned = work.scaled_multipliers(&work.unknowns[n..]);
@@ -153,6 +154,12 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
 pub(super) fn remaining(increment: f64, previous: f64, multipliers: f64) -> f64 {
     let linear = if previous.is_finite() { increment * (increment / previous).min(1.0) } else { increment };
     linear.max(increment * multipliers)
+}
+
+/// Whether the factors of the last iteration serve the next one. They are off by the last increment, and the next is of
+/// its square: what remains is of its cube.
+pub(super) fn keeps_factors(previous: f64, tolerance: f64) -> bool {
+    previous.powi(3) <= tolerance
 }
 
 /// Whether increments are small but no longer shrink.
@@ -189,9 +196,8 @@ fn increment(system: &System, stage: &Stage, work: &mut Workspace) -> Result<f64
     work.evaluate(system, stage);
     work.residual(system, stage);
     work.tangent(system, stage, 0.0);
-    if !work.solve() {
-        return Err(Failure::NotFinite);
-    }
+    work.factor()?;
+    work.solve()?;
     let n = system.coordinates();
     advance(n, work);
     Ok(work.unknowns[..n].iter().map(|u| u * u).sum::<f64>().sqrt())

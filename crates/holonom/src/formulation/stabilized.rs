@@ -8,7 +8,7 @@
 //! Φ(q_{n+1}) = 0                                             G(q_{n+1}) u + ½h Φ_t = 0
 //! ```
 
-use super::iteration::{Failure, RESTARTS, SolveSettings, is_stalled, remaining, restart};
+use super::iteration::{Failure, RESTARTS, SolveSettings, is_stalled, keeps_factors, remaining, restart};
 use super::kkt::{Block, Kkt};
 use super::stage::Stage;
 use super::workspace::Workspace;
@@ -88,10 +88,10 @@ impl Stabilized {
             if stalls && self.is_met(system, work) {
                 return Ok(iteration - 1);
             }
-            self.tangent(system, stage, work);
-            work.factorizations += 1;
-            if self.kkt.factor().is_err() {
-                return Err(Failure::NotFinite);
+            if !keeps_factors(previous, settings.tolerance) {
+                self.tangent(system, stage, work);
+                work.factorizations += 1;
+                self.kkt.factor().map_err(|_| Failure::NotFinite)?;
             }
             self.kkt.solver.solve(&mut self.unknowns);
             let increment = self.advance(system, work);

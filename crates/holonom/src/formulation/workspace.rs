@@ -1,5 +1,6 @@
 //! Everything mutable of a step: positions, evaluations, forces and the matrix, allocated once.
 
+use super::iteration::Failure;
 use super::kkt::Kkt;
 use super::stage::Stage;
 use crate::system::{Evaluation, Response, SIZE, System};
@@ -173,16 +174,17 @@ impl Workspace {
         }
     }
 
-    /// Subtracts δ, factors, and solves for the `unknowns`. False when the matrix cannot be factored or the solution
-    /// is not finite.
-    pub fn solve(&mut self) -> bool {
+    /// Subtracts δ and factors the matrix.
+    pub fn factor(&mut self) -> Result<(), Failure> {
         self.kkt.regularise(0, &self.delta);
         self.factorizations += 1;
-        if self.kkt.factor().is_err() {
-            return false;
-        }
+        self.kkt.factor().map_err(|_| Failure::NotFinite)
+    }
+
+    /// Replaces the residual in `unknowns` by the solution.
+    pub fn solve(&mut self) -> Result<(), Failure> {
         self.kkt.solver.solve(&mut self.unknowns);
-        self.unknowns.iter().all(|u| u.is_finite())
+        if self.unknowns.iter().all(|u| u.is_finite()) { Ok(()) } else { Err(Failure::NotFinite) }
     }
 
     /// Largest multiplier in units of mass × length: each times its row's own gradient.

@@ -35,7 +35,7 @@ pub struct Singular {
 
 /// Largest matrix that is treated as dense. Below it partial pivoting costs nothing; above it the sparse
 /// form is faster (measured in `benches`).
-pub const DENSE_LIMIT: usize = 16;
+pub const DENSE_LIMIT: usize = 24;
 
 impl Solver {
     /// Plans a matrix of `size` rows with the structurally symmetric pattern `entries` (row, column), eliminated in
