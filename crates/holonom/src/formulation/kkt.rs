@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use crate::linalg::{Singular, Solver};
-use crate::system::{MAX_ARGUMENTS, Response, skew};
+use crate::system::{MAX_ARGUMENTS, Response};
 
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -31,11 +31,19 @@ pub(super) struct OuterTerm {
     pub pair: u32,
 }
 
+/// An entry of a skew block of second derivatives: which of the block's D × D, row by row.
+#[derive(Clone, Copy)]
+pub(super) struct SkewEntry {
+    pub pair: u32,
+    pub offset: u32,
+    pub value: f64,
+}
+
 /// Constant second derivatives of an invariant, free nodes only.
 #[derive(Default)]
 pub(super) struct Hessian {
     pub isotropic: Vec<(u32, f64)>,
-    pub skew: Vec<(u32, f64, [f64; 3])>,
+    pub skew: Vec<SkewEntry>,
 }
 
 /// The planned matrix.
@@ -118,16 +126,18 @@ impl Kkt {
                 self.pair_sum[pair as usize] += weight * c;
             }
             for k in 0..self.row_hessian[row].skew.len() {
-                let (pair, c, e) = self.row_hessian[row].skew[k];
-                self.add_skew(block, pair, weight * c, &e);
+                let entry = self.row_hessian[row].skew[k];
+                self.add_entry(block, entry, weight);
             }
         }
     }
 
-    fn add_skew(&mut self, block: Block, pair: u32, weight: f64, e: &[f64; 3]) {
-        let matrix = skew(e);
-        let dim = self.dim;
-        self.add_full(block, pair, |c, d| weight * matrix[c][d], dim);
+    #[inline]
+    fn add_entry(&mut self, Block(i, j): Block, entry: SkewEntry, weight: f64) {
+        let combination = i * self.fields + j;
+        let first = (self.full_index[entry.pair as usize] as usize * self.fields * self.fields + combination) * self.dim * self.dim;
+        let position = self.full[first + entry.offset as usize];
+        self.solver.values_mut()[position as usize] += weight * entry.value;
     }
 
     #[inline]
@@ -153,8 +163,8 @@ impl Kkt {
                 self.pair_sum[pair as usize] += weight * c;
             }
             for k in 0..self.law_hessian[law][argument].skew.len() {
-                let (pair, c, e) = self.law_hessian[law][argument].skew[k];
-                self.add_skew(Block(0, 0), pair, weight * c, &e);
+                let entry = self.law_hessian[law][argument].skew[k];
+                self.add_entry(Block(0, 0), entry, weight);
             }
         }
         for k in 0..self.law_outer[law].len() {

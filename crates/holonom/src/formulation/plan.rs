@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::kkt::{Hessian, Kkt, NONE, OuterTerm};
+use super::kkt::{Hessian, Kkt, NONE, OuterTerm, SkewEntry};
 use crate::linalg::{Solver, fill_reducing_order};
-use crate::system::{HessianBlock, InvariantId, NodeId, System};
+use crate::system::{HessianBlock, InvariantId, NodeId, System, skew};
 
 /// Pairs of free nodes that share a block of the matrix.
 #[derive(Default)]
@@ -76,7 +76,12 @@ impl Kkt {
             for (a, b, block) in system.invariants.hessian(id).into_iter().filter(|&(a, b, _)| is_free(a) && is_free(b)) {
                 match block {
                     HessianBlock::Isotropic(c) => hessian.isotropic.push((pairs.at(a, b), c)),
-                    HessianBlock::Skew(c, e) => hessian.skew.push((pairs.at(a, b), c, e)),
+                    HessianBlock::Skew(c, e) => {
+                        let matrix = skew(&e);
+                        let entries = (0..dim * dim).map(|k| (k, matrix[k / dim][k % dim])).filter(|&(_, value)| value != 0.0);
+                        let entry = |(k, value)| SkewEntry { pair: pairs.at(a, b), offset: k as u32, value: c * value };
+                        hessian.skew.extend(entries.map(entry));
+                    }
                 }
             }
             hessian
