@@ -120,7 +120,7 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
         (None, Multipliers::Augmented(penalty)) => work.proximal(stage.inertia, penalty),
         (None, Multipliers::Penalty(_)) => unreachable!("a penalty is soft"),
     }
-    let (mut previous, mut stalls) = (f64::INFINITY, false);
+    let mut convergence = Convergence::new(settings.tolerance);
     for iteration in 1..=settings.max_iterations {
         work.place(system, stage);
         work.evaluate(system, stage);
@@ -128,10 +128,10 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
             work.phi.iter_mut().zip(&work.lambda).for_each(|(phi, lambda)| *phi -= lambda / alpha);
         }
         work.residual(system, stage);
-        if stalls && is_met(n, work) {
+        if convergence.stalls() && is_met(n, work) {
             return Ok(iteration - 1);
         }
-        if !keeps_factors(previous, settings.tolerance) {
+        if !convergence.keeps_factors() {
             work.tangent(system, stage, 1.0);
             work.factor()?;
         }
@@ -139,32 +139,53 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
         let increment = advance(n, work);
         work.lambda.iter_mut().zip(&work.unknowns[n..]).for_each(|(lambda, mu)| *lambda += mu / stage.inertia);
         let turned = work.scaled_multipliers(&work.unknowns[n..]);
-        if remaining(increment, previous, turned) <= settings.tolerance {
+        if convergence.is_reached(increment, turned) {
             return Ok(iteration);
         }
-        stalls = is_stalled(increment, previous);
-        previous = increment;
     }
     Err(Failure::NotConverged(settings.max_iterations))
 }
 
-/// What is left to go after an increment: as much smaller again as it was than the one before, and at least its
-/// product with the increment of the multipliers, which is what Newton's linearisation of Gᵀλ leaves out. The first
-/// increment says nothing of the former and counts as a whole.
-pub(super) fn remaining(increment: f64, previous: f64, multipliers: f64) -> f64 {
-    let linear = if previous.is_finite() { increment * (increment / previous).min(1.0) } else { increment };
-    linear.max(increment * multipliers)
+/// How a Newton iteration goes: sizes of its increments, relative to the mechanism.
+pub(super) struct Convergence {
+    tolerance: f64,
+    /// Last increment of the coordinates.
+    increment: f64,
+    /// Last increment of coordinates or multipliers, whichever was larger: what the matrix changes by.
+    turn: f64,
+    /// What the factors in use are off by.
+    stale: f64,
+    stalls: bool,
 }
 
-/// Whether the factors of the last iteration serve the next one. They are off by the last increment, and the next is of
-/// its square: what remains is of its cube.
-pub(super) fn keeps_factors(previous: f64, tolerance: f64) -> bool {
-    previous.powi(3) <= tolerance
-}
+impl Convergence {
+    pub(super) fn new(tolerance: f64) -> Self {
+        Self { tolerance, increment: f64::INFINITY, turn: f64::INFINITY, stale: 0.0, stalls: false }
+    }
 
-/// Whether increments are small but no longer shrink.
-pub(super) fn is_stalled(increment: f64, previous: f64) -> bool {
-    increment < 1e-6 && increment > 0.1 * previous
+    /// Whether increments are small but no longer shrink.
+    pub(super) fn stalls(&self) -> bool {
+        self.stalls
+    }
+
+    /// Whether the factors of the last iteration serve the next one: they are off by what the last turned, and what
+    /// they leave is that much smaller than the next increment.
+    pub(super) fn keeps_factors(&mut self) -> bool {
+        let keeps = self.increment * self.turn * self.turn <= self.tolerance;
+        self.stale = if keeps { self.turn } else { 0.0 };
+        keeps
+    }
+
+    /// Takes note of an increment of coordinates and of multipliers; says whether what remains is within tolerance. The
+    /// remainder is as much smaller as the increment was than the one before, and no less than its product with the
+    /// turn, which Newton's linearisation of Gᵀλ leaves out.
+    pub(super) fn is_reached(&mut self, increment: f64, multipliers: f64) -> bool {
+        let contraction = if self.increment.is_finite() { (increment / self.increment).min(1.0) } else { 1.0 };
+        let remaining = increment * contraction.max(multipliers).max(self.stale);
+        self.stalls = increment < 1e-6 && increment > 0.1 * self.increment;
+        (self.increment, self.turn) = (increment, increment.max(multipliers));
+        remaining <= self.tolerance
+    }
 }
 
 /// Adds the solution to the increment; its largest entry over the size of the mechanism.

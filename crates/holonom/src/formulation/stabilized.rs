@@ -8,7 +8,7 @@
 //! Φ(q_{n+1}) = 0                                             G(q_{n+1}) u + ½h Φ_t = 0
 //! ```
 
-use super::iteration::{Failure, RESTARTS, SolveSettings, is_stalled, keeps_factors, remaining, restart};
+use super::iteration::{Convergence, Failure, RESTARTS, SolveSettings, restart};
 use super::kkt::{Block, Kkt};
 use super::stage::Stage;
 use super::workspace::Workspace;
@@ -78,17 +78,17 @@ impl Stabilized {
 
     fn newton(&mut self, system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<usize, Failure> {
         work.proximal(stage.inertia, None);
-        let (mut previous, mut stalls) = (f64::INFINITY, false);
+        let mut convergence = Convergence::new(settings.tolerance);
         for iteration in 1..=settings.max_iterations {
             work.lambda.iter_mut().zip(&self.mu).for_each(|(lambda, mu)| *lambda = mu / stage.inertia);
             work.place(system, stage);
             work.evaluate(system, stage);
             self.turn(system, stage, work);
             self.residual(system, stage, work);
-            if stalls && self.is_met(system, work) {
+            if convergence.stalls() && self.is_met(system, work) {
                 return Ok(iteration - 1);
             }
-            if !keeps_factors(previous, settings.tolerance) {
+            if !convergence.keeps_factors() {
                 self.tangent(system, stage, work);
                 work.factorizations += 1;
                 self.kkt.factor().map_err(|_| Failure::NotFinite)?;
@@ -101,11 +101,9 @@ impl Stabilized {
             let multipliers = &self.unknowns[self.kkt.multiplier(0, 0)..];
             let of_level = |level| work.scaled_multipliers(multipliers.iter().skip(level).step_by(2));
             let turned = of_level(0).max(of_level(1));
-            if remaining(increment, previous, turned) <= settings.tolerance {
+            if convergence.is_reached(increment, turned) {
                 return Ok(iteration);
             }
-            stalls = is_stalled(increment, previous);
-            previous = increment;
         }
         Err(Failure::NotConverged(settings.max_iterations))
     }

@@ -24,6 +24,8 @@ pub struct Workspace {
     pub v1: Vec<f64>,
     /// Acceleration (full), the known nodes' in place.
     pub a1: Vec<f64>,
+    /// Predicted change of the accelerations over the step (full), m/s².
+    pub a_change: Vec<f64>,
     /// Part of the increment that needs no acceleration (n), m.
     pub drift: Vec<f64>,
     /// Part of the sampled velocity that does not depend on the increment (n), m/s.
@@ -89,6 +91,7 @@ impl Workspace {
             x1: vec![0.0; all],
             v1: vec![0.0; all],
             a1: vec![0.0; all],
+            a_change: vec![0.0; all],
             drift: vec![0.0; n],
             offset: vec![0.0; n],
             xs: vec![0.0; all],

@@ -21,14 +21,14 @@ impl Integrator for Conserving {
 }
 
 /// Sets up v̄ = Δq/h and M Δv/h: the start of every scheme with midpoint kinematics. The prediction follows the mean
-/// acceleration of the step before.
+/// accelerations of the steps before.
 pub(super) fn midpoint_kinematics(system: &System, start: f64, h: f64, sampling: Sampling, rows: RowsAt, work: &mut Workspace) -> Stage {
     let n = system.coordinates();
     let stage = Stage { sampling, rows, start, step: h, inertia: 0.5 * h * h, rate: 1.0 / h };
     for i in 0..n {
         work.drift[i] = h * work.v0[i];
         work.offset[i] = 0.0;
-        work.d[i] = h * work.v0[i] + 0.5 * h * h * work.a1[i];
+        work.d[i] = h * work.v0[i] + 0.5 * h * h * (work.a1[i] + work.a_change[i]);
     }
     system.place_known(stage.end(), &mut work.x1, &mut work.v1, &mut work.a1);
     for i in n..work.x1.len() {

@@ -18,7 +18,7 @@ impl Integrator for Newmark {
             let (v, a) = (work.v0[i], work.a1[i]);
             work.drift[i] = h * v + h * h * (0.5 - beta) * a;
             work.offset[i] = v + h * (1.0 - gamma) * a - rate * work.drift[i];
-            work.d[i] = h * v + 0.5 * h * h * a;
+            work.d[i] = h * v + h * h * (0.5 * a + beta * work.a_change[i]);
             work.inertial[i] = v + h * (1.0 - gamma) * a;
         }
         // `inertial` is scratch of the residual, so the velocity without its new acceleration moves to v1.

@@ -10,7 +10,7 @@ pub use method::{Choice, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, P
 pub use start::{Start, StartError};
 pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, ProjectionSummary, Summary, ViolationSummary, WorkSummary};
 
-use crate::formulation::{Failure, Workspace};
+use crate::formulation::{Failure, Iteration, Workspace};
 use crate::integrator::Integrator;
 use crate::system::System;
 
@@ -38,6 +38,12 @@ pub struct State {
     pub a: Vec<f64>,
     /// Multipliers λ (r), in N over the unit of the row's gradient.
     pub lambda: Vec<f64>,
+    /// Change of the accelerations in the last step (D × nodes), m/s², from which the next is predicted; zero where the
+    /// step before was of another length. Multipliers are not extrapolated: what redundant rows leave undetermined of
+    /// them would run away.
+    pub a_change: Vec<f64>,
+    /// Length of the last step, s.
+    pub last_step: f64,
 }
 
 /// How a run ended.
@@ -91,14 +97,15 @@ impl<'a> Simulation<'a> {
     pub fn new(system: &'a System, method: Method, step: f64) -> Result<Self, StartError> {
         let mut work = Workspace::new(system);
         let start = start::prepare(system, &mut work)?;
-        let state = State { t: 0.0, x: work.x1.clone(), v: work.v1.clone(), a: work.a1.clone(), lambda: work.lambda.clone() };
+        let state = State::new(&work);
         Ok(Self::assemble(system, method, step, work, state, start))
     }
 
     /// Goes on from a state of an earlier run of the same system. `None` when the state is of another size.
     pub fn resume(system: &'a System, method: Method, step: f64, state: State) -> Option<Self> {
         let all = system.nodes() * system.dim;
-        let fits = [&state.x, &state.v, &state.a].iter().all(|values| values.len() == all) && state.lambda.len() == system.constraints();
+        let fits = [&state.x, &state.v, &state.a, &state.a_change].iter().all(|values| values.len() == all)
+            && state.lambda.len() == system.constraints();
         if !fits {
             return None;
         }
@@ -178,6 +185,10 @@ impl<'a> Simulation<'a> {
         self.state.load(work);
         system.constraint_values(&work.at_start, self.state.t, &mut work.phi_start);
         let taken = self.integrator.step(system, self.state.t, step, &self.method.settings, work)?;
+        // The paper's loops start from the paper's prediction.
+        if self.method.settings.iteration == Iteration::Newton {
+            self.state.remember(step, work);
+        }
         self.state.land(system, target, work);
         let accounts = self.audit.integrated(system, &taken, &self.state, work);
         self.audit.violate_acceleration(system, &self.method, &taken, target, work);
@@ -272,6 +283,19 @@ impl<'a> Simulation<'a> {
 }
 
 impl State {
+    /// The start that a workspace was put at.
+    fn new(work: &Workspace) -> Self {
+        Self {
+            t: 0.0,
+            x: work.x1.clone(),
+            v: work.v1.clone(),
+            a: work.a1.clone(),
+            lambda: work.lambda.clone(),
+            a_change: vec![0.0; work.a1.len()],
+            last_step: 0.0,
+        }
+    }
+
     /// Copies the start of a step into a workspace.
     fn load(&self, work: &mut Workspace) {
         work.x0.copy_from_slice(&self.x);
@@ -280,6 +304,17 @@ impl State {
         work.v1.copy_from_slice(&self.v);
         work.a1.copy_from_slice(&self.a);
         work.lambda.copy_from_slice(&self.lambda);
+        work.a_change.copy_from_slice(&self.a_change);
+    }
+
+    /// Remembers how the accelerations changed in a step, for the prediction of the next.
+    fn remember(&mut self, step: f64, work: &Workspace) {
+        // Two steps of the same length tell of a third; round-off of the times is no other length.
+        let same = if (step - self.last_step).abs() <= 1e-9 * step { 1.0 } else { 0.0 };
+        for (change, (new, old)) in self.a_change.iter_mut().zip(work.a1.iter().zip(&self.a)) {
+            *change = same * (new - old);
+        }
+        self.last_step = step;
     }
 
     /// Takes over the end of a step: its position, evaluated there, its acceleration and multipliers.
