@@ -1,1 +1,33 @@
-fn main() {}
+//! The command `holonom`.
+
+mod commands;
+mod failure;
+mod load;
+mod output;
+mod options;
+mod progress;
+mod table;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use options::{Cli, Command};
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let outcome = match &cli.command {
+        Command::Run(arguments) => commands::run::run(arguments),
+        Command::Compare(arguments) => commands::compare::compare(arguments),
+        Command::Stability(arguments) => commands::stability::stability(arguments),
+        Command::Check(arguments) => commands::check::check(arguments),
+        Command::Methods(arguments) => commands::methods::methods(arguments),
+        Command::Examples(arguments) => commands::examples::examples(arguments),
+        Command::View(arguments) => commands::view::view(arguments),
+        Command::Schema => commands::schema::schema(),
+    };
+    outcome.unwrap_or_else(|failure| {
+        eprintln!("{failure}");
+        failure.exit_code()
+    })
+}

@@ -1,1 +1,9 @@
 //! The outside of the engine: model files in, tables out.
+
+mod json;
+mod read;
+mod write;
+
+pub use json::to_json;
+pub use read::{DEEPEST, LARGEST_FILE, Source};
+pub use write::{WRITERS, Writer, write_json};

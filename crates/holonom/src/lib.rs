@@ -5,6 +5,7 @@ pub mod energy;
 pub mod formulation;
 pub mod integrator;
 pub mod linalg;
+pub mod model;
 pub mod projection;
 pub mod record;
 pub mod simulation;

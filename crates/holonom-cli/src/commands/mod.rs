@@ -1,0 +1,10 @@
+//! One file a command.
+
+pub mod check;
+pub mod compare;
+pub mod examples;
+pub mod methods;
+pub mod run;
+pub mod schema;
+pub mod stability;
+pub mod view;

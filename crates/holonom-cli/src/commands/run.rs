@@ -1,0 +1,83 @@
+//! `holonom run`.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use holonom_report::Run;
+use serde_json::Value;
+
+use crate::failure::{Failure, STOPPED};
+use crate::load::{self, Loaded};
+use crate::options::RunArguments;
+use crate::output::{Finished, Folder, Order, simulate};
+use crate::progress::interrupt_flag;
+use crate::table::{list, short};
+
+/// Simulates one model by one method and leaves everything in a folder.
+pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
+    let mut overrides = load::overrides(&arguments.model.set);
+    overrides.number("simulation.step", arguments.step.as_deref());
+    overrides.number("simulation.end", arguments.end.as_deref());
+    let loaded = load::load(&arguments.model.model, overrides)?;
+    let output = &arguments.output;
+    let order = Order {
+        method: load::method(&loaded, arguments.method.as_deref())?,
+        step: loaded.step()?,
+        end: loaded.end()?,
+        every: output.every.unwrap_or(loaded.every()),
+        quiet: output.quiet,
+        resume: arguments.resume.as_deref().map(load::checkpoint).transpose()?,
+    };
+    let path = output.out.clone().unwrap_or_else(|| PathBuf::from(format!("results/{}-{}", loaded.name, order.method.name)));
+    let folder = Folder::create(&path)?;
+    let finished = simulate(&loaded, order, &interrupt_flag())?;
+    write(&folder, &loaded, &finished, arguments)?;
+    if output.json {
+        println!("{}", serde_json::to_string_pretty(&finished.summary).expect("a summary is plain data"));
+    } else if !output.quiet {
+        println!("{}", describe(&loaded, &finished.summary));
+        println!("\nresults in {}", folder.path.display());
+    }
+    Ok(if finished.completed { ExitCode::SUCCESS } else { ExitCode::from(STOPPED) })
+}
+
+fn write(folder: &Folder, loaded: &Loaded, finished: &Finished, arguments: &RunArguments) -> Result<(), Failure> {
+    let output = &arguments.output;
+    folder.write("summary.json", |out| holonom_io::write_json(&finished.summary, out))?;
+    folder.write("checkpoint.json", |out| holonom_io::write_json(&load::checkpoint_value(&finished.state), out))?;
+    folder.write_trajectory("trajectory", &output.formats, &finished.recording)?;
+    if !output.no_report {
+        let runs =
+            [Run { label: &finished.method, recording: &finished.recording, scene: &loaded.model.scene, summary: &finished.summary }];
+        folder.write_report(loaded, &runs)?;
+    }
+    Ok(())
+}
+
+/// The summary as people read it.
+fn describe(loaded: &Loaded, summary: &Value) -> String {
+    let number = |group: &str, key: &str| short(summary[group][key].as_f64().unwrap_or(f64::NAN));
+    let status = match summary["stopped_at"].as_f64() {
+        None => "completed".to_string(),
+        Some(at) => format!("stopped at {} s: {}", short(at), summary["reason"].as_str().unwrap_or("")),
+    };
+    let items = [
+        ("method", summary["method"]["name"].as_str().unwrap_or("").to_string()),
+        ("status", status),
+        (
+            "size",
+            format!(
+                "{} coordinates, {} rows of rank {} ({} redundant), {} degrees of freedom",
+                summary["coordinates"], summary["constraints"], summary["rank"], summary["redundant"], summary["dof"]
+            ),
+        ),
+        ("steps", format!("{} of {} s, {} iterations a step, {} rejected", summary["steps"], short(summary["step"].as_f64().unwrap_or(0.0)), number("work", "iterations_per_step"), summary["work"]["rejected_steps"])),
+        ("energy", format!("{} J at the start, {} J at the end", number("energy", "initial"), number("energy", "final"))),
+        ("drift", format!("{} J beyond the work done, largest rise in a step {} J", number("energy", "max_drift"), number("energy", "max_rise"))),
+        ("balance", format!("integrator {} J, projection {} J, work {} J", number("energy", "integrator_total"), number("energy", "projection_total"), number("energy", "work_total"))),
+        ("violation", format!("position {}, velocity {}, acceleration {}", number("violation", "position"), number("violation", "velocity"), number("violation", "acceleration"))),
+        ("momentum", format!("linear drift {}, angular drift {}", number("momentum", "linear_drift"), number("momentum", "angular_drift"))),
+        ("time", format!("{} µs a step, {} times real time", number("time", "us_per_step"), number("time", "realtime_factor"))),
+    ];
+    format!("{}\n{}", loaded.title(), list(&items))
+}

@@ -1,0 +1,27 @@
+//! `holonom view`.
+
+use std::process::ExitCode;
+
+use tiny_http::{Header, Response, Server};
+
+use crate::failure::Failure;
+use crate::options::ViewArguments;
+
+/// Serves the report of a folder on this machine only, until it is interrupted.
+pub fn view(arguments: &ViewArguments) -> Result<ExitCode, Failure> {
+    let path = arguments.folder.join("report.html");
+    let page = std::fs::read(&path).map_err(|source| Failure::File { doing: "read", path, source })?;
+    let server = Server::http(("127.0.0.1", arguments.port))
+        .map_err(|error| Failure::usage(format!("cannot serve on port {}: {error}", arguments.port), "take another port, or 0 for a free one"))?;
+    println!("http://{}", server.server_addr());
+    let html = Header::from_bytes("Content-Type", "text/html; charset=utf-8").expect("the header is valid");
+    for request in server.incoming_requests() {
+        let response = match request.url() {
+            "/" | "/report.html" => request.respond(Response::from_data(page.clone()).with_header(html.clone())),
+            _ => request.respond(Response::from_string("not here").with_status_code(404)),
+        };
+        // A browser that went away is none of our business.
+        let _ = response;
+    }
+    Ok(ExitCode::SUCCESS)
+}

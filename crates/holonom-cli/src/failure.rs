@@ -1,0 +1,34 @@
+//! What can go wrong in the command, and the exit status it ends with.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Exit status of a run that stopped before its end; everything up to there is written.
+pub const STOPPED: u8 = 3;
+
+/// Why a command did not do what it was asked to.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// A bad model; the text lists every fault with its place and cure.
+    #[error("{0}")]
+    Model(String),
+    #[error("error: {message}\n  cure: {cure}")]
+    Usage { message: String, cure: String },
+    #[error("error: cannot {doing} {path}: {source}", path = .path.display())]
+    File { doing: &'static str, path: PathBuf, source: std::io::Error },
+}
+
+impl Failure {
+    /// 2 for a bad model or bad use, 4 for a file that cannot be read or written.
+    pub fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Model(_) | Self::Usage { .. } => ExitCode::from(2),
+            Self::File { .. } => ExitCode::from(4),
+        }
+    }
+
+    /// A wrong use with its cure.
+    pub fn usage(message: impl Into<String>, cure: impl Into<String>) -> Self {
+        Self::Usage { message: message.into(), cure: cure.into() }
+    }
+}

@@ -1,0 +1,201 @@
+//! From what was typed to a model and a method.
+
+use std::path::Path;
+
+use holonom::model::{Model, ProjectionSettings};
+use holonom::simulation::{Choice, Method, MethodError, ProjectionChoice, StartError, State};
+use holonom::system::Place;
+use holonom_io::Source;
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::table::short;
+
+/// The gallery: name and text of every example.
+pub const EXAMPLES: &[(&str, &str)] = &[
+    ("spherical-compound-pendulum", include_str!("../../../examples/spherical-compound-pendulum.toml")),
+    ("simple-pendulum", include_str!("../../../examples/simple-pendulum.toml")),
+    ("double-pendulum", include_str!("../../../examples/double-pendulum.toml")),
+    ("four-bar", include_str!("../../../examples/four-bar.toml")),
+    ("spring-pendulum", include_str!("../../../examples/spring-pendulum.toml")),
+    ("car-axis", include_str!("../../../examples/car-axis.toml")),
+    ("chain", include_str!("../../../examples/chain.toml")),
+];
+
+/// A model that was read, with where it came from.
+pub struct Loaded {
+    pub model: Model,
+    /// Name of the file without its ending, or of the example.
+    pub name: String,
+    pub text: String,
+}
+
+/// Keys of the model file that the command line sets.
+pub struct Overrides(Vec<String>);
+
+/// The overrides of `--set`.
+pub fn overrides(set: &[String]) -> Overrides {
+    Overrides(set.to_vec())
+}
+
+impl Overrides {
+    /// Sets a key to a number or an expression, if one was given.
+    pub fn number(&mut self, key: &str, given: Option<&str>) {
+        if let Some(given) = given {
+            self.0.push(format!("{key}={given}"));
+        }
+    }
+}
+
+/// The text of an example.
+pub fn example(name: &str) -> Result<&'static str, Failure> {
+    EXAMPLES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text).ok_or_else(|| {
+        let known: Vec<&str> = EXAMPLES.iter().map(|(name, _)| *name).collect();
+        Failure::usage(format!("there is no example `{name}`"), format!("take one of: {}", known.join(", ")))
+    })
+}
+
+/// Reads a model file, or an example, with the overrides of the command line.
+pub fn load(argument: &str, overrides: Overrides) -> Result<Loaded, Failure> {
+    let (name, shown, bytes) = match argument.strip_prefix("example:") {
+        Some(name) => (name.to_string(), format!("{name}.toml"), example(name)?.as_bytes().to_vec()),
+        None => {
+            let path = Path::new(argument);
+            let bytes = std::fs::read(path).map_err(|source| Failure::File { doing: "read", path: path.into(), source })?;
+            (path.file_stem().map_or_else(|| argument.to_string(), |stem| stem.to_string_lossy().into_owned()), argument.to_string(), bytes)
+        }
+    };
+    let mut source = Source::read(&shown, &bytes).map_err(Failure::Model)?;
+    for given in &overrides.0 {
+        let Some((key, value)) = given.split_once('=') else {
+            return Err(Failure::usage(format!("`--set {given}` has no `=`"), "write --set KEY=VALUE, such as --set parameters.N=40"));
+        };
+        source.set(key.trim(), value.trim()).map_err(Failure::Model)?;
+    }
+    let model = source.model().map_err(Failure::Model)?;
+    Ok(Loaded { model, name, text: source.text().to_string() })
+}
+
+impl Loaded {
+    /// Nominal step, s.
+    pub fn step(&self) -> Result<f64, Failure> {
+        self.model.settings.step.ok_or_else(|| missing("step", "--step 0.01"))
+    }
+
+    /// End of the run, s.
+    pub fn end(&self) -> Result<f64, Failure> {
+        self.model.settings.end.ok_or_else(|| missing("end", "--end 10"))
+    }
+
+    /// Recorded share of the steps.
+    pub fn every(&self) -> u64 {
+        self.model.output.every.map_or(1, u64::from)
+    }
+
+    /// Name of a run's report: the model's title, or the file's name.
+    pub fn title(&self) -> &str {
+        if self.model.title.is_empty() { &self.name } else { &self.model.title }
+    }
+
+    /// Gravity for people.
+    pub fn gravity(&self) -> String {
+        let [x, y, z] = self.model.gravity;
+        let text = format!("({}, {}, {}) m/s²", short(x), short(y), short(z));
+        if self.model.gravity == [0.0; 3] { format!("{text}: none acts") } else { text }
+    }
+}
+
+fn missing(key: &str, option: &str) -> Failure {
+    Failure::usage(format!("the model has no `{key}` in [simulation]"), format!("add `{key} = …` there, or give {option}"))
+}
+
+/// What a model, and a name on the command line, say of the method. A name replaces what the model says of formulation,
+/// integrator and projection levels, and keeps the numbers.
+pub fn choice(loaded: &Loaded, name: Option<&str>) -> Result<Choice, Failure> {
+    let settings = &loaded.model.settings;
+    let own = name.is_none();
+    let part = |text: &Option<String>| text.clone().filter(|_| own);
+    Ok(Choice {
+        method: name.map(str::to_string).or_else(|| settings.method.clone()),
+        formulation: part(&settings.formulation),
+        index: settings.index.and_then(|index| u8::try_from(index).ok()),
+        integrator: part(&settings.integrator),
+        iteration: settings.iteration.clone(),
+        penalty: settings.penalty,
+        beta: settings.beta,
+        gamma: settings.gamma,
+        constraint_at: settings.constraint_at.clone(),
+        tolerance: settings.tolerance,
+        max_iterations: settings.max_iterations.map(|most| most as usize),
+        subdivide: settings.subdivide,
+        projection: settings.projection.as_ref().map(|projection| projection_choice(loaded, projection, own)).transpose()?,
+    })
+}
+
+fn projection_choice(loaded: &Loaded, settings: &ProjectionSettings, own: bool) -> Result<ProjectionChoice, Failure> {
+    let weights = settings.weights.as_ref().map(|weights| free_weights(&loaded.model, weights)).transpose()?;
+    Ok(ProjectionChoice {
+        levels: settings.levels.clone().filter(|_| own),
+        matrix: settings.matrix.clone(),
+        solve: settings.solve.clone(),
+        penalty: settings.penalty,
+        strength: settings.strength,
+        shadow: settings.shadow,
+        weights,
+    })
+}
+
+/// A weight for each free node, from weights by name.
+fn free_weights(model: &Model, weights: &[(String, f64)]) -> Result<Vec<f64>, Failure> {
+    let mut of_nodes = vec![0.0; model.system.free_nodes()];
+    for point in &model.points {
+        if let Place::Node(node) = point.place
+            && node.index() < of_nodes.len()
+        {
+            let weight = weights.iter().find(|(name, _)| *name == point.name).map(|(_, weight)| *weight);
+            of_nodes[node.index()] = weight.ok_or_else(|| {
+                Failure::usage(format!("the projection has no weight for the point `{}`", point.name), "give every free point one in projection.weights")
+            })?;
+        }
+    }
+    Ok(of_nodes)
+}
+
+/// The method of a model, or the one named on the command line.
+pub fn method(loaded: &Loaded, name: Option<&str>) -> Result<Method, Failure> {
+    Method::resolve(&choice(loaded, name)?).map_err(method_failure)
+}
+
+/// A method that cannot be, with its cure.
+pub fn method_failure(error: MethodError) -> Failure {
+    Failure::usage(error.to_string(), "`holonom methods` shows what there is and what goes together")
+}
+
+/// A model that cannot start, with its cure.
+pub fn start_failure(error: StartError) -> Failure {
+    Failure::usage(error.to_string(), "move the points named there, or take away or loosen one of the constraints")
+}
+
+/// A state as it is kept in `checkpoint.json`.
+pub fn checkpoint_value(state: &State) -> Value {
+    json!({ "t": state.t, "x": state.x, "v": state.v, "a": state.a, "lambda": state.lambda, "a_change": state.a_change, "last_step": state.last_step })
+}
+
+/// Reads a `checkpoint.json`.
+pub fn checkpoint(path: &Path) -> Result<State, Failure> {
+    let bytes = std::fs::read(path).map_err(|source| Failure::File { doing: "read", path: path.into(), source })?;
+    let value: Option<Value> = serde_json::from_slice(&bytes).ok();
+    let numbers = |value: &Value, key: &str| value[key].as_array().and_then(|items| items.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>());
+    let state = value.and_then(|value| {
+        Some(State {
+            t: value["t"].as_f64()?,
+            x: numbers(&value, "x")?,
+            v: numbers(&value, "v")?,
+            a: numbers(&value, "a")?,
+            lambda: numbers(&value, "lambda")?,
+            a_change: numbers(&value, "a_change")?,
+            last_step: value["last_step"].as_f64()?,
+        })
+    });
+    state.ok_or_else(|| Failure::usage(format!("{} is no checkpoint", path.display()), "give the checkpoint.json of an earlier run"))
+}

@@ -1,0 +1,157 @@
+//! What can be typed.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Dynamics of mechanisms: exact constraints, audited energy, large steps.
+#[derive(Debug, Parser)]
+#[command(name = "holonom", version, about, arg_required_else_help = true)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Simulate a model; table on screen, results and report in a folder
+    Run(RunArguments),
+    /// Several methods or steps in one report, curves overlaid
+    Compare(CompareArguments),
+    /// The largest step with which each method completes, by bisection
+    Stability(StabilityArguments),
+    /// Validate a model: degrees of freedom, rank, redundant rows, what is near singular
+    Check(CheckArguments),
+    /// Formulations, integrators and projections, and which go together
+    Methods(MethodsArguments),
+    /// The gallery inside the binary
+    Examples(ExamplesArguments),
+    /// Serve the report of a run on 127.0.0.1
+    View(ViewArguments),
+    /// JSON Schema of the model file
+    Schema,
+}
+
+/// A model and what is changed of it.
+#[derive(Debug, Args)]
+pub struct ModelArguments {
+    /// A model file, or example:NAME
+    pub model: String,
+    /// Set any key of the model file, such as simulation.step=0.01 or parameters.N=40
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+/// Where results go.
+#[derive(Debug, Args)]
+pub struct OutputArguments {
+    /// Folder for the results [default: results/<model>-<method>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Format of the trajectory; may be given several times
+    #[arg(long = "format", value_name = "FORMAT", default_value = "csv")]
+    pub formats: Vec<String>,
+    /// Record every N-th step
+    #[arg(long, value_name = "N")]
+    pub every: Option<u64>,
+    /// Print the summary as JSON on standard output, nothing else there
+    #[arg(long)]
+    pub json: bool,
+    /// Print nothing on standard output but errors
+    #[arg(long)]
+    pub quiet: bool,
+    /// Write no report
+    #[arg(long)]
+    pub no_report: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct RunArguments {
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Method by name; see `holonom methods`
+    #[arg(long, value_name = "NAME")]
+    pub method: Option<String>,
+    /// Step, s
+    #[arg(long, value_name = "S")]
+    pub step: Option<String>,
+    /// End of the run, s
+    #[arg(long, value_name = "S")]
+    pub end: Option<String>,
+    /// Go on from the checkpoint.json of an earlier run
+    #[arg(long, value_name = "CHECKPOINT")]
+    pub resume: Option<PathBuf>,
+    #[command(flatten)]
+    pub output: OutputArguments,
+}
+
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Method by name; give several [default: all named methods]
+    #[arg(long = "method", value_name = "NAME")]
+    pub methods: Vec<String>,
+    /// Step, s; give several
+    #[arg(long = "step", value_name = "S")]
+    pub steps: Vec<String>,
+    /// End of the run, s
+    #[arg(long, value_name = "S")]
+    pub end: Option<String>,
+    #[command(flatten)]
+    pub output: OutputArguments,
+}
+
+#[derive(Debug, Args)]
+pub struct StabilityArguments {
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Method by name; give several [default: all named methods]
+    #[arg(long = "method", value_name = "NAME")]
+    pub methods: Vec<String>,
+    /// End of the run, s
+    #[arg(long, value_name = "S")]
+    pub end: Option<String>,
+    /// First step to try, s [default: the model's]
+    #[arg(long, value_name = "S")]
+    pub step: Option<String>,
+    /// Print the result as JSON on standard output, nothing else there
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct CheckArguments {
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Say what the projection of the model's method can do to the energy: the matrix D of (30)
+    #[arg(long)]
+    pub projection: bool,
+    /// Print the result as JSON on standard output, nothing else there
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct MethodsArguments {
+    /// One method, formulation, integrator or projection to explain
+    pub name: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub struct ExamplesArguments {
+    /// One example to show
+    pub name: Option<String>,
+    /// Write its file into a folder
+    #[arg(long, value_name = "DIR", requires = "name")]
+    pub copy: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct ViewArguments {
+    /// A folder with results
+    pub folder: PathBuf,
+    /// Port; 0 takes a free one
+    #[arg(long, default_value_t = 0)]
+    pub port: u16,
+}

@@ -1,0 +1,75 @@
+//! Progress on a terminal: time left and energy drift. Silent when standard error is not a terminal.
+
+use std::io::IsTerminal;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use holonom::record::Recorder;
+use holonom::simulation::{Observer, Simulation, Verdict};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Steps between looks at the clock and at the interrupt.
+const LOOK: u64 = 64;
+
+/// A recorder with a progress bar that stops on an interrupt.
+pub struct Watched {
+    pub recorder: Recorder,
+    bar: ProgressBar,
+    end: f64,
+    seen: u64,
+    interrupted: Arc<AtomicBool>,
+}
+
+impl Watched {
+    /// Watches a run to `end` (s).
+    pub fn new(recorder: Recorder, end: f64, quiet: bool, interrupted: Arc<AtomicBool>) -> Self {
+        let bar = ProgressBar::new(1000);
+        if quiet || !std::io::stderr().is_terminal() {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {eta} left  {msg}").expect("the template is valid");
+        bar.set_style(style);
+        Self { recorder, bar, end, seen: 0, interrupted }
+    }
+
+    /// Ends the bar.
+    pub fn finish(self) -> holonom::record::Recording {
+        self.bar.finish_and_clear();
+        self.recorder.finish()
+    }
+
+    fn show(&self, simulation: &Simulation<'_>) {
+        self.bar.set_position((1000.0 * simulation.state().t / self.end) as u64);
+        let drift = simulation.audit().energy_summary().max_drift;
+        self.bar.set_message(format!("t = {:.3} s, energy drift {drift:.1e} J", simulation.state().t));
+    }
+}
+
+impl Observer for Watched {
+    fn after_step(&mut self, simulation: &Simulation<'_>) -> Verdict {
+        self.recorder.after_step(simulation);
+        self.seen += 1;
+        if self.seen.is_multiple_of(LOOK) {
+            if !self.bar.is_hidden() {
+                self.show(simulation);
+            }
+            if self.interrupted.load(Ordering::Relaxed) {
+                return Verdict::Stop;
+            }
+        }
+        Verdict::GoOn
+    }
+}
+
+/// A flag that an interrupt from the keyboard sets; the second interrupt ends the program.
+pub fn interrupt_flag() -> Arc<AtomicBool> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let set = flag.clone();
+    // A second handler cannot be set; then the default one ends the program, which is what is wanted.
+    let _ = ctrlc::set_handler(move || {
+        if set.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    });
+    flag
+}

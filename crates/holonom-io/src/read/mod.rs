@@ -1,0 +1,125 @@
+//! Model files: TOML in, a description with the place of everything in it out.
+
+mod places;
+mod render;
+mod toml;
+
+use holonom::model::{Faults, Model, Table, Value};
+
+use places::Places;
+
+/// Largest model file that is read, bytes: larger ones are no models, and reading them would take memory for nothing.
+pub const LARGEST_FILE: usize = 16 * 1024 * 1024;
+
+/// Deepest nesting of lists and tables in a model file.
+pub const DEEPEST: usize = 64;
+
+/// A description and where everything in it stands in its file.
+pub struct Source {
+    name: String,
+    text: String,
+    /// The description; [`Source::set`] changes it.
+    value: Value,
+    places: Places,
+}
+
+impl Source {
+    /// Reads the bytes of a model file called `name`.
+    ///
+    /// # Errors
+    /// What is wrong with it as TOML, ready to be shown: with file, line, column and cure.
+    pub fn read(name: &str, bytes: &[u8]) -> Result<Self, String> {
+        let text = decode(name, bytes)?;
+        let mut places = Places::default();
+        let value = toml::parse(&text, &mut places).map_err(|error| render::syntax(name, &text, &error))?;
+        Ok(Self { name: name.into(), text, value, places })
+    }
+
+    /// Sets a key such as `simulation.step` to a value written as in the file; what is no TOML value is a text, so that
+    /// expressions need no quotes.
+    ///
+    /// # Errors
+    /// When a part of the key before the last is no table.
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
+        let mut parts: Vec<&str> = key.split('.').collect();
+        let last = parts.pop().unwrap_or("");
+        let mut table = match &mut self.value {
+            Value::Table(table) => table,
+            _ => unreachable!("a file is a table"),
+        };
+        for part in parts {
+            if table.get(part).is_none() {
+                table.push(part, Value::Table(Table::default()));
+            }
+            table = match table.get_mut(part) {
+                Some(Value::Table(table)) => table,
+                _ => return Err(format!("error: `{key}` cannot be set: `{part}` is not a table\n  = cure: name a key of the model file, such as simulation.step")),
+            };
+        }
+        table.set(last, toml::value(value).unwrap_or_else(|| Value::text(value)));
+        self.places.forget(key);
+        Ok(())
+    }
+
+    /// Reads the description as a model.
+    ///
+    /// # Errors
+    /// Every fault of it, ready to be shown.
+    pub fn model(&self) -> Result<Model, String> {
+        Model::from_value(&self.value).map_err(|faults| self.render(&faults))
+    }
+
+    /// Faults with their places in the file.
+    pub fn render(&self, faults: &Faults) -> String {
+        let shown: Vec<String> = faults.0.iter().map(|fault| render::fault(&self.name, &self.text, &self.places, fault)).collect();
+        let count = shown.len();
+        match count {
+            1 => shown.join("\n"),
+            _ => format!("{}\n{count} faults", shown.join("\n")),
+        }
+    }
+
+    /// The text of the file.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+}
+
+/// The text of a file, if it is one and could be a model.
+fn decode(name: &str, bytes: &[u8]) -> Result<String, String> {
+    if bytes.len() > LARGEST_FILE {
+        let size = bytes.len() / (1024 * 1024);
+        return Err(render::whole(name, &format!("the file has {size} MB, and a model at most {}", LARGEST_FILE / (1024 * 1024)), "use repeat for arrays of points and bars"));
+    }
+    let text = match std::str::from_utf8(bytes) {
+        Ok(text) => text,
+        Err(error) => {
+            let line = 1 + bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
+            return Err(render::whole(&format!("{name}:{line}"), "the file is not text (UTF-8)", "give a model file in TOML; `holonom examples` shows some"));
+        }
+    };
+    if text.trim().is_empty() {
+        return Err(render::whole(&format!("{name}:1:1"), "the file is empty", "begin with a point, a constraint and [simulation]; `holonom examples spherical-compound-pendulum` shows one"));
+    }
+    if let Some(at) = too_deep(text) {
+        return Err(render::at(name, text, at..at + 1, "", &format!("brackets are nested deeper than {DEEPEST}"), "take brackets away"));
+    }
+    Ok(text.to_string())
+}
+
+/// The first bracket that nests too deeply. Brackets in texts and comments count too: they are few in any model.
+fn too_deep(text: &str) -> Option<usize> {
+    let mut depth = 0_usize;
+    for (at, byte) in text.bytes().enumerate() {
+        match byte {
+            b'[' | b'{' => depth += 1,
+            b']' | b'}' => depth = depth.saturating_sub(1),
+            b'\n' => (),
+            _ => (),
+        }
+        if depth > DEEPEST {
+            return Some(at);
+        }
+    }
+    None
+}

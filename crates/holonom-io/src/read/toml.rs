@@ -1,0 +1,67 @@
+//! TOML to a description.
+
+use std::ops::Range;
+
+use holonom::model::{Table, Value, item_path, key_path};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::places::Places;
+
+/// What is wrong with a file as TOML, and where.
+pub(super) struct SyntaxError {
+    pub message: String,
+    pub bytes: Range<usize>,
+    pub cure: &'static str,
+}
+
+/// Parses a file and notes the place of everything in it.
+pub(super) fn parse(text: &str, places: &mut Places) -> Result<Value, SyntaxError> {
+    let table = DeTable::parse(text).map_err(|error| SyntaxError {
+        message: error.message().to_string(),
+        bytes: error.span().unwrap_or(0..0),
+        cure: "see toml.io for how TOML is written; texts and expressions stand in quotes",
+    })?;
+    convert_table("", table.get_ref(), places).map(Value::Table)
+}
+
+/// A single value as it stands behind an equals sign.
+pub(super) fn value(text: &str) -> Option<Value> {
+    let line = format!("value = {text}");
+    match parse(&line, &mut Places::default()).ok()? {
+        Value::Table(table) if table.len() == 1 => table.get("value").cloned(),
+        _ => None,
+    }
+}
+
+fn convert_table(path: &str, table: &DeTable<'_>, places: &mut Places) -> Result<Table, SyntaxError> {
+    let mut converted = Table::default();
+    for (key, value) in table {
+        let path = key_path(path, key.get_ref());
+        places.add_key(&path, key.span());
+        converted.push(key.get_ref().as_ref(), convert(&path, value, places)?);
+    }
+    Ok(converted)
+}
+
+fn convert(path: &str, value: &Spanned<DeValue<'_>>, places: &mut Places) -> Result<Value, SyntaxError> {
+    // The span of a table is its header or its braces; its name is the better place, and is noted with its key.
+    if !matches!(value.get_ref(), DeValue::Table(_)) {
+        places.add_value(path, value.span());
+    }
+    let refuse = |message: &str, cure| SyntaxError { message: message.into(), bytes: value.span(), cure };
+    match value.get_ref() {
+        DeValue::String(text) => Ok(Value::text(text.as_ref())),
+        DeValue::Boolean(flag) => Ok(Value::Bool(*flag)),
+        DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix())
+            .map(|number| Value::Number(number as f64))
+            .map_err(|_| refuse("the whole number is too large", "write it with a decimal point")),
+        DeValue::Float(number) => number.as_str().parse().map(Value::Number).map_err(|_| refuse("this is no number", "write it as 1.5 or 1e3")),
+        DeValue::Datetime(_) => Err(refuse("a model has no dates", "write times as numbers in s")),
+        DeValue::Array(items) => {
+            let items = items.iter().enumerate().map(|(k, item)| convert(&item_path(path, k), item, places));
+            items.collect::<Result<_, _>>().map(Value::List)
+        }
+        DeValue::Table(table) => convert_table(path, table, places).map(Value::Table),
+    }
+}

@@ -1,0 +1,111 @@
+//! `[bar.NAME]`: uniform rigid rods between two points, the two-node body of natural coordinates (methods §4.1).
+
+use std::sync::Arc;
+
+use super::assembly::{Assembly, End, difference, norm};
+use super::entry::Entry;
+use super::fault::{Read, Refused};
+use super::key::{Key, REPEAT, Shape};
+use super::section::Sections;
+use super::value::Table;
+use crate::record::LineKind;
+use crate::system::{Law, Place, Reach, Response};
+
+/// The keys of a bar.
+pub const KEYS: &[Key] = &[
+    Key::required("between", Shape::Ends(2, 2), "", "its two ends"),
+    Key::required("mass", Shape::Number, "kg", "mass, spread evenly over its length"),
+    REPEAT,
+];
+
+/// A bar of the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BarInfo {
+    pub name: String,
+    pub ends: [Place; 2],
+    /// kg
+    pub mass: f64,
+    /// m
+    pub length: f64,
+}
+
+/// Reads all bars: M has m/3 at each end and m/6 between them, and ½|x_b − x_a|² = ½L² keeps the length.
+pub fn read(sections: &mut Sections<'_>, root: &Table, assembly: &mut Assembly<'_>) -> Vec<BarInfo> {
+    let keys: Vec<&Key> = KEYS.iter().collect();
+    let mut bars = Vec::new();
+    let check = |entry: &Entry<'_>| {
+        entry.refuse_unknown_keys("a bar", &keys);
+        Ok(())
+    };
+    sections.read(root, "bar", check, |entry| {
+        bars.push(bar(entry, assembly)?);
+        Ok(())
+    });
+    bars
+}
+
+fn bar(entry: &Entry<'_>, assembly: &mut Assembly<'_>) -> Read<BarInfo> {
+    let ends = assembly.moving_pair(entry, "between");
+    // Points of a faulty bar count as having mass: that they lack it would be no fault of theirs.
+    let mass = entry.positive("mass");
+    let ends = ends?;
+    for end in &ends {
+        if let Some(k) = end.point {
+            assembly.points[k].carries_bar = true;
+        }
+    }
+    let mass = mass?;
+    let [a, b] = &ends;
+    let length = norm(difference(a, b));
+    if length == 0.0 {
+        return Err(zero_length(entry, &ends));
+    }
+    add_mass(assembly, entry, &ends, mass);
+    let half_square = assembly.builder.square(&[(b.place, 1.0), (a.place, -1.0)]);
+    assembly.builder.constant_row(entry.name, half_square, 0.5 * length * length);
+    assembly.draw(entry, LineKind::Bar, a, b);
+    Ok(BarInfo { name: entry.name.to_string(), ends: [a.place, b.place], mass, length })
+}
+
+fn zero_length(entry: &Entry<'_>, [a, b]: &[End; 2]) -> Refused {
+    let message = format!("the bar has no length: `{}` and `{}` start at the same place", a.name, b.name);
+    entry.refuse("between", message, "move one of them, or use a point with mass")
+}
+
+fn add_mass(assembly: &mut Assembly<'_>, entry: &Entry<'_>, [a, b]: &[End; 2], mass: f64) {
+    assembly.builder.mass(a.place, a.place, mass / 3.0);
+    assembly.builder.mass(b.place, b.place, mass / 3.0);
+    assembly.builder.mass(a.place, b.place, mass / 6.0);
+    // A fixed end leaves only m/3 of the free one in the mass matrix, from which gravity is taken; half the weight
+    // hangs on it, so the rest comes as a potential.
+    for (end, other) in [(a, b), (b, a)] {
+        if let (Place::Node(_), Place::Fixed(_)) = (end.place, other.place) {
+            let gravity = assembly.gravity;
+            if gravity != [0.0; 3] {
+                let height = assembly.builder.linear(gravity, &[(end.place, 1.0)]);
+                assembly.builder.law(entry.name, &[height], Arc::new(Weight(mass / 6.0)));
+            }
+        }
+    }
+}
+
+/// V = −m π with π = g·x.
+struct Weight(f64);
+
+impl Law for Weight {
+    fn energy(&self, value: &[f64]) -> f64 {
+        -self.0 * value[0]
+    }
+
+    fn conservative(&self) -> bool {
+        true
+    }
+
+    fn at(&self, _value: &[f64], _rate: &[f64], _t: f64, out: &mut Response) {
+        out.force[0] = -self.0;
+    }
+
+    fn between(&self, _reach: Reach<'_>, out: &mut Response) {
+        out.force[0] = -self.0;
+    }
+}

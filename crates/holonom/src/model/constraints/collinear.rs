@@ -1,0 +1,61 @@
+use crate::model::assembly::{Assembly, End, cross, difference, norm, unit};
+use crate::model::entry::Entry;
+use crate::model::fault::Read;
+use crate::model::key::{Key, Kind, Shape};
+use crate::record::LineKind;
+
+pub(super) const KIND: Kind = Kind {
+    name: "collinear",
+    doc: "keeps three or more points on a straight line by the cross products of the paper (§7), one of three redundant in space",
+    equations: "(x_1 − x_0) × (x_2 − x_1) = 0, (x_2 − x_1) × (x_3 − x_2) = 0, …; these rows turn with the mechanism but are not invariant: \
+                together with other rows that do not keep it straight, angular momentum may drift with O(h²)",
+    keys: &[Key::required("points", Shape::Ends(3, usize::MAX), "", "the points, in their order along the line")],
+    example: r#"
+[point.a]
+mass = 1
+position = [1, 0, 0]
+
+[point.b]
+mass = 1
+position = [2, 0, 0]
+
+[constraint.straight]
+type = "collinear"
+points = ["ground", "a", "b"]
+"#,
+    build,
+};
+
+fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+    let points = assembly.ends(entry, "points", 3, usize::MAX)?;
+    assembly.require_free(entry, "points", &points)?;
+    let each = if assembly.dimension() == 3 { 3 } else { 1 };
+    let rows = each * (points.len() - 2);
+    for (k, triple) in points.windows(3).enumerate() {
+        check(assembly, entry, triple)?;
+        let [a, b, c] = [0, 1, 2].map(|i| triple[i].place);
+        for component in 0..each {
+            let product = assembly.builder.cross(unit(component), &[(b, 1.0), (a, -1.0)], &[(c, 1.0), (b, -1.0)]);
+            assembly.builder.constant_row(Assembly::row_name(entry, each * k + component, rows), product, 0.0);
+        }
+    }
+    assembly.draw(entry, LineKind::Guide, &points[0], &points[points.len() - 1]);
+    Ok(())
+}
+
+fn check(assembly: &Assembly<'_>, entry: &Entry<'_>, triple: &[End]) -> Read<()> {
+    let (u, w) = (difference(&triple[0], &triple[1]), difference(&triple[1], &triple[2]));
+    let size = norm(u) * norm(w);
+    let [a, b, c] = [0, 1, 2].map(|i| triple[i].name.as_str());
+    if size == 0.0 {
+        return Err(entry.refuse(
+            "points",
+            format!("two of `{a}`, `{b}`, `{c}` start at the same place"),
+            "points on a line must be apart",
+        ));
+    }
+    let off = norm(cross(u, w));
+    assembly.check_start(entry, off, size, || {
+        format!("`{a}`, `{b}`, `{c}` are not on a straight line at the start: it bends by {:.3e} rad at `{b}`", off / size)
+    })
+}

@@ -1,0 +1,48 @@
+use crate::model::assembly::{Assembly, difference, dot, norm};
+use crate::model::entry::Entry;
+use crate::model::fault::Read;
+use crate::model::key::{Key, Kind, Shape};
+
+pub(super) const KIND: Kind = Kind {
+    name: "perpendicular",
+    doc: "keeps the directions of two pairs of points at a right angle",
+    equations: "(x_b − x_a) · (x_d − x_c) = 0 for first = [a, b], second = [c, d]",
+    keys: &[
+        Key::required("first", Shape::Ends(2, 2), "", "from one point to another"),
+        Key::required("second", Shape::Ends(2, 2), "", "from one point to another"),
+    ],
+    example: r#"
+[point.a]
+mass = 1
+position = [1, 0, 0]
+
+[point.b]
+mass = 1
+position = [0, 2, 0]
+
+[constraint.square]
+type = "perpendicular"
+first = ["ground", "a"]
+second = ["ground", "b"]
+"#,
+    build,
+};
+
+fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+    let (first, second) = (assembly.pair(entry, "first"), assembly.pair(entry, "second"));
+    let ([a, b], [c, d]) = (first?, second?);
+    assembly.require_free(entry, "first", &[a.clone(), b.clone(), c.clone(), d.clone()])?;
+    let (u, w) = (difference(&a, &b), difference(&c, &d));
+    for (key, length) in [("first", norm(u)), ("second", norm(w))] {
+        if length == 0.0 {
+            return Err(entry.refuse(key, "these two points start at the same place", "without a direction there is no angle"));
+        }
+    }
+    let size = norm(u) * norm(w);
+    let angle =
+        || format!("the two directions are at {:.4}° at the start, not at 90°", (dot(u, w) / size).clamp(-1.0, 1.0).acos().to_degrees());
+    assembly.check_start(entry, dot(u, w), size, angle)?;
+    let product = assembly.builder.dot(&[(b.place, 1.0), (a.place, -1.0)], &[(d.place, 1.0), (c.place, -1.0)]);
+    assembly.builder.constant_row(entry.name, product, 0.0);
+    Ok(())
+}

@@ -1,0 +1,114 @@
+use crate::model::assembly::{Assembly, End, cross, difference, dot, fixed, norm, unit};
+use crate::model::entry::Entry;
+use crate::model::fault::Read;
+use crate::model::key::{Key, Kind, Shape};
+use crate::record::LineKind;
+
+pub(super) const KIND: Kind = Kind {
+    name: "point-on-line",
+    doc: "keeps a point on a line of fixed direction, or on the line through two points",
+    equations: "e_k · (x − x_through) = 0 with e_k ⊥ direction: 2 rows in space, 1 in the plane; \
+                with line = [a, b]: (x_b − x_a) × (x − x_a) = 0, in space 3 rows of which one is redundant",
+    keys: &[
+        Key::required("point", Shape::Point, "", "the point that slides"),
+        Key::optional("direction", Shape::Vector, "none: this or a line is needed", "any", "direction of the line"),
+        Key::optional("through", Shape::End, "where the point starts", "", "a point of the line of that direction"),
+        Key::optional("line", Shape::Ends(2, 2), "none", "", "two points that the line goes through, instead of direction and through"),
+    ],
+    example: r#"
+[point.slider]
+mass = 1
+position = [1, 0, 0]
+
+[constraint.rail]
+type = "point-on-line"
+point = "slider"
+direction = [1, 0, 0]
+"#,
+    build,
+};
+
+fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+    if entry.has("line") { between_points(assembly, entry) } else { along_direction(assembly, entry) }
+}
+
+fn along_direction(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+    let dim = assembly.dimension();
+    let point = assembly.point(entry, "point");
+    let through = entry.optional("through", |entry, key| assembly.end(entry, key));
+    let direction = match entry.has("direction") {
+        true => entry.vector("direction", dim),
+        false => Err(entry.refuse_all(format!("`{}` has neither `direction` nor `line`", entry.name), "add one of them")),
+    };
+    let (point, direction) = (point?, direction?);
+    let through = through?.unwrap_or_else(|| fixed(point.start, "its start".into()));
+    assembly.require_free(entry, "point", &[point.clone(), through.clone()])?;
+    let length = norm(direction);
+    if length == 0.0 {
+        return Err(entry.refuse("direction", "the direction is zero", "give the direction of the line"));
+    }
+    let across = across(direction.map(|c| c / length), dim);
+    let d = difference(&through, &point);
+    let off = across.iter().map(|&e| dot(e, d).powi(2)).sum::<f64>().sqrt();
+    let size = norm(d).max(norm(point.start));
+    assembly.check_start(entry, off, size, || format!("`{}` starts {off} m beside the line", point.name))?;
+    for (row, &e) in across.iter().enumerate() {
+        let component = assembly.builder.linear(e, &[(point.place, 1.0), (through.place, -1.0)]);
+        assembly.builder.constant_row(Assembly::row_name(entry, row, across.len()), component, 0.0);
+    }
+    let (back, forth) = ([-1.0, 1.0].map(|s| fixed(std::array::from_fn(|c| through.start[c] + s * direction[c]), String::new()))).into();
+    if through.point.is_none() {
+        assembly.draw(entry, LineKind::Guide, &back, &forth);
+    }
+    Ok(())
+}
+
+/// Unit vectors at right angles to a unit vector and to each other: two in space, one in the plane.
+pub(super) fn across(u: [f64; 3], dim: usize) -> Vec<[f64; 3]> {
+    if dim == 2 {
+        return vec![[-u[1], u[0], 0.0]];
+    }
+    let least = (0..3).min_by(|&a, &b| u[a].abs().total_cmp(&u[b].abs())).expect("three components");
+    let first = cross(u, unit(least));
+    let size = norm(first);
+    let first = first.map(|c| c / size);
+    vec![first, cross(u, first)]
+}
+
+fn between_points(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+    for key in ["direction", "through"] {
+        if entry.has(key) {
+            entry.refuse(key, format!("`{key}` and `line` exclude each other"), "keep one of the two");
+        }
+    }
+    let (point, line) = (assembly.point(entry, "point"), assembly.pair(entry, "line"));
+    let (point, [a, b]) = (point?, line?);
+    assembly.require_free(entry, "point", &[point.clone(), a.clone(), b.clone()])?;
+    let (u, w) = (difference(&a, &b), difference(&a, &point));
+    check(assembly, entry, [&point, &a, &b], norm(u), norm(cross(u, w)))?;
+    let rows = if assembly.dimension() == 3 { 3 } else { 1 };
+    for row in 0..rows {
+        let product = assembly.builder.cross(unit(row), &[(b.place, 1.0), (a.place, -1.0)], &[(point.place, 1.0), (a.place, -1.0)]);
+        assembly.builder.constant_row(Assembly::row_name(entry, row, rows), product, 0.0);
+    }
+    assembly.draw(entry, LineKind::Guide, &a, &b);
+    Ok(())
+}
+
+fn check(assembly: &Assembly<'_>, entry: &Entry<'_>, [point, a, b]: [&End; 3], length: f64, product: f64) -> Read<()> {
+    if length == 0.0 {
+        return Err(entry.refuse(
+            "line",
+            format!("`{}` and `{}` start at the same place", a.name, b.name),
+            "a line needs two different places",
+        ));
+    }
+    for other in [a, b] {
+        if other.place == point.place {
+            return Err(entry.refuse("line", format!("`{}` is on this line anyway", point.name), "name two other points"));
+        }
+    }
+    let off = product / length;
+    assembly
+        .check_start(entry, off, length, || format!("`{}` starts {off} m beside the line from `{}` to `{}`", point.name, a.name, b.name))
+}

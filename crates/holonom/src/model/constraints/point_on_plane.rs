@@ -1,0 +1,49 @@
+use crate::model::assembly::{Assembly, difference, dot, fixed, norm};
+use crate::model::entry::Entry;
+use crate::model::fault::Read;
+use crate::model::key::{Key, Kind, Shape};
+
+pub(super) const KIND: Kind = Kind {
+    name: "point-on-plane",
+    doc: "keeps a point on a plane of fixed direction; not in planar models",
+    equations: "n · (x − x_through) = 0, |n| = 1",
+    keys: &[
+        Key::required("point", Shape::Point, "", "the point that slides"),
+        Key::required("normal", Shape::Vector, "any", "direction at right angles to the plane"),
+        Key::optional("through", Shape::End, "where the point starts", "", "a point of the plane"),
+    ],
+    example: r#"
+[point.puck]
+mass = 1
+position = [1, 0, 0]
+
+[constraint.table]
+type = "point-on-plane"
+point = "puck"
+normal = [0, 0, 1]
+"#,
+    build,
+};
+
+fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+    if assembly.dimension() == 2 {
+        return Err(entry.refuse("type", "there is no point-on-plane in a planar model", "use point-on-line"));
+    }
+    let (point, normal) = (assembly.point(entry, "point"), entry.vector("normal", 3));
+    let through = entry.optional("through", |entry, key| assembly.end(entry, key));
+    let (point, normal) = (point?, normal?);
+    let through = through?.unwrap_or_else(|| fixed(point.start, "its start".into()));
+    assembly.require_free(entry, "point", &[point.clone(), through.clone()])?;
+    let length = norm(normal);
+    if length == 0.0 {
+        return Err(entry.refuse("normal", "the normal is zero", "give the direction at right angles to the plane"));
+    }
+    let normal = normal.map(|c| c / length);
+    let d = difference(&through, &point);
+    let off = dot(normal, d);
+    let size = norm(d).max(norm(point.start));
+    assembly.check_start(entry, off, size, || format!("`{}` starts {} m off the plane", point.name, off.abs()))?;
+    let height = assembly.builder.linear(normal, &[(point.place, 1.0), (through.place, -1.0)]);
+    assembly.builder.constant_row(entry.name, height, 0.0);
+    Ok(())
+}

@@ -1,0 +1,123 @@
+//! The functions an expression may call.
+
+use crate::system::Number;
+
+/// A function of one or two numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Function {
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Exp,
+    Ln,
+    Log10,
+    Sqrt,
+    Abs,
+    Sign,
+    Step,
+    Atan2,
+    Min,
+    Max,
+    Pow,
+}
+
+/// Names, number of arguments and functions.
+pub(super) const FUNCTIONS: &[(&str, usize, Function)] = &[
+    ("sin", 1, Function::Sin),
+    ("cos", 1, Function::Cos),
+    ("tan", 1, Function::Tan),
+    ("asin", 1, Function::Asin),
+    ("acos", 1, Function::Acos),
+    ("atan", 1, Function::Atan),
+    ("sinh", 1, Function::Sinh),
+    ("cosh", 1, Function::Cosh),
+    ("tanh", 1, Function::Tanh),
+    ("exp", 1, Function::Exp),
+    ("ln", 1, Function::Ln),
+    ("log10", 1, Function::Log10),
+    ("sqrt", 1, Function::Sqrt),
+    ("abs", 1, Function::Abs),
+    ("sign", 1, Function::Sign),
+    ("step", 1, Function::Step),
+    ("atan2", 2, Function::Atan2),
+    ("min", 2, Function::Min),
+    ("max", 2, Function::Max),
+    ("pow", 2, Function::Pow),
+];
+
+/// Names and values of the constants.
+pub(super) const CONSTANTS: &[(&str, f64)] = &[("pi", std::f64::consts::PI), ("tau", std::f64::consts::TAU), ("e", std::f64::consts::E)];
+
+impl Function {
+    /// The value of a function of one number.
+    pub(super) fn of_one<N: Number>(self, x: N) -> N {
+        let real = x.re();
+        match self {
+            Self::Sin => x.sin(),
+            Self::Cos => x.cos(),
+            Self::Tan => x.tan(),
+            Self::Asin => x.asin(),
+            Self::Acos => x.acos(),
+            Self::Atan => x.atan(),
+            Self::Sinh => x.sinh(),
+            Self::Cosh => x.cosh(),
+            Self::Tanh => x.tanh(),
+            Self::Exp => x.exp(),
+            Self::Ln => x.ln(),
+            Self::Log10 => x.log10(),
+            Self::Sqrt => x.sqrt(),
+            Self::Abs => {
+                if real < 0.0 {
+                    -x
+                } else {
+                    x
+                }
+            }
+            // Written out: the signum of a number library is 1 at zero, and a NaN must stay one.
+            Self::Sign => N::from(if real == 0.0 { 0.0 } else { real.signum() }),
+            Self::Step => N::from(if real.is_nan() { real } else { f64::from(real >= 0.0) }),
+            Self::Atan2 | Self::Min | Self::Max | Self::Pow => unreachable!("a function of two numbers"),
+        }
+    }
+
+    /// The value of a function of two numbers.
+    pub(super) fn of_two<N: Number>(self, x: N, y: N) -> N {
+        match self {
+            Self::Atan2 => x.atan2(y),
+            Self::Min => {
+                if y.re() < x.re() {
+                    y
+                } else {
+                    x
+                }
+            }
+            Self::Max => {
+                if y.re() > x.re() {
+                    y
+                } else {
+                    x
+                }
+            }
+            Self::Pow => x.powd(y),
+            _ => unreachable!("a function of one number"),
+        }
+    }
+}
+
+/// x^p for a constant p that is no integer.
+pub(super) fn real_power<N: Number>(x: N, p: f64) -> N {
+    if p == 0.5 {
+        return x.sqrt();
+    }
+    if x.re() == 0.0 && p > 1.0 {
+        // The general rule makes 0·∞ of this. What grows without bound here is at most the second derivative.
+        return N::from(0.0);
+    }
+    x.powf(p)
+}

@@ -1,0 +1,180 @@
+//! Formulas in a model: parsed once to a postfix program, evaluated over plain or dual numbers without allocating.
+//!
+//! `+ - * / ^` with ^ strongest and to the right, then signs; functions and constants as in the tables of
+//! `functions.rs`; names are variables, indices of `repeat`, and `[parameters]`.
+
+mod functions;
+mod parse;
+#[cfg(test)]
+mod tests;
+
+use std::collections::HashMap;
+
+use num_dual::Dual2_64;
+
+use crate::system::{Number, Signal};
+use functions::Function;
+
+/// Most numbers an expression may hold at once while it is evaluated.
+const STACK: usize = 32;
+
+/// A mistake in the text of an expression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mistake {
+    /// Character of the text, counted from 0.
+    pub character: usize,
+    pub message: String,
+    pub cure: String,
+    /// Whether this only follows from a fault that has been reported: a parameter that could not be read.
+    pub known: bool,
+}
+
+impl Mistake {
+    fn new(character: usize, message: impl Into<String>, cure: impl Into<String>) -> Self {
+        Self { character, message: message.into(), cure: cure.into(), known: false }
+    }
+}
+
+/// What a name of the model stands for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    Known(f64),
+    /// It is there, but it could not be read.
+    Faulty,
+}
+
+/// The names an expression may use beside its variables.
+#[derive(Clone, Copy, Default)]
+pub struct Scope<'a> {
+    /// `[parameters]`; none while there are no parameters yet.
+    pub parameters: Option<&'a HashMap<String, Value>>,
+    /// Indices of `repeat` with their values.
+    pub indices: &'a [(String, f64)],
+}
+
+impl<'a> Scope<'a> {
+    /// The value of an index or a parameter.
+    pub fn value(&self, name: &str) -> Option<Value> {
+        let index = self.indices.iter().find(|(index, _)| index == name).map(|&(_, value)| Value::Known(value));
+        index.or_else(|| self.parameters.and_then(|parameters| parameters.get(name).copied()))
+    }
+
+    /// All names, indices first.
+    pub fn names(&self) -> impl Iterator<Item = &'a str> {
+        let parameters = self.parameters.into_iter().flat_map(|parameters| parameters.keys().map(String::as_str));
+        self.indices.iter().map(|(name, _)| name.as_str()).chain(parameters)
+    }
+}
+
+/// Whether a name is a constant or a function, so that no parameter may have it.
+pub fn is_reserved(name: &str) -> bool {
+    functions::CONSTANTS.iter().any(|known| known.0 == name) || functions::FUNCTIONS.iter().any(|known| known.0 == name)
+}
+
+/// The names in an expression that are not called as functions; none where it cannot be read.
+pub fn names_in(text: &str) -> Vec<String> {
+    parse::names(text)
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Op {
+    Constant(f64),
+    Variable(u8),
+    Neg,
+    Add,
+    Sub,
+    Mul,
+    Div,
+    IntegerPower(i32),
+    RealPower(f64),
+    OfOne(Function),
+    OfTwo(Function),
+}
+
+/// An expression ready to be evaluated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program {
+    ops: Box<[Op]>,
+}
+
+impl Program {
+    /// Parses an expression of `variables`, which are later given by their positions in this list.
+    ///
+    /// # Errors
+    /// The first mistake in the text, with its character and a cure.
+    pub fn parse(text: &str, variables: &[&str], scope: &Scope<'_>) -> Result<Self, Mistake> {
+        parse::parse(text, variables, scope)
+    }
+
+    /// The expression that is always `value`.
+    pub fn constant(value: f64) -> Self {
+        Self { ops: Box::new([Op::Constant(value)]) }
+    }
+
+    /// The value, if it depends on no variable.
+    pub fn as_constant(&self) -> Option<f64> {
+        match *self.ops {
+            [Op::Constant(value)] => Some(value),
+            _ => None,
+        }
+    }
+
+    /// The value for values of the variables. Nothing is allocated.
+    pub fn evaluate<N: Number>(&self, variables: &[N]) -> N {
+        let mut stack = [N::from(0.0); STACK];
+        let mut top = 0;
+        for &op in &self.ops {
+            match op {
+                Op::Constant(value) => {
+                    stack[top] = N::from(value);
+                    top += 1;
+                    continue;
+                }
+                Op::Variable(k) => {
+                    stack[top] = variables[k as usize];
+                    top += 1;
+                    continue;
+                }
+                _ => {}
+            }
+            let last = stack[top - 1];
+            if let Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) = op {
+                stack[top - 1] = match op {
+                    Op::Neg => -last,
+                    Op::OfOne(function) => function.of_one(last),
+                    power => power.power(last),
+                };
+                continue;
+            }
+            top -= 1;
+            let first = stack[top - 1];
+            stack[top - 1] = match op {
+                Op::Add => first + last,
+                Op::Sub => first - last,
+                Op::Mul => first * last,
+                Op::Div => first / last,
+                Op::OfTwo(function) => function.of_two(first, last),
+                _ => unreachable!("operations of one number came before"),
+            };
+        }
+        stack[0]
+    }
+}
+
+/// A program of the one variable t, as a known function of time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimeProgram(pub Program);
+
+impl TimeProgram {
+    /// Value, rate and second derivative, as one number.
+    pub fn dual(&self, t: f64) -> Dual2_64 {
+        self.0.evaluate(&[Dual2_64::new(t, 1.0, 0.0)])
+    }
+}
+
+impl Signal for TimeProgram {
+    fn at(&self, t: f64) -> [f64; 3] {
+        let value = self.dual(t);
+        [value.re, value.v1, value.v2]
+    }
+}

@@ -1,0 +1,138 @@
+use std::collections::HashMap;
+
+use num_dual::{Dual2_64, Dual64, HyperDual64};
+
+use super::functions::FUNCTIONS;
+use super::{Program, STACK, Scope, TimeProgram, Value};
+use crate::system::Signal;
+
+fn value(text: &str) -> f64 {
+    let program = Program::parse(text, &[], &Scope::default()).unwrap_or_else(|mistake| panic!("{text}: {mistake:?}"));
+    program.as_constant().expect("folded")
+}
+
+fn mistake(text: &str) -> (usize, String) {
+    let mistake = Program::parse(text, &["t"], &Scope::default()).expect_err(text);
+    (mistake.character, format!("{}; {}", mistake.message, mistake.cure))
+}
+
+#[test]
+fn operators_bind_as_in_mathematics() {
+    for (text, expected) in [
+        ("1 + 2*3", 7.0),
+        ("2^3^2", 512.0),
+        ("-2^2", -4.0),
+        ("(-2)^2", 4.0),
+        ("(-2)^3", -8.0),
+        ("2^-1", 0.5),
+        ("8/4/2", 1.0),
+        ("8-4-2", 2.0),
+        ("--3", 3.0),
+        ("+3", 3.0),
+        ("2*-3", -6.0),
+        ("1e-3 + .5 + 2.", 2.501),
+        ("2e", f64::NAN),
+        ("atan2(1, -1)/pi", 0.75),
+        ("min(3, max(1, 2))", 2.0),
+        ("step(0) + step(-1) + sign(0) + sign(-3)", 0.0),
+        ("pow(-3, 3)", -27.0),
+        ("tau/pi + ln(e) + log10(100)", 5.0),
+        ("abs(-2) + sqrt(9)", 5.0),
+    ] {
+        if expected.is_nan() {
+            assert!(Program::parse(text, &[], &Scope::default()).is_err(), "{text}");
+        } else {
+            assert!((value(text) - expected).abs() < 1e-14, "{text} is {}", value(text));
+        }
+    }
+}
+
+#[test]
+fn mistakes_say_where_and_what_to_do() {
+    for (text, character, words) in [
+        ("", 0, "empty"),
+        ("1 +", 3, "ends too early"),
+        ("(1 + 2", 6, "closing bracket is missing"),
+        ("1 + 2)", 5, "never opened"),
+        ("2 t", 2, "write 2*x"),
+        ("sn(t)", 0, "did you mean `sin`"),
+        ("sin", 0, "needs its arguments"),
+        ("atan2(t)", 0, "takes 2 arguments"),
+        ("sin(t, 1)", 5, "no further argument"),
+        ("3 + tt", 4, "did you mean `t`"),
+        ("2 ** 3", 2, "written with ^"),
+        ("1.2.3", 0, "is no number"),
+        ("t & 1", 2, "means nothing"),
+        ("* 2", 0, "missing here"),
+        ("t(1)", 0, "write t*(…)"),
+    ] {
+        let (at, message) = mistake(text);
+        assert_eq!(at, character, "{text}: {message}");
+        assert!(message.contains(words), "{text}: {message}");
+    }
+}
+
+#[test]
+fn hostile_lengths_and_depths_are_refused() {
+    for text in ["(".repeat(9_000), "-".repeat(9_000), "2^".repeat(4_000), "1".repeat(20_000), format!("{}t", "sin(".repeat(2000))] {
+        mistake(&text);
+    }
+    let wide = "1+t*(2+".repeat(STACK) + "t" + &")".repeat(STACK);
+    assert!(mistake(&wide).1.contains("split"));
+    let long = vec!["t"; 1000].join("+");
+    assert_eq!(Program::parse(&long, &["t"], &Scope::default()).unwrap().evaluate(&[2.0]), 2000.0);
+}
+
+/// First and second derivatives of every function and operator against differences.
+#[test]
+fn derivatives_agree_with_differences() {
+    let mut formulas: Vec<String> =
+        ["x^3", "x^-2", "x^2.5", "2^x", "x^x", "-x", "x*x - 1/x", "pow(x, 2)", "(-x)^3", "(x - 3)^4"].map(String::from).to_vec();
+    formulas.extend(
+        FUNCTIONS.iter().map(|&(name, arguments, _)| if arguments == 1 { format!("{name}(x)") } else { format!("{name}(x, 0.2 + x^2)") }),
+    );
+    let (x, h) = (0.7, 1e-4);
+    for text in &formulas {
+        let program = Program::parse(text, &["x"], &Scope::default()).unwrap();
+        let f = |x: f64| program.evaluate(&[x]);
+        let dual = program.evaluate(&[Dual2_64::new(x, 1.0, 0.0)]);
+        let (first, second) = ((f(x + h) - f(x - h)) / (2.0 * h), (f(x + h) - 2.0 * f(x) + f(x - h)) / (h * h));
+        assert!((dual.re - f(x)).abs() < 1e-13 * (1.0 + f(x).abs()), "{text}: {} {}", dual.re, f(x));
+        assert!((dual.v1 - first).abs() < 1e-6 * (1.0 + first.abs()), "{text}: {} {first}", dual.v1);
+        assert!((dual.v2 - second).abs() < 1e-5 * (1.0 + second.abs()), "{text}: {} {second}", dual.v2);
+        let mut hyper = HyperDual64::from(x);
+        (hyper.eps1, hyper.eps2) = (1.0, 1.0);
+        let hyper = program.evaluate(&[hyper]);
+        assert!((hyper.eps1eps2 - dual.v2).abs() < 1e-12 * (1.0 + dual.v2.abs()), "{text}");
+    }
+}
+
+#[test]
+fn powers_of_zero_and_of_negative_numbers_are_right() {
+    let at = |text: &str, x: f64| Program::parse(text, &["x"], &Scope::default()).unwrap().evaluate(&[Dual64::new(x, 1.0)]);
+    assert_eq!(at("x^3", 0.0), Dual64::new(0.0, 0.0));
+    assert_eq!(at("x^2", 0.0), Dual64::new(0.0, 0.0));
+    assert_eq!(at("x^1", 0.0), Dual64::new(0.0, 1.0));
+    assert_eq!(at("x^0", 0.0), Dual64::new(1.0, 0.0));
+    assert_eq!(at("x^1.5", 0.0), Dual64::new(0.0, 0.0));
+    assert_eq!(at("x^3", -2.0), Dual64::new(-8.0, 12.0));
+    assert_eq!(at("pow(x, 3)", -2.0), Dual64::new(-8.0, 12.0));
+    assert!(at("x^1.5", -1.0).re.is_nan());
+}
+
+#[test]
+fn parameters_fold_and_never_hide_a_variable() {
+    let parameters: HashMap<String, Value> =
+        [("n".to_string(), Value::Known(2.0)), ("bad".to_string(), Value::Faulty), ("t".to_string(), Value::Known(1.0))].into();
+    let scope = Scope { parameters: Some(&parameters), indices: &[("i".to_string(), 3.0)] };
+    assert_eq!(Program::parse("i^n + 1", &[], &scope).unwrap().as_constant(), Some(10.0));
+    assert!(Program::parse("bad + 1", &[], &scope).unwrap_err().known);
+    assert!(Program::parse("t + 1", &["t"], &scope).unwrap_err().message.contains("could be"));
+}
+
+#[test]
+fn signals_have_two_derivatives() {
+    let program = Program::parse("0.1*sin(10*t)", &["t"], &Scope::default()).unwrap();
+    let [value, rate, second] = TimeProgram(program).at(0.3);
+    assert!((value - 0.1 * 3f64.sin()).abs() < 1e-16 && (rate - 3f64.cos()).abs() < 1e-15 && (second + 10.0 * 3f64.sin()).abs() < 1e-14);
+}

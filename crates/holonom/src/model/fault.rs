@@ -1,0 +1,176 @@
+//! What is wrong with a model. All faults are collected and reported together.
+
+use std::cell::{Cell, RefCell};
+use std::fmt;
+
+/// One thing that is wrong, where it is, and how to put it right.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// Where in the description, e.g. `constraint.inner-rod.between[1]`; empty for the model as a whole.
+    pub path: String,
+    /// What was written there, for people.
+    pub offending: String,
+    /// Character of a text value at which it goes wrong, counted from 0, where that is known.
+    pub character: Option<usize>,
+    /// Whether it is the key at the end of the path that is wrong, and not its value.
+    pub on_key: bool,
+    /// What is wrong and what was expected.
+    pub message: String,
+    /// What to do about it; empty where the message says it all.
+    pub cure: String,
+}
+
+impl Fault {
+    /// A fault at a path.
+    pub fn new(path: impl Into<String>, offending: impl Into<String>, message: impl Into<String>, cure: impl Into<String>) -> Self {
+        Self { path: path.into(), offending: offending.into(), character: None, on_key: false, message: message.into(), cure: cure.into() }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.path.is_empty() {
+            write!(f, "{}: ", self.path)?;
+        }
+        write!(f, "{}", self.message)?;
+        if !self.cure.is_empty() {
+            write!(f, " ({})", self.cure)?;
+        }
+        Ok(())
+    }
+}
+
+/// All faults of a model, in the order in which they were found; never empty.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Faults(pub Vec<Fault>);
+
+impl fmt::Display for Faults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (k, fault) in self.0.iter().enumerate() {
+            write!(f, "{}{fault}", if k > 0 { "\n" } else { "" })?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Faults {}
+
+/// Says that something could not be read and that the fault has been recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Refused;
+
+/// Something read, or a fault recorded.
+pub type Read<T> = Result<T, Refused>;
+
+/// Most faults that are kept: more are of no use to anybody, and finding near names costs time.
+const MOST: usize = 100;
+
+/// Where faults are collected while a model is read.
+#[derive(Debug, Default)]
+pub struct Sink {
+    faults: RefCell<Vec<Fault>>,
+    dropped: Cell<usize>,
+}
+
+impl Sink {
+    /// Records a fault; it is only made when there is still room for it.
+    pub fn report(&self, fault: impl FnOnce() -> Fault) -> Refused {
+        if self.faults.borrow().len() < MOST {
+            let fault = fault();
+            self.faults.borrow_mut().push(fault);
+        } else {
+            self.dropped.set(self.dropped.get() + 1);
+        }
+        Refused
+    }
+
+    /// Whether further faults are only counted.
+    pub fn is_full(&self) -> bool {
+        self.faults.borrow().len() >= MOST
+    }
+
+    /// Number of faults so far.
+    pub fn count(&self) -> usize {
+        self.faults.borrow().len() + self.dropped.get()
+    }
+
+    /// Nothing, or all that was wrong.
+    pub fn finish(self) -> Result<(), Faults> {
+        let mut faults = self.faults.into_inner();
+        if self.dropped.get() > 0 {
+            faults.push(Fault::new("", "", format!("{} more faults are not shown", self.dropped.get()), "put these right first"));
+        }
+        if faults.is_empty() { Ok(()) } else { Err(Faults(faults)) }
+    }
+}
+
+/// Farthest spelling that still counts as near, as a share of the name's length.
+const NEAR: f64 = 0.5;
+
+/// The known name nearest to a misspelt one, unless all are far.
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let wanted: Vec<char> = name.chars().take(64).collect();
+    let best = known.into_iter().map(|candidate| (distance(&wanted, candidate), candidate)).min_by_key(|&(d, _)| d)?;
+    let limit = (NEAR * wanted.len().max(best.1.chars().count()) as f64).ceil() as usize;
+    (best.0 <= limit.max(1)).then_some(best.1)
+}
+
+/// A cure from the nearest known name, or from the list of all when none is near and they are few.
+pub fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
+    match nearest(name, known.clone()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => {
+            let all: Vec<&str> = known.into_iter().take(25).collect();
+            match all.len() {
+                0 => String::new(),
+                1..25 => format!("known are: {}", all.join(", ")),
+                _ => String::new(),
+            }
+        }
+    }
+}
+
+/// Number of insertions, deletions, replacements and swaps of neighbours between two names, upper and lower case alike.
+fn distance(wanted: &[char], candidate: &str) -> usize {
+    let same = |a: char, b: char| a == b || a.to_lowercase().eq(b.to_lowercase());
+    let candidate: Vec<char> = candidate.chars().take(64).collect();
+    let mut before: Vec<usize> = Vec::new();
+    let mut above: Vec<usize> = (0..=candidate.len()).collect();
+    for (i, &a) in wanted.iter().enumerate() {
+        let mut row = vec![i + 1];
+        for (j, &b) in candidate.iter().enumerate() {
+            let replaced = above[j] + usize::from(!same(a, b));
+            let mut best = replaced.min(above[j + 1] + 1).min(row[j] + 1);
+            if i > 0 && j > 0 && same(a, candidate[j - 1]) && same(wanted[i - 1], b) {
+                best = best.min(before[j - 1] + 1);
+            }
+            row.push(best);
+        }
+        before = std::mem::replace(&mut above, row);
+    }
+    above[candidate.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_names_are_found_and_far_ones_are_not() {
+        assert_eq!(nearest("lenght", ["length", "between"]), Some("length"));
+        assert_eq!(nearest("m3", ["m1", "other"]), Some("m1"));
+        assert_eq!(nearest("stiffness", ["x", "damping"]), None);
+        assert_eq!(nearest("anything", []), None);
+    }
+
+    #[test]
+    fn only_so_many_faults_are_kept() {
+        let sink = Sink::default();
+        for _ in 0..MOST + 5 {
+            sink.report(|| Fault::new("a", "", "wrong", ""));
+        }
+        let faults = sink.finish().unwrap_err().0;
+        assert_eq!(faults.len(), MOST + 1);
+        assert_eq!(faults[MOST].message, "5 more faults are not shown");
+    }
+}

@@ -1,0 +1,93 @@
+use std::sync::Arc;
+
+use super::laws::{Damper, Energy, FORCE_VARIABLES, Force, LinearSpring, SHORTEST};
+use crate::model::assembly::{Assembly, difference, norm};
+use crate::model::entry::Entry;
+use crate::model::expression::Program;
+use crate::model::fault::Read;
+use crate::model::key::{Key, Kind, Shape};
+use crate::record::LineKind;
+use crate::system::Law;
+
+pub(super) const KIND: Kind = Kind {
+    name: "spring",
+    doc: "a spring, a damper, or both, between two points; linear or as a formula",
+    equations: "V = ½ k (r − L₀)², tension c ṙ, V(r), tension F(r, ṙ, t), whichever are given, with r = max(|x_b − x_a|, 1e-9 m)",
+    keys: &[
+        Key::required("between", Shape::Ends(2, 2), "", "the two points"),
+        Key::optional("stiffness", Shape::Number, "none", "N/m", "k"),
+        Key::optional(
+            "rest_length",
+            Shape::Number,
+            "the distance at the start",
+            "m",
+            "L₀, the length without tension; only with a stiffness",
+        ),
+        Key::optional("damping", Shape::Number, "none", "N·s/m", "c; what it takes is booked as work"),
+        Key::optional("energy", Shape::Formula(&["length"]), "none", "J", "energy as a formula of the length"),
+        Key::optional("force", Shape::Formula(FORCE_VARIABLES), "none", "N", "tension as a formula of length, rate and t, booked as work"),
+    ],
+    example: r#"
+[point.bob]
+mass = 1
+position = [1, 0, 0]
+
+[force.spring]
+type = "spring"
+between = ["ground", "bob"]
+stiffness = 100
+damping = 0.5
+rest_length = 0.9
+energy = "10*(length - 1)^4"
+force = "-0.1*rate^3"
+"#,
+    build,
+};
+
+fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+    let ends = assembly.moving_pair(entry, "between");
+    let stiffness = entry.optional("stiffness", Entry::not_negative);
+    let rest_length = entry.optional("rest_length", Entry::not_negative);
+    let damping = entry.optional("damping", Entry::not_negative);
+    let energy = entry.optional("energy", |entry, key| entry.formula(key, &["length"]));
+    let force = entry.optional("force", |entry, key| entry.formula(key, FORCE_VARIABLES));
+    if rest_length == Ok(None) && stiffness == Ok(None) && !["damping", "energy", "force"].iter().any(|key| entry.has(key)) {
+        entry.refuse_all(format!("the spring `{}` does nothing", entry.name), "add stiffness, damping, energy or force");
+    }
+    if entry.has("rest_length") && !entry.has("stiffness") {
+        entry.refuse("rest_length", "a rest length without a stiffness has no meaning", "add stiffness");
+    }
+    let ([a, b], stiffness, rest_length) = (ends?, stiffness?, rest_length?);
+    let (damping, energy, force) = (damping?, energy?, force?);
+    let start = norm(difference(&a, &b));
+    let mut laws: Vec<Arc<dyn Law>> = Vec::new();
+    if let Some(stiffness) = stiffness {
+        laws.push(Arc::new(LinearSpring { stiffness, rest_length: rest_length.unwrap_or(start) }));
+    }
+    if let Some(damping) = damping {
+        laws.push(Arc::new(Damper { damping }));
+    }
+    if let Some(energy) = energy {
+        finite(entry, "energy", &energy, &[start.max(SHORTEST)])?;
+        laws.push(Arc::new(Energy(energy)));
+    }
+    if let Some(force) = force {
+        finite(entry, "force", &force, &[start.max(SHORTEST), 0.0, 0.0])?;
+        laws.push(Arc::new(Force(force)));
+    }
+    let half_square = assembly.builder.square(&[(b.place, 1.0), (a.place, -1.0)]);
+    for law in laws {
+        assembly.builder.law(entry.name, &[half_square], law);
+    }
+    assembly.draw(entry, LineKind::Spring, &a, &b);
+    Ok(())
+}
+
+/// A formula must at least be a number where the simulation starts.
+fn finite(entry: &Entry<'_>, key: &str, formula: &Program, at: &[f64]) -> Read<()> {
+    let value = formula.evaluate(at);
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(entry.refuse(key, format!("this formula is {value} for the length {} m of the start", at[0]), "it must be finite"))
+}

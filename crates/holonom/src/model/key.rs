@@ -1,0 +1,86 @@
+//! The tables of kinds and keys that the reader, the schema, the manual and the tests walk.
+
+use super::assembly::Assembly;
+use super::entry::Entry;
+use super::fault::Read;
+
+/// A key of a table in a model file.
+pub struct Key {
+    pub name: &'static str,
+    pub shape: Shape,
+    /// Whether it must be there.
+    pub required: bool,
+    /// What is taken when it is not there, for people.
+    pub default: &'static str,
+    /// Unit, empty for what has none.
+    pub unit: &'static str,
+    pub doc: &'static str,
+}
+
+/// What the value of a key looks like. A number may always be written as an expression over `[parameters]` in a text.
+#[derive(Clone, Copy)]
+pub enum Shape {
+    Number,
+    Whole,
+    Text,
+    Flag,
+    /// One of some words.
+    Choice(&'static [&'static str]),
+    /// As many numbers as the model has axes.
+    Vector,
+    /// A number or a text with an expression of the named variables.
+    Formula(&'static [&'static str]),
+    /// As many formulas as the model has axes.
+    Formulas(&'static [&'static str]),
+    /// The name of a point.
+    Point,
+    /// The name of a point, `"ground"`, or a fixed place as a list of numbers.
+    End,
+    /// Several of these; the numbers say how many at least and at most.
+    Ends(usize, usize),
+    /// Some words.
+    Words(&'static [&'static str]),
+    /// Names of points.
+    Points,
+    /// A table with its own keys.
+    Table(&'static [Key]),
+    /// A table with a number for each of some points.
+    Weights,
+    /// `"i = 0 to N"`
+    Repeat,
+}
+
+impl Key {
+    /// A key that must be there.
+    pub(super) const fn required(name: &'static str, shape: Shape, unit: &'static str, doc: &'static str) -> Self {
+        Self { name, shape, required: true, default: "", unit, doc }
+    }
+
+    /// A key that may be left out.
+    pub(super) const fn optional(name: &'static str, shape: Shape, default: &'static str, unit: &'static str, doc: &'static str) -> Self {
+        Self { name, shape, required: false, default, unit, doc }
+    }
+}
+
+/// A kind of constraint or force: what `type` may say.
+pub struct Kind {
+    pub name: &'static str,
+    /// One line.
+    pub doc: &'static str,
+    /// What it puts on the coordinates, as formulas.
+    pub equations: &'static str,
+    /// Its keys beside `type` and `repeat`.
+    pub keys: &'static [Key],
+    /// A small model that uses it.
+    pub example: &'static str,
+    pub(super) build: fn(&mut Assembly<'_>, &Entry<'_>) -> Read<()>,
+}
+
+/// The key that every entry with a name may have.
+pub const REPEAT: Key = Key::optional(
+    "repeat",
+    Shape::Repeat,
+    "one entry",
+    "",
+    "makes NAME[0], NAME[1], …: \"i = 0 to N\", also nested: \"i = 0 to N, j = 1 to M\"",
+);

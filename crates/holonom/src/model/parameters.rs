@@ -1,0 +1,96 @@
+//! `[parameters]`: named numbers that every expression of a model may use, and that may use each other.
+
+use std::collections::{HashMap, HashSet};
+
+use super::entry::Entry;
+use super::expression::{self, Scope, Value as Known};
+use super::fault::Sink;
+use super::value::{Table, Value};
+
+/// Values of all parameters; those that cannot be read are there as faulty.
+pub fn read(table: &Table, sink: &Sink) -> HashMap<String, Known> {
+    let needs: HashMap<&str, Vec<String>> = table.iter().map(|(name, value)| (name, needed(table, value))).collect();
+    let order = sorted(table, &needs);
+    let circular = report_cycles(table, &needs, &order, sink);
+    let mut known = HashMap::new();
+    // What is part of a cycle, or behind one, is there but faulty, so that no second fault comes of it.
+    known.extend(circular.iter().map(|name| (name.to_string(), Known::Faulty)));
+    for name in order {
+        let entry = Entry { name: "", path: "parameters", table, scope: Scope { parameters: Some(&known), indices: &[] }, sink };
+        let valid = is_valid(&entry, name);
+        let number = entry.number(name);
+        let value = if valid { number.map_or(Known::Faulty, Known::Known) } else { Known::Faulty };
+        known.insert(name.to_string(), value);
+    }
+    known
+}
+
+/// Names are written in expressions, so they must look like names there.
+fn is_valid(entry: &Entry<'_>, name: &str) -> bool {
+    let starts = name.chars().next().is_some_and(|c| c.is_alphabetic() || c == '_');
+    if !starts || !name.chars().all(|c| c.is_alphanumeric() || c == '_') {
+        entry.refuse(name, format!("`{name}` cannot be used as a name in expressions"), "use letters, digits and _, and a letter first");
+        return false;
+    }
+    if expression::is_reserved(name) {
+        entry.refuse(name, format!("`{name}` is a constant or a function of every expression"), "give the parameter another name");
+        return false;
+    }
+    true
+}
+
+/// The parameters that a parameter is made of.
+fn needed(table: &Table, value: &Value) -> Vec<String> {
+    match value {
+        Value::Text(text) => expression::names_in(text).into_iter().filter(|name| table.get(name).is_some()).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Names in an order in which each comes after all it needs; those in or behind cycles are left out.
+fn sorted<'a>(table: &'a Table, needs: &HashMap<&'a str, Vec<String>>) -> Vec<&'a str> {
+    let mut open: HashMap<&str, usize> = HashMap::new();
+    let mut users: HashMap<&str, Vec<&str>> = HashMap::new();
+    for name in table.keys() {
+        let distinct: HashSet<&str> = needs[name].iter().map(String::as_str).collect();
+        open.insert(name, distinct.len());
+        for need in distinct {
+            users.entry(need).or_default().push(name);
+        }
+    }
+    let mut order: Vec<&str> = table.keys().filter(|name| open[name] == 0).collect();
+    let mut next = 0;
+    while let Some(&name) = order.get(next) {
+        next += 1;
+        for &user in users.get(name).map_or(&[][..], Vec::as_slice) {
+            let count = open.get_mut(user).expect("every user is a parameter");
+            *count -= 1;
+            if *count == 0 {
+                order.push(user);
+            }
+        }
+    }
+    order
+}
+
+/// Records one fault for each cycle and hands back all names that have no value for it.
+fn report_cycles<'a>(table: &'a Table, needs: &HashMap<&'a str, Vec<String>>, order: &[&str], sink: &Sink) -> Vec<&'a str> {
+    let fine: HashSet<&str> = order.iter().copied().collect();
+    let left: Vec<&str> = table.keys().filter(|name| !fine.contains(name)).collect();
+    let mut seen: HashSet<&str> = HashSet::new();
+    let entry = Entry { name: "", path: "parameters", table, scope: Scope::default(), sink };
+    for &start in &left {
+        let mut way: Vec<&str> = Vec::new();
+        let mut name = start;
+        while seen.insert(name) {
+            way.push(name);
+            // Each of these needs another one of them, or it would have been in the order.
+            name = needs[name].iter().map(String::as_str).find(|need| !fine.contains(need)).expect("a cycle goes on");
+        }
+        if let Some(first) = way.iter().position(|&on_way| on_way == name) {
+            let round: Vec<&str> = way[first..].iter().copied().chain([name]).collect();
+            entry.refuse(name, format!("parameters go round in a circle: {}", round.join(" → ")), "give one of them a number");
+        }
+    }
+    left
+}

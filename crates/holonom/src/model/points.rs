@@ -1,0 +1,158 @@
+//! `[point.NAME]`: particles, places and driven supports, shared by all that name them.
+
+use std::collections::HashSet;
+use std::sync::Arc;
+
+use super::assembly::{Assembly, Axes, Point, fixed, node};
+use super::entry::{Entry, Spot};
+use super::expression::{Program, TimeProgram};
+use super::fault::{Fault, Read};
+use super::key::{Key, REPEAT, Shape};
+use super::section::Sections;
+use super::value::Table;
+use crate::system::{Constant, Signal};
+
+/// The keys of a point.
+pub const KEYS: &[Key] = &[
+    Key::optional(
+        "mass",
+        Shape::Number,
+        "0",
+        "kg",
+        "mass of the point itself; a free point without any must be the end of a bar with mass",
+    ),
+    Key::optional("position", Shape::Vector, "none: needed unless there is a motion", "m", "where it is at the start"),
+    Key::optional("velocity", Shape::Vector, "0", "m/s", "how fast it is at the start"),
+    Key::optional("fixed", Shape::Flag, "false", "", "true ties it to the ground"),
+    Key::optional("motion", Shape::Formulas(&["t"]), "none", "m", "makes it a driven support: its coordinates as formulas of the time t"),
+    REPEAT,
+];
+
+/// A point as it was read.
+pub struct Spec {
+    name: String,
+    path: String,
+    mass: f64,
+    start: [f64; 3],
+    motion: Motion,
+}
+
+enum Motion {
+    Free { velocity: [f64; 3] },
+    Fixed,
+    Driven(Vec<Program>),
+}
+
+/// Reads all points, and says which entries were faulty.
+pub fn read(sections: &mut Sections<'_>, root: &Table, axes: Axes) -> (Vec<Spec>, HashSet<String>) {
+    let keys: Vec<&Key> = KEYS.iter().collect();
+    let mut specs = Vec::new();
+    let check = |entry: &Entry<'_>| {
+        let before = entry.sink.count();
+        entry.refuse_unknown_keys("a point", &keys);
+        if entry.sink.count() == before { Ok(()) } else { Err(super::fault::Refused) }
+    };
+    let faulty = sections.read(root, "point", check, |entry| {
+        specs.push(spec(entry, axes.dimension())?);
+        Ok(())
+    });
+    (specs, faulty)
+}
+
+fn spec(entry: &Entry<'_>, dim: usize) -> Read<Spec> {
+    let mass = entry.optional("mass", Entry::not_negative);
+    let position = entry.optional("position", |entry, key| entry.vector(key, dim));
+    let velocity = entry.optional("velocity", |entry, key| entry.vector(key, dim));
+    let fixed = entry.optional("fixed", Entry::flag);
+    let motion = entry.optional("motion", |entry, key| entry.formulas(key, dim, &["t"]));
+    let (mass, position, velocity) = (mass?, position?, velocity?);
+    let (fixed, motion) = (fixed?.unwrap_or(false), motion?);
+    let (start, motion) = match motion {
+        Some(motion) => {
+            for (given, key) in [(position.is_some(), "position"), (velocity.is_some(), "velocity"), (fixed, "fixed")] {
+                if given {
+                    return Err(entry.refuse(key, format!("a point with a `motion` takes no `{key}`"), "keep one of the two"));
+                }
+            }
+            (driven_start(entry, &motion)?, Motion::Driven(motion))
+        }
+        None => {
+            let start = match position {
+                Some(position) => position,
+                None => entry.vector("position", dim)?,
+            };
+            if fixed && velocity.is_some_and(|velocity| velocity != [0.0; 3]) {
+                return Err(entry.refuse("velocity", "a fixed point does not move", "remove the velocity, or fixed = true"));
+            }
+            let motion = if fixed { Motion::Fixed } else { Motion::Free { velocity: velocity.unwrap_or_default() } };
+            (start, motion)
+        }
+    };
+    Ok(Spec { name: entry.name.to_string(), path: entry.path.to_string(), mass: mass.unwrap_or(0.0), start, motion })
+}
+
+/// Where a driven point is at t = 0, which must be somewhere, and with finite derivatives.
+fn driven_start(entry: &Entry<'_>, motion: &[Program]) -> Read<[f64; 3]> {
+    let mut start = [0.0; 3];
+    for (k, program) in motion.iter().enumerate() {
+        let values = TimeProgram(program.clone()).at(0.0);
+        if values.iter().any(|value| !value.is_finite()) {
+            let message = format!("position, velocity and acceleration are {values:?} at t = 0");
+            return Err(entry.refuse(Spot { key: "motion", item: Some(k) }, message, "all must be finite"));
+        }
+        start[k] = values[0];
+    }
+    Ok(start)
+}
+
+/// Adds the points to a system, free ones first.
+pub fn add(assembly: &mut Assembly<'_>, specs: Vec<Spec>) {
+    let mut ends: Vec<_> = specs
+        .iter()
+        .enumerate()
+        .map(|(k, spec)| match spec.motion {
+            Motion::Free { velocity } => Some(node(assembly.builder.free_node(spec.start, velocity), spec.start, true, k, &spec.name)),
+            _ => None,
+        })
+        .collect();
+    for (k, spec) in specs.into_iter().enumerate() {
+        let end = match spec.motion {
+            Motion::Free { .. } => ends[k].take().expect("added above"),
+            Motion::Fixed => super::assembly::End { point: Some(k), ..fixed(spec.start, spec.name.clone()) },
+            Motion::Driven(programs) => {
+                let id = assembly.builder.known_node(signals(programs));
+                node(id, spec.start, false, k, &spec.name)
+            }
+        };
+        if spec.mass > 0.0 {
+            assembly.builder.mass(end.place, end.place, spec.mass);
+        }
+        assembly.by_name.insert(spec.name.clone(), k);
+        assembly.points.push(Point { name: spec.name, path: spec.path, end, mass: spec.mass, carries_bar: false });
+    }
+}
+
+fn signals(programs: Vec<Program>) -> [Arc<dyn Signal>; 3] {
+    let mut programs = programs.into_iter();
+    std::array::from_fn(|_| match programs.next() {
+        Some(program) => Arc::new(TimeProgram(program)) as Arc<dyn Signal>,
+        None => Arc::new(Constant(0.0)),
+    })
+}
+
+/// Refuses free points without mass, one of each entry.
+pub fn check_mass(assembly: &Assembly<'_>) {
+    let mut told: HashSet<&str> = HashSet::new();
+    for point in &assembly.points {
+        let massless = point.mass == 0.0 && !point.carries_bar && point.end.free;
+        if massless && told.insert(&point.path) {
+            let message = format!("the free point `{}` has no mass", point.name);
+            let cure = "give it a mass, attach a bar with mass, or tie it with fixed = true";
+            assembly.sink.report(|| Fault::new(&*point.path, &*point.name, message, cure));
+        }
+    }
+    if assembly.faulty.is_empty() && !assembly.points.iter().any(|point| point.end.free) {
+        let cure = "add a [point.NAME] with mass and position";
+        assembly.sink.report(|| Fault::new("", "", "nothing in this model can move: it has no free point", cure));
+    }
+}

@@ -1,0 +1,131 @@
+//! The JSON Schema of the model file, made from the same tables that the reader uses.
+
+use super::key::{Key, Kind, Shape};
+use super::value::{Table, Value};
+use super::{BAR_KEYS, MODEL_KEYS, OUTPUT_KEYS, POINT_KEYS, REPEAT, SIMULATION_KEYS, constraints, forces};
+
+/// JSON Schema (draft 2020-12) of the model file.
+pub fn schema() -> Value {
+    let mut properties: Table = MODEL_KEYS.iter().map(|key| (key.name, described(key))).collect();
+    properties.push("parameters", table([("type", Value::text("object")), ("additionalProperties", shape(Shape::Number))]));
+    properties.push("point", entries(object(POINT_KEYS, None)));
+    properties.push("bar", entries(object(BAR_KEYS, None)));
+    properties.push("constraint", entries(one_of(constraints::KINDS)));
+    properties.push("force", entries(one_of(forces::KINDS)));
+    properties.push("simulation", object(SIMULATION_KEYS, None));
+    properties.push("output", object(OUTPUT_KEYS, None));
+    table([
+        ("$schema", Value::text("https://json-schema.org/draft/2020-12/schema")),
+        ("title", Value::text("holonom model")),
+        ("type", Value::text("object")),
+        ("properties", Value::Table(properties)),
+        ("additionalProperties", Value::Bool(false)),
+        ("$defs", table([("number", number()), ("end", end())])),
+    ])
+}
+
+fn table<const N: usize>(entries: [(&str, Value); N]) -> Value {
+    Value::Table(entries.into_iter().collect())
+}
+
+fn texts(words: &[&str]) -> Value {
+    Value::List(words.iter().map(|&word| Value::text(word)).collect())
+}
+
+/// Named entries of one shape.
+fn entries(of: Value) -> Value {
+    table([
+        ("type", Value::text("object")),
+        ("propertyNames", table([("pattern", Value::text("^[\\p{L}\\p{N}_-]+$"))])),
+        ("additionalProperties", of),
+    ])
+}
+
+fn one_of(kinds: &[Kind]) -> Value {
+    let each = |kind: &Kind| {
+        let Value::Table(mut object) = object(kind.keys, Some(kind.name)) else { unreachable!("an object is a table") };
+        object.push("description", Value::text(format!("{}: {}", kind.doc, kind.equations)));
+        Value::Table(object)
+    };
+    table([("oneOf", Value::List(kinds.iter().map(each).collect()))])
+}
+
+/// A table with these keys and no others; of a kind, also `type` and `repeat`.
+fn object(keys: &[Key], kind: Option<&str>) -> Value {
+    let mut properties = Table::default();
+    let mut required: Vec<&str> = Vec::new();
+    if let Some(kind) = kind {
+        properties.push("type", table([("const", Value::text(kind))]));
+        properties.push(REPEAT.name, described(&REPEAT));
+        required.push("type");
+    }
+    for key in keys {
+        properties.push(key.name, described(key));
+    }
+    required.extend(keys.iter().filter(|key| key.required).map(|key| key.name));
+    table([
+        ("type", Value::text("object")),
+        ("properties", Value::Table(properties)),
+        ("required", texts(&required)),
+        ("additionalProperties", Value::Bool(false)),
+    ])
+}
+
+fn described(key: &Key) -> Value {
+    let mut text = key.doc.to_string();
+    if !key.unit.is_empty() {
+        text.push_str(&format!(" [{}]", key.unit));
+    }
+    if !key.default.is_empty() {
+        text.push_str(&format!("; default: {}", key.default));
+    }
+    let Value::Table(mut out) = shape(key.shape) else { unreachable!("a shape is a table") };
+    out.push("description", Value::text(text));
+    Value::Table(out)
+}
+
+fn shape(shape: Shape) -> Value {
+    let reference = |name: &str| table([("$ref", Value::text(format!("#/$defs/{name}")))]);
+    let list = |items: Value, least: usize, most: usize| {
+        let Value::Table(mut out) = table([("type", Value::text("array")), ("items", items), ("minItems", Value::Number(least as f64))])
+        else {
+            unreachable!("made as a table")
+        };
+        if most != usize::MAX {
+            out.push("maxItems", Value::Number(most as f64));
+        }
+        Value::Table(out)
+    };
+    let typed = |name: &str| table([("type", Value::text(name))]);
+    match shape {
+        Shape::Number | Shape::Formula(_) => reference("number"),
+        Shape::Whole => reference("number"),
+        Shape::Text | Shape::Point | Shape::Repeat => typed("string"),
+        Shape::Flag => typed("boolean"),
+        Shape::Choice(words) => table([("enum", texts(words))]),
+        Shape::Vector | Shape::Formulas(_) => list(reference("number"), 2, 3),
+        Shape::End => reference("end"),
+        Shape::Ends(least, most) => list(reference("end"), least, most),
+        Shape::Words(words) => list(table([("enum", texts(words))]), 0, usize::MAX),
+        Shape::Points => list(typed("string"), 0, usize::MAX),
+        Shape::Table(keys) => object(keys, None),
+        Shape::Weights => table([("type", Value::text("object")), ("additionalProperties", reference("number"))]),
+    }
+}
+
+fn number() -> Value {
+    table([
+        ("description", Value::text("a number, or an expression over [parameters] and, where the key says so, variables")),
+        ("type", texts(&["number", "string"])),
+    ])
+}
+
+fn end() -> Value {
+    let numbers = table([("$ref", Value::text("#/$defs/number"))]);
+    let place =
+        table([("type", Value::text("array")), ("items", numbers), ("minItems", Value::Number(2.0)), ("maxItems", Value::Number(3.0))]);
+    table([
+        ("description", Value::text("the name of a point, \"ground\" for the origin, or a fixed place")),
+        ("anyOf", Value::List(vec![table([("type", Value::text("string"))]), place])),
+    ])
+}
