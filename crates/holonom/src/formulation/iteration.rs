@@ -146,6 +146,10 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
     Err(Failure::NotConverged(settings.max_iterations))
 }
 
+/// What the next increment may leave behind, relative to the mechanism, for the factors to be kept: another iteration
+/// with them is cheaper than new ones.
+const KEPT: f64 = 1e-13;
+
 /// How a Newton iteration goes: sizes of its increments, relative to the mechanism.
 pub(super) struct Convergence {
     tolerance: f64,
@@ -171,7 +175,7 @@ impl Convergence {
     /// Whether the factors of the last iteration serve the next one: they are off by what the last turned, and what
     /// they leave is that much smaller than the next increment.
     pub(super) fn keeps_factors(&mut self) -> bool {
-        let keeps = self.increment * self.turn * self.turn <= self.tolerance;
+        let keeps = self.increment * self.turn * self.turn <= KEPT;
         self.stale = if keeps { self.turn } else { 0.0 };
         keeps
     }
