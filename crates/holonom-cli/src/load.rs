@@ -154,7 +154,10 @@ fn free_weights(model: &Model, weights: &[(String, f64)]) -> Result<Vec<f64>, Fa
         {
             let weight = weights.iter().find(|(name, _)| *name == point.name).map(|(_, weight)| *weight);
             of_nodes[node.index()] = weight.ok_or_else(|| {
-                Failure::usage(format!("the projection has no weight for the point `{}`", point.name), "give every free point one in projection.weights")
+                Failure::usage(
+                    format!("the projection has no weight for the point `{}`", point.name),
+                    "give every free point one in projection.weights",
+                )
             })?;
         }
     }
@@ -185,7 +188,8 @@ pub fn checkpoint_value(state: &State) -> Value {
 pub fn checkpoint(path: &Path) -> Result<State, Failure> {
     let bytes = std::fs::read(path).map_err(|source| Failure::File { doing: "read", path: path.into(), source })?;
     let value: Option<Value> = serde_json::from_slice(&bytes).ok();
-    let numbers = |value: &Value, key: &str| value[key].as_array().and_then(|items| items.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>());
+    let numbers =
+        |value: &Value, key: &str| value[key].as_array().and_then(|items| items.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>());
     let state = value.and_then(|value| {
         Some(State {
             t: value["t"].as_f64()?,

@@ -3,8 +3,8 @@
 mod commands;
 mod failure;
 mod load;
-mod output;
 mod options;
+mod output;
 mod progress;
 mod table;
 

@@ -43,8 +43,9 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
     let Order { method, step, end, every, quiet, resume } = order;
     let name = method.name.clone();
     let mut simulation = match resume {
-        Some(state) => Simulation::resume(&model.system, method, step, state)
-            .ok_or_else(|| Failure::usage("the checkpoint is of another model", "resume with the model and the --set options that made it"))?,
+        Some(state) => Simulation::resume(&model.system, method, step, state).ok_or_else(|| {
+            Failure::usage("the checkpoint is of another model", "resume with the model and the --set options that made it")
+        })?,
         None => Simulation::new(&model.system, method, step).map_err(load::start_failure)?,
     };
     if !quiet {

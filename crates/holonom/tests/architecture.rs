@@ -38,7 +38,8 @@ fn engine() -> Vec<(String, PathBuf, String)> {
         let first = path.strip_prefix(&root).unwrap().components().next().unwrap();
         first.as_os_str().to_string_lossy().trim_end_matches(".rs").to_string()
     };
-    let files = sources(&root).into_iter().filter(|path| !path.ends_with("src/lib.rs"));
+    let is_engine = |path: &PathBuf| !path.ends_with("src/lib.rs") && !path.ends_with("tests.rs");
+    let files = sources(&root).into_iter().filter(is_engine);
     files.map(|path| (room(&path), path.clone(), fs::read_to_string(&path).unwrap())).collect()
 }
 

@@ -17,7 +17,8 @@ pub fn methods(arguments: &MethodsArguments) -> Result<ExitCode, Failure> {
     let wanted = |name: &str| arguments.name.as_deref().is_none_or(|wanted| wanted == name);
     let mut shown = 0;
     for (title, entries) in &sections {
-        let entries: Vec<(&str, String)> = entries.iter().filter(|(name, _)| wanted(name)).map(|(name, doc)| (*name, doc.clone())).collect();
+        let entries: Vec<(&str, String)> =
+            entries.iter().filter(|(name, _)| wanted(name)).map(|(name, doc)| (*name, doc.clone())).collect();
         if !entries.is_empty() {
             println!("{}{title}\n{}", if shown > 0 { "\n" } else { "" }, list(&entries));
             shown += entries.len();

@@ -71,11 +71,39 @@ fn describe(loaded: &Loaded, summary: &Value) -> String {
                 summary["coordinates"], summary["constraints"], summary["rank"], summary["redundant"], summary["dof"]
             ),
         ),
-        ("steps", format!("{} of {} s, {} iterations a step, {} rejected", summary["steps"], short(summary["step"].as_f64().unwrap_or(0.0)), number("work", "iterations_per_step"), summary["work"]["rejected_steps"])),
+        (
+            "steps",
+            format!(
+                "{} of {} s, {} iterations a step, {} rejected",
+                summary["steps"],
+                short(summary["step"].as_f64().unwrap_or(0.0)),
+                number("work", "iterations_per_step"),
+                summary["work"]["rejected_steps"]
+            ),
+        ),
         ("energy", format!("{} J at the start, {} J at the end", number("energy", "initial"), number("energy", "final"))),
-        ("drift", format!("{} J beyond the work done, largest rise in a step {} J", number("energy", "max_drift"), number("energy", "max_rise"))),
-        ("balance", format!("integrator {} J, projection {} J, work {} J", number("energy", "integrator_total"), number("energy", "projection_total"), number("energy", "work_total"))),
-        ("violation", format!("position {}, velocity {}, acceleration {}", number("violation", "position"), number("violation", "velocity"), number("violation", "acceleration"))),
+        (
+            "drift",
+            format!("{} J beyond the work done, largest rise in a step {} J", number("energy", "max_drift"), number("energy", "max_rise")),
+        ),
+        (
+            "balance",
+            format!(
+                "integrator {} J, projection {} J, work {} J",
+                number("energy", "integrator_total"),
+                number("energy", "projection_total"),
+                number("energy", "work_total")
+            ),
+        ),
+        (
+            "violation",
+            format!(
+                "position {}, velocity {}, acceleration {}",
+                number("violation", "position"),
+                number("violation", "velocity"),
+                number("violation", "acceleration")
+            ),
+        ),
         ("momentum", format!("linear drift {}, angular drift {}", number("momentum", "linear_drift"), number("momentum", "angular_drift"))),
         ("time", format!("{} µs a step, {} times real time", number("time", "us_per_step"), number("time", "realtime_factor"))),
     ];

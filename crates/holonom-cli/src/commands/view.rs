@@ -11,8 +11,9 @@ use crate::options::ViewArguments;
 pub fn view(arguments: &ViewArguments) -> Result<ExitCode, Failure> {
     let path = arguments.folder.join("report.html");
     let page = std::fs::read(&path).map_err(|source| Failure::File { doing: "read", path, source })?;
-    let server = Server::http(("127.0.0.1", arguments.port))
-        .map_err(|error| Failure::usage(format!("cannot serve on port {}: {error}", arguments.port), "take another port, or 0 for a free one"))?;
+    let server = Server::http(("127.0.0.1", arguments.port)).map_err(|error| {
+        Failure::usage(format!("cannot serve on port {}: {error}", arguments.port), "take another port, or 0 for a free one")
+    })?;
     println!("http://{}", server.server_addr());
     let html = Header::from_bytes("Content-Type", "text/html; charset=utf-8").expect("the header is valid");
     for request in server.incoming_requests() {

@@ -53,7 +53,11 @@ impl Source {
             }
             table = match table.get_mut(part) {
                 Some(Value::Table(table)) => table,
-                _ => return Err(format!("error: `{key}` cannot be set: `{part}` is not a table\n  = cure: name a key of the model file, such as simulation.step")),
+                _ => {
+                    return Err(format!(
+                        "error: `{key}` cannot be set: `{part}` is not a table\n  = cure: name a key of the model file, such as simulation.step"
+                    ));
+                }
             };
         }
         table.set(last, toml::value(value).unwrap_or_else(|| Value::text(value)));
@@ -89,17 +93,29 @@ impl Source {
 fn decode(name: &str, bytes: &[u8]) -> Result<String, String> {
     if bytes.len() > LARGEST_FILE {
         let size = bytes.len() / (1024 * 1024);
-        return Err(render::whole(name, &format!("the file has {size} MB, and a model at most {}", LARGEST_FILE / (1024 * 1024)), "use repeat for arrays of points and bars"));
+        return Err(render::whole(
+            name,
+            &format!("the file has {size} MB, and a model at most {}", LARGEST_FILE / (1024 * 1024)),
+            "use repeat for arrays of points and bars",
+        ));
     }
     let text = match std::str::from_utf8(bytes) {
         Ok(text) => text,
         Err(error) => {
             let line = 1 + bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
-            return Err(render::whole(&format!("{name}:{line}"), "the file is not text (UTF-8)", "give a model file in TOML; `holonom examples` shows some"));
+            return Err(render::whole(
+                &format!("{name}:{line}"),
+                "the file is not text (UTF-8)",
+                "give a model file in TOML; `holonom examples` shows some",
+            ));
         }
     };
     if text.trim().is_empty() {
-        return Err(render::whole(&format!("{name}:1:1"), "the file is empty", "begin with a point, a constraint and [simulation]; `holonom examples spherical-compound-pendulum` shows one"));
+        return Err(render::whole(
+            &format!("{name}:1:1"),
+            "the file is empty",
+            "begin with a point, a constraint and [simulation]; `holonom examples spherical-compound-pendulum` shows one",
+        ));
     }
     if let Some(at) = too_deep(text) {
         return Err(render::at(name, text, at..at + 1, "", &format!("brackets are nested deeper than {DEEPEST}"), "take brackets away"));

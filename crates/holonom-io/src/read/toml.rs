@@ -56,7 +56,9 @@ fn convert(path: &str, value: &Spanned<DeValue<'_>>, places: &mut Places) -> Res
         DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix())
             .map(|number| Value::Number(number as f64))
             .map_err(|_| refuse("the whole number is too large", "write it with a decimal point")),
-        DeValue::Float(number) => number.as_str().parse().map(Value::Number).map_err(|_| refuse("this is no number", "write it as 1.5 or 1e3")),
+        DeValue::Float(number) => {
+            number.as_str().parse().map(Value::Number).map_err(|_| refuse("this is no number", "write it as 1.5 or 1e3"))
+        }
         DeValue::Datetime(_) => Err(refuse("a model has no dates", "write times as numbers in s")),
         DeValue::Array(items) => {
             let items = items.iter().enumerate().map(|(k, item)| convert(&item_path(path, k), item, places));

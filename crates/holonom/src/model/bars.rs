@@ -1,7 +1,5 @@
 //! `[bar.NAME]`: uniform rigid rods between two points, the two-node body of natural coordinates (methods §4.1).
 
-use std::sync::Arc;
-
 use super::assembly::{Assembly, End, difference, norm};
 use super::entry::Entry;
 use super::fault::{Read, Refused};
@@ -9,7 +7,7 @@ use super::key::{Key, REPEAT, Shape};
 use super::section::Sections;
 use super::value::Table;
 use crate::record::LineKind;
-use crate::system::{Law, Place, Reach, Response};
+use crate::system::Place;
 
 /// The keys of a bar.
 pub const KEYS: &[Key] = &[
@@ -60,7 +58,7 @@ fn bar(entry: &Entry<'_>, assembly: &mut Assembly<'_>) -> Read<BarInfo> {
     if length == 0.0 {
         return Err(zero_length(entry, &ends));
     }
-    add_mass(assembly, entry, &ends, mass);
+    add_mass(assembly, &ends, mass);
     let half_square = assembly.builder.square(&[(b.place, 1.0), (a.place, -1.0)]);
     assembly.builder.constant_row(entry.name, half_square, 0.5 * length * length);
     assembly.draw(entry, LineKind::Bar, a, b);
@@ -72,40 +70,8 @@ fn zero_length(entry: &Entry<'_>, [a, b]: &[End; 2]) -> Refused {
     entry.refuse("between", message, "move one of them, or use a point with mass")
 }
 
-fn add_mass(assembly: &mut Assembly<'_>, entry: &Entry<'_>, [a, b]: &[End; 2], mass: f64) {
+fn add_mass(assembly: &mut Assembly<'_>, [a, b]: &[End; 2], mass: f64) {
     assembly.builder.mass(a.place, a.place, mass / 3.0);
     assembly.builder.mass(b.place, b.place, mass / 3.0);
     assembly.builder.mass(a.place, b.place, mass / 6.0);
-    // A fixed end leaves only m/3 of the free one in the mass matrix, from which gravity is taken; half the weight
-    // hangs on it, so the rest comes as a potential.
-    for (end, other) in [(a, b), (b, a)] {
-        if let (Place::Node(_), Place::Fixed(_)) = (end.place, other.place) {
-            let gravity = assembly.gravity;
-            if gravity != [0.0; 3] {
-                let height = assembly.builder.linear(gravity, &[(end.place, 1.0)]);
-                assembly.builder.law(entry.name, &[height], Arc::new(Weight(mass / 6.0)));
-            }
-        }
-    }
-}
-
-/// V = −m π with π = g·x.
-struct Weight(f64);
-
-impl Law for Weight {
-    fn energy(&self, value: &[f64]) -> f64 {
-        -self.0 * value[0]
-    }
-
-    fn conservative(&self) -> bool {
-        true
-    }
-
-    fn at(&self, _value: &[f64], _rate: &[f64], _t: f64, out: &mut Response) {
-        out.force[0] = -self.0;
-    }
-
-    fn between(&self, _reach: Reach<'_>, out: &mut Response) {
-        out.force[0] = -self.0;
-    }
 }

@@ -1,0 +1,102 @@
+//! Derivatives are never trusted: the assembled tangent of every registered kind against differences of its residual.
+
+use holonom::formulation::{RowsAt, Sampling, Stage, Workspace};
+use holonom::model::{Model, constraints, forces};
+use holonom_io::Source;
+
+/// Step of the central differences, m.
+const NUDGE: f64 = 1e-6;
+
+/// Differences of smooth residuals of the order of one are good to this.
+const TOLERANCE: f64 = 1e-7;
+
+const STAGES: &[(Sampling, RowsAt)] = &[
+    (Sampling::End, RowsAt::End),
+    (Sampling::Middle, RowsAt::Middle),
+    (Sampling::Between, RowsAt::End),
+    (Sampling::Between, RowsAt::Mean),
+];
+
+/// A number between −1 and 1 that is the same in every run.
+fn noise(k: usize) -> f64 {
+    (12.9898 * (k as f64 + 1.0)).sin()
+}
+
+/// The stage's residual (coordinates, then rows) at the increment in the workspace.
+fn residual(model: &Model, stage: &Stage, work: &mut Workspace) -> Vec<f64> {
+    work.place(&model.system, stage);
+    work.evaluate(&model.system, stage);
+    work.residual(&model.system, stage);
+    work.unknowns.iter().map(|unknown| -unknown).collect()
+}
+
+fn check(name: &str, text: &str) {
+    let source = Source::read(name, text.as_bytes()).unwrap_or_else(|message| panic!("{message}"));
+    let model = source.model().unwrap_or_else(|message| panic!("{message}"));
+    let system = &model.system;
+    let n = system.coordinates();
+    for &(sampling, rows) in STAGES {
+        let step = 0.1;
+        let (inertia, rate) = if sampling == Sampling::End { (0.25 * step * step, 2.0 / step) } else { (0.5 * step * step, 1.0 / step) };
+        let stage = Stage { sampling, rows, start: 0.3, step, inertia, rate };
+        let mut work = Workspace::new(system);
+        work.x1.copy_from_slice(system.start_position());
+        let (mut x0, mut v0, mut a0) = (work.x0.clone(), work.v0.clone(), vec![0.0; work.x0.len()]);
+        system.place_known(stage.start, &mut x0, &mut v0, &mut a0);
+        (work.x0, work.v0) = (x0, v0);
+        let (mut x1, mut v1) = (work.x1.clone(), work.v1.clone());
+        system.place_known(stage.end(), &mut x1, &mut v1, &mut a0);
+        (work.x1, work.v1) = (x1, v1);
+        for i in n..work.x1.len() {
+            work.xs[i] = if sampling == Sampling::End { work.x1[i] } else { 0.5 * (work.x0[i] + work.x1[i]) };
+            work.vs[i] = (work.x1[i] - work.x0[i]) / step;
+        }
+        (0..n).for_each(|i| work.d[i] = 0.05 * noise(i));
+        (0..n).for_each(|i| work.offset[i] = 0.3 * noise(i + 7));
+        (0..work.lambda.len()).for_each(|k| work.lambda[k] = 3.0 * noise(k + 3));
+        let x0 = work.x0.clone();
+        system.evaluate(&x0, stage.start, &mut work.at_start);
+        residual(&model, &stage, &mut work);
+        work.tangent(system, &stage, 1.0);
+        let size = n + system.constraints();
+        let assembled: Vec<f64> = (0..size * n).map(|k| work.kkt.solver.entry(k / n, k % n)).collect();
+        for column in 0..n {
+            let kept = work.d[column];
+            work.d[column] = kept + NUDGE;
+            let after = residual(&model, &stage, &mut work);
+            work.d[column] = kept - NUDGE;
+            let before = residual(&model, &stage, &mut work);
+            work.d[column] = kept;
+            for row in 0..size {
+                let difference = (after[row] - before[row]) / (2.0 * NUDGE);
+                let error = (assembled[row * n + column] - difference).abs();
+                let scale = 1.0 + difference.abs();
+                assert!(
+                    error <= TOLERANCE * scale,
+                    "{name}, {sampling:?}, {rows:?}: entry ({row}, {column}) is {} and should be {difference}",
+                    assembled[row * n + column]
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn every_kind_has_the_tangent_of_its_residual() {
+    let mut kinds = 0;
+    for kind in constraints::KINDS.iter().chain(forces::KINDS) {
+        check(kind.name, kind.example);
+        kinds += 1;
+    }
+    println!("{kinds} kinds");
+    assert!(kinds >= 9);
+}
+
+#[test]
+fn every_example_has_the_tangent_of_its_residual() {
+    let folder = format!("{}/../../examples", env!("CARGO_MANIFEST_DIR"));
+    for file in std::fs::read_dir(folder).unwrap() {
+        let path = file.unwrap().path();
+        check(&path.display().to_string(), &std::fs::read_to_string(&path).unwrap());
+    }
+}
