@@ -52,7 +52,7 @@ pub struct OutputArguments {
     #[arg(long = "format", value_name = "FORMAT", default_value = "csv")]
     pub formats: Vec<String>,
     /// Record every N-th step
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub every: Option<u64>,
     /// Print the summary as JSON on standard output, nothing else there
     #[arg(long)]

@@ -8,14 +8,16 @@ use std::sync::atomic::AtomicBool;
 
 use cpu_time::ProcessTime;
 use holonom::analysis;
-use holonom::record::{RecordedPoint, Recorder, Recording};
+use holonom::record::{COLUMNS, RecordedPoint, Recorder, Recording};
 use holonom::simulation::{Method, Simulation, State, Status};
+use holonom_io::Writer;
 use holonom_report::{Report, Run};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
 use crate::progress::Watched;
+use crate::table::short;
 
 /// A finished run.
 pub struct Finished {
@@ -42,6 +44,10 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
     let model = &loaded.model;
     let Order { method, step, end, every, quiet, resume } = order;
     let name = method.name.clone();
+    if let Some(state) = resume.as_ref().filter(|state| state.t >= end) {
+        let message = format!("the checkpoint is at {} s, and the run ends at {} s", short(state.t), short(end));
+        return Err(Failure::usage(message, "give a later --end"));
+    }
     let mut simulation = match resume {
         Some(state) => Simulation::resume(&model.system, method, step, state).ok_or_else(|| {
             Failure::usage("the checkpoint is of another model", "resume with the model and the --set options that made it")
@@ -85,6 +91,35 @@ fn announce_corrections(simulation: &Simulation<'_>) {
     }
 }
 
+/// The writers of the formats asked for.
+pub fn writers(formats: &[String]) -> Result<Vec<&'static Writer>, Failure> {
+    let find = |format: &String| {
+        holonom_io::WRITERS.iter().find(|writer| writer.name == format).ok_or_else(|| {
+            let known: Vec<&str> = holonom_io::WRITERS.iter().map(|writer| writer.name).collect();
+            Failure::usage(format!("there is no format `{format}`"), format!("take one of: {}", known.join(", ")))
+        })
+    };
+    formats.iter().map(find).collect()
+}
+
+/// A recording without the points that are not among `points`.
+fn only(recording: &Recording, points: &[String], axes: &str) -> Recording {
+    let of_point = |point: &String| {
+        let names = ["", "v"].map(|rate| axes.chars().map(|axis| format!("{point}.{rate}{axis}")).collect::<Vec<_>>());
+        names.concat()
+    };
+    let names: Vec<String> = COLUMNS.iter().map(|name| name.to_string()).chain(points.iter().flat_map(of_point)).collect();
+    let columns: Vec<&[f64]> = names.iter().filter_map(|name| recording.column(name)).collect();
+    let mut kept = Recording::new(names);
+    let mut row = Vec::new();
+    for k in 0..recording.rows() {
+        row.clear();
+        row.extend(columns.iter().map(|column| column[k]));
+        kept.push(&row);
+    }
+    kept
+}
+
 /// Makes a folder and writes into it through a closure for each file.
 pub struct Folder {
     pub path: PathBuf,
@@ -108,13 +143,11 @@ impl Folder {
         file.map_err(|source| Failure::File { doing: "write", path, source })
     }
 
-    /// Writes the table of a run in each format.
-    pub fn write_trajectory(&self, prefix: &str, formats: &[String], recording: &Recording) -> Result<(), Failure> {
-        for format in formats {
-            let writer = holonom_io::WRITERS.iter().find(|writer| writer.name == format).ok_or_else(|| {
-                let known: Vec<&str> = holonom_io::WRITERS.iter().map(|writer| writer.name).collect();
-                Failure::usage(format!("there is no format `{format}`"), format!("take one of: {}", known.join(", ")))
-            })?;
+    /// Writes the table of a run with each writer: the points that `[output]` asks for, in its order.
+    pub fn write_trajectory(&self, prefix: &str, writers: &[&Writer], loaded: &Loaded, recording: &Recording) -> Result<(), Failure> {
+        let asked = loaded.model.output.points.as_ref().map(|points| only(recording, points, loaded.model.axes));
+        let recording = asked.as_ref().unwrap_or(recording);
+        for writer in writers {
             self.write(&format!("{prefix}.{}", writer.extension), |out| (writer.write)(recording, out))?;
         }
         Ok(())

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use holonom::analysis::{projection_form, rank};
 use holonom::projection::Solve;
-use holonom::simulation::{PENALTY, Simulation};
+use holonom::simulation::Simulation;
 use serde_json::json;
 
 use crate::failure::Failure;
@@ -14,6 +14,10 @@ use crate::table::{list, short};
 
 /// Independence of a row below which the model is said to be near a singular configuration.
 const NEAR_SINGULAR: f64 = 1e-4;
+
+/// Penalty α in (28) where the projection has none. Whether D has a positive eigenvalue does not depend on it, and with a
+/// large one it drowns in the round-off of eigenvalues that grow with α².
+const ANY_PENALTY: f64 = 1.0;
 
 /// Validates a model and says what it is made of.
 pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
@@ -30,7 +34,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let near = found.weakest.as_ref().filter(|(_, independence)| *independence < NEAR_SINGULAR);
     let form = match arguments.projection {
         true => {
-            let alpha = if let Solve::Penalty(alpha) = projection.solve { alpha } else { PENALTY };
+            let alpha = if let Solve::Penalty(alpha) = projection.solve { alpha } else { ANY_PENALTY };
             let form = projection_form(system, &projection, alpha, step);
             Some(form.ok_or_else(|| Failure::usage("the mass matrix is not positive definite", "give every free point some mass"))?)
         }

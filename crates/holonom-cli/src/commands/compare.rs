@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::failure::Failure;
 use crate::load;
 use crate::options::CompareArguments;
-use crate::output::{Finished, Folder, Order, simulate};
+use crate::output::{Finished, Folder, Order, simulate, writers};
 use crate::progress::interrupt_flag;
 use crate::table::{short, table};
 
@@ -27,6 +27,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
     };
     let interrupted = interrupt_flag();
     let output = &arguments.output;
+    let writers = writers(&output.formats)?;
     let mut finished: Vec<(String, Finished)> = Vec::new();
     let mut shown = None;
     for step in &steps {
@@ -53,7 +54,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
     let folder = Folder::create(&path)?;
     for (label, run) in &finished {
         let prefix = label.replace(", ", "-").replace(' ', "");
-        folder.write_trajectory(&prefix, &output.formats, &run.recording)?;
+        folder.write_trajectory(&prefix, &writers, &loaded, &run.recording)?;
     }
     let summaries: Vec<&Value> = finished.iter().map(|(_, run)| &run.summary).collect();
     folder.write("summary.json", |out| holonom_io::write_json(&serde_json::json!(summaries), out))?;

@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use holonom_io::Writer;
 use holonom_report::Run;
 use serde_json::Value;
 
 use crate::failure::{Failure, STOPPED};
 use crate::load::{self, Loaded};
-use crate::options::RunArguments;
-use crate::output::{Finished, Folder, Order, simulate};
+use crate::options::{OutputArguments, RunArguments};
+use crate::output::{Finished, Folder, Order, simulate, writers};
 use crate::progress::interrupt_flag;
 use crate::table::{list, short};
 
@@ -20,6 +21,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     overrides.number("simulation.end", arguments.end.as_deref());
     let loaded = load::load(&arguments.model.model, overrides)?;
     let output = &arguments.output;
+    let writers = writers(&output.formats)?;
     let order = Order {
         method: load::method(&loaded, arguments.method.as_deref())?,
         step: loaded.step()?,
@@ -31,7 +33,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let path = output.out.clone().unwrap_or_else(|| PathBuf::from(format!("results/{}-{}", loaded.name, order.method.name)));
     let folder = Folder::create(&path)?;
     let finished = simulate(&loaded, order, &interrupt_flag())?;
-    write(&folder, &loaded, &finished, arguments)?;
+    write(&folder, &loaded, &finished, &writers, output)?;
     if output.json {
         println!("{}", serde_json::to_string_pretty(&finished.summary).expect("a summary is plain data"));
     } else if !output.quiet {
@@ -41,11 +43,10 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     Ok(if finished.completed { ExitCode::SUCCESS } else { ExitCode::from(STOPPED) })
 }
 
-fn write(folder: &Folder, loaded: &Loaded, finished: &Finished, arguments: &RunArguments) -> Result<(), Failure> {
-    let output = &arguments.output;
+fn write(folder: &Folder, loaded: &Loaded, finished: &Finished, writers: &[&Writer], output: &OutputArguments) -> Result<(), Failure> {
     folder.write("summary.json", |out| holonom_io::write_json(&finished.summary, out))?;
     folder.write("checkpoint.json", |out| holonom_io::write_json(&load::checkpoint_value(&finished.state), out))?;
-    folder.write_trajectory("trajectory", &output.formats, &finished.recording)?;
+    folder.write_trajectory("trajectory", writers, loaded, &finished.recording)?;
     if !output.no_report {
         let runs =
             [Run { label: &finished.method, recording: &finished.recording, scene: &loaded.model.scene, summary: &finished.summary }];

@@ -93,18 +93,17 @@ impl Source {
 fn decode(name: &str, bytes: &[u8]) -> Result<String, String> {
     if bytes.len() > LARGEST_FILE {
         let size = bytes.len() / (1024 * 1024);
-        return Err(render::whole(
-            name,
-            &format!("the file has {size} MB, and a model at most {}", LARGEST_FILE / (1024 * 1024)),
-            "use repeat for arrays of points and bars",
-        ));
+        let message = format!("the file has {size} MB, and a model at most {} MB", LARGEST_FILE / (1024 * 1024));
+        return Err(render::whole(&format!("{name}:1:1"), &message, "use repeat for arrays of points and bars"));
     }
     let text = match std::str::from_utf8(bytes) {
         Ok(text) => text,
         Err(error) => {
-            let line = 1 + bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
+            let valid = String::from_utf8_lossy(&bytes[..error.valid_up_to()]);
+            let line = 1 + valid.matches('\n').count();
+            let column = 1 + valid.chars().rev().take_while(|&c| c != '\n').count();
             return Err(render::whole(
-                &format!("{name}:{line}"),
+                &format!("{name}:{line}:{column}"),
                 "the file is not text (UTF-8)",
                 "give a model file in TOML; `holonom examples` shows some",
             ));
@@ -118,7 +117,14 @@ fn decode(name: &str, bytes: &[u8]) -> Result<String, String> {
         ));
     }
     if let Some(at) = too_deep(text) {
-        return Err(render::at(name, text, at..at + 1, "", &format!("brackets are nested deeper than {DEEPEST}"), "take brackets away"));
+        return Err(render::at(
+            name,
+            text,
+            at..at + 1,
+            "",
+            &format!("brackets are nested deeper than {DEEPEST}"),
+            "close every bracket where its list or table ends, and nest fewer",
+        ));
     }
     Ok(text.to_string())
 }

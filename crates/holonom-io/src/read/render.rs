@@ -26,7 +26,7 @@ pub(super) fn fault(name: &str, text: &str, places: &Places, fault: &Fault) -> S
             at(name, text, bytes, &fault.path, &fault.message, &fault.cure)
         }
         None => {
-            let place = if fault.path.is_empty() { name.to_string() } else { format!("{name} ({})", fault.path) };
+            let place = if fault.path.is_empty() { format!("{name}:1:1") } else { format!("{name} ({})", fault.path) };
             whole(&place, &format!("{}{}", fault.message, offending(fault)), &fault.cure)
         }
     }

@@ -20,9 +20,24 @@ pub(super) fn parse(text: &str, places: &mut Places) -> Result<Value, SyntaxErro
     let table = DeTable::parse(text).map_err(|error| SyntaxError {
         message: error.message().to_string(),
         bytes: error.span().unwrap_or(0..0),
-        cure: "see toml.io for how TOML is written; texts and expressions stand in quotes",
+        cure: cure(error.message()),
     })?;
     convert_table("", table.get_ref(), places).map(Value::Table)
+}
+
+/// Beginnings of messages about TOML, and what then usually helps.
+const CURES: &[(&str, &str)] = &[
+    ("duplicate key", "a key or table may be there only once: remove one, or give it another name"),
+    ("string values must be quoted", "write a value behind the =; texts and expressions stand in quotes"),
+    ("key with no value", "write KEY = VALUE, or [TABLE] above its keys"),
+    ("missing comma", "put a comma between items, and end the list with ]"),
+    ("unexpected key or value", "write one key a line; decimal numbers have a point: 1.5"),
+    ("invalid basic string", "end the text with \" on the same line"),
+];
+
+fn cure(message: &str) -> &'static str {
+    let known = CURES.iter().find(|(beginning, _)| message.trim_start().starts_with(beginning));
+    known.map_or("see toml.io for how TOML is written; texts and expressions stand in quotes", |&(_, cure)| cure)
 }
 
 /// A single value as it stands behind an equals sign.

@@ -148,7 +148,7 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
 
 /// What the next increment may leave behind, relative to the mechanism, for the factors to be kept: another iteration
 /// with them is cheaper than new ones.
-const KEPT: f64 = 1e-13;
+const KEPT: f64 = 1e-10;
 
 /// How a Newton iteration goes: sizes of its increments, relative to the mechanism.
 pub(super) struct Convergence {
@@ -172,11 +172,12 @@ impl Convergence {
         self.stalls
     }
 
-    /// Whether the factors of the last iteration serve the next one: they are off by what the last turned, and what
+    /// Whether the factors serve the next iteration: they are off by all that has turned since they were made, and what
     /// they leave is that much smaller than the next increment.
     pub(super) fn keeps_factors(&mut self) -> bool {
-        let keeps = self.increment * self.turn * self.turn <= KEPT;
-        self.stale = if keeps { self.turn } else { 0.0 };
+        let stale = self.stale + self.turn;
+        let keeps = self.increment * stale * stale <= KEPT;
+        self.stale = if keeps { stale } else { 0.0 };
         keeps
     }
 

@@ -115,7 +115,9 @@ impl Assembly<'_> {
         let items = entry.list(key)?;
         if !(least..=most).contains(&items.len()) {
             let wanted = if least == most { format!("{least}") } else { format!("at least {least}") };
-            return Err(entry.refuse(key, format!("`{key}` wants {wanted} points, and this has {}", items.len()), ""));
+            let names = ["\"A\"", "\"B\"", "\"C\""];
+            let cure = format!("write {key} = [{}], with names of points, \"ground\" or fixed places", names[..least.min(3)].join(", "));
+            return Err(entry.refuse(key, format!("`{key}` wants {wanted} points, and this has {}", items.len()), cure));
         }
         let ends = all(items.iter().enumerate().map(|(k, item)| self.end_in(entry, Spot { key, item: Some(k) }, item)))?;
         match (1..ends.len()).find(|&k| ends[k].place == ends[k - 1].place) {
@@ -155,7 +157,7 @@ impl Assembly<'_> {
             }
             Value::List(items) => {
                 let message = format!("a fixed place has {} numbers here, and this has {}", self.dimension(), items.len());
-                Err(entry.refuse(spot, message, ""))
+                Err(entry.refuse(spot, message, "give one for each axis of the model"))
             }
             other => {
                 let message = format!("the name of a point is wanted here, and this is {}", other.type_name());
@@ -205,7 +207,7 @@ impl Assembly<'_> {
         if off.abs() <= CONTRADICTION * size.abs() {
             return Ok(());
         }
-        Err(entry.refuse_all(what(), "correct the positions at the start"))
+        Err(entry.refuse_all(what(), "correct the positions at the start, or what contradicts them here"))
     }
 
     /// The name of one of several rows of an entry.

@@ -45,6 +45,12 @@ impl<'a> Entry<'a> {
         self.fault(spot, None, message.into(), cure.into())
     }
 
+    /// Records a fault of a key itself, and not of its value.
+    pub fn refuse_key(&self, key: &str, message: impl Into<String>, cure: impl Into<String>) -> Refused {
+        let fault = || Fault { on_key: true, ..Fault::new(key_path(self.path, key), key, self.told(message.into()), cure) };
+        self.sink.report(fault)
+    }
+
     /// Records a fault of the entry as a whole.
     pub fn refuse_all(&self, message: impl Into<String>, cure: impl Into<String>) -> Refused {
         self.sink.report(|| Fault::new(self.path, self.name, self.told(message.into()), cure))
@@ -96,7 +102,14 @@ impl<'a> Entry<'a> {
     }
 
     fn wanted(&self, spot: Spot<'_>, what: &str, value: &Value) -> Refused {
-        self.refuse(spot, format!("`{}` wants {what}, and this is {}", spot.key, value.type_name()), "")
+        let cure = match what {
+            "a number" => "write a number such as 1.5, or an expression in quotes",
+            "true or false" => "write true or false, without quotes",
+            "a text" | "texts" => "put it in quotes",
+            "a list" => "put the items in square brackets, with commas between them",
+            _ => "write its keys in braces, or below a line with its name in square brackets",
+        };
+        self.refuse(spot, format!("`{}` wants {what}, and this is {}", spot.key, value.type_name()), cure)
     }
 
     /// A value that must be there.
@@ -123,7 +136,11 @@ impl<'a> Entry<'a> {
     /// A number above zero.
     pub fn positive(&self, key: &str) -> Read<f64> {
         let number = self.number(key)?;
-        if number > 0.0 { Ok(number) } else { Err(self.refuse(key, format!("`{key}` must be above 0, and this is {number}"), "")) }
+        if number > 0.0 {
+            Ok(number)
+        } else {
+            Err(self.refuse(key, format!("`{key}` is {number}, and must be above 0"), "give a number above 0"))
+        }
     }
 
     /// A whole number of at least `least`.
@@ -132,7 +149,11 @@ impl<'a> Entry<'a> {
         if number.fract() == 0.0 && number >= f64::from(least) && number <= f64::from(u32::MAX) {
             return Ok(number as u32);
         }
-        Err(self.refuse(key, format!("`{key}` wants a whole number of at least {least}, and this is {number}"), ""))
+        Err(self.refuse(
+            key,
+            format!("`{key}` wants a whole number of at least {least}, and this is {number}"),
+            format!("write {key} = {}, or more", least.max(1)),
+        ))
     }
 
     /// A finite number from a number or an expression.
@@ -148,8 +169,12 @@ impl<'a> Entry<'a> {
         if number.is_finite() {
             return Ok(number);
         }
-        let shown = if number.is_nan() { "not a number (NaN)" } else { "infinite" };
-        Err(self.refuse(spot, format!("this number is {shown}"), "every number must be finite"))
+        let message = if number.is_nan() { "this is not a number (NaN)" } else { "this number is infinite" };
+        let cure = match value {
+            Value::Text(_) => "every number must be finite: look for a division by zero, or a function where it has no value",
+            _ => "every number must be finite",
+        };
+        Err(self.refuse(spot, message, cure))
     }
 
     /// True or false.
@@ -218,7 +243,11 @@ impl<'a> Entry<'a> {
             return Ok(items);
         }
         let kind = if size == 2 { "a planar model" } else { "a model in space" };
-        Err(self.refuse(key, format!("`{key}` wants {size} {what} in {kind}, and this has {}", items.len()), ""))
+        Err(self.refuse(
+            key,
+            format!("`{key}` wants {size} {what} in {kind}, and this has {}", items.len()),
+            "give one for each axis of the model",
+        ))
     }
 
     /// A formula of some variables.

@@ -111,7 +111,7 @@ const NEAR: f64 = 0.5;
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let wanted: Vec<char> = name.chars().take(64).collect();
     let best = known.into_iter().map(|candidate| (distance(&wanted, candidate), candidate)).min_by_key(|&(d, _)| d)?;
-    let limit = (NEAR * wanted.len().max(best.1.chars().count()) as f64).ceil() as usize;
+    let limit = (NEAR * wanted.len().max(best.1.chars().count()) as f64) as usize;
     (best.0 <= limit.max(1)).then_some(best.1)
 }
 
@@ -122,9 +122,9 @@ pub fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone)
         None => {
             let all: Vec<&str> = known.into_iter().take(25).collect();
             match all.len() {
-                0 => String::new(),
+                0 => "add it first, or remove this".to_string(),
                 1..25 => format!("known are: {}", all.join(", ")),
-                _ => String::new(),
+                _ => "name one that is there".to_string(),
             }
         }
     }

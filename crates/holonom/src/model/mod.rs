@@ -223,6 +223,10 @@ fn gravity(root: &Entry<'_>, axes: Axes) -> Read<[f64; 3]> {
 fn build_kinds(sections: &mut Sections<'_>, root: &Table, section: &str, kinds: &[Kind], assembly: &mut Assembly<'_>) {
     let type_key = Key::required("type", Shape::Text, "", "");
     let kind_of = |entry: &Entry<'_>| {
+        if !entry.has("type") {
+            let known: Vec<String> = kinds.iter().map(|kind| format!("\"{}\"", kind.name)).collect();
+            return Err(entry.refuse_all(format!("`{}` has no `type`", entry.name), format!("add type = {}", known.join(" or "))));
+        }
         let text = entry.text("type")?;
         let known = kinds.iter().find(|kind| kind.name == text);
         known.ok_or_else(|| {

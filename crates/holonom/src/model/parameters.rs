@@ -29,11 +29,15 @@ pub fn read(table: &Table, sink: &Sink) -> HashMap<String, Known> {
 fn is_valid(entry: &Entry<'_>, name: &str) -> bool {
     let starts = name.chars().next().is_some_and(|c| c.is_alphabetic() || c == '_');
     if !starts || !name.chars().all(|c| c.is_alphanumeric() || c == '_') {
-        entry.refuse(name, format!("`{name}` cannot be used as a name in expressions"), "use letters, digits and _, and a letter first");
+        entry.refuse_key(
+            name,
+            format!("`{name}` cannot be used as a name in expressions"),
+            "use letters, digits and _, and a letter first",
+        );
         return false;
     }
     if expression::is_reserved(name) {
-        entry.refuse(name, format!("`{name}` is a constant or a function of every expression"), "give the parameter another name");
+        entry.refuse_key(name, format!("`{name}` is a constant or a function of every expression"), "give the parameter another name");
         return false;
     }
     true

@@ -71,7 +71,7 @@ fn spec(entry: &Entry<'_>, dim: usize) -> Read<Spec> {
         Some(motion) => {
             for (given, key) in [(position.is_some(), "position"), (velocity.is_some(), "velocity"), (fixed, "fixed")] {
                 if given {
-                    return Err(entry.refuse(key, format!("a point with a `motion` takes no `{key}`"), "keep one of the two"));
+                    return Err(entry.refuse_key(key, format!("a point with a `motion` takes no `{key}`"), "keep one of the two"));
                 }
             }
             (driven_start(entry, &motion)?, Motion::Driven(motion))
@@ -144,7 +144,9 @@ fn signals(programs: Vec<Program>) -> [Arc<dyn Signal>; 3] {
 pub fn check_mass(assembly: &Assembly<'_>) {
     let mut told: HashSet<&str> = HashSet::new();
     for point in &assembly.points {
-        let massless = point.mass == 0.0 && !point.carries_bar && point.end.free;
+        // What is wrong with a faulty entry may be its mass.
+        let name = point.name.split('[').next().unwrap_or(&point.name);
+        let massless = !assembly.faulty.contains(name) && point.mass == 0.0 && !point.carries_bar && point.end.free;
         if massless && told.insert(&point.path) {
             let message = format!("the free point `{}` has no mass", point.name);
             let cure = "give it a mass, attach a bar with mass, or tie it with fixed = true";

@@ -42,6 +42,7 @@ impl<'a> Sections<'a> {
             Some(other) => {
                 let message = format!("`{section}` is {}, and a table of named entries is wanted", other.type_name());
                 self.sink.report(|| Fault::new(section, other.quoted(), message, format!("write [{section}.NAME]")));
+                faulty.insert(section.to_string());
                 return faulty;
             }
         };
@@ -96,7 +97,10 @@ impl<'a> Sections<'a> {
             return Err(report(format!("\"{name}\" cannot be a name"), "use letters, digits, _ and -"));
         }
         if !self.names.insert(name.to_string()) {
-            return Err(report(format!("the name `{name}` is used twice"), "names are unique over points, bars, constraints and forces"));
+            return Err(report(
+                format!("the name `{name}` is used twice"),
+                "give one of them another name: points, bars, constraints and forces share their names",
+            ));
         }
         Ok(())
     }

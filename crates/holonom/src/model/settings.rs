@@ -158,7 +158,7 @@ fn weights(projection: &Entry<'_>, assembly: &Assembly<'_>) -> Read<Option<Vec<(
         let weight = entry.positive(name)?;
         match assembly.by_name.get(name) {
             Some(_) => Ok((name.to_string(), weight)),
-            None => Err(entry.refuse(
+            None => Err(entry.refuse_key(
                 name,
                 format!("there is no point `{name}`"),
                 suggest(name, assembly.points.iter().map(|point| point.name.as_str())),

@@ -6,7 +6,7 @@ use crate::model::expression::{Program, TimeProgram};
 use crate::model::fault::Read;
 use crate::model::key::{Key, Kind, Shape};
 use crate::record::LineKind;
-use crate::system::Signal;
+use crate::system::{Constant, Signal};
 
 pub(super) const KIND: Kind = Kind {
     name: "distance",
@@ -36,7 +36,10 @@ fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
     let [a, b] = &ends;
     let start = norm(difference(a, b));
     let target: Arc<dyn Signal> = match length {
-        None => Arc::new(HalfSquare(Program::constant(started(entry, &ends, start)?))),
+        None => {
+            let start = started(entry, &ends, start)?;
+            Arc::new(Constant(0.5 * start * start))
+        }
         Some(length) => {
             let at_start = TimeProgram(length.clone()).at(0.0)[0];
             if at_start == 0.0 {
@@ -48,7 +51,10 @@ fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
             let contradiction =
                 || format!("the length is {at_start} m, but at the start `{}` and `{}` are {start} m apart", a.name, b.name);
             assembly.check_start(entry, start - at_start, at_start, contradiction)?;
-            Arc::new(HalfSquare(length))
+            match length.as_constant() {
+                Some(length) => Arc::new(Constant(0.5 * length * length)),
+                None => Arc::new(HalfSquare(length)),
+            }
         }
     };
     let half_square = assembly.builder.square(&[(b.place, 1.0), (a.place, -1.0)]);

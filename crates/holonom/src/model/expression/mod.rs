@@ -177,4 +177,8 @@ impl Signal for TimeProgram {
         let value = self.dual(t);
         [value.re, value.v1, value.v2]
     }
+
+    fn is_constant(&self) -> bool {
+        self.0.as_constant().is_some()
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::functions::{CONSTANTS, FUNCTIONS, Function, real_power};
 use super::{Mistake, Op, Program, STACK, Scope, Value};
-use crate::model::fault::suggest;
+use crate::model::fault::{nearest, suggest};
 
 /// Deepest nesting of brackets, signs and powers.
 const DEPTH: usize = 50;
@@ -23,7 +23,7 @@ pub(super) fn parse(text: &str, variables: &[&str], scope: &Scope<'_>) -> Result
         Token::Close => Err(parser.mistake("this bracket was never opened", "remove it, or open one before")),
         Token::Comma => Err(parser.mistake("a comma only separates arguments of a function", "decimal numbers have a point: 0.5")),
         Token::Number(_) | Token::Name(_) | Token::Open => Err(parser.mistake("an operator is missing here", "write 2*x, not 2x")),
-        Token::Operator(_) => Err(parser.mistake("this cannot be here", "")),
+        Token::Operator(_) => Err(parser.mistake("this cannot be here", "remove it")),
     }
 }
 
@@ -216,7 +216,7 @@ impl Parser<'_> {
                 self.emit(op)
             }
             Token::End => Err(self.mistake("the expression ends too early", "a number or a name is missing at its end")),
-            _ => Err(self.mistake("a number or a name is missing here", "")),
+            _ => Err(self.mistake("a number or a name is missing here", "put one before this, or remove an operator")),
         }
     }
 
@@ -278,11 +278,18 @@ impl Parser<'_> {
 
     fn unknown(&self, name: &str) -> Mistake {
         let constants = CONSTANTS.iter().map(|constant| constant.0);
-        let known: Vec<&str> = self.variables.iter().copied().chain(self.scope.names()).chain(constants).collect();
+        // Parameters have no order of their own, and messages must be the same every time.
+        let mut named: Vec<&str> = self.scope.names().collect();
+        named.sort_unstable();
+        let known: Vec<&str> = self.variables.iter().copied().chain(named).chain(constants).collect();
         if FUNCTIONS.iter().any(|function| function.0 == name) {
             return self.mistake(format!("the function `{name}` needs its arguments"), format!("write {name}(…)"));
         }
-        self.mistake(format!("the name `{name}` is not known here"), suggest(name, known))
+        let cure = match nearest(name, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("add `{name}` to [parameters], or use what is {}", suggest(name, known).replace("known are", "known here")),
+        };
+        self.mistake(format!("the name `{name}` is not known here"), cure)
     }
 
     /// Appends an operation, or its result when all it works on is constant.
