@@ -1,5 +1,6 @@
 //! From what was typed to a model and a method.
 
+use std::io::Read;
 use std::path::Path;
 
 use holonom::model::{Model, ProjectionSettings};
@@ -55,13 +56,20 @@ pub fn example(name: &str) -> Result<&'static str, Failure> {
     })
 }
 
+/// The bytes of a file, but no more than show that it is too large for a model.
+fn read_at_most(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)?.take(holonom_io::LARGEST_FILE as u64 + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
 /// Reads a model file, or an example, with the overrides of the command line.
 pub fn load(argument: &str, overrides: Overrides) -> Result<Loaded, Failure> {
     let (name, shown, bytes) = match argument.strip_prefix("example:") {
         Some(name) => (name.to_string(), format!("{name}.toml"), example(name)?.as_bytes().to_vec()),
         None => {
             let path = Path::new(argument);
-            let bytes = std::fs::read(path).map_err(|source| Failure::File { doing: "read", path: path.into(), source })?;
+            let bytes = read_at_most(path).map_err(|source| Failure::File { doing: "read", path: path.into(), source })?;
             (path.file_stem().map_or_else(|| argument.to_string(), |stem| stem.to_string_lossy().into_owned()), argument.to_string(), bytes)
         }
     };

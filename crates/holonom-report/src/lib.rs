@@ -1,7 +1,7 @@
 //! The HTML report of one or several runs: one file that needs no network and opens from disk.
 //!
 //! The page is made of three parts. What can be read without a script (title, key figures, summary, model file) is written as
-//! HTML here. The numbers go in as JSON ([`data`]). The viewer, bundled by `build.rs` from `viewer/`, turns them into the moving
+//! HTML here. The numbers go in as JSON. The viewer, bundled by `build.rs` from `viewer/`, turns them into the moving
 //! mechanism and the plots; without the feature `viewer` the page consists of the first part alone.
 
 mod base64;

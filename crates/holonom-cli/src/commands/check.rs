@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use holonom::analysis::{projection_form, rank};
 use holonom::projection::Solve;
-use holonom::simulation::Simulation;
+use holonom::simulation::{PENALTY, Simulation};
 use serde_json::json;
 
 use crate::failure::Failure;
@@ -14,10 +14,6 @@ use crate::table::{list, short};
 
 /// Independence of a row below which the model is said to be near a singular configuration.
 const NEAR_SINGULAR: f64 = 1e-4;
-
-/// Penalty α in (28) where the projection has none. Whether D has a positive eigenvalue does not depend on it, and with a
-/// large one it drowns in the round-off of eigenvalues that grow with α².
-const ANY_PENALTY: f64 = 1.0;
 
 /// Validates a model and says what it is made of.
 pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
@@ -34,7 +30,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let near = found.weakest.as_ref().filter(|(_, independence)| *independence < NEAR_SINGULAR);
     let form = match arguments.projection {
         true => {
-            let alpha = if let Solve::Penalty(alpha) = projection.solve { alpha } else { ANY_PENALTY };
+            let alpha = if let Solve::Penalty(alpha) = projection.solve { alpha } else { PENALTY };
             let form = projection_form(system, &projection, alpha, step);
             Some(form.ok_or_else(|| Failure::usage("the mass matrix is not positive definite", "give every free point some mass"))?)
         }
@@ -50,7 +46,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
         });
         if let Some(form) = form {
             value["projection"] = json!({
-                "largest_eigenvalue": form.largest, "smallest_eigenvalue": form.smallest, "dissipative": form.dissipative,
+                "growth": form.growth, "dissipative": form.dissipative,
                 "condition": form.condition, "growth_bound": form.growth_bound,
             });
         }
@@ -76,11 +72,16 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     ];
     println!("{}\n{}", loaded.title(), list(&items));
     if let Some(form) = form {
-        let verdict = if form.dissipative { "never adds energy" } else { "can add energy" };
+        let verdict = if form.dissipative {
+            "negative semidefinite: the projection never adds energy (30)"
+        } else {
+            "indefinite: the projection can add energy (30)"
+        };
         let items = [
-            ("D", format!("eigenvalues {} … {} kg: the projection {verdict} (30)", short(form.smallest), short(form.largest))),
+            ("D", verdict.to_string()),
+            ("growth", format!("kinetic energy times {} at most, at this state", short(form.growth))),
             ("κ", format!("cond(M⁻¹A) = {}", short(form.condition))),
-            ("bound", format!("kinetic energy grows at most by the factor {} in one projection, (κ+1)²/4κ", short(form.growth_bound))),
+            ("bound", format!("kinetic energy times {} at most, at any state: (κ+1)²/4κ", short(form.growth_bound))),
         ];
         println!("\nvelocity projection at the start\n{}", list(&items));
     }

@@ -48,7 +48,8 @@ pub fn stability(arguments: &StabilityArguments) -> Result<ExitCode, Failure> {
             status == Status::Completed
         });
         let fails = found.fails.map_or("none tried".to_string(), short);
-        rows.push(vec![name.clone(), short(found.completes), fails, found.runs.to_string()]);
+        let completes = if found.completes > 0.0 { short(found.completes) } else { "none".into() };
+        rows.push(vec![name.clone(), completes, fails, found.runs.to_string()]);
         results.push(json!({ "method": name, "completes": found.completes, "fails": found.fails, "runs": found.runs }));
     }
     if arguments.json {

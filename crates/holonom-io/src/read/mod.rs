@@ -8,8 +8,8 @@ use holonom::model::{Faults, Model, Table, Value};
 
 use places::Places;
 
-/// Largest model file that is read, bytes: larger ones are no models, and reading them would take memory for nothing.
-pub const LARGEST_FILE: usize = 16 * 1024 * 1024;
+/// Largest model file that is read, bytes: some 40 000 entries, while parsing takes up to fifty times as much memory.
+pub const LARGEST_FILE: usize = 4 * 1024 * 1024;
 
 /// Deepest nesting of lists and tables in a model file.
 pub const DEEPEST: usize = 64;
@@ -92,8 +92,7 @@ impl Source {
 /// The text of a file, if it is one and could be a model.
 fn decode(name: &str, bytes: &[u8]) -> Result<String, String> {
     if bytes.len() > LARGEST_FILE {
-        let size = bytes.len() / (1024 * 1024);
-        let message = format!("the file has {size} MB, and a model at most {} MB", LARGEST_FILE / (1024 * 1024));
+        let message = format!("the file is larger than {} MB, and no model is", LARGEST_FILE / (1024 * 1024));
         return Err(render::whole(&format!("{name}:1:1"), &message, "use repeat for arrays of points and bars"));
     }
     let text = match std::str::from_utf8(bytes) {
@@ -129,19 +128,39 @@ fn decode(name: &str, bytes: &[u8]) -> Result<String, String> {
     Ok(text.to_string())
 }
 
-/// The first bracket that nests too deeply. Brackets in texts and comments count too: they are few in any model.
+/// The first bracket outside texts and comments that nests too deeply.
 fn too_deep(text: &str) -> Option<usize> {
-    let mut depth = 0_usize;
-    for (at, byte) in text.bytes().enumerate() {
-        match byte {
+    let bytes = text.as_bytes();
+    let (mut depth, mut at) = (0_usize, 0);
+    while at < bytes.len() {
+        match bytes[at] {
+            b'#' => at += bytes[at..].iter().position(|&byte| byte == b'\n').unwrap_or(bytes.len() - at),
+            quote @ (b'"' | b'\'') => at = end_of_text(bytes, at, quote),
             b'[' | b'{' => depth += 1,
             b']' | b'}' => depth = depth.saturating_sub(1),
-            b'\n' => (),
             _ => (),
         }
         if depth > DEEPEST {
             return Some(at);
         }
+        at += 1;
     }
     None
+}
+
+/// The last byte of a text that starts at `start`, or of its line when it is never closed.
+fn end_of_text(bytes: &[u8], start: usize, quote: u8) -> usize {
+    let triple = bytes[start..].starts_with(&[quote; 3]);
+    let mut at = start + if triple { 3 } else { 1 };
+    while at < bytes.len() {
+        match bytes[at] {
+            b'\\' if quote == b'"' => at += 1,
+            b'\n' if !triple => return at,
+            byte if byte == quote && !triple => return at,
+            byte if byte == quote && bytes[at..].starts_with(&[quote; 3]) => return at + 2,
+            _ => (),
+        }
+        at += 1;
+    }
+    bytes.len()
 }

@@ -75,11 +75,13 @@ pub(super) fn at(name: &str, text: &str, bytes: Range<usize>, path: &str, messag
 
 /// The part of a long line around a column, and where the column is in it.
 fn window(line: &str, column: usize) -> (String, usize) {
+    // What cannot be printed must not reach a terminal.
+    let clean = |c: char| if c.is_control() && c != '\t' { '·' } else { c };
     if line.chars().count() <= WIDEST {
-        return (line.to_string(), column);
+        return (line.chars().map(clean).collect(), column);
     }
     let skipped = column.saturating_sub(WIDEST / 2);
-    (line.chars().skip(skipped).take(WIDEST).collect(), column - skipped)
+    (line.chars().skip(skipped).take(WIDEST).map(clean).collect(), column - skipped)
 }
 
 fn cure_line(margin: &str, cure: &str) -> String {

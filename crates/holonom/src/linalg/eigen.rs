@@ -3,11 +3,6 @@
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, Side};
 
-/// Eigenvalues of a symmetric matrix (size × size, row-major), ascending. `None` when the iteration does not end.
-pub fn symmetric_eigenvalues(size: usize, values: &[f64]) -> Option<Vec<f64>> {
-    matrix(size, values).self_adjoint_eigenvalues(Side::Lower).ok()
-}
-
 /// Eigenvalues of M⁻¹A for symmetric A and positive definite M, ascending. `None` when M is not positive definite.
 pub fn relative_eigenvalues(size: usize, a: &[f64], m: &[f64]) -> Option<Vec<f64>> {
     let factor = matrix(size, m).llt(Side::Lower).ok()?;

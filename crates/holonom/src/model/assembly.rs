@@ -101,8 +101,10 @@ impl Assembly<'_> {
 
     /// The point named at a key.
     pub fn point(&self, entry: &Entry<'_>, key: &str) -> Read<End> {
-        let name = entry.text(key)?;
-        self.named(entry, key.into(), name)
+        match entry.text(key)? {
+            GROUND => Err(entry.refuse(key, format!("`{GROUND}` is a place, and a point is wanted here"), "name a [point.NAME]")),
+            name => self.named(entry, key.into(), name),
+        }
     }
 
     /// The end at a key.
@@ -183,6 +185,12 @@ impl Assembly<'_> {
         }
         if self.sink.is_full() {
             return Err(entry.refuse(spot, "", ""));
+        }
+        let begins = format!("{base}[");
+        let mut many = self.points.iter().filter(|point| point.name.starts_with(&begins));
+        if let (Some(first), last) = (many.next(), many.next_back()) {
+            let cure = format!("`{base}` is repeated, from `{}` to `{}`", first.name, last.unwrap_or(first).name);
+            return Err(entry.refuse(spot, format!("there is no point `{full}`"), cure));
         }
         let cure = match nearest(&full, self.points.iter().map(|point| point.name.as_str()).chain([GROUND])) {
             Some(near) => format!("did you mean `{near}`?"),

@@ -37,7 +37,11 @@ impl Repetition {
         }
         let mut values = Vec::new();
         let mut index = Vec::new();
-        fill(&ranges, &mut index, &mut values, most.saturating_mul(ranges.len()))?;
+        let mut room = most.saturating_mul(ranges.len()).saturating_add(ranges.len());
+        fill(&ranges, &mut index, &mut values, &mut room)?;
+        if values.len() > most.saturating_mul(ranges.len()) {
+            return Err(too_many(ranges[0].start));
+        }
         Ok(Self { names: ranges.into_iter().map(|range| range.name).collect(), values })
     }
 
@@ -92,13 +96,13 @@ fn range(part: &str, start: usize, outer: &[Range], scope: &Scope<'_>) -> Result
     Ok(Range { name: name_text.to_string(), low: low_program, high: high_program, start: start + lead })
 }
 
-/// Appends the values of all indices, the innermost running fastest.
-fn fill(ranges: &[Range], index: &mut Vec<f64>, values: &mut Vec<f64>, most: usize) -> Result<(), Mistake> {
+fn too_many(character: usize) -> Mistake {
+    mistake(character, format!("the repetitions of this model make more than {MOST} entries"), "use smaller ranges")
+}
+
+/// Appends the values of all indices, the innermost running fastest; `room` is how many steps it may still take.
+fn fill(ranges: &[Range], index: &mut Vec<f64>, values: &mut Vec<f64>, room: &mut usize) -> Result<(), Mistake> {
     let Some(range) = ranges.get(index.len()) else {
-        if values.len() + index.len() > most {
-            let message = format!("the repetitions of this model make more than {MOST} entries");
-            return Err(mistake(ranges[0].start, message, "use smaller ranges"));
-        }
         values.extend_from_slice(index);
         return Ok(());
     };
@@ -114,12 +118,14 @@ fn fill(ranges: &[Range], index: &mut Vec<f64>, values: &mut Vec<f64>, most: usi
         }
     }
     let (low, high) = (low.round() as i64, high.round() as i64);
-    if high - low >= most as i64 {
-        return Err(mistake(range.start, format!("the repetitions of this model make more than {MOST} entries"), "use smaller ranges"));
+    if high - low > *room as i64 {
+        return Err(too_many(range.start));
     }
     for value in low..=high {
         index.push(value as f64);
-        fill(ranges, index, values, most)?;
+        // Counted at every level: empty ranges inside of long ones make no entries and still take time.
+        *room = room.checked_sub(1).ok_or_else(|| too_many(range.start))?;
+        fill(ranges, index, values, room)?;
         index.pop();
     }
     Ok(())
@@ -148,11 +154,12 @@ mod tests {
             ("i = 0, j = 1 to 2", 0, "index and its range"),
             ("i = 0 to 2.5", 0, "no whole number"),
             ("i = 0 to 1e7", 0, "more than"),
-            ("i = 0 to 5000, j = 0 to 5000", 0, "more than"),
+            ("i = 0 to 5000, j = 0 to 5000", 15, "more than"),
             ("i = 0 to 1e300", 0, "no whole number"),
             ("i = 0 to x", 9, "not known"),
             ("i = 0 to 1, i = 0 to 1", 12, "something else"),
             ("pi = 0 to 1", 0, "something else"),
+            ("i = 0 to 999999, j = 0 to 999999, k = 1 to 0", 0, "more than"),
         ] {
             let mistake = read(text).expect_err(text);
             assert!(mistake.message.contains(words) && mistake.character == character, "{text}: {mistake:?}");

@@ -19,9 +19,6 @@ pub struct Settings {
     pub iteration: Option<String>,
     /// α in the paper's sense.
     pub penalty: Option<f64>,
-    /// ω and ξ of the stabilised penalty formulation (6), rad/s and 1.
-    pub omega: Option<f64>,
-    pub xi: Option<f64>,
     /// Newmark's β and γ.
     pub beta: Option<f64>,
     pub gamma: Option<f64>,
@@ -77,8 +74,6 @@ pub const SIMULATION: &[Key] = &[
     Key::optional("integrator", Shape::Text, "that of the method", "", "how time is stepped"),
     Key::optional("iteration", Shape::Text, "newton", "", "newton, nested or simultaneous"),
     Key::optional("penalty", Shape::Number, "scaled to the system", "", "α in the paper's sense"),
-    Key::optional("omega", Shape::Number, "that of the formulation", "rad/s", "ω of the stabilised penalty formulation (6)"),
-    Key::optional("xi", Shape::Number, "1", "", "ξ of the stabilised penalty formulation (6)"),
     Key::optional("beta", Shape::Number, "0.25", "", "Newmark's β"),
     Key::optional("gamma", Shape::Number, "0.5", "", "Newmark's γ"),
     Key::optional(
@@ -118,8 +113,6 @@ pub fn read(root: &Entry<'_>, assembly: &Assembly<'_>) -> Read<Settings> {
         integrator: word("integrator").unwrap_or(None),
         iteration: word("iteration").unwrap_or(None),
         penalty: positive("penalty").unwrap_or(None),
-        omega: positive("omega").unwrap_or(None),
-        xi: positive("xi").unwrap_or(None),
         beta: number("beta").unwrap_or(None),
         gamma: number("gamma").unwrap_or(None),
         constraint_at: entry

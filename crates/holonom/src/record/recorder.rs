@@ -15,11 +15,14 @@ pub struct RecordedPoint {
 pub const COLUMNS: [&str; 11] =
     ["t", "energy", "kinetic", "potential", "work", "dE_integrator", "dE_projection", "phi", "phi_dot", "phi_ddot", "iterations"];
 
-/// Records the start, every `every`-th step and nothing else.
+/// Records the start, every `every`-th step and nothing else. ΔE_i and ΔE_p of the steps between are summed into the
+/// row that follows them, so that the columns add up whatever is left out.
 pub struct Recorder {
     points: Vec<RecordedPoint>,
     every: u64,
     seen: u64,
+    /// ΔE_i and ΔE_p since the last row, J.
+    since: [f64; 2],
     row: Vec<f64>,
     recording: Recording,
 }
@@ -33,7 +36,7 @@ impl Recorder {
             positions.chain(axes.chars().map(|axis| format!("{}.v{axis}", point.name))).collect::<Vec<_>>()
         });
         let recording = Recording::new(common.chain(of_points));
-        Self { row: Vec::with_capacity(recording.columns().len()), points, every: every.max(1), seen: 0, recording }
+        Self { row: Vec::with_capacity(recording.columns().len()), points, every: every.max(1), seen: 0, since: [0.0; 2], recording }
     }
 
     /// What was recorded so far.
@@ -50,7 +53,8 @@ impl Recorder {
         let (audit, state) = (simulation.audit(), simulation.state());
         let dim = simulation.system().dimension();
         self.row.clear();
-        self.row.extend([state.t, audit.energy(), audit.kinetic, audit.potential, audit.work, audit.integrator, audit.projection]);
+        self.row.extend([state.t, audit.energy(), audit.kinetic, audit.potential, audit.work, self.since[0], self.since[1]]);
+        self.since = [0.0; 2];
         self.row.extend([audit.phi, audit.phi_dot, audit.phi_ddot, audit.iterations as f64]);
         for point in &self.points {
             match point.place {
@@ -71,6 +75,8 @@ impl Recorder {
 
 impl Observer for Recorder {
     fn after_step(&mut self, simulation: &Simulation<'_>) -> Verdict {
+        self.since[0] += simulation.audit().integrator;
+        self.since[1] += simulation.audit().projection;
         if self.seen.is_multiple_of(self.every) {
             self.record(simulation);
         }

@@ -39,7 +39,7 @@ stiffness = 100
 damping = 0.5
 rest_length = 0.9
 energy = "10*(length - 1)^4"
-force = "-0.1*rate^3"
+force = "0.1*rate^3"
 "#,
     build,
 };
