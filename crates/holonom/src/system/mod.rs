@@ -11,6 +11,7 @@ mod invariant;
 mod law;
 mod mass;
 mod motion;
+mod potential;
 
 pub use builder::{NodeId, Place, SystemBuilder};
 pub use custom::{ConstraintFunction, CustomRows, Differentiated, ForceFunction, Number, SIZE};
@@ -21,6 +22,7 @@ pub use invariant::{InvariantId, Invariants};
 pub use law::{Law, Load, MAX_ARGUMENTS, Reach, Response};
 pub use mass::Mass;
 pub use motion::{Constant, Signal};
+pub use potential::PotentialFunction;
 
 use std::sync::Arc;
 
