@@ -60,7 +60,7 @@ pub enum Failure {
 
 /// Violation and momentum residual, relative, at which a stalled increment is accepted: near singular configurations
 /// the nearly free directions keep moving while everything that matters is met (methods §11).
-const STALLED: f64 = 1e-12;
+pub(super) const STALLED: f64 = 1e-12;
 
 /// Dimensionless penalty of the paper's loops where the user gives none (methods §1.2).
 const LOOP_RHO: f64 = 1e6;

@@ -8,7 +8,7 @@
 //! Φ(q_{n+1}) = 0                                             G(q_{n+1}) u + ½h Φ_t = 0
 //! ```
 
-use super::iteration::{Convergence, Failure, RESTARTS, SolveSettings, restart};
+use super::iteration::{Convergence, Failure, RESTARTS, STALLED, SolveSettings, restart};
 use super::kkt::{Block, Kkt};
 use super::stage::Stage;
 use super::workspace::Workspace;
@@ -32,9 +32,6 @@ pub struct Stabilized {
     rate: Vec<f64>,
     unknowns: Vec<f64>,
 }
-
-/// As for positions alone; velocity rows have no history to carry, so they get a softer term.
-const STALLED: f64 = 1e-12;
 
 impl Stabilized {
     /// Allocates everything for a system.
