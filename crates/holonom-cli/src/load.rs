@@ -23,6 +23,9 @@ pub const EXAMPLES: &[(&str, &str)] = &[
     ("chain", include_str!("../../../examples/chain.toml")),
 ];
 
+/// Rows of the results where the steps follow from an accuracy and no interval is given.
+const ROWS_BY_ACCURACY: f64 = 200.0;
+
 /// A model that was read, with where it came from.
 pub struct Loaded {
     pub model: Model,
@@ -85,9 +88,11 @@ pub fn load(argument: &str, overrides: Overrides) -> Result<Loaded, Failure> {
 }
 
 impl Loaded {
-    /// Nominal step, s.
+    /// Nominal step, s: with an accuracy, the interval of the results.
     pub fn step(&self) -> Result<f64, Failure> {
-        self.model.settings.step.ok_or_else(|| missing("step", "--step 0.01"))
+        let settings = &self.model.settings;
+        let shown = settings.accuracy.and(settings.end).map(|end| end / ROWS_BY_ACCURACY);
+        settings.step.or(shown).ok_or_else(|| missing("step", "--step 0.01"))
     }
 
     /// End of the run, s.
@@ -126,12 +131,18 @@ pub fn choice(loaded: &Loaded, name: Option<&str>) -> Result<Choice, Failure> {
     Ok(Choice {
         method: name.map(str::to_string).or_else(|| settings.method.clone()),
         formulation: part(&settings.formulation),
-        index: settings.index.and_then(|index| u8::try_from(index).ok()),
+        index: settings.index.filter(|_| own).map(|index| index.min(u8::MAX.into()) as u8),
         integrator: part(&settings.integrator),
         iteration: settings.iteration.clone(),
         penalty: settings.penalty,
         beta: settings.beta,
         gamma: settings.gamma,
+        alpha: settings.alpha,
+        rho: settings.rho,
+        omega: settings.omega,
+        xi: settings.xi,
+        accuracy: settings.accuracy,
+        order: settings.order.filter(|_| own).map(|order| order.min(u8::MAX.into()) as u8),
         constraint_at: settings.constraint_at.clone(),
         tolerance: settings.tolerance,
         max_iterations: settings.max_iterations.map(|most| most as usize),
@@ -189,7 +200,7 @@ pub fn start_failure(error: StartError) -> Failure {
 
 /// A state as it is kept in `checkpoint.json`.
 pub fn checkpoint_value(state: &State) -> Value {
-    json!({ "t": state.t, "x": state.x, "v": state.v, "a": state.a, "lambda": state.lambda, "a_change": state.a_change, "last_step": state.last_step })
+    json!({ "t": state.t, "x": state.x, "v": state.v, "a": state.a, "lambda": state.lambda, "a_change": state.a_change, "last_step": state.last_step, "memory": state.memory })
 }
 
 /// Reads a `checkpoint.json`.
@@ -207,6 +218,7 @@ pub fn checkpoint(path: &Path) -> Result<State, Failure> {
             lambda: numbers(&value, "lambda")?,
             a_change: numbers(&value, "a_change")?,
             last_step: value["last_step"].as_f64()?,
+            memory: numbers(&value, "memory")?,
         })
     });
     state.ok_or_else(|| Failure::usage(format!("{} is no checkpoint", path.display()), "give the checkpoint.json of an earlier run"))

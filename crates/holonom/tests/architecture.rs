@@ -8,12 +8,12 @@ const FLOORS: &[(&str, u8)] = &[
     ("linalg", 0),
     ("system", 1),
     ("formulation", 2),
-    ("integrator", 3),
-    ("projection", 3),
     ("energy", 3),
-    ("simulation", 4),
-    ("record", 5),
-    ("analysis", 5),
+    ("integrator", 4),
+    ("projection", 4),
+    ("simulation", 5),
+    ("record", 6),
+    ("analysis", 6),
 ];
 
 /// What the model may import: it is compiled down to a system, drawn as a scene, and nothing else knows it.

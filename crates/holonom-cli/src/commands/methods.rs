@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use holonom::formulation::{ITERATIONS, NAMES};
+use holonom::formulation::{FORMULATIONS, ITERATIONS};
 use holonom::integrator::INTEGRATORS;
 use holonom::projection::{METRICS, SOLVES};
 use holonom::simulation::NAMED;
@@ -34,7 +34,7 @@ type Section = (&'static str, Vec<(&'static str, String)>);
 
 fn sections() -> Vec<Section> {
     let named = NAMED.iter().map(|named| (named.name, format!("{}; keeps {}", named.doc, named.keeps)));
-    let formulations = NAMES.iter().map(|&(name, equations, doc)| (name, format!("{equations}: {doc}")));
+    let formulations = FORMULATIONS.iter().map(|line| (line.name, format!("{}: {}", line.source, line.doc)));
     let integrators = INTEGRATORS.iter().map(|entry| {
         let projections = if entry.projects { "projections: yes" } else { "projections: not needed" };
         let partners = format!("with {}; iterations {}; {projections}", entry.formulations.join(", "), entry.iterations.join(", "));

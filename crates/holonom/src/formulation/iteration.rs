@@ -1,5 +1,6 @@
 //! The nonlinear solve of a stage: exact Newton, and the paper's nested and simultaneous loops (§4).
 
+use super::level::Level;
 use super::stage::Stage;
 use super::workspace::Workspace;
 use crate::system::System;
@@ -7,7 +8,7 @@ use crate::system::System;
 /// Where multipliers come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Multipliers {
-    /// λ = αΦ (5), (14).
+    /// λ = αΦ (5), (14), or α times the rows' condition (6).
     Penalty(f64),
     /// λ sought with Φ = 0 (7), (17); the penalty α steers the iteration only. Without one it follows from the step.
     Augmented(Option<f64>),
@@ -24,12 +25,6 @@ pub enum Iteration {
     Nested,
 }
 
-/// Name, value and one line of documentation of every formulation.
-pub const NAMES: &[(&str, &str, &str)] = &[
-    ("augmented-lagrangian", "(7), (17)–(18)", "M a + Gᵀλ + Gᵀ(αΦ) = Q with Φ = 0 by iterated multipliers; index 3"),
-    ("penalty", "(5), (14)", "M a + Gᵀ(αΦ) = Q: constraints as stiff springs; Φ → 0 as α → ∞"),
-];
-
 /// Name, value and one line of documentation of every iteration.
 pub const ITERATIONS: &[(&str, Iteration, &str)] = &[
     ("newton", Iteration::Newton, "proximal-KKT Newton: quadratic convergence, no penalty to tune (default)"),
@@ -40,6 +35,10 @@ pub const ITERATIONS: &[(&str, Iteration, &str)] = &[
 /// Numbers that steer the solve.
 #[derive(Clone, Copy, Debug)]
 pub struct SolveSettings {
+    /// Rows at position and velocity level, with a multiplier each.
+    pub doubled: bool,
+    /// The condition the rows stand for.
+    pub level: Level,
     pub multipliers: Multipliers,
     pub iteration: Iteration,
     /// Newton: estimated remaining increment relative to the size of the mechanism. The paper's loops: 2-norm of the
@@ -56,6 +55,8 @@ pub enum Failure {
     NotConverged(usize),
     #[error("the iteration produced numbers that are not finite")]
     NotFinite,
+    #[error("no step is short enough for the accuracy")]
+    TooSmall,
 }
 
 /// Violation and momentum residual, relative, at which a stalled increment is accepted: near singular configurations
@@ -116,7 +117,7 @@ pub(super) fn restart(share: f64, work: &mut Workspace) {
 fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option<f64>, work: &mut Workspace) -> Result<usize, Failure> {
     let n = system.coordinates();
     match (soft, settings.multipliers) {
-        (Some(alpha), _) => work.delta.fill(1.0 / (stage.inertia * alpha)),
+        (Some(alpha), _) => work.delta.fill(work.level.scale(stage.rate, stage.inertia) / (stage.inertia * alpha)),
         (None, Multipliers::Augmented(penalty)) => work.proximal(stage.inertia, penalty),
         (None, Multipliers::Penalty(_)) => unreachable!("a penalty is soft"),
     }
@@ -125,7 +126,8 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
         work.place(system, stage);
         work.evaluate(system, stage);
         if let Some(alpha) = soft {
-            work.phi.iter_mut().zip(&work.lambda).for_each(|(phi, lambda)| *phi -= lambda / alpha);
+            let softness = work.level.scale(stage.rate, stage.inertia) / alpha;
+            work.phi.iter_mut().zip(&work.lambda).for_each(|(phi, lambda)| *phi -= softness * lambda);
         }
         work.residual(system, stage);
         if convergence.stalls() && is_met(n, work) {
@@ -211,8 +213,9 @@ fn is_met(n: usize, work: &Workspace) -> bool {
 
 /// Sets δ to what a penalty stands for, and says how λ changes with Φ: α for each row.
 fn penalties(stage: &Stage, penalty: Option<f64>, work: &mut Workspace) {
+    let scale = work.level.scale(stage.rate, stage.inertia);
     for (delta, &softness) in work.delta.iter_mut().zip(&work.softness) {
-        *delta = penalty.map_or(softness / LOOP_RHO, |alpha| 1.0 / (stage.inertia * alpha));
+        *delta = penalty.map_or(softness / LOOP_RHO, |alpha| scale / (stage.inertia * alpha));
     }
 }
 

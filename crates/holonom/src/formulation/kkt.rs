@@ -46,12 +46,27 @@ pub(super) struct Hessian {
     pub skew: Vec<SkewEntry>,
 }
 
+/// Which fields of coordinates (second argument) and of rows (third) share a block of the matrix; first comes the number
+/// of fields.
+pub type Coupling = fn(usize, usize, usize) -> bool;
+
+/// One stage without velocities, or several stages each with all rows.
+pub(super) const ALL: Coupling = |_, _, _| true;
+
+/// Rows of a stage and coordinates of the same stage.
+pub(super) const OWN_STAGE: Coupling = |_, node, row| node == row;
+
+/// The first half of the fields are positions of the stages, the second half velocities. Position rows do not react on
+/// velocities.
+pub(super) const TWO_LEVELS: Coupling = |fields, node, row| node % (fields / 2) == row % (fields / 2) && (node < fields / 2 || row >= fields / 2);
+
 /// The planned matrix.
 pub struct Kkt {
     pub solver: Solver,
     pub(super) dim: usize,
     pub(super) fields: usize,
     pub(super) free: usize,
+    pub(super) coupling: Coupling,
     /// Slots of each row.
     pub row_slots: Vec<Range<usize>>,
     /// Node of each slot.
@@ -92,9 +107,9 @@ impl Kkt {
         (self.slot_nodes[slot] as usize) < self.free
     }
 
-    /// Position rows do not react on velocities, so this block of rows and coordinates is empty (both ways).
-    pub(super) fn is_empty_block(node_field: usize, row_field: usize) -> bool {
-        node_field == 1 && row_field == 0
+    /// Whether the rows of one field and the coordinates of another have entries in common.
+    pub(super) fn are_coupled(&self, node_field: usize, row_field: usize) -> bool {
+        (self.coupling)(self.fields, node_field, row_field)
     }
 
     /// Sets all values to zero.
@@ -155,7 +170,17 @@ impl Kkt {
     /// Adds the tangent of a law: f_i H_i, and ∇π_i (∂f_i/∂π_j ∇π_j + ∂f_i/∂π̇_j ∇π̇_j)ᵀ, each with its factor. The left
     /// gradients are those of the force, the right ones those of the values it depends on; `motion` has the slots of
     /// H v, through which π̇ depends on positions.
-    pub fn add_law(&mut self, law: usize, response: &Response, factors: LawFactors, left: &[f64], right: &[f64], motion: &[f64]) {
+    #[expect(clippy::too_many_arguments)] // a law's tangent has these parts
+    pub fn add_law(
+        &mut self,
+        block: Block,
+        law: usize,
+        response: &Response,
+        factors: LawFactors,
+        left: &[f64],
+        right: &[f64],
+        motion: &[f64],
+    ) {
         let dim = self.dim;
         for argument in 0..self.law_hessian[law].len() {
             let weight = factors.force * response.force[argument];
@@ -164,7 +189,7 @@ impl Kkt {
             }
             for k in 0..self.law_hessian[law][argument].skew.len() {
                 let entry = self.law_hessian[law][argument].skew[k];
-                self.add_entry(Block(0, 0), entry, weight);
+                self.add_entry(block, entry, weight);
             }
         }
         for k in 0..self.law_outer[law].len() {
@@ -172,21 +197,21 @@ impl Kkt {
             let (i, j, s, t) = (i as usize, j as usize, s as usize * dim, t as usize * dim);
             let stiffness = factors.value * response.by_value[i][j] + factors.rate * response.by_rate[i][j];
             let turning = factors.motion * response.by_rate[i][j];
-            self.add_full(Block(0, 0), pair, |c, d| left[s + c] * (stiffness * right[t + d] + turning * motion[t + d]), dim);
+            self.add_full(block, pair, |c, d| left[s + c] * (stiffness * right[t + d] + turning * motion[t + d]), dim);
         }
     }
 
     /// Adds a dense tangent (k × k over the load's nodes, row-major) times `factor`.
-    pub fn add_load(&mut self, load: usize, tangent: &[f64], factor: f64) {
+    pub fn add_load(&mut self, block: Block, load: usize, tangent: &[f64], factor: f64) {
         let pairs = std::mem::take(&mut self.load_pairs);
-        self.add_group(Block(0, 0), &pairs[load], tangent, factor);
+        self.add_group(block, &pairs[load], tangent, factor);
         self.load_pairs = pairs;
     }
 
     /// Adds the second derivatives (k × k over the nodes of a custom entry, row-major) times `factor`.
-    pub fn add_custom(&mut self, entry: usize, hessian: &[f64], factor: f64) {
+    pub fn add_custom(&mut self, block: Block, entry: usize, hessian: &[f64], factor: f64) {
         let pairs = std::mem::take(&mut self.custom_pairs);
-        self.add_group(Block(0, 0), &pairs[entry], hessian, factor);
+        self.add_group(block, &pairs[entry], hessian, factor);
         self.custom_pairs = pairs;
     }
 

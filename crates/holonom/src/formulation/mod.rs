@@ -8,16 +8,23 @@
 //! Eliminating Δμ gives the classical tangent A + GᵀG/δ of penalty and augmented Lagrangian with ϖα = 1/δ, so that
 //! the paper's loops and the exact Newton iteration differ only in δ and in what becomes of λ.
 
+mod acceleration;
+mod collocation;
 mod iteration;
 mod kkt;
+mod level;
 mod plan;
 mod stabilized;
 mod stage;
+mod table;
 mod terms;
 mod workspace;
 
-pub use iteration::{Failure, ITERATIONS, Iteration, Multipliers, NAMES, SolveSettings, solve};
+pub use collocation::{Collocation, Timing};
+pub use iteration::{Failure, ITERATIONS, Iteration, Multipliers, SolveSettings, solve};
 pub use kkt::{Block, Kkt, LawFactors};
 pub use stabilized::Stabilized;
+pub use level::Level;
 pub use stage::{RowsAt, Sampling, Stage};
+pub use table::{FORMULATIONS, Formulation};
 pub use workspace::{RHO, Workspace};

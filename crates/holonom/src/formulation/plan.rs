@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::kkt::{Hessian, Kkt, NONE, OuterTerm, SkewEntry};
+use super::kkt::{Coupling, Hessian, Kkt, NONE, OuterTerm, SkewEntry};
 use crate::linalg::{Solver, fill_reducing_order};
 use crate::system::{HessianBlock, InvariantId, NodeId, System, skew};
 
@@ -33,8 +33,8 @@ impl Pairs {
 }
 
 impl Kkt {
-    /// Plans the matrix of a system with one or two fields a node.
-    pub fn new(system: &System, fields: usize) -> Self {
+    /// Plans the matrix of a system with `fields` fields a node, of which rows and coordinates share blocks by `coupling`.
+    pub fn new(system: &System, fields: usize, coupling: Coupling) -> Self {
         let (dim, free) = (system.dim, system.free);
         let slot_nodes: Vec<u32> = system.slot_nodes().map(|node| node as u32).collect();
         let row_slots = system.row_slots();
@@ -111,6 +111,7 @@ impl Kkt {
             dim,
             fields,
             free,
+            coupling,
             row_first: Vec::new(),
             pair_sum: vec![0.0; pair_mass.len()],
             pair_mass,
@@ -149,7 +150,7 @@ impl Kkt {
             for &(i, j) in &combinations {
                 let r = self.multiplier(row, i) as u32;
                 entries.push((r, self.multiplier(row, j) as u32));
-                for s in self.row_slots[row].clone().filter(|&s| self.is_free(s) && !Self::is_empty_block(j, i)) {
+                for s in self.row_slots[row].clone().filter(|&s| self.is_free(s) && self.are_coupled(j, i)) {
                     for c in 0..dim {
                         let q = self.coordinate(self.slot_nodes[s] as usize, j, c) as u32;
                         entries.extend([(r, q), (q, r)]);
@@ -175,7 +176,7 @@ impl Kkt {
             for s in self.row_slots[row].clone() {
                 for &(i, j) in &combinations {
                     for c in 0..dim {
-                        let there = self.is_free(s) && !Self::is_empty_block(i, j);
+                        let there = self.is_free(s) && self.are_coupled(i, j);
                         let (q, r) = (self.coordinate(self.slot_nodes[s] as usize, i, c), self.multiplier(row, j));
                         let position = |a, b| if there { self.solver.position(a, b) } else { NONE };
                         self.row_positions.extend([position(q, r), position(r, q)]);

@@ -9,10 +9,10 @@
 //! ```
 
 use super::iteration::{Convergence, Failure, RESTARTS, STALLED, SolveSettings, restart};
-use super::kkt::{Block, Kkt};
+use super::kkt::{Block, Kkt, TWO_LEVELS};
 use super::stage::Stage;
 use super::workspace::Workspace;
-use crate::system::{SIZE, System, gather};
+use crate::system::System;
 
 /// Scratch of the doubled system.
 pub struct Stabilized {
@@ -37,7 +37,7 @@ impl Stabilized {
     /// Allocates everything for a system.
     pub fn new(system: &System) -> Self {
         let (r, all) = (system.constraints(), system.nodes() * system.dim);
-        let kkt = Kkt::new(system, 2);
+        let kkt = Kkt::new(system, 2, TWO_LEVELS);
         let slots = kkt.slot_nodes.len() * system.dim;
         Self {
             unknowns: vec![0.0; kkt.size()],
@@ -110,32 +110,8 @@ impl Stabilized {
         for i in 0..self.w.len() {
             self.w[i] = self.u[i] + 0.5 * stage.step * work.v0[i];
         }
-        system.invariants.curvature(&self.w, &mut work.half, &mut self.turned_w);
-        system.invariants.curvature(&self.u, &mut work.half, &mut self.turned_u);
-        self.turn_custom(system, stage, work);
-    }
-
-    /// The same for custom rows, by their second derivatives at the middle of the step.
-    fn turn_custom(&mut self, system: &System, stage: &Stage, work: &Workspace) {
-        let dim = system.dim;
-        let mut slot = system.invariants.slots() * dim;
-        let (mut hessian, mut x, mut w, mut u) = ([0.0; SIZE * SIZE], [0.0; SIZE], [0.0; SIZE], [0.0; SIZE]);
-        for entry in &system.custom {
-            let width = gather(dim, &entry.nodes, &work.xs, &mut x);
-            gather(dim, &entry.nodes, &self.w, &mut w);
-            gather(dim, &entry.nodes, &self.u, &mut u);
-            for row in 0..entry.rows.rows() {
-                let mut unit = [0.0; SIZE];
-                unit[row] = 1.0;
-                entry.rows.hessian(&x[..width], stage.time(), &unit[..entry.rows.rows()], &mut hessian[..width * width]);
-                for i in 0..width {
-                    let line = &hessian[i * width..(i + 1) * width];
-                    self.turned_w[slot + i] = line.iter().zip(&w).map(|(h, w)| h * w).sum();
-                    self.turned_u[slot + i] = line.iter().zip(&u).map(|(h, u)| h * u).sum();
-                }
-                slot += width;
-            }
-        }
+        system.turn(&work.xs, &self.w, stage.time(), &mut work.half, &mut self.turned_w);
+        system.turn(&work.xs, &self.u, stage.time(), &mut work.half, &mut self.turned_u);
     }
 
     fn residual(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
@@ -186,8 +162,8 @@ impl Stabilized {
         kkt.write_sum(Block(1, 1));
         kkt.add_row_hessians(Block(0, 0), &self.mu, 0.5);
         std::mem::swap(&mut work.kkt, kkt);
-        work.add_laws(system, stage);
-        work.add_loads(system, stage);
+        work.add_laws(system, stage, Block(0, 0));
+        work.add_loads(system, stage, Block(0, 0));
         std::mem::swap(&mut work.kkt, kkt);
         kkt.write_sum(Block(0, 0));
         kkt.add_columns(Block(0, 0), &work.sampled.gradient, 1.0);

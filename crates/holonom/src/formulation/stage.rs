@@ -4,6 +4,8 @@
 /// Where forces and gradients are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sampling {
+    /// At the start of the step, with velocities of the increment.
+    Start,
     /// At the end of the step.
     End,
     /// At the point half way.
@@ -40,9 +42,18 @@ pub struct Stage {
 }
 
 impl Stage {
+    /// A moment: forces at a state, nothing to solve for.
+    pub(super) fn moment(t: f64) -> Self {
+        Self { sampling: Sampling::End, rows: RowsAt::End, start: t, step: 0.0, inertia: 1.0, rate: 0.0 }
+    }
+
     /// Share of the increment that the position of evaluation moves by.
     pub fn share(&self) -> f64 {
-        if self.sampling == Sampling::End { 1.0 } else { 0.5 }
+        match self.sampling {
+            Sampling::Start => 0.0,
+            Sampling::End => 1.0,
+            Sampling::Middle | Sampling::Between => 0.5,
+        }
     }
 
     /// Time at which forces are taken, s.

@@ -1,6 +1,7 @@
 //! The terms of a stage: rows, laws, loads and inertia, their residual and their tangent.
 
 use super::kkt::{Block, LawFactors};
+use super::level::Level;
 use super::stage::{RowsAt, Sampling, Stage};
 use super::workspace::Workspace;
 use crate::system::{Between, LoadEntry, MAX_ARGUMENTS, Reach, Response, SIZE, System, gather};
@@ -15,21 +16,59 @@ impl Workspace {
                 sampled.copy_from(at_end);
             }
             Sampling::Middle => system.evaluate(&self.xs, stage.time(), sampled),
+            Sampling::Start => {
+                system.evaluate(&self.x1, stage.end(), at_end);
+                sampled.copy_from(at_start);
+            }
             Sampling::Between => {
                 system.evaluate(&self.x1, stage.end(), at_end);
                 let span = Between { from: &self.x0, to: &self.x1, start: stage.start, step: stage.step };
                 system.evaluate_between(span, at_start, at_end, sampled);
             }
         }
+        self.violate(system, stage);
+        self.sum_forces(system, stage);
+    }
+
+    /// Leaves what the rows of the stage stand for in `phi`, in the units of Φ.
+    fn violate(&mut self, system: &System, stage: &Stage) {
+        if self.level != Level::POSITION {
+            self.weigh_levels(system, stage.time(), self.level.scale(stage.rate, stage.inertia));
+            return;
+        }
         match stage.rows {
-            RowsAt::Middle => system.constraint_values(sampled, stage.time(), &mut self.phi),
-            RowsAt::End => system.constraint_values(at_end, stage.end(), &mut self.phi),
+            RowsAt::Middle => system.constraint_values(&self.sampled, stage.time(), &mut self.phi),
+            RowsAt::End => system.constraint_values(&self.at_end, stage.end(), &mut self.phi),
             RowsAt::Mean => {
-                system.constraint_values(at_end, stage.end(), &mut self.phi);
+                system.constraint_values(&self.at_end, stage.end(), &mut self.phi);
                 self.phi.iter_mut().zip(&self.phi_start).for_each(|(phi, start)| *phi = 0.5 * (*phi + start));
             }
         }
-        self.sum_forces(system, stage);
+    }
+
+    /// Leaves the weighted sum of Φ̈, Φ̇ and Φ at the sampled state, with the accelerations `a1`, times `scale` in `phi`.
+    pub fn weigh_levels(&mut self, system: &System, t: f64, scale: f64) {
+        let level = self.level;
+        system.constraint_values(&self.sampled, t, &mut self.phi);
+        self.phi.iter_mut().for_each(|phi| *phi *= scale * level.position);
+        if level.velocity != 0.0 {
+            let (plan, nodes) = (&self.kkt.row_slots, &self.kkt.slot_nodes);
+            system.constraint_rates(plan, nodes, &self.sampled, &self.vs, t, &mut self.rows);
+            self.phi.iter_mut().zip(&self.rows).for_each(|(phi, rate)| *phi += scale * level.velocity * rate);
+        }
+        if level.acceleration != 0.0 {
+            self.sampled_acceleration_violation(system, t);
+            self.phi.iter_mut().zip(&self.rows).for_each(|(phi, row)| *phi += scale * level.acceleration * row);
+        }
+    }
+
+    /// H v and H a of all rows at the sampled state.
+    pub fn turn(&mut self, system: &System, t: f64) {
+        let Self { half, turned_v, turned_a, xs, vs, a1, .. } = self;
+        system.turn(xs, vs, t, half, turned_v);
+        if self.level.acceleration != 0.0 {
+            system.turn(xs, a1, t, half, turned_a);
+        }
     }
 
     /// Sums gravity, laws, loads and λᵀG at the sampled state into `force`.
@@ -134,12 +173,16 @@ impl Workspace {
         self.kkt.start_with_mass(1.0);
         if geometric != 0.0 {
             self.kkt.add_row_hessians(Block(0, 0), &self.lambda, geometric * weight);
-            self.add_custom_hessians(system, stage, geometric * weight);
+            self.add_custom_hessians(system, stage.time(), Block(0, 0), geometric * weight);
         }
-        self.add_laws(system, stage);
-        self.add_loads(system, stage);
+        self.add_laws(system, stage, Block(0, 0));
+        self.add_loads(system, stage, Block(0, 0));
         self.kkt.write_sum(Block(0, 0));
         self.kkt.add_columns(Block(0, 0), &self.sampled.gradient, 1.0);
+        if self.level != Level::POSITION {
+            self.level_rows(system, stage);
+            return;
+        }
         let (gradient, factor) = match stage.rows {
             RowsAt::End => (&self.at_end.gradient, 1.0),
             RowsAt::Mean => (&self.at_end.gradient, 0.5),
@@ -148,8 +191,23 @@ impl Workspace {
         self.kkt.add_rows(Block(0, 0), gradient, factor);
     }
 
+    /// Adds the rows of the tangent for conditions on velocity or acceleration. The dependence of H on positions is left
+    /// out: it is none for quadratic rows.
+    fn level_rows(&mut self, system: &System, stage: &Stage) {
+        self.turn(system, stage.time());
+        let (level, share, rate) = (self.level, stage.share(), stage.rate);
+        let scale = level.scale(rate, stage.inertia);
+        let gradient = level.position * share + level.velocity * rate + level.acceleration / stage.inertia;
+        let block = Block(0, 0);
+        self.kkt.add_rows(block, &self.sampled.gradient, scale * gradient);
+        self.kkt.add_rows(block, &self.turned_v, scale * (level.velocity * share + 2.0 * level.acceleration * rate));
+        if level.acceleration != 0.0 {
+            self.kkt.add_rows(block, &self.turned_a, scale * level.acceleration * share);
+        }
+    }
+
     /// Adds the tangents of all laws, times ϖ.
-    pub fn add_laws(&mut self, system: &System, stage: &Stage) {
+    pub fn add_laws(&mut self, system: &System, stage: &Stage, block: Block) {
         let between = stage.sampling == Sampling::Between;
         let share = stage.inertia * stage.share();
         for (law, entry) in system.laws.iter().enumerate() {
@@ -161,12 +219,12 @@ impl Workspace {
                 motion: if dissipates { share } else { 0.0 },
             };
             let right = if between { &self.at_end.gradient } else { &self.sampled.gradient };
-            self.kkt.add_law(law, &self.responses[law], factors, &self.sampled.gradient, right, &self.motion);
+            self.kkt.add_law(block, law, &self.responses[law], factors, &self.sampled.gradient, right, &self.motion);
         }
     }
 
     /// Adds the tangents of all loads, times ϖ.
-    pub fn add_loads(&mut self, system: &System, stage: &Stage) {
+    pub fn add_loads(&mut self, system: &System, stage: &Stage, block: Block) {
         for (k, load) in system.loads.iter().enumerate() {
             let width = load.nodes.len() * system.dim;
             let (x, v) = self.load_arguments(system, load);
@@ -175,20 +233,40 @@ impl Workspace {
             by_position.fill(0.0);
             by_velocity.fill(0.0);
             load.load.tangent(&x[..width], &v[..width], stage.time(), by_position, by_velocity);
-            self.kkt.add_load(k, by_position, -stage.inertia * stage.share());
-            self.kkt.add_load(k, by_velocity, -stage.inertia * stage.rate);
+            self.kkt.add_load(block, k, by_position, -stage.inertia * stage.share());
+            self.kkt.add_load(block, k, by_velocity, -stage.inertia * stage.rate);
         }
     }
 
-    fn add_custom_hessians(&mut self, system: &System, stage: &Stage, factor: f64) {
+    /// Adds what forces change by with velocity, times `factor`.
+    pub fn add_damping(&mut self, system: &System, t: f64, block: Block, factor: f64) {
+        for (law, _) in system.laws.iter().enumerate().filter(|(_, entry)| !entry.law.conservative()) {
+            let factors = LawFactors { force: 0.0, value: 0.0, rate: factor, motion: 0.0 };
+            let gradient = &self.sampled.gradient;
+            self.kkt.add_law(block, law, &self.responses[law], factors, gradient, gradient, &self.motion);
+        }
+        for (k, load) in system.loads.iter().enumerate() {
+            let width = load.nodes.len() * system.dim;
+            let (x, v) = self.load_arguments(system, load);
+            let (by_position, by_velocity) = self.dense.split_at_mut(SIZE * SIZE);
+            let (by_position, by_velocity) = (&mut by_position[..width * width], &mut by_velocity[..width * width]);
+            by_position.fill(0.0);
+            by_velocity.fill(0.0);
+            load.load.tangent(&x[..width], &v[..width], t, by_position, by_velocity);
+            self.kkt.add_load(block, k, by_velocity, -factor);
+        }
+    }
+
+    /// Adds Σ λ_k H_k of the custom rows at the sampled position, times `factor`.
+    pub fn add_custom_hessians(&mut self, system: &System, t: f64, block: Block, factor: f64) {
         let mut first = system.rows.len();
         for (k, entry) in system.custom.iter().enumerate() {
             let rows = entry.rows.rows();
             let mut x = [0.0; SIZE];
             let width = gather(system.dim, &entry.nodes, &self.xs, &mut x);
             let hessian = &mut self.dense[..width * width];
-            entry.rows.hessian(&x[..width], stage.time(), &self.lambda[first..first + rows], hessian);
-            self.kkt.add_custom(k, hessian, factor);
+            entry.rows.hessian(&x[..width], t, &self.lambda[first..first + rows], hessian);
+            self.kkt.add_custom(block, k, hessian, factor);
             first += rows;
         }
     }
@@ -202,13 +280,23 @@ impl Workspace {
     }
 
     /// Samples forces at the end position with the multipliers as they are, and evaluates there.
-    pub fn sample_end(&mut self, system: &System, time: f64) {
-        system.evaluate(&self.x1, time, &mut self.at_end);
+    pub fn sample_end(&mut self, system: &System, t: f64) {
+        system.evaluate(&self.x1, t, &mut self.at_end);
         self.sampled.copy_from(&self.at_end);
         self.xs.copy_from_slice(&self.x1);
         self.vs.copy_from_slice(&self.v1);
-        let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start: time, step: 0.0, inertia: 1.0, rate: 0.0 };
-        self.sum_forces(system, &stage);
+        self.sum_forces(system, &Stage::moment(t));
+    }
+
+    /// Samples forces at the position `xs` and velocity `vs`, with the multipliers as they are, and evaluates there.
+    pub fn sample(&mut self, system: &System, t: f64) {
+        system.evaluate(&self.xs, t, &mut self.sampled);
+        self.sum_forces(system, &Stage::moment(t));
+    }
+
+    /// Adds Gᵀ(λ − λ') for multipliers that changed since forces were sampled at the end by sampling them again.
+    pub(super) fn sum_forces_again(&mut self, system: &System, t: f64) {
+        self.sum_forces(system, &Stage::moment(t));
     }
 
     /// Leaves Φ̈ at the sampled position, with the accelerations `a1`, in `rows`.

@@ -1,7 +1,8 @@
 //! Everything mutable of a step: positions, evaluations, forces and the matrix, allocated once.
 
 use super::iteration::Failure;
-use super::kkt::Kkt;
+use super::kkt::{ALL, Kkt};
+use super::level::Level;
 use super::stage::Stage;
 use crate::system::{Evaluation, Response, SIZE, System};
 
@@ -11,6 +12,8 @@ pub const RHO: f64 = 1e10;
 /// Scratch of a stage. Full vectors hold D numbers a node, free nodes first.
 pub struct Workspace {
     pub kkt: Kkt,
+    /// The condition that the rows of a stage stand for.
+    pub level: Level,
     /// Position, velocity at the start of the step (full).
     pub x0: Vec<f64>,
     pub v0: Vec<f64>,
@@ -54,6 +57,14 @@ pub struct Workspace {
     /// ½ vᵀ H v and H v of the invariants at the sampled velocity.
     pub half: Vec<f64>,
     pub motion: Vec<f64>,
+    /// H v and H a of all rows' slots, D a slot.
+    pub turned_v: Vec<f64>,
+    pub turned_a: Vec<f64>,
+    /// Estimated local errors of position (n), m, and velocity (n), m/s, where an integrator gives them.
+    pub error_q: Vec<f64>,
+    pub error_v: Vec<f64>,
+    /// Numbers that an integrator keeps from step to step.
+    pub memory: Vec<f64>,
     /// Full and reduced scratch vectors.
     pub full: Vec<f64>,
     pub inertial: Vec<f64>,
@@ -66,7 +77,6 @@ pub struct Workspace {
     /// Factorisations so far.
     pub factorizations: u64,
     pub(super) dissipative: bool,
-    /// Whether anything does work on the system from outside its energy.
     works: bool,
 }
 
@@ -74,7 +84,7 @@ impl Workspace {
     /// Allocates everything for a system.
     pub fn new(system: &System) -> Self {
         let (n, r, all) = (system.coordinates(), system.constraints(), system.nodes() * system.dim);
-        let kkt = Kkt::new(system, 1);
+        let kkt = Kkt::new(system, 1, ALL);
         let evaluation = system.evaluation();
         let mut weight = vec![0.0; all];
         for (a, weight) in weight.chunks_exact_mut(system.dim).enumerate() {
@@ -84,6 +94,7 @@ impl Workspace {
         let mut workspace = Self {
             unknowns: vec![0.0; kkt.size()],
             kkt,
+            level: Level::POSITION,
             x0: system.start_position.clone(),
             v0: system.start_velocity.clone(),
             d: vec![0.0; n],
@@ -98,6 +109,11 @@ impl Workspace {
             vs: vec![0.0; all],
             half: vec![0.0; system.invariants.len()],
             motion: vec![0.0; evaluation.gradient.len()],
+            turned_v: vec![0.0; evaluation.gradient.len()],
+            turned_a: vec![0.0; evaluation.gradient.len()],
+            error_q: vec![0.0; n],
+            error_v: vec![0.0; n],
+            memory: Vec::new(),
             at_start: evaluation.clone(),
             at_end: evaluation.clone(),
             sampled: evaluation,
@@ -162,10 +178,20 @@ impl Workspace {
             self.x1[i] = self.x0[i] + self.d[i];
             self.vs[i] = stage.rate * self.d[i] + self.offset[i];
         }
+        if self.level.acceleration != 0.0 {
+            for i in 0..n {
+                self.a1[i] = (self.d[i] - self.drift[i]) / stage.inertia;
+            }
+        }
         let share = stage.share();
         for i in 0..n {
             self.xs[i] = self.x0[i] + share * self.d[i];
         }
+    }
+
+    /// Whether anything does work on the system from outside its energy.
+    pub fn is_worked_on(&self) -> bool {
+        self.works
     }
 
     /// Brings forces and gradients to the solution of a stage, for the balance of work. The last increment is tiny, so

@@ -1,6 +1,6 @@
 //! The energy-momentum conserving scheme (14)–(18): midpoint kinematics with discrete gradients (methods §2.1).
 
-use super::{Integrator, Step};
+use super::{Integrator, Step, Work};
 use crate::formulation::{Failure, Multipliers, RowsAt, Sampling, SolveSettings, Stage, Workspace, solve};
 use crate::system::System;
 
@@ -16,7 +16,7 @@ impl Integrator for Conserving {
         let iterations = solve(system, &stage, settings, work)?;
         finish(system, step, work);
         work.settle(system, &stage);
-        Ok(Step { iterations, stage, extra_work: 0.0 })
+        Ok(Step { iterations, stage, work: Work::Between(0.0), estimate: 0 })
     }
 }
 

@@ -1,7 +1,7 @@
 //! The conserving scheme with the rows at both levels: energy, momentum, Φ and Φ̇ exact (methods §2.4).
 
 use super::conserving::midpoint_kinematics;
-use super::{Integrator, Step};
+use super::{Integrator, Step, Work};
 use crate::formulation::{Failure, RowsAt, Sampling, SolveSettings, Stabilized, Workspace};
 use crate::system::System;
 
@@ -51,6 +51,6 @@ impl Integrator for ConservingGgl {
         work.settle(system, &stage);
         both.turn(system, &stage, work);
         let extra_work = both.work(system, &stage, work);
-        Ok(Step { iterations, stage, extra_work })
+        Ok(Step { iterations, stage, work: Work::Between(extra_work), estimate: 0 })
     }
 }

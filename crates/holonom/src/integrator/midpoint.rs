@@ -1,7 +1,7 @@
 //! The implicit midpoint rule with forces and rows at the midpoint (26).
 
 use super::conserving::{finish, midpoint_kinematics};
-use super::{Integrator, Step};
+use super::{Integrator, Step, Work};
 use crate::formulation::{Failure, RowsAt, Sampling, SolveSettings, Workspace, solve};
 use crate::system::System;
 
@@ -16,6 +16,6 @@ impl Integrator for Midpoint {
         let iterations = solve(system, &stage, settings, work)?;
         finish(system, step, work);
         work.settle(system, &stage);
-        Ok(Step { iterations, stage, extra_work: 0.0 })
+        Ok(Step { iterations, stage, work: Work::Between(0.0), estimate: 0 })
     }
 }

@@ -1,17 +1,32 @@
 //! Time stepping: what an integrator makes of velocities and accelerations. None of them names a constraint.
 
+mod bdf;
+mod composed;
 mod conserving;
 mod conserving_ggl;
+mod dop853;
+mod explicit;
+mod generalized_alpha;
 mod midpoint;
 mod newmark;
+mod rattle;
+mod runge_kutta;
+mod table;
 
 use crate::formulation::{Failure, RowsAt, SolveSettings, Stage, Workspace};
 use crate::system::System;
 
-/// Time stepping from the start values in a workspace (x0, v0, a0 in `a1`, λ) to its end values (x1, v1, a1, λ).
+pub use table::{Entry, Estimate, INTEGRATORS};
+
+/// Time stepping from the start values in a workspace (x0, v0, a0 in `a1`, λ) to its end values (d, v1, a1, λ).
 pub trait Integrator: Send {
-    /// Takes one step; says how many iterations it took and what known motion did beyond the work of the stage's
-    /// forces, J.
+    /// Numbers to keep from step to step; all zero at the start, and kept with the state.
+    fn memory(&self, _system: &System) -> usize {
+        0
+    }
+
+    /// Takes one step; says how many iterations it took and where the work done in it is booked from. An estimate of the
+    /// local errors, where the table promises one, is left in the workspace.
     fn step(&mut self, system: &System, start: f64, step: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure>;
 }
 
@@ -20,8 +35,20 @@ pub trait Integrator: Send {
 pub struct Step {
     pub iterations: usize,
     pub stage: Stage,
-    /// Work of known motion that the stage's forces do not show, J.
-    pub extra_work: f64,
+    pub work: Work,
+    /// Order of the method whose local errors the workspace has an estimate of; 0 for none.
+    pub estimate: u8,
+}
+
+/// Where the work that is done on the system in a step is to be read from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Work {
+    /// The mean of the power at both ends.
+    AtEnds,
+    /// The forces of the stage along the step, and what known motion did beyond them, J.
+    Between(f64),
+    /// Known already, J.
+    Sum(f64),
 }
 
 /// Numbers that the families of integrators take.
@@ -30,78 +57,20 @@ pub struct Parameters {
     /// Newmark's β and γ.
     pub beta: f64,
     pub gamma: f64,
+    /// HHT's α, 0 … 1/3.
+    pub alpha: f64,
+    /// Spectral radius ρ∞ of generalized-α, 0 … 1.
+    pub rho: f64,
     /// Which positions the conserving scheme puts on the constraints.
     pub rows: RowsAt,
+    /// Order of a family that has several.
+    pub order: u8,
+    /// Whether steps follow from an accuracy, and BDF's order with them.
+    pub adapts: bool,
 }
 
 impl Default for Parameters {
     fn default() -> Self {
-        Self { beta: 0.25, gamma: 0.5, rows: RowsAt::End }
+        Self { beta: 0.25, gamma: 0.5, alpha: 0.1, rho: 0.8, rows: RowsAt::End, order: 2, adapts: false }
     }
 }
-
-/// One line of the table of integrators.
-pub struct Entry {
-    pub name: &'static str,
-    pub source: &'static str,
-    pub doc: &'static str,
-    /// Formulations it goes with.
-    pub formulations: &'static [&'static str],
-    /// Iterations it goes with.
-    pub iterations: &'static [&'static str],
-    /// Whether projections may follow it.
-    pub projects: bool,
-    pub make: fn(&System, Parameters) -> Box<dyn Integrator>,
-}
-
-const BOTH: &[&str] = &["augmented-lagrangian", "penalty"];
-const LOOPS: &[&str] = &["newton", "simultaneous", "nested"];
-
-/// All integrators.
-pub const INTEGRATORS: &[Entry] = &[
-    Entry {
-        name: "trapezoidal",
-        source: "§4, (23)–(25)",
-        doc: "Newmark with β = 1/4, γ = 1/2: order 2; unstable on constraints without projection",
-        formulations: BOTH,
-        iterations: LOOPS,
-        projects: true,
-        make: |_, _| Box::new(newmark::Newmark { beta: 0.25, gamma: 0.5 }),
-    },
-    Entry {
-        name: "newmark",
-        source: "Newmark 1959",
-        doc: "β and γ as given (keys beta, gamma): γ > 1/2 damps and is of order 1",
-        formulations: BOTH,
-        iterations: LOOPS,
-        projects: true,
-        make: |_, parameters| Box::new(newmark::Newmark { beta: parameters.beta, gamma: parameters.gamma }),
-    },
-    Entry {
-        name: "midpoint",
-        source: "(26)",
-        doc: "implicit midpoint rule with the rows at the midpoint: order 2; unstable without projection",
-        formulations: BOTH,
-        iterations: LOOPS,
-        projects: true,
-        make: |_, _| Box::new(midpoint::Midpoint),
-    },
-    Entry {
-        name: "conserving",
-        source: "(14)–(18)",
-        doc: "energy and momentum exact, Φ = 0 at every step: order 2",
-        formulations: BOTH,
-        iterations: LOOPS,
-        projects: true,
-        make: |_, parameters| Box::new(conserving::Conserving { rows: parameters.rows }),
-    },
-    Entry {
-        name: "conserving-ggl",
-        source: "Kinon, Betsch and Schneider 2023",
-        doc: "energy and momentum exact, Φ = 0 and Φ̇ = 0 at every step: order 2",
-        formulations: &["augmented-lagrangian"],
-        iterations: &["newton"],
-        projects: false,
-        make: |system, _| Box::new(conserving_ggl::ConservingGgl::new(system)),
-    },
-];

@@ -1,6 +1,6 @@
-//! Newmark's family on index-3 rows; β = 1/4, γ = 1/2 is the trapezoidal rule (methods §1.1).
+//! Newmark's family; β = 1/4, γ = 1/2 is the trapezoidal rule (methods §1.1).
 
-use super::{Integrator, Step};
+use super::{Integrator, Step, Work};
 use crate::formulation::{Failure, RowsAt, Sampling, SolveSettings, Stage, Workspace, solve};
 use crate::system::System;
 
@@ -9,15 +9,19 @@ pub(super) struct Newmark {
     pub gamma: f64,
 }
 
+/// The stage of Newmark's formulas: ϖ = βh², ∂v/∂q = γ/(βh).
+pub(super) fn newmark_stage(start: f64, step: f64, beta: f64, gamma: f64) -> Stage {
+    Stage { sampling: Sampling::End, rows: RowsAt::End, start, step, inertia: beta * step * step, rate: gamma / (beta * step) }
+}
+
 impl Integrator for Newmark {
-    fn step(&mut self, system: &System, start: f64, step: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
-        let (n, h, beta, gamma) = (system.coordinates(), step, self.beta, self.gamma);
-        let rate = gamma / (beta * h);
-        let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start, step, inertia: beta * h * h, rate };
+    fn step(&mut self, system: &System, start: f64, h: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
+        let (n, beta, gamma) = (system.coordinates(), self.beta, self.gamma);
+        let stage = newmark_stage(start, h, beta, gamma);
         for i in 0..n {
             let (v, a) = (work.v0[i], work.a1[i]);
             work.drift[i] = h * v + h * h * (0.5 - beta) * a;
-            work.offset[i] = v + h * (1.0 - gamma) * a - rate * work.drift[i];
+            work.offset[i] = v + h * (1.0 - gamma) * a - stage.rate * work.drift[i];
             work.d[i] = h * v + h * h * (0.5 * a + beta * work.a_change[i]);
             work.inertial[i] = v + h * (1.0 - gamma) * a;
         }
@@ -32,6 +36,6 @@ impl Integrator for Newmark {
             work.v1[i] += h * gamma * work.a1[i];
         }
         work.settle(system, &stage);
-        Ok(Step { iterations, stage, extra_work: 0.0 })
+        Ok(Step { iterations, stage, work: Work::AtEnds, estimate: 0 })
     }
 }

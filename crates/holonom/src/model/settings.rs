@@ -16,12 +16,22 @@ pub struct Settings {
     pub formulation: Option<String>,
     pub index: Option<u32>,
     pub integrator: Option<String>,
+    /// Order of an integrator that has several.
+    pub order: Option<u32>,
+    /// Relative error of position that steps are chosen for.
+    pub accuracy: Option<f64>,
     pub iteration: Option<String>,
     /// α in the paper's sense.
     pub penalty: Option<f64>,
     /// Newmark's β and γ.
     pub beta: Option<f64>,
     pub gamma: Option<f64>,
+    /// HHT's α and generalized-α's ρ∞.
+    pub alpha: Option<f64>,
+    pub rho: Option<f64>,
+    /// ω (1/s) and ξ of stabilised formulations.
+    pub omega: Option<f64>,
+    pub xi: Option<f64>,
     /// `"end"` or `"mean"`.
     pub constraint_at: Option<String>,
     pub tolerance: Option<f64>,
@@ -51,6 +61,8 @@ pub struct Output {
     pub every: Option<u32>,
     /// Points to record, in this order; all where nothing is said.
     pub points: Option<Vec<String>>,
+    /// Record the forces of the constraints.
+    pub reactions: Option<bool>,
 }
 
 /// Keys of `[simulation.projection]`.
@@ -67,15 +79,27 @@ pub const PROJECTION: &[Key] = &[
 /// Keys of `[simulation]`.
 pub const SIMULATION: &[Key] = &[
     Key::optional("end", Shape::Number, "asked of the command", "s", "time at which the simulation ends"),
-    Key::optional("step", Shape::Number, "asked of the command", "s", "time step"),
+    Key::optional("step", Shape::Number, "asked of the command", "s", "time step; with an accuracy, the interval of the results"),
+    Key::optional(
+        "accuracy",
+        Shape::Number,
+        "none: steps are equal",
+        "",
+        "chooses the steps: error of positions at the end, over the size of the mechanism",
+    ),
     Key::optional("method", Shape::Text, "conserving-ggl", "", "a method by name; `holonom methods` lists them"),
     Key::optional("formulation", Shape::Text, "that of the method", "", "how constraints are put on"),
-    Key::optional("index", Shape::Whole, "3", "", "index of the formulation"),
+    Key::optional("index", Shape::Whole, "3", "", "index of the formulations lagrange and augmented-lagrangian: 3, 2 or 1"),
     Key::optional("integrator", Shape::Text, "that of the method", "", "how time is stepped"),
+    Key::optional("order", Shape::Whole, "that of the integrator", "", "order of an integrator that has several"),
     Key::optional("iteration", Shape::Text, "newton", "", "newton, nested or simultaneous"),
     Key::optional("penalty", Shape::Number, "scaled to the system", "", "α in the paper's sense"),
     Key::optional("beta", Shape::Number, "0.25", "", "Newmark's β"),
     Key::optional("gamma", Shape::Number, "0.5", "", "Newmark's γ"),
+    Key::optional("alpha", Shape::Number, "0.1", "", "α of hht, 0 to 1/3"),
+    Key::optional("rho", Shape::Number, "0.8", "", "ρ∞ of generalized-alpha, 0 to 1"),
+    Key::optional("omega", Shape::Number, "10", "1/s", "ω of the stabilised formulations"),
+    Key::optional("xi", Shape::Number, "1", "", "ξ of the stabilised formulations"),
     Key::optional(
         "constraint_at",
         Shape::Choice(&["end", "mean"]),
@@ -93,6 +117,7 @@ pub const SIMULATION: &[Key] = &[
 pub const OUTPUT: &[Key] = &[
     Key::optional("every", Shape::Whole, "1", "steps", "record every so many steps"),
     Key::optional("points", Shape::Points, "all", "", "points to record, in this order"),
+    Key::optional("reactions", Shape::Flag, "false", "", "record the multiplier of each row and the constraints' force on each point"),
 ];
 
 /// Reads `[simulation]`.
@@ -111,10 +136,16 @@ pub fn read(root: &Entry<'_>, assembly: &Assembly<'_>) -> Read<Settings> {
         formulation: word("formulation").unwrap_or(None),
         index: entry.optional("index", |entry, key| entry.whole(key, 1)).unwrap_or(None),
         integrator: word("integrator").unwrap_or(None),
+        order: entry.optional("order", |entry, key| entry.whole(key, 1)).unwrap_or(None),
+        accuracy: positive("accuracy").unwrap_or(None),
         iteration: word("iteration").unwrap_or(None),
         penalty: positive("penalty").unwrap_or(None),
         beta: number("beta").unwrap_or(None),
         gamma: number("gamma").unwrap_or(None),
+        alpha: number("alpha").unwrap_or(None),
+        rho: number("rho").unwrap_or(None),
+        omega: positive("omega").unwrap_or(None),
+        xi: positive("xi").unwrap_or(None),
         constraint_at: entry
             .optional("constraint_at", |entry, key| entry.choice(key, &["end", "mean"]).map(str::to_string))
             .unwrap_or(None),
@@ -180,6 +211,7 @@ pub fn output(root: &Entry<'_>, assembly: &Assembly<'_>) -> Read<Output> {
     Ok(Output {
         every: entry.optional("every", |entry, key| entry.whole(key, 1)).unwrap_or(None),
         points: entry.optional("points", points).unwrap_or(None),
+        reactions: entry.optional("reactions", Entry::flag).unwrap_or(None),
     })
 }
 

@@ -118,8 +118,8 @@ impl Projection {
                     rate: 2.0 / step,
                 };
                 work.respond_at_end(system, &stage);
-                work.add_laws(system, &stage);
-                work.add_loads(system, &stage);
+                work.add_laws(system, &stage, block);
+                work.add_loads(system, &stage, block);
             }
         }
         work.kkt.write_sum(block);

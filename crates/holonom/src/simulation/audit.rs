@@ -3,8 +3,8 @@
 use super::{EnergySummary, MomentumSummary, ViolationSummary, WorkSummary};
 use super::{Method, State};
 use crate::energy;
-use crate::formulation::{Multipliers, Sampling, Workspace};
-use crate::integrator::Step;
+use crate::formulation::{Level, Multipliers, Sampling, Workspace};
+use crate::integrator::{Step, Work};
 use crate::system::System;
 
 /// Everything that is booked of a run. Energies in J; sums over parts of a step where it was taken in parts.
@@ -53,8 +53,8 @@ pub(super) struct Accounts {
 impl Audit {
     pub(super) fn new(system: &System, method: &Method, work: &mut Workspace, state: &State) -> Self {
         let penalty = match method.settings.multipliers {
-            Multipliers::Penalty(alpha) => Some(alpha),
-            Multipliers::Augmented(_) => None,
+            Multipliers::Penalty(alpha) if method.settings.level == Level::POSITION => Some(alpha),
+            _ => None,
         };
         work.sample_end(system, state.t);
         let power = energy::power(system, state.t, &state.v, &state.a, work);
@@ -120,14 +120,15 @@ impl Audit {
     /// Books what the integrator did: ΔE_i is the change of energy that no work accounts for (21).
     pub(super) fn integrated(&mut self, system: &System, taken: &Step, state: &State, work: &mut Workspace) -> Accounts {
         self.iterations += taken.iterations as u64;
-        let done = match taken.stage.sampling {
-            Sampling::End => {
+        let done = match taken.work {
+            Work::AtEnds => {
                 let power = energy::power(system, state.t, &work.v1, &work.a1, work);
                 let done = 0.5 * taken.stage.step * (self.power + power);
                 self.power = power;
                 done
             }
-            _ => energy::work_between(system, &taken.stage, work) + taken.extra_work,
+            Work::Between(extra) => energy::work_between(system, &taken.stage, work) + extra,
+            Work::Sum(done) => done,
         };
         system.constraint_values(&work.at_end, state.t, &mut work.phi);
         self.phi = norm(&work.phi);

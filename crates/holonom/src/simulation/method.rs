@@ -1,23 +1,34 @@
 //! A method is a formulation, an integrator and projections; the names people choose, and what may go together.
 
 use super::{MethodError, MethodSummary, ProjectionSummary};
-use crate::formulation::{ITERATIONS, Iteration, Multipliers, NAMES, RowsAt, SolveSettings};
-use crate::integrator::{Entry, INTEGRATORS, Parameters};
+use crate::formulation::{FORMULATIONS, Formulation, ITERATIONS, Iteration, Multipliers, RowsAt, SolveSettings};
+use crate::integrator::{Entry, Estimate, INTEGRATORS, Parameters};
 use crate::projection::{METRICS, Metric, Projection, SOLVES, Solve};
 
 /// What a user says of a method, in words; everything may be left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Choice {
-    /// One of [`NAMED`], or nothing.
+    /// One of [`NAMED`], or parts joined by strokes such as `lagrange-2/trapezoidal/velocity`, or nothing.
     pub method: Option<String>,
     pub formulation: Option<String>,
     pub index: Option<u8>,
     pub integrator: Option<String>,
+    /// Order of an integrator that has several.
+    pub order: Option<u8>,
+    /// Relative error of position that the steps are to be chosen for.
+    pub accuracy: Option<f64>,
     pub iteration: Option<String>,
     /// Penalty α in the paper's sense.
     pub penalty: Option<f64>,
     pub beta: Option<f64>,
     pub gamma: Option<f64>,
+    /// HHT's α, 0 … 1/3.
+    pub alpha: Option<f64>,
+    /// ρ∞ of generalized-α, 0 … 1.
+    pub rho: Option<f64>,
+    /// ω (1/s) and ξ of the stabilised formulations.
+    pub omega: Option<f64>,
+    pub xi: Option<f64>,
     /// `"end"` or `"mean"`: which positions the conserving scheme puts on the constraints.
     pub constraint_at: Option<String>,
     pub tolerance: Option<f64>,
@@ -43,6 +54,7 @@ pub struct ProjectionChoice {
 /// A method with a name.
 pub struct Named {
     pub name: &'static str,
+    pub formulation: &'static str,
     pub integrator: &'static str,
     pub levels: &'static [&'static str],
     pub doc: &'static str,
@@ -53,6 +65,7 @@ pub struct Named {
 pub const NAMED: &[Named] = &[
     Named {
         name: "conserving-ggl",
+        formulation: "ggl",
         integrator: "conserving-ggl",
         levels: &[],
         doc: "long runs, everything exact (default)",
@@ -60,6 +73,7 @@ pub const NAMED: &[Named] = &[
     },
     Named {
         name: "conserving",
+        formulation: "augmented-lagrangian-3",
         integrator: "conserving",
         levels: &[],
         doc: "the paper's conserving scheme (17)–(18)",
@@ -67,6 +81,7 @@ pub const NAMED: &[Named] = &[
     },
     Named {
         name: "conserving-projected",
+        formulation: "augmented-lagrangian-3",
         integrator: "conserving",
         levels: &["velocity"],
         doc: "the same with velocity projection, A = M: energy never rises (§7.4)",
@@ -74,6 +89,7 @@ pub const NAMED: &[Named] = &[
     },
     Named {
         name: "trapezoidal-projected",
+        formulation: "augmented-lagrangian-3",
         integrator: "trapezoidal",
         levels: &["velocity", "acceleration"],
         doc: "real time: (7) with trapezoidal rule and projections, A = M",
@@ -81,10 +97,27 @@ pub const NAMED: &[Named] = &[
     },
     Named {
         name: "trapezoidal",
+        formulation: "augmented-lagrangian-3",
         integrator: "trapezoidal",
         levels: &[],
         doc: "(7) alone: the paper's unstable case, for comparison",
         keeps: "Φ",
+    },
+    Named {
+        name: "generalized-alpha",
+        formulation: "lagrange-3",
+        integrator: "generalized-alpha",
+        levels: &[],
+        doc: "stiff, damped mechanisms: Arnold and Brüls with ρ∞ = 0.8",
+        keeps: "Φ",
+    },
+    Named {
+        name: "radau",
+        formulation: "ggl",
+        integrator: "radau",
+        levels: &[],
+        doc: "reference solutions: Radau IIA of order 5 on the GGL form",
+        keeps: "Φ, Φ̇",
     },
 ];
 
@@ -101,10 +134,17 @@ pub const MAX_ITERATIONS: usize = 50;
 /// Penalty of the penalty formulation where none is given: the paper's.
 pub const PENALTY: f64 = 1e7;
 
+/// Natural frequency ω (1/s) and damping ratio ξ of stabilised rows where none are given.
+pub const OMEGA: f64 = 10.0;
+pub const XI: f64 = 1.0;
+
+/// Highest order of the integrators whose order varies with the accuracy, where none is given.
+const HIGHEST: u8 = 5;
+
 /// A method that can be run.
 pub struct Method {
     pub name: String,
-    pub formulation: &'static str,
+    pub formulation: &'static Formulation,
     pub integrator: &'static Entry,
     pub iteration: &'static str,
     pub settings: SolveSettings,
@@ -112,55 +152,60 @@ pub struct Method {
     pub projection: Projection,
     /// Whether a step that fails is retried in halves.
     pub subdivide: bool,
+    /// Relative error of position at the end of a run that steps are chosen for; without one they are the user's.
+    pub accuracy: Option<f64>,
 }
 
 impl Method {
     /// Turns words into a method, or says what is wrong and what would be right.
     pub fn resolve(choice: &Choice) -> Result<Self, MethodError> {
-        let named = match &choice.method {
-            Some(name) => pick("method", name, NAMED, |named| named.name)?,
-            None => &NAMED[0],
-        };
-        // Parts that are spelled out replace those of the named method; a formulation alone needs an integrator that takes it.
-        let fallback =
-            if choice.method.is_none() && choice.formulation.as_deref() == Some("penalty") { "conserving" } else { named.integrator };
-        let integrator = pick("integrator", choice.integrator.as_deref().unwrap_or(fallback), INTEGRATORS, |entry| entry.name)?;
-        let formulation = pick("formulation", choice.formulation.as_deref().unwrap_or(NAMES[0].0), NAMES, |f| f.0)?.0;
+        let spelled = choice.method.as_deref().filter(|name| name.contains('/')).map(|name| spell(choice, name)).transpose()?;
+        let choice = spelled.as_ref().unwrap_or(choice);
+        let named = choice.method.as_deref().map(|name| pick("method", name, NAMED, |named| named.name)).transpose()?;
+        let (formulation, integrator) = partners(choice, named)?;
         let iteration = pick("iteration", choice.iteration.as_deref().unwrap_or("newton"), ITERATIONS, |i| i.0)?;
-        together("integrator", integrator.name, "formulation", formulation, integrator.formulations)?;
         together("integrator", integrator.name, "iteration", iteration.0, integrator.iterations)?;
-        if formulation == "penalty" {
-            together("formulation", "penalty", "iteration", iteration.0, &["newton"])?;
-        }
-        if let Some(index) = choice.index.filter(|&index| index != 3) {
-            return Err(MethodError::Value { key: "index", given: index.to_string(), allowed: "3".into() });
-        }
-        let spelled = choice.integrator.as_deref().is_some_and(|name| name != named.integrator);
+        together("formulation", &formulation.full_name(), "iteration", iteration.0, formulation.iterations)?;
+        let order = order(choice, integrator)?;
+        let accuracy = accuracy(choice, integrator, order)?;
+        let usual = named.is_some_and(|named| named.integrator == integrator.name) || choice.integrator.is_none();
         let levels: Vec<String> = match choice.projection.as_ref().and_then(|projection| projection.levels.clone()) {
             Some(levels) => levels,
-            None if spelled => Vec::new(),
-            None => named.levels.iter().map(|&level| level.to_string()).collect(),
+            None if usual => named.map_or(&[][..], |named| named.levels).iter().map(|&level| level.to_string()).collect(),
+            None => Vec::new(),
         };
-        if !levels.is_empty() && !integrator.projects {
-            let partners: Vec<&str> = INTEGRATORS.iter().filter(|entry| entry.projects).map(|entry| entry.name).collect();
-            return Err(MethodError::Pair {
-                kind: "projection",
-                name: levels.join(", "),
-                with: "integrator",
-                given: integrator.name.into(),
-                partners: partners.join(", "),
+        if !levels.is_empty() && (!integrator.projects || formulation.doubled || formulation.soft) {
+            let fitting = INTEGRATORS.iter().filter(|entry| entry.projects).map(|entry| entry.name).collect::<Vec<_>>().join(", ");
+            return Err(match integrator.projects {
+                true => MethodError::Pair {
+                    kind: "projection",
+                    name: levels.join(", "),
+                    with: "formulation",
+                    given: formulation.full_name(),
+                    partners: "every other formulation; this one keeps Φ̇ = 0 by itself".into(),
+                },
+                false => MethodError::Pair {
+                    kind: "projection",
+                    name: levels.join(", "),
+                    with: "integrator",
+                    given: integrator.name.into(),
+                    partners: fitting,
+                },
             });
         }
         let loops = iteration.1 != Iteration::Newton;
+        let (omega, xi) = (positive("omega", choice.omega, OMEGA)?, positive("xi", choice.xi, XI)?);
         Ok(Self {
-            name: name(choice, named, integrator.name, formulation, &levels),
+            name: name(formulation, integrator, order, &levels),
             formulation,
             integrator,
             iteration: iteration.0,
             settings: SolveSettings {
-                multipliers: match formulation {
-                    "penalty" => Multipliers::Penalty(positive("penalty", choice.penalty, PENALTY)?),
-                    _ => Multipliers::Augmented(choice.penalty.map(|alpha| positive("penalty", Some(alpha), PENALTY)).transpose()?),
+                level: (formulation.level)(omega, xi),
+                doubled: formulation.doubled,
+                multipliers: match formulation.soft {
+                    true => Multipliers::Penalty(positive("penalty", choice.penalty, PENALTY)?),
+                    false => Multipliers::Augmented(choice.penalty.map(|alpha| positive("penalty", Some(alpha), PENALTY)).transpose()?),
                 },
                 iteration: iteration.1,
                 tolerance: positive("tolerance", choice.tolerance, if loops { LOOP_TOLERANCE } else { TOLERANCE })?,
@@ -169,6 +214,8 @@ impl Method {
             parameters: Parameters {
                 beta: positive("beta", choice.beta, 0.25)?,
                 gamma: positive("gamma", choice.gamma, 0.5)?,
+                alpha: within("alpha", choice.alpha, 0.1, 0.0, 1.0 / 3.0, "0 … 1/3")?,
+                rho: within("rho", choice.rho, 0.8, 0.0, 1.0, "0 … 1")?,
                 rows: match choice.constraint_at.as_deref() {
                     None | Some("end") => RowsAt::End,
                     Some("mean") => RowsAt::Mean,
@@ -176,10 +223,25 @@ impl Method {
                         return Err(MethodError::Value { key: "constraint_at", given: other.into(), allowed: "end, mean".into() });
                     }
                 },
+                order,
+                adapts: accuracy.is_some(),
             },
-            projection: projection(choice.projection.as_ref(), &levels, formulation)?,
+            projection: projection(choice.projection.as_ref(), &levels, formulation.soft)?,
             subdivide: choice.subdivide.unwrap_or(true),
+            accuracy,
         })
+    }
+
+    /// Order of convergence of positions, velocities and reactions.
+    pub fn convergence(&self) -> [u8; 3] {
+        let projected = self.projection.velocity && !self.projection.shadow;
+        (self.integrator.convergence)(self.parameters.order, self.formulation, projected)
+    }
+
+    /// Order of a step's result: the lower one of positions and velocities.
+    pub fn order(&self) -> u8 {
+        let [q, v, _] = self.convergence();
+        q.min(v).max(1)
     }
 
     /// The method as the summary has it.
@@ -200,31 +262,127 @@ impl Method {
         let solve = if self.projection.solve == Solve::Exact { "exact" } else { "penalty" };
         MethodSummary {
             name: self.name.clone(),
-            formulation: self.formulation.into(),
-            index: 3,
+            formulation: self.formulation.name.into(),
+            index: self.formulation.index,
             integrator: self.integrator.name.into(),
+            order: self.parameters.order,
             iteration: self.iteration.into(),
             projection: ProjectionSummary { levels, matrix: matrix.into(), solve: solve.into() },
         }
     }
 }
 
-/// The name of a method: its own, or its parts where they were spelled out.
-fn name(choice: &Choice, named: &Named, integrator: &str, formulation: &str, levels: &[String]) -> String {
-    let levels: Vec<&str> = levels.iter().map(String::as_str).collect();
-    let usual = NAMED.iter().find(|known| known.integrator == integrator && known.levels == levels);
-    let base = match usual {
-        Some(known) => known.name.to_string(),
-        None if levels.is_empty() => integrator.to_string(),
-        None => format!("{integrator}-projected"),
+/// The parts of a name with strokes: formulation, integrator and projection levels, as in
+/// `lagrange-2/bdf-3/velocity+acceleration`.
+fn spell(choice: &Choice, name: &str) -> Result<Choice, MethodError> {
+    let mut parts = name.split('/');
+    let (formulation, integrator, levels) = (parts.next(), parts.next().unwrap_or_default(), parts.next());
+    let (integrator, order) = match INTEGRATORS.iter().any(|entry| entry.name == integrator) {
+        true => (integrator, None),
+        false => match integrator.rsplit_once('-').and_then(|(front, last)| Some((front, last.parse().ok()?))) {
+            Some((front, order)) => (front, Some(order)),
+            None => (integrator, None),
+        },
     };
-    let base = if formulation == "penalty" { format!("penalty-{base}") } else { base };
-    if choice.method.as_deref() == Some(named.name) && base == named.name { named.name.to_string() } else { base }
+    let levels = levels.map(|levels| levels.split('+').map(str::to_string).collect());
+    let projection = ProjectionChoice { levels: Some(levels.unwrap_or_default()), ..choice.projection.clone().unwrap_or_default() };
+    Ok(Choice {
+        method: None,
+        formulation: formulation.map(str::to_string),
+        index: None,
+        integrator: Some(integrator.into()),
+        order: order.or(choice.order),
+        projection: Some(projection),
+        ..choice.clone()
+    })
+}
+
+/// Formulation and integrator: as spelled out, as the named method has them, or the first that go together.
+fn partners(choice: &Choice, named: Option<&Named>) -> Result<(&'static Formulation, &'static Entry), MethodError> {
+    let given = formulation(choice)?;
+    let integrator = match (choice.integrator.as_deref(), named, given) {
+        (Some(name), _, _) => name,
+        (None, Some(named), _) => named.integrator,
+        (None, None, Some(given)) => {
+            let full = given.full_name();
+            let fitting = INTEGRATORS.iter().find(|entry| entry.formulations.contains(&full.as_str()));
+            fitting.expect("every formulation has an integrator").name
+        }
+        (None, None, None) => NAMED[0].integrator,
+    };
+    let integrator = pick("integrator", integrator, INTEGRATORS, |entry| entry.name)?;
+    let usual = match named {
+        Some(named) if named.integrator == integrator.name => named.formulation,
+        _ => integrator.formulations[0],
+    };
+    let formulation = given.unwrap_or_else(|| FORMULATIONS.iter().find(|line| line.full_name() == usual).expect("the table names it"));
+    together("integrator", integrator.name, "formulation", &formulation.full_name(), integrator.formulations)?;
+    Ok((formulation, integrator))
+}
+
+/// The formulation that is spelled out, by name and index or by its full name.
+fn formulation(choice: &Choice) -> Result<Option<&'static Formulation>, MethodError> {
+    let Some(name) = choice.formulation.as_deref().or(choice.index.map(|_| FORMULATIONS[0].name)) else {
+        return Ok(None);
+    };
+    if let Some(full) = FORMULATIONS.iter().find(|line| line.full_name() == name && line.name != name) {
+        return Ok(Some(full));
+    }
+    let first = pick("formulation", name, FORMULATIONS, |line| line.name)?;
+    let Some(index) = choice.index else { return Ok(Some(first)) };
+    let of_name = || FORMULATIONS.iter().filter(|line| line.name == name);
+    let allowed = || of_name().map(|line| line.index.to_string()).collect::<Vec<_>>().join(", ");
+    let found = of_name().find(|line| line.index == index);
+    found.map(Some).ok_or_else(|| MethodError::Value { key: "index", given: index.to_string(), allowed: allowed() })
+}
+
+fn order(choice: &Choice, integrator: &Entry) -> Result<u8, MethodError> {
+    let usual = if choice.accuracy.is_some() && integrator.name == "bdf" { HIGHEST } else { integrator.orders[0] };
+    let order = choice.order.unwrap_or(usual);
+    match integrator.orders.contains(&order) {
+        true => Ok(order),
+        false => Err(MethodError::Value {
+            key: "order",
+            given: order.to_string(),
+            allowed: integrator.orders.iter().map(u8::to_string).collect::<Vec<_>>().join(", "),
+        }),
+    }
+}
+
+fn accuracy(choice: &Choice, integrator: &Entry, order: u8) -> Result<Option<f64>, MethodError> {
+    let Some(accuracy) = choice.accuracy else { return Ok(None) };
+    let estimates = |entry: &Entry, order: u8| match entry.estimate {
+        Estimate::History => order == 2,
+        Estimate::Own => true,
+        Estimate::None => false,
+    };
+    if !estimates(integrator, order) {
+        let with = |entry: &&Entry| estimates(entry, entry.orders[0]);
+        let partners = INTEGRATORS.iter().filter(with).map(|entry| entry.name).collect::<Vec<_>>().join(", ");
+        let name = integrator.name;
+        let name = if integrator.orders.len() > 1 { format!("{name} of order {order}") } else { name.into() };
+        return Err(MethodError::NoEstimate { integrator: name, partners });
+    }
+    positive("accuracy", Some(accuracy), 0.0).map(Some)
+}
+
+/// The name of a method: one that people know, or its parts joined by strokes.
+fn name(formulation: &Formulation, integrator: &Entry, order: u8, levels: &[String]) -> String {
+    let (full, is_usual) = (formulation.full_name(), order == integrator.orders[0]);
+    let known = NAMED.iter().find(|known| {
+        is_usual && known.integrator == integrator.name && known.levels == levels && known.formulation == full
+    });
+    if let Some(known) = known {
+        return known.name.into();
+    }
+    let order = if is_usual { String::new() } else { format!("-{order}") };
+    let levels = if levels.is_empty() { String::new() } else { format!("/{}", levels.join("+")) };
+    format!("{full}/{}{order}{levels}", integrator.name)
 }
 
 /// Off the manifold redundant rows are no longer so, and an exact projection would take motion away that the mechanism
 /// has: with the penalty formulation the penalty solve is the default.
-fn projection(choice: Option<&ProjectionChoice>, levels: &[String], formulation: &str) -> Result<Projection, MethodError> {
+fn projection(choice: Option<&ProjectionChoice>, levels: &[String], soft: bool) -> Result<Projection, MethodError> {
     let default = ProjectionChoice::default();
     let choice = choice.unwrap_or(&default);
     for level in levels {
@@ -249,7 +407,7 @@ fn projection(choice: Option<&ProjectionChoice>, levels: &[String], formulation:
     };
     let solve = match pick(
         "projection solve",
-        choice.solve.as_deref().unwrap_or(if formulation == "penalty" { "penalty" } else { "exact" }),
+        choice.solve.as_deref().unwrap_or(if soft { "penalty" } else { "exact" }),
         SOLVES,
         |s| s.0,
     )?
@@ -290,5 +448,12 @@ fn positive(key: &'static str, given: Option<f64>, default: f64) -> Result<f64, 
         None => Ok(default),
         Some(value) if value > 0.0 && value.is_finite() => Ok(value),
         Some(value) => Err(MethodError::Value { key, given: value.to_string(), allowed: "a positive number".into() }),
+    }
+}
+
+fn within(key: &'static str, given: Option<f64>, default: f64, low: f64, high: f64, allowed: &str) -> Result<f64, MethodError> {
+    match given.unwrap_or(default) {
+        value if (low..=high).contains(&value) => Ok(value),
+        value => Err(MethodError::Value { key, given: value.to_string(), allowed: allowed.into() }),
     }
 }

@@ -1,6 +1,7 @@
 //! A method at work on a system: the step loop, step control, and how a run ended.
 
 mod audit;
+mod control;
 mod method;
 mod start;
 mod summary;
@@ -11,7 +12,8 @@ pub use start::{Start, StartError};
 pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, ProjectionSummary, Summary, ViolationSummary, WorkSummary};
 
 use crate::formulation::{Failure, Iteration, Workspace};
-use crate::integrator::Integrator;
+use control::Control;
+use crate::integrator::{Integrator, Step};
 use crate::system::System;
 
 /// Why words do not make a method.
@@ -23,6 +25,8 @@ pub enum MethodError {
     Pair { kind: &'static str, name: String, with: &'static str, given: String, partners: String },
     #[error("`{key}` cannot be {given}; it can be: {allowed}")]
     Value { key: &'static str, given: String, allowed: String },
+    #[error("the integrator `{integrator}` has no error estimate to choose steps by accuracy; these have: {partners}")]
+    NoEstimate { integrator: String, partners: String },
 }
 
 /// Numbers of a moment. A clone is a checkpoint.
@@ -44,6 +48,8 @@ pub struct State {
     pub a_change: Vec<f64>,
     /// Length of the last step, s.
     pub last_step: f64,
+    /// What the integrator keeps from step to step.
+    pub memory: Vec<f64>,
 }
 
 /// How a run ended.
@@ -75,6 +81,9 @@ impl<F: FnMut(&Simulation<'_>) -> Verdict> Observer for F {
 /// Halvings of a step before a run gives up.
 const MOST_HALVINGS: u32 = 12;
 
+/// Smallest step over the length of the run that an accuracy may ask for: below it times no longer tell steps apart.
+const SMALLEST_SHARE: f64 = 1e-13;
+
 /// A method at work on a system. Everything a step needs is allocated when it is made.
 pub struct Simulation<'a> {
     system: &'a System,
@@ -89,6 +98,21 @@ pub struct Simulation<'a> {
     start: Start,
     step: f64,
     steps: u64,
+    /// What chooses the steps by accuracy, and the state and books to go back to.
+    control: Option<Box<(Control, State, Audit)>>,
+    /// Multipliers (r) and accelerations (D × nodes) of the index-1 system at the present state, where they are wanted.
+    reactions: Option<Reactions>,
+}
+
+/// Forces of the constraints at a state, of the order of its positions and velocities.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reactions {
+    /// Multipliers λ (r).
+    pub lambda: Vec<f64>,
+    /// Accelerations of all nodes (D × nodes), m/s².
+    pub a: Vec<f64>,
+    /// Forces of the constraints on the nodes, −Gᵀλ (D × nodes), N. Redundant rows leave λ undetermined, not these.
+    pub force: Vec<f64>,
 }
 
 impl<'a> Simulation<'a> {
@@ -96,7 +120,10 @@ impl<'a> Simulation<'a> {
     /// little, and finds accelerations and multipliers to start with.
     pub fn new(system: &'a System, method: Method, step: f64) -> Result<Self, StartError> {
         let mut work = Workspace::new(system);
-        let start = start::prepare(system, &mut work)?;
+        work.level = method.settings.level;
+        let start = start::prepare(system, &method, &mut work)?;
+        let integrator = (method.integrator.make)(system, &method.settings, method.parameters);
+        work.memory = vec![0.0; integrator.memory(system)];
         let state = State::new(&work);
         Ok(Self::assemble(system, method, step, work, state, start))
     }
@@ -105,11 +132,14 @@ impl<'a> Simulation<'a> {
     pub fn resume(system: &'a System, method: Method, step: f64, state: State) -> Option<Self> {
         let all = system.nodes() * system.dim;
         let fits = [&state.x, &state.v, &state.a, &state.a_change].iter().all(|values| values.len() == all)
-            && state.lambda.len() == system.constraints();
+            && state.lambda.len() == system.constraints()
+            && state.memory.len() == (method.integrator.make)(system, &method.settings, method.parameters).memory(system);
         if !fits {
             return None;
         }
         let mut work = Workspace::new(system);
+        work.level = method.settings.level;
+        work.memory = state.memory.clone();
         state.load(&mut work);
         system.evaluate(&state.x, state.t, &mut work.at_start);
         Some(Self::assemble(system, method, step, work, state, Start::default()))
@@ -117,8 +147,12 @@ impl<'a> Simulation<'a> {
 
     fn assemble(system: &'a System, method: Method, step: f64, mut work: Workspace, state: State, start: Start) -> Self {
         let audit = Audit::new(system, &method, &mut work, &state);
+        let control = method.accuracy.map(|accuracy| {
+            let control = Control::new(accuracy, method.order(), method.integrator.estimate, system.coordinates());
+            Box::new((control, state.clone(), audit.clone()))
+        });
         Self {
-            integrator: (method.integrator.make)(system, method.parameters),
+            integrator: (method.integrator.make)(system, &method.settings, method.parameters),
             shown_v: state.v.clone(),
             shown_a: state.a.clone(),
             system,
@@ -129,7 +163,21 @@ impl<'a> Simulation<'a> {
             start,
             step,
             steps: 0,
+            control,
+            reactions: None,
         }
+    }
+
+    /// Has the forces of the constraints found at the start and at every nominal step.
+    pub fn find_reactions(&mut self) {
+        let (r, all) = (self.system.constraints(), self.state.x.len());
+        self.reactions = Some(Reactions { lambda: vec![0.0; r], a: vec![0.0; all], force: vec![0.0; all] });
+        self.react();
+    }
+
+    /// Forces of the constraints at the present state, if they were asked for.
+    pub fn reactions(&self) -> Option<&Reactions> {
+        self.reactions.as_ref()
     }
 
     /// Runs to time `end` (s) and shows the start and every nominal step to the observer.
@@ -138,6 +186,9 @@ impl<'a> Simulation<'a> {
             return self.interrupted();
         }
         let first = self.state.t;
+        if let Some(kept) = &mut self.control {
+            kept.0.begin(&self.state, end - first, self.work.length);
+        }
         let count = ((end - first) / self.step - 1e-9).ceil().max(0.0) as u64;
         for k in 1..=count {
             let target = if k == count { end } else { first + k as f64 * self.step };
@@ -155,9 +206,25 @@ impl<'a> Simulation<'a> {
         Status::Stopped { at: self.state.t, reason: "interrupted".into() }
     }
 
-    /// Takes the nominal step to `target`, in parts where it fails as a whole.
+    /// Takes the nominal step to `target`.
     fn advance(&mut self, target: f64) -> Result<(), Failure> {
         self.audit.begin_step();
+        match self.control.take() {
+            None => self.halve(target)?,
+            Some(mut kept) => {
+                let outcome = self.adapt(target, &mut kept);
+                self.control = Some(kept);
+                outcome?;
+            }
+        }
+        self.steps += 1;
+        self.audit.end_step(self.system, &mut self.work, &self.state, self.steps);
+        self.react();
+        Ok(())
+    }
+
+    /// In parts where it fails as a whole.
+    fn halve(&mut self, target: f64) -> Result<(), Failure> {
         let whole = target - self.state.t;
         let smallest = whole / f64::from(1u32 << MOST_HALVINGS);
         let mut part = whole;
@@ -166,7 +233,7 @@ impl<'a> Simulation<'a> {
             let is_last = part >= left * (1.0 - 1e-12);
             let step = if is_last { left } else { part };
             match self.substep(step, if is_last { target } else { self.state.t + step }) {
-                Ok(()) => part = 2.0 * step,
+                Ok(_) => part = 2.0 * step,
                 Err(failure) if !self.method.subdivide || step <= smallest => return Err(failure),
                 Err(_) => {
                     part = 0.5 * step;
@@ -174,13 +241,62 @@ impl<'a> Simulation<'a> {
                 }
             }
         }
-        self.steps += 1;
-        self.audit.end_step(self.system, &mut self.work, &self.state, self.steps);
         Ok(())
     }
 
+    /// In equal parts no longer than the accuracy allows.
+    fn adapt(&mut self, target: f64, (control, state, audit): &mut (Control, State, Audit)) -> Result<(), Failure> {
+        while self.state.t < target {
+            let left = target - self.state.t;
+            let parts = (left / control.step - 1e-9).ceil().max(1.0);
+            let step = left / parts;
+            if step < SMALLEST_SHARE * control.span {
+                return Err(Failure::TooSmall);
+            }
+            state.clone_from(&self.state);
+            audit.clone_from(&self.audit);
+            let outcome = self.substep(step, if parts == 1.0 { target } else { self.state.t + step });
+            let ratio = match &outcome {
+                Ok(taken) => control.ratio(taken, step, &self.state, &mut self.work),
+                Err(_) => f64::INFINITY,
+            };
+            if ratio <= 1.0 {
+                control.remember(&self.state);
+                control.accept(step, ratio);
+                continue;
+            }
+            // What was swapped at the end of the step goes back.
+            if outcome.is_ok() {
+                std::mem::swap(&mut self.work.at_start, &mut self.work.at_end);
+            }
+            self.state.clone_from(state);
+            self.audit.clone_from(audit);
+            self.audit.reject();
+            control.reject(step, ratio);
+        }
+        Ok(())
+    }
+
+    /// Finds the forces of the constraints at the present state, where they are wanted.
+    fn react(&mut self) {
+        let Some(reactions) = &mut self.reactions else { return };
+        let (system, work, state) = (self.system, &mut self.work, &self.state);
+        work.x1.copy_from_slice(&state.x);
+        work.v1.copy_from_slice(&self.shown_v);
+        work.a1.copy_from_slice(&state.a);
+        work.lambda.copy_from_slice(&reactions.lambda);
+        let Workspace { x1, v1, a1, .. } = work;
+        system.place_known(state.t, x1, v1, a1);
+        if work.react(system, state.t).is_err() {
+            work.lambda.fill(f64::NAN);
+        }
+        reactions.lambda.copy_from_slice(&work.lambda);
+        reactions.a.copy_from_slice(&work.a1);
+        work.constraint_forces(system, &mut reactions.force);
+    }
+
     /// One step of the method: integrate, audit, project.
-    fn substep(&mut self, step: f64, target: f64) -> Result<(), Failure> {
+    fn substep(&mut self, step: f64, target: f64) -> Result<Step, Failure> {
         let (system, work) = (self.system, &mut self.work);
         self.state.load(work);
         system.constraint_values(&work.at_start, self.state.t, &mut work.phi_start);
@@ -204,7 +320,7 @@ impl<'a> Simulation<'a> {
             self.state.a.copy_from_slice(&work.a1);
         }
         std::mem::swap(&mut work.at_start, &mut work.at_end);
-        Ok(())
+        Ok(taken)
     }
 
     fn reason(&mut self, failure: Failure) -> String {
@@ -293,6 +409,7 @@ impl State {
             lambda: work.lambda.clone(),
             a_change: vec![0.0; work.a1.len()],
             last_step: 0.0,
+            memory: work.memory.clone(),
         }
     }
 
@@ -305,6 +422,7 @@ impl State {
         work.a1.copy_from_slice(&self.a);
         work.lambda.copy_from_slice(&self.lambda);
         work.a_change.copy_from_slice(&self.a_change);
+        work.memory.copy_from_slice(&self.memory);
     }
 
     /// Remembers how the accelerations changed in a step, for the prediction of the next.
@@ -328,5 +446,6 @@ impl State {
         self.x.copy_from_slice(&work.x1);
         self.a.copy_from_slice(&work.a1);
         self.lambda.copy_from_slice(&work.lambda);
+        self.memory.copy_from_slice(&work.memory);
     }
 }

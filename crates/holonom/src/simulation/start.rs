@@ -1,6 +1,7 @@
 //! The start: positions and velocities put on their constraints, accelerations and multipliers found.
 
-use crate::formulation::{Block, Workspace};
+use super::Method;
+use crate::formulation::Workspace;
 use crate::system::System;
 
 /// What was corrected before the start.
@@ -33,29 +34,16 @@ const ROUND_OFF: f64 = 1e-14;
 const LARGEST_MOVE: f64 = 0.05;
 
 /// Puts a workspace at the start of a run: x1, v1, a1, λ and the evaluation `at_start`.
-pub(super) fn prepare(system: &System, work: &mut Workspace) -> Result<Start, StartError> {
+pub(super) fn prepare(system: &System, method: &Method, work: &mut Workspace) -> Result<Start, StartError> {
     work.x1.copy_from_slice(&system.start_position);
     work.v1.copy_from_slice(&system.start_velocity);
     system.place_known(0.0, &mut work.x1, &mut work.v1, &mut work.a1);
     let mut start = Start::default();
     correct_positions(system, work, &mut start)?;
     correct_velocities(system, work, &mut start)?;
-    accelerate(system, work)?;
+    accelerate(system, method, work)?;
     work.at_start.copy_from(&work.at_end);
     Ok(start)
-}
-
-/// Writes [M Gᵀ; G −δ] at the evaluation `at_end` and factors it.
-fn factor(work: &mut Workspace) -> bool {
-    let block = Block(0, 0);
-    work.kkt.clear();
-    work.kkt.start_with_mass(1.0);
-    work.kkt.write_sum(block);
-    work.kkt.add_columns(block, &work.at_end.gradient, 1.0);
-    work.kkt.add_rows(block, &work.at_end.gradient, 1.0);
-    work.proximal(1.0, None);
-    work.kkt.regularise(0, &work.delta);
-    work.kkt.factor().is_ok()
 }
 
 /// Mass-weighted Newton on Φ = 0.
@@ -64,7 +52,7 @@ fn correct_positions(system: &System, work: &mut Workspace, start: &mut Start) -
     for _ in 0..30 {
         system.evaluate(&work.x1, 0.0, &mut work.at_end);
         system.constraint_values(&work.at_end, 0.0, &mut work.phi);
-        if work.scaled_violation() <= ROUND_OFF || !factor(work) {
+        if work.scaled_violation() <= ROUND_OFF || !work.factor_inertia() {
             break;
         }
         work.unknowns[..n].fill(0.0);
@@ -87,7 +75,7 @@ fn correct_positions(system: &System, work: &mut Workspace, start: &mut Start) -
 /// Velocity projection with A = M (10).
 fn correct_velocities(system: &System, work: &mut Workspace, start: &mut Start) -> Result<(), StartError> {
     let n = system.coordinates();
-    if !factor(work) {
+    if !work.factor_inertia() {
         return Err(StartError::Acceleration);
     }
     let mut violation = f64::INFINITY;
@@ -112,35 +100,14 @@ fn correct_velocities(system: &System, work: &mut Workspace, start: &mut Start) 
     }
 }
 
-/// Index-1 solve for accelerations and multipliers (3).
-fn accelerate(system: &System, work: &mut Workspace) -> Result<(), StartError> {
-    let n = system.coordinates();
+/// Accelerations and multipliers by the formulation, or where it gives none by the index-1 system (3).
+fn accelerate(system: &System, method: &Method, work: &mut Workspace) -> Result<(), StartError> {
     work.lambda.fill(0.0);
-    work.a1[..n].fill(0.0);
-    work.sample_end(system, 0.0);
-    for _ in 0..3 {
-        // M a + Gᵀλ = Q and G a = −c, for what is still missing of both.
-        work.acceleration_violation(system, 0.0);
-        system.mass.times(system.dim, &work.a1, &mut work.inertial);
-        work.full.copy_from_slice(&work.force);
-        for (slots, &lambda) in work.kkt.row_slots.iter().zip(&work.lambda) {
-            for s in slots.clone() {
-                let node = work.kkt.slot_nodes[s] as usize * system.dim;
-                (0..system.dim).for_each(|c| work.full[node + c] += lambda * work.at_end.gradient[s * system.dim + c]);
-            }
-        }
-        for i in 0..n {
-            work.unknowns[i] = -(work.inertial[i] + work.full[i]);
-        }
-        work.unknowns[n..].iter_mut().zip(&work.rows).for_each(|(unknown, row)| *unknown = -row);
-        work.kkt.solver.solve(&mut work.unknowns);
-        work.a1[..n].iter_mut().zip(&work.unknowns).for_each(|(a, step)| *a += step);
-        work.lambda.iter_mut().zip(&work.unknowns[n..]).for_each(|(lambda, step)| *lambda += step);
-    }
-    match work.a1.iter().all(|a| a.is_finite()) {
-        true => Ok(()),
-        false => Err(StartError::Acceleration),
-    }
+    let outcome = match method.formulation.gives_accelerations() {
+        true => work.accelerate(system, 0.0, &method.settings),
+        false => work.react(system, 0.0),
+    };
+    outcome.map_err(|_| StartError::Acceleration)
 }
 
 /// The three rows with the largest violation, by name.

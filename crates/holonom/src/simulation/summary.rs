@@ -32,6 +32,7 @@ pub struct MethodSummary {
     pub formulation: String,
     pub index: u8,
     pub integrator: String,
+    pub order: u8,
     pub iteration: String,
     pub projection: ProjectionSummary,
 }

@@ -157,6 +157,28 @@ impl System {
         }
     }
 
+    /// H v of all rows' and laws' slots (D a slot), their second derivatives times a direction over all nodes. `half`
+    /// has room for one number an invariant.
+    pub(crate) fn turn(&self, x: &[f64], v: &[f64], t: f64, half: &mut [f64], turned: &mut [f64]) {
+        self.invariants.curvature(v, half, turned);
+        let mut slot = self.invariants.slots() * self.dim;
+        let (mut hessian, mut position, mut direction) = ([0.0; super::SIZE * super::SIZE], [0.0; super::SIZE], [0.0; super::SIZE]);
+        for entry in &self.custom {
+            let width = gather(self.dim, &entry.nodes, x, &mut position);
+            gather(self.dim, &entry.nodes, v, &mut direction);
+            for row in 0..entry.rows.rows() {
+                let mut unit = [0.0; super::SIZE];
+                unit[row] = 1.0;
+                entry.rows.hessian(&position[..width], t, &unit[..entry.rows.rows()], &mut hessian[..width * width]);
+                for i in 0..width {
+                    let line = &hessian[i * width..(i + 1) * width];
+                    turned[slot + i] = line.iter().zip(&direction).map(|(h, v)| h * v).sum();
+                }
+                slot += width;
+            }
+        }
+    }
+
     /// Calls `f` for every custom entry with its part of an evaluation.
     fn each_custom(&self, out: &mut Evaluation, mut f: impl FnMut(&CustomEntry, &mut [f64; super::SIZE], CustomPart<'_>)) {
         let (mut row, mut slot) = (0, self.invariants.slots() * self.dim);

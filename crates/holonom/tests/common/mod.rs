@@ -119,20 +119,23 @@ pub fn every_method() -> Vec<(String, Choice)> {
     let mut all = Vec::new();
     for entry in holonom::integrator::INTEGRATORS {
         for formulation in entry.formulations {
-            for iteration in entry.iterations {
-                for levels in [&[][..], &["velocity"], &["velocity", "acceleration"]] {
-                    let choice = Choice {
-                        formulation: Some(formulation.to_string()),
-                        integrator: Some(entry.name.into()),
-                        iteration: Some(iteration.to_string()),
-                        projection: Some(ProjectionChoice {
-                            levels: Some(levels.iter().map(|level| level.to_string()).collect()),
-                            ..ProjectionChoice::default()
-                        }),
-                        ..Choice::default()
-                    };
-                    if Method::resolve(&choice).is_ok() {
-                        all.push((format!("{formulation} {} {iteration} {levels:?}", entry.name), choice));
+            for &order in entry.orders {
+                for iteration in entry.iterations {
+                    for levels in [&[][..], &["velocity"], &["velocity", "acceleration"]] {
+                        let choice = Choice {
+                            formulation: Some(formulation.to_string()),
+                            integrator: Some(entry.name.into()),
+                            order: Some(order),
+                            iteration: Some(iteration.to_string()),
+                            projection: Some(ProjectionChoice {
+                                levels: Some(levels.iter().map(|level| level.to_string()).collect()),
+                                ..ProjectionChoice::default()
+                            }),
+                            ..Choice::default()
+                        };
+                        if Method::resolve(&choice).is_ok() {
+                            all.push((format!("{formulation} {}-{order} {iteration} {levels:?}", entry.name), choice));
+                        }
                     }
                 }
             }

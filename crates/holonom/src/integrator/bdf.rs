@@ -1,0 +1,203 @@
+//! Backward differentiation of order 1 to 5 on any sequence of steps: the derivative at the end of the step of the
+//! polynomial through it and the states before (Hairer and Wanner, Solving Ordinary Differential Equations II, §VII.3).
+//! The first steps, before there are enough states, are taken by Radau IIA of order 5.
+
+use super::runge_kutta::{RungeKutta, Tableau};
+use super::{Integrator, Step, Work};
+use crate::formulation::{Collocation, Failure, RowsAt, Sampling, SolveSettings, Stage, Timing, Workspace};
+use crate::system::System;
+
+/// States before the present one that are kept: what order 5 and its error estimate need.
+const KEPT: usize = 6;
+
+pub(super) struct Bdf {
+    order: usize,
+    /// Whether the order is chosen from the error estimates, up to `order`.
+    varies: bool,
+    starter: RungeKutta,
+    stage: Collocation,
+}
+
+/// The memory: how many states there are, the order in use, then for each state its time, positions and velocities, the
+/// latest first.
+struct History<'a> {
+    n: usize,
+    numbers: &'a mut [f64],
+}
+
+impl History<'_> {
+    fn count(&self) -> usize {
+        self.numbers[0] as usize
+    }
+
+    fn time(&self, k: usize) -> f64 {
+        self.numbers[2 + k * (2 * self.n + 1)]
+    }
+
+    /// Positions, then velocities, of state `k`.
+    fn state(&self, k: usize) -> &[f64] {
+        let first = 3 + k * (2 * self.n + 1);
+        &self.numbers[first..first + 2 * self.n]
+    }
+
+    fn push(&mut self, t: f64, x: &[f64], v: &[f64]) {
+        let width = 2 * self.n + 1;
+        self.numbers[2..].rotate_right(width);
+        self.numbers[2] = t;
+        self.numbers[3..3 + self.n].copy_from_slice(&x[..self.n]);
+        self.numbers[3 + self.n..2 + width].copy_from_slice(&v[..self.n]);
+        self.numbers[0] = (self.numbers[0] + 1.0).min(KEPT as f64);
+    }
+}
+
+impl Bdf {
+    pub(super) fn new(system: &System, settings: &SolveSettings, order: u8, varies: bool) -> Self {
+        Self {
+            order: order.into(),
+            varies,
+            starter: RungeKutta::new(system, settings, Tableau::radau(5)),
+            stage: Collocation::new(system, 1, settings),
+        }
+    }
+
+    /// Weights of the derivative at the time `t` of the polynomial through it and the `k` states before.
+    fn weights(history: &History<'_>, t: f64, k: usize) -> [f64; KEPT] {
+        let mut weights = [0.0; KEPT];
+        for j in 1..=k {
+            let own = history.time(j - 1);
+            weights[0] += 1.0 / (t - own);
+            let mut weight = 1.0 / (own - t);
+            for i in (1..=k).filter(|&i| i != j) {
+                let other = history.time(i - 1);
+                weight *= (t - other) / (own - other);
+            }
+            weights[j] = weight;
+        }
+        weights
+    }
+}
+
+impl Integrator for Bdf {
+    fn memory(&self, system: &System) -> usize {
+        2 + KEPT * (2 * system.coordinates() + 1)
+    }
+
+    fn step(&mut self, system: &System, start: f64, h: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
+        let n = system.coordinates();
+        let mut memory = std::mem::take(&mut work.memory);
+        let mut history = History { n, numbers: &mut memory };
+        history.push(start, &work.x0, &work.v0);
+        let outcome = self.advance(system, start, h, settings, &mut history, work);
+        work.memory = memory;
+        outcome
+    }
+}
+
+impl Bdf {
+    fn advance(
+        &mut self,
+        system: &System,
+        start: f64,
+        h: f64,
+        settings: &SolveSettings,
+        history: &mut History<'_>,
+        work: &mut Workspace,
+    ) -> Result<Step, Failure> {
+        let n = system.coordinates();
+        let order = self.order_in_use(history);
+        if history.count() < self.order + usize::from(self.varies) {
+            return self.starter.step(system, start, h, settings, work);
+        }
+        let t = start + h;
+        let weights = Self::weights(history, t, order);
+        self.stage.set_rate([weights[0] * h]);
+        for k in 0..n {
+            let (mut p, mut r) = (0.0, 0.0);
+            for j in 1..=order {
+                let state = history.state(j - 1);
+                p += h * weights[j] * (state[k] - work.x0[k]);
+                r += h * h * weights[j] * state[n + k];
+            }
+            (self.stage.p[k], self.stage.r[k]) = (p, r);
+            let (v, a) = (work.v0[k], work.a1[k] + work.a_change[k] / 3.0);
+            self.stage.d[k] = h * (v + 0.5 * h * a);
+            self.stage.u[k] = h * (v + h * a);
+        }
+        let timing = Timing { start, step: h, nodes: &[1.0] };
+        let iterations = self.stage.solve(system, timing, settings, work)?;
+        self.stage.place(system, timing, 0, work);
+        if work.is_worked_on() {
+            work.sample(system, t);
+        }
+        work.x1[n..].copy_from_slice(&work.xs[n..]);
+        work.v1.copy_from_slice(&work.vs);
+        work.d.copy_from_slice(&self.stage.d);
+        if self.varies {
+            self.choose(order, t, history, work);
+        }
+        let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start, step: h, inertia: h * h, rate: 1.0 / h };
+        Ok(Step { iterations, stage, work: Work::AtEnds, estimate: order as u8 })
+    }
+
+    fn order_in_use(&self, history: &History<'_>) -> usize {
+        match history.numbers[1] as usize {
+            chosen if self.varies && chosen > 0 => chosen,
+            _ => self.order,
+        }
+    }
+
+    /// Estimates the local error at the order in use, and takes the neighbour that allows longer steps for the next one.
+    fn choose(&self, order: usize, t: f64, history: &mut History<'_>, work: &mut Workspace) {
+        let room = |order: usize, error: f64| error.max(f64::MIN_POSITIVE).powf(-1.0 / (order as f64 + 1.0));
+        let mut next = order;
+        let mut best = 0.0;
+        if order > 1 {
+            best = room(order - 1, local_error(order - 1, t, history, work));
+            next = order - 1;
+        }
+        if order < self.order && history.count() >= order + 2 {
+            let higher = room(order + 1, local_error(order + 1, t, history, work));
+            if higher > best {
+                (best, next) = (higher, order + 1);
+            }
+        }
+        // Another order must be worth it.
+        if best < 1.1 * room(order, local_error(order, t, history, work)) {
+            next = order;
+        }
+        history.numbers[1] = next as f64;
+    }
+}
+
+/// Writes the estimated local errors of a step to `t` with order `k`: ψ_1 … ψ_k times the divided difference over k + 2
+/// states over the leading weight of the derivative. Says the largest of the positions, m.
+fn local_error(order: usize, t: f64, history: &History<'_>, work: &mut Workspace) -> f64 {
+    let n = history.n;
+    let time = |j: usize| if j == 0 { t } else { history.time(j - 1) };
+    let (mut product, mut leading) = (1.0, 0.0);
+    for j in 1..=order {
+        product *= t - time(j);
+        leading += 1.0 / (t - time(j));
+    }
+    let mut largest = 0.0_f64;
+    for k in 0..2 * n {
+        let mut differences = [0.0; KEPT + 1];
+        differences[0] = if k < n { work.x0[k] + work.d[k] } else { work.v1[k - n] };
+        for j in 1..=order + 1 {
+            differences[j] = history.state(j - 1)[k];
+        }
+        for level in 1..=order + 1 {
+            for j in 0..=order + 1 - level {
+                differences[j] = (differences[j] - differences[j + 1]) / (time(j) - time(j + level));
+            }
+        }
+        let error = product * differences[0] / leading;
+        if k < n {
+            work.error_q[k] = error;
+            largest = largest.max(error.abs());
+        } else {
+            work.error_v[k - n] = error;
+        }
+    }
+    largest
+}

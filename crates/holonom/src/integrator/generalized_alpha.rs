@@ -1,0 +1,98 @@
+//! Generalized-α for constrained systems (Arnold and Brüls 2007) and its members: the equations of motion hold at the end
+//! of the step with the true acceleration v̇, and Newmark's formulas take an auxiliary one,
+//! (1 − α_m) a_{n+1} + α_m a_n = (1 − α_f) v̇_{n+1} + α_f v̇_n (methods §6).
+
+use super::newmark::newmark_stage;
+use super::{Integrator, Step, Work};
+use crate::formulation::{Failure, SolveSettings, Workspace, solve};
+use crate::system::System;
+
+pub(super) struct GeneralizedAlpha {
+    alpha_m: f64,
+    alpha_f: f64,
+    beta: f64,
+    gamma: f64,
+}
+
+impl GeneralizedAlpha {
+    /// Spectral radius ρ∞ at infinite frequency, 0 … 1.
+    pub(super) fn with_radius(rho: f64) -> Self {
+        Self::new((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0))
+    }
+
+    /// HHT-α: α_m = 0, α_f = α in 0 … 1/3.
+    pub(super) fn hht(alpha: f64) -> Self {
+        Self::new(0.0, alpha)
+    }
+
+    fn new(alpha_m: f64, alpha_f: f64) -> Self {
+        let gamma = 0.5 + alpha_f - alpha_m;
+        Self { alpha_m, alpha_f, beta: 0.25 * (gamma + 0.5) * (gamma + 0.5), gamma }
+    }
+
+    /// One step from the auxiliary acceleration a_n = v̇_n + h `lag`.
+    fn attempt(&self, system: &System, start: f64, h: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
+        let n = system.coordinates();
+        let Self { alpha_m, alpha_f, beta, gamma } = *self;
+        // a_{n+1} = σ v̇_{n+1} + known
+        let sigma = (1.0 - alpha_f) / (1.0 - alpha_m);
+        let mut stage = newmark_stage(start, h, beta, gamma);
+        stage.inertia *= sigma;
+        for i in 0..n {
+            let (v, dv) = (work.v0[i], work.a1[i]);
+            let a = dv + h * work.memory[i];
+            let known = (alpha_f * dv - alpha_m * a) / (1.0 - alpha_m);
+            let free = h * v + h * h * (0.5 - beta) * a;
+            work.drift[i] = free + beta * h * h * known;
+            work.offset[i] = v + h * (1.0 - gamma) * a - stage.rate * free;
+            work.d[i] = h * v + h * h * (0.5 * dv + beta * work.a_change[i]);
+        }
+        system.place_known(stage.end(), &mut work.x1, &mut work.v1, &mut work.a1);
+        work.xs[n..].copy_from_slice(&work.x1[n..]);
+        work.vs[n..].copy_from_slice(&work.v1[n..]);
+        let (before, after) = work.memory.split_at_mut(n);
+        for i in 0..n {
+            after[i] = work.a1[i];
+            before[i] = work.a1[i] + h * before[i];
+        }
+        let iterations = solve(system, &stage, settings, work)?;
+        work.place(system, &stage);
+        for i in 0..n {
+            let (a, dv) = (work.memory[i], work.memory[n + i]);
+            let new = (work.d[i] - work.drift[i]) / stage.inertia;
+            let auxiliary = ((1.0 - alpha_f) * new + alpha_f * dv - alpha_m * a) / (1.0 - alpha_m);
+            work.a1[i] = new;
+            work.v1[i] = work.vs[i];
+            work.memory[i] = (auxiliary - new) / h;
+        }
+        Ok(Step { iterations, stage, work: Work::AtEnds, estimate: 0 })
+    }
+}
+
+impl Integrator for GeneralizedAlpha {
+    /// (a_n − v̇_n)/h, v̇_n, v̇ of the first step's start and λ there, and whether a step was taken.
+    fn memory(&self, system: &System) -> usize {
+        2 * system.coordinates() + 1
+    }
+
+    fn step(&mut self, system: &System, start: f64, h: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
+        let n = system.coordinates();
+        let mut iterations = 0;
+        if work.memory[2 * n] == 0.0 {
+            // Without (a_0 − v̇_0)/h = (α_m − α_f) d v̇/dt the multipliers begin with an error of first order: a trial step
+            // shows the derivative.
+            work.memory.fill(0.0);
+            work.error_q.copy_from_slice(&work.a1[..n]);
+            let trial = self.attempt(system, start, h, settings, work)?;
+            iterations = trial.iterations;
+            for i in 0..n {
+                work.memory[i] = (self.alpha_m - self.alpha_f) * (work.a1[i] - work.error_q[i]) / h;
+                work.a1[i] = work.error_q[i];
+            }
+            work.memory[2 * n] = 1.0;
+        }
+        let step = self.attempt(system, start, h, settings, work)?;
+        work.settle(system, &step.stage);
+        Ok(Step { iterations: iterations + step.iterations, ..step })
+    }
+}

@@ -1,0 +1,293 @@
+//! The integrators, one line each: what they go with, their order, and how they are made.
+
+use super::composed::Composed;
+use super::explicit::{DOP853, DOPRI5, Explicit, RK4};
+use super::generalized_alpha::GeneralizedAlpha;
+use super::runge_kutta::{RungeKutta, Tableau};
+use super::{Integrator, Parameters, bdf, conserving, conserving_ggl, midpoint, newmark, rattle};
+use crate::formulation::{Formulation, SolveSettings};
+use crate::system::System;
+
+/// Where the estimate of a step's local error comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Estimate {
+    /// Third derivatives of positions and velocities, from the steps before: schemes of order 2 (methods §7).
+    History,
+    /// The integrator gives it.
+    Own,
+    /// None: the step is the user's.
+    None,
+}
+
+/// One line of the table of integrators.
+pub struct Entry {
+    pub name: &'static str,
+    pub source: &'static str,
+    pub doc: &'static str,
+    /// When to take it.
+    pub use_for: &'static str,
+    /// What it keeps beside what the formulation keeps.
+    pub keeps: &'static str,
+    /// Formulations it goes with, by full name.
+    pub formulations: &'static [&'static str],
+    /// Iterations it goes with.
+    pub iterations: &'static [&'static str],
+    /// Whether projections may follow it.
+    pub projects: bool,
+    /// Values of the key `order`, the usual one first.
+    pub orders: &'static [u8],
+    pub estimate: Estimate,
+    /// Order of convergence of positions, velocities and reactions, for an `order`, a formulation, and with or without
+    /// projections.
+    pub convergence: fn(u8, &Formulation, bool) -> [u8; 3],
+    pub make: fn(&System, &SolveSettings, Parameters) -> Box<dyn Integrator>,
+}
+
+/// The integrator's order in everything.
+fn full(order: u8, _: &Formulation, _: bool) -> [u8; 3] {
+    [order; 3]
+}
+
+const ALL: &[&str] = &[
+    "augmented-lagrangian-3",
+    "augmented-lagrangian-2",
+    "augmented-lagrangian-1",
+    "lagrange-3",
+    "lagrange-2",
+    "lagrange-1",
+    "ode",
+    "baumgarte",
+    "penalty",
+    "penalty-stabilized",
+];
+const ALL_AND_GGL: &[&str] = &[
+    "ggl",
+    "augmented-lagrangian-3",
+    "augmented-lagrangian-2",
+    "augmented-lagrangian-1",
+    "lagrange-3",
+    "lagrange-2",
+    "lagrange-1",
+    "ode",
+    "baumgarte",
+    "penalty",
+    "penalty-stabilized",
+];
+const LOW_INDEX: &[&str] = &[
+    "ode",
+    "lagrange-2",
+    "lagrange-1",
+    "augmented-lagrangian-2",
+    "augmented-lagrangian-1",
+    "baumgarte",
+    "penalty",
+    "penalty-stabilized",
+];
+const ACCELERATIONS: &[&str] = &["ode", "lagrange-1", "augmented-lagrangian-1", "baumgarte", "penalty", "penalty-stabilized"];
+const POSITIONS: &[&str] = &["augmented-lagrangian-3", "lagrange-3"];
+const NEWTON: &[&str] = &["newton"];
+const LOOPS: &[&str] = &["newton", "simultaneous", "nested"];
+
+/// All integrators.
+pub const INTEGRATORS: &[Entry] = &[
+    Entry {
+        name: "conserving-ggl",
+        source: "Kinon, Betsch and Schneider 2023",
+        doc: "energy and momentum exact, Φ = 0 and Φ̇ = 0 at every step; order 4 and 6 by composition (key order)",
+        use_for: "long runs, everything exact",
+        keeps: "energy, momentum",
+        formulations: &["ggl"],
+        iterations: NEWTON,
+        projects: false,
+        orders: &[2, 4, 6],
+        estimate: Estimate::History,
+        convergence: full,
+        make: |system, _, parameters| Composed::of(Box::new(conserving_ggl::ConservingGgl::new(system)), parameters.order, system),
+    },
+    Entry {
+        name: "conserving",
+        source: "(14)–(18)",
+        doc: "energy and momentum exact, Φ = 0 at every step; order 4 by composition (key order)",
+        use_for: "the paper's scheme; long runs",
+        keeps: "energy, momentum",
+        formulations: &["augmented-lagrangian-3", "lagrange-3", "penalty"],
+        iterations: LOOPS,
+        projects: true,
+        orders: &[2, 4],
+        estimate: Estimate::History,
+        convergence: |order, formulation, projected| match (order, projected) {
+            (4, false) if !formulation.soft => [4, 2, 4],
+            (4, true) => [3; 3],
+            _ => [order; 3],
+        },
+        make: |system, _, parameters| Composed::of(Box::new(conserving::Conserving { rows: parameters.rows }), parameters.order, system),
+    },
+    Entry {
+        name: "trapezoidal",
+        source: "§4, (23)–(25)",
+        doc: "Newmark with β = 1/4, γ = 1/2; on index 3 unstable without projection",
+        use_for: "real time, with projections",
+        keeps: "",
+        formulations: ALL,
+        iterations: LOOPS,
+        projects: true,
+        orders: &[2],
+        estimate: Estimate::History,
+        convergence: full,
+        make: |_, _, _| Box::new(newmark::Newmark { beta: 0.25, gamma: 0.5 }),
+    },
+    Entry {
+        name: "newmark",
+        source: "Newmark 1959",
+        doc: "β and γ as given (keys beta, gamma): γ > 1/2 damps and is of order 1",
+        use_for: "comparison with older codes",
+        keeps: "",
+        formulations: ALL,
+        iterations: LOOPS,
+        projects: true,
+        orders: &[2],
+        estimate: Estimate::None,
+        convergence: full,
+        make: |_, _, parameters| Box::new(newmark::Newmark { beta: parameters.beta, gamma: parameters.gamma }),
+    },
+    Entry {
+        name: "hht",
+        source: "Hilber, Hughes and Taylor 1977; Arnold and Brüls 2007",
+        doc: "generalized-α with α_m = 0, α_f = α (key alpha, 0 … 1/3, usually 0.1)",
+        use_for: "structures whose high frequencies are to be damped",
+        keeps: "",
+        formulations: ALL,
+        iterations: LOOPS,
+        projects: true,
+        orders: &[2],
+        estimate: Estimate::History,
+        convergence: full,
+        make: |_, _, parameters| Box::new(GeneralizedAlpha::hht(parameters.alpha)),
+    },
+    Entry {
+        name: "generalized-alpha",
+        source: "Arnold and Brüls 2007",
+        doc: "equations of motion at the end of the step, λ of order 2 (key rho: ρ∞, 0 … 1, usually 0.8)",
+        use_for: "stiff, damped mechanisms",
+        keeps: "",
+        formulations: ALL,
+        iterations: LOOPS,
+        projects: true,
+        orders: &[2],
+        estimate: Estimate::History,
+        convergence: full,
+        make: |_, _, parameters| Box::new(GeneralizedAlpha::with_radius(parameters.rho)),
+    },
+    Entry {
+        name: "midpoint",
+        source: "(26)",
+        doc: "implicit midpoint rule with the rows at the midpoint; on index 3 unstable without projection",
+        use_for: "comparison",
+        keeps: "momentum",
+        formulations: ALL,
+        iterations: LOOPS,
+        projects: true,
+        orders: &[2],
+        estimate: Estimate::History,
+        convergence: |_, formulation, projected| if projected || !formulation.is_at_position() { [2; 3] } else { [2, 0, 0] },
+        make: |_, _, _| Box::new(midpoint::Midpoint),
+    },
+    Entry {
+        name: "rattle",
+        source: "Andersen 1983",
+        doc: "symplectic: kick, drift onto Φ = 0, kick onto Φ̇ = 0; forces explicit, stable for h < 2/ω",
+        use_for: "long runs of mechanisms without stiff forces, cheaply",
+        keeps: "Φ̇; energy up to a band",
+        formulations: POSITIONS,
+        iterations: NEWTON,
+        projects: false,
+        orders: &[2],
+        estimate: Estimate::History,
+        convergence: full,
+        make: |_, _, _| Box::new(rattle::Rattle),
+    },
+    Entry {
+        name: "radau",
+        source: "Hairer and Wanner II, §IV.5",
+        doc: "Radau IIA with 1, 2, 3 stages (key order: 1, 3, 5): dissipative, accurate",
+        use_for: "reference solutions; stiff mechanisms",
+        keeps: "",
+        formulations: ALL_AND_GGL,
+        iterations: NEWTON,
+        projects: true,
+        orders: &[5, 3, 1],
+        estimate: Estimate::Own,
+        convergence: |order, formulation, projected| if projected || !formulation.is_at_position() { [order; 3] } else { [order, order / 2 + 1, order] },
+        make: |system, settings, parameters| Box::new(RungeKutta::new(system, settings, Tableau::radau(parameters.order))),
+    },
+    Entry {
+        name: "bdf",
+        source: "Gear 1971; Hairer and Wanner II, §III.5",
+        doc: "backward differentiation (key order, 1 … 5): dissipative; with an accuracy the order varies up to it",
+        use_for: "stiff, damped mechanisms",
+        keeps: "",
+        formulations: ALL_AND_GGL,
+        iterations: NEWTON,
+        projects: true,
+        orders: &[2, 1, 3, 4, 5],
+        estimate: Estimate::Own,
+        convergence: full,
+        make: |system, settings, parameters| Box::new(bdf::Bdf::new(system, settings, parameters.order, parameters.adapts)),
+    },
+    Entry {
+        name: "gauss",
+        source: "Hairer and Wanner II, §IV.5",
+        doc: "Gauss collocation with 1, 2, 3 stages (key order: 2, 4, 6)",
+        use_for: "high order without damping, on the formulations of index 1 and 0",
+        keeps: "",
+        formulations: LOW_INDEX,
+        iterations: NEWTON,
+        projects: true,
+        orders: &[6, 4, 2],
+        estimate: Estimate::None,
+        convergence: |order, formulation, projected| if projected || formulation.index < 2 { [order; 3] } else { [order, (order - 2).max(2), order] },
+        make: |system, settings, parameters| Box::new(RungeKutta::new(system, settings, Tableau::gauss(parameters.order))),
+    },
+    Entry {
+        name: "rk4",
+        source: "Kutta 1901",
+        doc: "the classical explicit method of order 4",
+        use_for: "quick looks; comparison",
+        keeps: "",
+        formulations: ACCELERATIONS,
+        iterations: LOOPS,
+        projects: true,
+        orders: &[4],
+        estimate: Estimate::None,
+        convergence: full,
+        make: |system, _, _| Box::new(Explicit::new(system, RK4)),
+    },
+    Entry {
+        name: "dopri5",
+        source: "Dormand and Prince 1980",
+        doc: "explicit, order 5(4), dense output of order 4",
+        use_for: "mechanisms without stiff forces, at 1e-4 … 1e-8",
+        keeps: "",
+        formulations: ACCELERATIONS,
+        iterations: LOOPS,
+        projects: true,
+        orders: &[5],
+        estimate: Estimate::Own,
+        convergence: full,
+        make: |system, _, _| Box::new(Explicit::new(system, DOPRI5)),
+    },
+    Entry {
+        name: "dop853",
+        source: "Prince and Dormand 1981",
+        doc: "explicit, order 8(5,3), dense output of order 7",
+        use_for: "mechanisms without stiff forces, at 1e-8 and below",
+        keeps: "",
+        formulations: ACCELERATIONS,
+        iterations: LOOPS,
+        projects: true,
+        orders: &[8],
+        estimate: Estimate::Own,
+        convergence: full,
+        make: |system, _, _| Box::new(Explicit::new(system, DOP853)),
+    },
+];
