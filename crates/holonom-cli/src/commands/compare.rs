@@ -53,7 +53,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
     let path = output.out.clone().unwrap_or_else(|| PathBuf::from(format!("results/{}-compare", loaded.name)));
     let folder = Folder::create(&path)?;
     for (label, run) in &finished {
-        let prefix = label.replace(", ", "-").replace(' ', "");
+        let prefix = label.replace(", ", "-").replace(' ', "").replace('/', "-");
         folder.write_trajectory(&prefix, &writers, &loaded, &run.recording)?;
     }
     let summaries: Vec<&Value> = finished.iter().map(|(_, run)| &run.summary).collect();

@@ -37,8 +37,8 @@ pub struct Entry {
     /// Values of the key `order`, the usual one first.
     pub orders: &'static [u8],
     pub estimate: Estimate,
-    /// Order of convergence of positions, velocities and reactions, for an `order`, a formulation, and with or without
-    /// projections.
+    /// Order of convergence of positions, velocities and reactions that can be relied upon, for an `order`, a
+    /// formulation, and with or without projections.
     pub convergence: fn(u8, &Formulation, bool) -> [u8; 3],
     pub make: fn(&System, &SolveSettings, Parameters) -> Box<dyn Integrator>,
 }
@@ -116,7 +116,7 @@ pub const INTEGRATORS: &[Entry] = &[
         orders: &[2, 4],
         estimate: Estimate::History,
         convergence: |order, formulation, projected| match (order, projected) {
-            (4, false) if !formulation.soft => [4, 2, 4],
+            (4, false) if !formulation.soft => [4, 2, 2],
             (4, true) => [3; 3],
             _ => [order; 3],
         },
@@ -217,7 +217,7 @@ pub const INTEGRATORS: &[Entry] = &[
         projects: true,
         orders: &[5, 3, 1],
         estimate: Estimate::Own,
-        convergence: |order, formulation, projected| if projected || !formulation.is_at_position() { [order; 3] } else { [order, order / 2 + 1, order] },
+        convergence: |order, formulation, projected| if projected || !formulation.is_at_position() { [order; 3] } else { [order, order / 2 + 1, order / 2 + 1] },
         make: |system, settings, parameters| Box::new(RungeKutta::new(system, settings, Tableau::radau(parameters.order))),
     },
     Entry {
@@ -245,7 +245,7 @@ pub const INTEGRATORS: &[Entry] = &[
         projects: true,
         orders: &[6, 4, 2],
         estimate: Estimate::None,
-        convergence: |order, formulation, projected| if projected || formulation.index < 2 { [order; 3] } else { [order, (order - 2).max(2), order] },
+        convergence: |order, formulation, projected| if projected || formulation.index < 2 { [order; 3] } else { [order, (order - 2).max(2), (order - 2).max(2)] },
         make: |system, settings, parameters| Box::new(RungeKutta::new(system, settings, Tableau::gauss(parameters.order))),
     },
     Entry {
@@ -255,7 +255,7 @@ pub const INTEGRATORS: &[Entry] = &[
         use_for: "quick looks; comparison",
         keeps: "",
         formulations: ACCELERATIONS,
-        iterations: LOOPS,
+        iterations: NEWTON,
         projects: true,
         orders: &[4],
         estimate: Estimate::None,
@@ -269,7 +269,7 @@ pub const INTEGRATORS: &[Entry] = &[
         use_for: "mechanisms without stiff forces, at 1e-4 … 1e-8",
         keeps: "",
         formulations: ACCELERATIONS,
-        iterations: LOOPS,
+        iterations: NEWTON,
         projects: true,
         orders: &[5],
         estimate: Estimate::Own,
@@ -283,7 +283,7 @@ pub const INTEGRATORS: &[Entry] = &[
         use_for: "mechanisms without stiff forces, at 1e-8 and below",
         keeps: "",
         formulations: ACCELERATIONS,
-        iterations: LOOPS,
+        iterations: NEWTON,
         projects: true,
         orders: &[8],
         estimate: Estimate::Own,

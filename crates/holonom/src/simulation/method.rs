@@ -8,7 +8,7 @@ use crate::projection::{METRICS, Metric, Projection, SOLVES, Solve};
 /// What a user says of a method, in words; everything may be left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Choice {
-    /// One of [`NAMED`], or parts joined by strokes such as `lagrange-2/trapezoidal/velocity`, or nothing.
+    /// One of [`NAMED`], an integrator, parts joined by strokes such as `lagrange-2/trapezoidal/velocity`, or nothing.
     pub method: Option<String>,
     pub formulation: Option<String>,
     pub index: Option<u8>,
@@ -159,7 +159,7 @@ pub struct Method {
 impl Method {
     /// Turns words into a method, or says what is wrong and what would be right.
     pub fn resolve(choice: &Choice) -> Result<Self, MethodError> {
-        let spelled = choice.method.as_deref().filter(|name| name.contains('/')).map(|name| spell(choice, name)).transpose()?;
+        let spelled = spell(choice);
         let choice = spelled.as_ref().unwrap_or(choice);
         let named = choice.method.as_deref().map(|name| pick("method", name, NAMED, |named| named.name)).transpose()?;
         let (formulation, integrator) = partners(choice, named)?;
@@ -272,27 +272,33 @@ impl Method {
     }
 }
 
-/// The parts of a name with strokes: formulation, integrator and projection levels, as in
-/// `lagrange-2/bdf-3/velocity+acceleration`.
-fn spell(choice: &Choice, name: &str) -> Result<Choice, MethodError> {
-    let mut parts = name.split('/');
-    let (formulation, integrator, levels) = (parts.next(), parts.next().unwrap_or_default(), parts.next());
-    let (integrator, order) = match INTEGRATORS.iter().any(|entry| entry.name == integrator) {
-        true => (integrator, None),
-        false => match integrator.rsplit_once('-').and_then(|(front, last)| Some((front, last.parse().ok()?))) {
-            Some((front, order)) => (front, Some(order)),
-            None => (integrator, None),
-        },
+/// The parts of a name that is none of [`NAMED`]: an integrator alone, or formulation, integrator and projection levels
+/// joined by strokes, with the order behind the integrator, as in `bdf-3` and `lagrange-2/bdf-3/velocity+acceleration`.
+fn spell(choice: &Choice) -> Option<Choice> {
+    let name = choice.method.as_deref().filter(|name| NAMED.iter().all(|named| named.name != *name))?;
+    let parts: Vec<&str> = name.split('/').collect();
+    let (formulation, integrator, levels) = match parts[..] {
+        [integrator] => (None, integrator, None),
+        [formulation, integrator] => (Some(formulation), integrator, None),
+        [formulation, integrator, levels] => (Some(formulation), integrator, Some(levels)),
+        _ => return None,
     };
-    let levels = levels.map(|levels| levels.split('+').map(str::to_string).collect());
-    let projection = ProjectionChoice { levels: Some(levels.unwrap_or_default()), ..choice.projection.clone().unwrap_or_default() };
-    Ok(Choice {
+    let is_known = |name: &str| INTEGRATORS.iter().any(|entry| entry.name == name);
+    let (integrator, order) = match integrator.rsplit_once('-') {
+        Some((front, last)) if is_known(front) && !is_known(integrator) => (front, last.parse().ok()),
+        _ => (integrator, None),
+    };
+    if formulation.is_none() && !is_known(integrator) {
+        return None;
+    }
+    let levels = levels.map_or(Vec::new(), |levels| levels.split('+').map(str::to_string).collect());
+    Some(Choice {
         method: None,
         formulation: formulation.map(str::to_string),
         index: None,
         integrator: Some(integrator.into()),
         order: order.or(choice.order),
-        projection: Some(projection),
+        projection: Some(ProjectionChoice { levels: Some(levels), ..choice.projection.clone().unwrap_or_default() }),
         ..choice.clone()
     })
 }

@@ -287,7 +287,12 @@ impl<'a> Simulation<'a> {
         work.lambda.copy_from_slice(&reactions.lambda);
         let Workspace { x1, v1, a1, .. } = work;
         system.place_known(state.t, x1, v1, a1);
-        if work.react(system, state.t).is_err() {
+        // A penalty's force is its own; every other formulation errs of that of the constraints.
+        let outcome = match self.method.formulation.soft {
+            true => work.accelerate(system, state.t, &self.method.settings),
+            false => work.react(system, state.t),
+        };
+        if outcome.is_err() {
             work.lambda.fill(f64::NAN);
         }
         reactions.lambda.copy_from_slice(&work.lambda);
