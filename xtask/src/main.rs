@@ -1,4 +1,7 @@
-//! Chores of the repository: `cargo xtask ci` runs every check, the same here and elsewhere.
+//! Chores of the repository: `cargo xtask ci` runs every check, the same here and elsewhere; `cargo xtask book` draws the
+//! figures of the book.
+
+mod book;
 
 use std::process::{Command, ExitCode};
 
@@ -13,13 +16,17 @@ const CHECKS: &[Check] = &[
     Check { name: "lints", command: &["cargo", "clippy", "--workspace", "--all-targets", "--", "-D", "warnings"] },
     Check { name: "documentation", command: &["cargo", "doc", "--workspace", "--no-deps", "--quiet"] },
     Check { name: "tests", command: &["cargo", "test", "--workspace", "--no-fail-fast"] },
+    Check { name: "book", command: &["cargo", "xtask", "book", "--check"] },
 ];
 
 fn main() -> ExitCode {
-    match std::env::args().nth(1).as_deref() {
-        Some("ci") => ci(),
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["ci"] => ci(),
+        ["book"] => book::book(false),
+        ["book", "--check"] => book::book(true),
         _ => {
-            eprintln!("usage: cargo xtask ci");
+            eprintln!("usage: cargo xtask ci | book | book --check");
             ExitCode::from(2)
         }
     }

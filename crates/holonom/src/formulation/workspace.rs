@@ -63,6 +63,8 @@ pub struct Workspace {
     /// Estimated local errors of position (n), m, and velocity (n), m/s, where an integrator gives them.
     pub error_q: Vec<f64>,
     pub error_v: Vec<f64>,
+    /// Local errors that are allowed, over the size of the mechanism and the step, 1/s, where steps follow from an accuracy.
+    pub allowed: f64,
     /// Numbers that an integrator keeps from step to step.
     pub memory: Vec<f64>,
     /// Full and reduced scratch vectors.
@@ -113,6 +115,7 @@ impl Workspace {
             turned_a: vec![0.0; evaluation.gradient.len()],
             error_q: vec![0.0; n],
             error_v: vec![0.0; n],
+            allowed: 0.0,
             memory: Vec::new(),
             at_start: evaluation.clone(),
             at_end: evaluation.clone(),

@@ -80,6 +80,6 @@ impl Integrator for Composed {
             work.d[i] = end - self.start[i];
         }
         work.x0.copy_from_slice(&self.start);
-        Ok(Step { iterations, stage: step.stage, work: Work::Sum(done), estimate: 0 })
+        Ok(Step { iterations, stage: step.stage, work: Work::Sum(done), estimate: None })
     }
 }

@@ -16,7 +16,7 @@ impl Integrator for Conserving {
         let iterations = solve(system, &stage, settings, work)?;
         finish(system, step, work);
         work.settle(system, &stage);
-        Ok(Step { iterations, stage, work: Work::Between(0.0), estimate: 0 })
+        Ok(Step { iterations, stage, work: Work::Between(0.0), estimate: None })
     }
 }
 

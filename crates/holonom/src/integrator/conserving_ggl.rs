@@ -51,6 +51,6 @@ impl Integrator for ConservingGgl {
         work.settle(system, &stage);
         both.turn(system, &stage, work);
         let extra_work = both.work(system, &stage, work);
-        Ok(Step { iterations, stage, work: Work::Between(extra_work), estimate: 0 })
+        Ok(Step { iterations, stage, work: Work::Between(extra_work), estimate: None })
     }
 }

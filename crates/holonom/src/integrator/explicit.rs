@@ -15,8 +15,8 @@ pub(super) struct Tableau {
     /// Weights of the error estimate over the stages and the end of the step; of a second one that tempers it.
     error: &'static [f64],
     tempering: &'static [f64],
-    /// Order that the estimate shrinks with, a step's length taken out.
-    estimate: u8,
+    /// Order, and that of the estimate.
+    orders: Option<[u8; 2]>,
 }
 
 /// The classical method of order 4.
@@ -25,7 +25,7 @@ pub(super) const RK4: Tableau = Tableau {
     rows: &[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0], &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0]],
     error: &[],
     tempering: &[],
-    estimate: 0,
+    orders: None,
 };
 
 /// Dormand and Prince 1980, order 5(4).
@@ -42,12 +42,12 @@ pub(super) const DOPRI5: Tableau = Tableau {
     ],
     error: &[71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339_200.0, 22.0 / 525.0, -1.0 / 40.0],
     tempering: &[],
-    estimate: 4,
+    orders: Some([5, 4]),
 };
 
 /// Dormand and Prince, order 8(5,3).
 pub(super) const DOP853: Tableau =
-    Tableau { nodes: dop853::C.split_at(12).0, rows: dop853::A.split_at(13).0, error: dop853::E5, tempering: dop853::E3, estimate: 7 };
+    Tableau { nodes: dop853::C.split_at(12).0, rows: dop853::A.split_at(13).0, error: dop853::E5, tempering: dop853::E3, orders: Some([8, 7]) };
 
 pub(super) struct Explicit {
     tableau: Tableau,
@@ -120,6 +120,6 @@ impl Integrator for Explicit {
         self.take(system, stages, start + h, h, settings, work)?;
         self.estimate(n, h, work);
         let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start, step: h, inertia: h * h, rate: 1.0 / h };
-        Ok(Step { iterations: stages + 1, stage, work: Work::Sum(done), estimate: self.tableau.estimate })
+        Ok(Step { iterations: stages + 1, stage, work: Work::Sum(done), estimate: self.tableau.orders })
     }
 }

@@ -65,7 +65,7 @@ impl GeneralizedAlpha {
             work.v1[i] = work.vs[i];
             work.memory[i] = (auxiliary - new) / h;
         }
-        Ok(Step { iterations, stage, work: Work::AtEnds, estimate: 0 })
+        Ok(Step { iterations, stage, work: Work::AtEnds, estimate: None })
     }
 }
 

@@ -16,6 +16,6 @@ impl Integrator for Midpoint {
         let iterations = solve(system, &stage, settings, work)?;
         finish(system, step, work);
         work.settle(system, &stage);
-        Ok(Step { iterations, stage, work: Work::Between(0.0), estimate: 0 })
+        Ok(Step { iterations, stage, work: Work::Between(0.0), estimate: None })
     }
 }

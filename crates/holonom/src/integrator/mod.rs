@@ -36,8 +36,8 @@ pub struct Step {
     pub iterations: usize,
     pub stage: Stage,
     pub work: Work,
-    /// Order of the method whose local errors the workspace has an estimate of; 0 for none.
-    pub estimate: u8,
+    /// Where the workspace has an estimate of the local errors: the order in use, and that of the estimate.
+    pub estimate: Option<[u8; 2]>,
 }
 
 /// Where the work that is done on the system in a step is to be read from.

@@ -36,6 +36,6 @@ impl Integrator for Newmark {
             work.v1[i] += h * gamma * work.a1[i];
         }
         work.settle(system, &stage);
-        Ok(Step { iterations, stage, work: Work::AtEnds, estimate: 0 })
+        Ok(Step { iterations, stage, work: Work::AtEnds, estimate: None })
     }
 }

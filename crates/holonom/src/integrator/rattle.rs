@@ -28,7 +28,7 @@ impl Integrator for Rattle {
         let iterations = solve(system, &stage, settings, work)?;
         work.place(system, &stage);
         kick(system, &stage, work)?;
-        Ok(Step { iterations, stage: Stage { sampling: Sampling::End, ..stage }, work: Work::AtEnds, estimate: 0 })
+        Ok(Step { iterations, stage: Stage { sampling: Sampling::End, ..stage }, work: Work::AtEnds, estimate: None })
     }
 }
 

@@ -198,6 +198,6 @@ impl Integrator for RungeKutta {
         }
         self.estimate(h, work);
         let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start, step: h, inertia: h * h, rate: 1.0 / h };
-        Ok(Step { iterations, stage, work: Work::Sum(done), estimate: if self.tableau.error.is_some() { s as u8 } else { 0 } })
+        Ok(Step { iterations, stage, work: Work::Sum(done), estimate: self.tableau.error.as_ref().map(|_| [2 * s as u8 - 1, s as u8]) })
     }
 }

@@ -10,14 +10,25 @@ const KEPT: usize = 4;
 /// A step is aimed at this share of what is allowed.
 const SAFETY: f64 = 0.9;
 
+/// Estimated errors below this share of positions, and of velocities that are their differences over the step, are
+/// round-off: shorter steps would only raise it.
+const ROUND_OFF: f64 = 1e-14;
+
+/// Ratio of error and allowance that leaves the step about as it is.
+const KEEPING: f64 = 0.5;
+
+/// Smallest ratio of error and allowance that counts.
+const LEAST: f64 = 1e-6;
+
 /// Changes of the step by less than this are left out: matrices of equal steps are alike.
 const WORTH: f64 = 1.2;
 
 /// What decides on the length of steps.
 pub(super) struct Control {
     accuracy: f64,
-    /// Order of the method.
+    /// Order of the method, and that of the last step.
     order: u8,
+    in_use: u8,
     estimate: Estimate,
     /// Length of the run, s, over which errors may add up to the accuracy.
     pub span: f64,
@@ -39,6 +50,7 @@ impl Control {
         Self {
             accuracy,
             order,
+            in_use: order,
             estimate,
             span: 0.0,
             step: 0.0,
@@ -52,12 +64,12 @@ impl Control {
     }
 
     /// Begins at a state, for a run of `span` seconds.
-    pub(super) fn begin(&mut self, state: &State, span: f64, length: f64) {
+    pub(super) fn begin(&mut self, state: &State, v: &[f64], span: f64, length: f64) {
         let n = self.start.len();
         self.span = span;
         self.start.copy_from_slice(&state.a[..n]);
         self.count = 0;
-        self.remember(state);
+        self.remember(state.t, v);
         let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         self.speed = largest(&state.v).max((largest(&state.a) * length).sqrt()).max(length / span);
         if self.step == 0.0 {
@@ -66,36 +78,47 @@ impl Control {
         }
     }
 
-    /// Takes note of an accepted state.
-    pub(super) fn remember(&mut self, state: &State) {
-        self.velocities.rotate_right(1);
-        self.times.rotate_right(1);
-        self.times[0] = state.t;
-        let n = self.start.len();
-        self.velocities[0].copy_from_slice(&state.v[..n]);
-        self.count = (self.count + 1).min(KEPT);
-        self.speed = state.v.iter().fold(self.speed, |m, v| m.max(v.abs()));
+    /// Local errors that are allowed, over the size of the mechanism and the step, 1/s.
+    pub(super) fn allowed(&self) -> f64 {
+        self.accuracy / self.span
     }
 
-    /// The error of a step to `state` over what is allowed.
-    pub(super) fn ratio(&mut self, taken: &Step, h: f64, state: &State, work: &mut Workspace) -> f64 {
-        let mut own = taken.estimate;
+    /// Takes note of an accepted state's time and velocities.
+    pub(super) fn remember(&mut self, t: f64, v: &[f64]) {
+        self.velocities.rotate_right(1);
+        self.times.rotate_right(1);
+        self.times[0] = t;
+        let n = self.start.len();
+        self.velocities[0].copy_from_slice(&v[..n]);
+        self.count = (self.count + 1).min(KEPT);
+        self.speed = v.iter().fold(self.speed, |m, v| m.max(v.abs()));
+    }
+
+    /// The error of a step of length `h` to the time `t` and velocities `v` over what is allowed.
+    pub(super) fn ratio(&mut self, taken: &Step, h: f64, t: f64, v: &[f64], work: &mut Workspace) -> f64 {
+        let [order, estimated] = taken.estimate.unwrap_or([2; 2]);
         if self.estimate == Estimate::History {
-            self.look_back(h, state, work);
-            own = 2;
+            self.look_back(h, t, v, work);
         }
         let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::INFINITY } else { m.max(x.abs()) });
-        let estimated = (largest(&work.error_q) / work.length).max(largest(&work.error_v) / self.speed);
-        // An estimate of lower order than the method's: with errors (h/τ)^(p+1) the method's own follow.
-        let error = if own > 0 && self.order > own { estimated.powf(f64::from(self.order + 1) / f64::from(own + 1)) } else { estimated };
-        (error * self.span / (self.accuracy * h)).max(1e-10)
+        let position = largest(&work.error_q) / work.length;
+        let velocity = largest(&work.error_v) / self.speed;
+        let is_noise = position <= ROUND_OFF && velocity <= ROUND_OFF * (work.length / (h * self.speed)).max(1.0);
+        // The estimate of a lower order shows how many times shorter than the motion's own time the step is; the error is
+        // that to a higher power.
+        let order = order.min(self.order);
+        let size = position.max(velocity);
+        let error = if order > estimated { size.powf(f64::from(order + 1) / f64::from(estimated + 1)) } else { size };
+        self.in_use = order;
+        let ratio = (error / (self.allowed() * h)).max(LEAST);
+        if is_noise { ratio.min(KEEPING) } else { ratio }
     }
 
     /// Local errors of a scheme of order 2 that errs by h³/12 of the third derivatives, from divided differences.
-    fn look_back(&self, h: f64, state: &State, work: &mut Workspace) {
-        let t = |k: usize| if k == 0 { state.t } else { self.times[k - 1] };
+    fn look_back(&self, h: f64, now: f64, latest: &[f64], work: &mut Workspace) {
+        let t = |k: usize| if k == 0 { now } else { self.times[k - 1] };
         for i in 0..self.start.len() {
-            let v = |k: usize| if k == 0 { state.v[i] } else { self.velocities[k - 1][i] };
+            let v = |k: usize| if k == 0 { latest[i] } else { self.velocities[k - 1][i] };
             let slope = |k: usize| (v(k) - v(k + 1)) / (t(k) - t(k + 1));
             let second = |k: usize| (slope(k) - slope(k + 1)) / (t(k) - t(k + 2));
             let (bend, twist) = match self.count {
@@ -110,8 +133,9 @@ impl Control {
 
     /// The next step after one of length `h` that was accepted with `ratio`: a proportional and integral controller.
     pub(super) fn accept(&mut self, h: f64, ratio: f64) {
-        let order = f64::from(self.order);
-        let factor = SAFETY * ratio.powf(-0.7 / order) * self.last_ratio.powf(0.4 / order);
+        let order = f64::from(self.in_use);
+        let trend = (self.last_ratio / ratio).clamp(0.1, 10.0);
+        let factor = SAFETY * ratio.powf(-0.3 / order) * trend.powf(0.4 / order);
         self.last_ratio = ratio;
         if !(1.0 / WORTH..WORTH).contains(&factor) {
             self.step = h * factor.clamp(0.2, 2.0);
@@ -120,6 +144,6 @@ impl Control {
 
     /// The next step after one that was rejected.
     pub(super) fn reject(&mut self, h: f64, ratio: f64) {
-        self.step = h * (SAFETY * ratio.powf(-1.0 / f64::from(self.order))).clamp(0.1, 0.9);
+        self.step = h * (SAFETY * ratio.powf(-1.0 / f64::from(self.in_use))).clamp(0.1, 0.9);
     }
 }

@@ -167,7 +167,6 @@ impl Method {
         together("integrator", integrator.name, "iteration", iteration.0, integrator.iterations)?;
         together("formulation", &formulation.full_name(), "iteration", iteration.0, formulation.iterations)?;
         let order = order(choice, integrator)?;
-        let accuracy = accuracy(choice, integrator, order)?;
         let usual = named.is_some_and(|named| named.integrator == integrator.name) || choice.integrator.is_none();
         let levels: Vec<String> = match choice.projection.as_ref().and_then(|projection| projection.levels.clone()) {
             Some(levels) => levels,
@@ -193,6 +192,8 @@ impl Method {
                 },
             });
         }
+        let bare = integrator.needs_projection && formulation.is_at_position() && !levels.iter().any(|level| level == "velocity");
+        let accuracy = accuracy(choice, integrator, order, bare)?;
         let loops = iteration.1 != Iteration::Newton;
         let (omega, xi) = (positive("omega", choice.omega, OMEGA)?, positive("xi", choice.xi, XI)?);
         Ok(Self {
@@ -270,6 +271,33 @@ impl Method {
             projection: ProjectionSummary { levels, matrix: matrix.into(), solve: solve.into() },
         }
     }
+}
+
+/// Projection levels that can be asked for.
+pub const LEVELS: &[&[&str]] = &[&[], &["velocity"], &["velocity", "acceleration"]];
+
+/// Every combination of formulation, integrator, order, iteration and projection levels that goes together.
+pub fn combinations() -> Vec<Choice> {
+    let mut all = Vec::new();
+    for entry in INTEGRATORS {
+        for (formulation, &order) in entry.formulations.iter().flat_map(|name| entry.orders.iter().map(move |order| (name, order))) {
+            for (iteration, levels) in entry.iterations.iter().flat_map(|name| LEVELS.iter().map(move |levels| (name, levels))) {
+                let levels = levels.iter().map(|level| level.to_string()).collect();
+                let choice = Choice {
+                    formulation: Some(formulation.to_string()),
+                    integrator: Some(entry.name.into()),
+                    order: Some(order),
+                    iteration: Some(iteration.to_string()),
+                    projection: Some(ProjectionChoice { levels: Some(levels), ..ProjectionChoice::default() }),
+                    ..Choice::default()
+                };
+                if Method::resolve(&choice).is_ok() {
+                    all.push(choice);
+                }
+            }
+        }
+    }
+    all
 }
 
 /// The parts of a name that is none of [`NAMED`]: an integrator alone, or formulation, integrator and projection levels
@@ -355,13 +383,17 @@ fn order(choice: &Choice, integrator: &Entry) -> Result<u8, MethodError> {
     }
 }
 
-fn accuracy(choice: &Choice, integrator: &Entry, order: u8) -> Result<Option<f64>, MethodError> {
+/// The accuracy asked for, if the integrator can estimate its errors; `bare` when it is unstable for want of projections.
+fn accuracy(choice: &Choice, integrator: &Entry, order: u8, bare: bool) -> Result<Option<f64>, MethodError> {
     let Some(accuracy) = choice.accuracy else { return Ok(None) };
     let estimates = |entry: &Entry, order: u8| match entry.estimate {
         Estimate::History => order == 2,
         Estimate::Own => true,
         Estimate::None => false,
     };
+    if bare {
+        return Err(MethodError::Unstable { integrator: integrator.name });
+    }
     if !estimates(integrator, order) {
         let with = |entry: &&Entry| estimates(entry, entry.orders[0]);
         let partners = INTEGRATORS.iter().filter(with).map(|entry| entry.name).collect::<Vec<_>>().join(", ");

@@ -7,13 +7,16 @@ mod start;
 mod summary;
 
 pub use audit::Audit;
-pub use method::{Choice, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, PENALTY, ProjectionChoice, TOLERANCE};
+pub use method::{
+    Choice, LEVELS, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, OMEGA, PENALTY, ProjectionChoice, TOLERANCE, XI, combinations,
+};
 pub use start::{Start, StartError};
 pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, ProjectionSummary, Summary, ViolationSummary, WorkSummary};
 
 use crate::formulation::{Failure, Iteration, Workspace};
 use control::Control;
-use crate::integrator::{Integrator, Step};
+use crate::integrator::{Estimate, Integrator, Step};
+use crate::projection::{Metric, Projection, Solve};
 use crate::system::System;
 
 /// Why words do not make a method.
@@ -27,6 +30,8 @@ pub enum MethodError {
     Value { key: &'static str, given: String, allowed: String },
     #[error("the integrator `{integrator}` has no error estimate to choose steps by accuracy; these have: {partners}")]
     NoEstimate { integrator: String, partners: String },
+    #[error("the integrator `{integrator}` is unstable on index 3 without projection, so that no step gives an accuracy; project velocities")]
+    Unstable { integrator: &'static str },
 }
 
 /// Numbers of a moment. A clone is a checkpoint.
@@ -100,6 +105,9 @@ pub struct Simulation<'a> {
     steps: u64,
     /// What chooses the steps by accuracy, and the state and books to go back to.
     control: Option<Box<(Control, State, Audit)>>,
+    /// Velocities (D × nodes) that errors are estimated from: those shown, or where the method leaves them off the
+    /// constraints their projections.
+    smooth: Option<(Projection, Vec<f64>)>,
     /// Multipliers (r) and accelerations (D × nodes) of the index-1 system at the present state, where they are wanted.
     reactions: Option<Reactions>,
 }
@@ -151,6 +159,7 @@ impl<'a> Simulation<'a> {
             let control = Control::new(accuracy, method.order(), method.integrator.estimate, system.coordinates());
             Box::new((control, state.clone(), audit.clone()))
         });
+        let smooth = control.is_some().then(|| smoothing(&method)).flatten().map(|projection| (projection, state.v.clone()));
         Self {
             integrator: (method.integrator.make)(system, &method.settings, method.parameters),
             shown_v: state.v.clone(),
@@ -163,6 +172,7 @@ impl<'a> Simulation<'a> {
             start,
             step,
             steps: 0,
+            smooth,
             control,
             reactions: None,
         }
@@ -187,7 +197,9 @@ impl<'a> Simulation<'a> {
         }
         let first = self.state.t;
         if let Some(kept) = &mut self.control {
-            kept.0.begin(&self.state, end - first, self.work.length);
+            let v = self.smooth.as_ref().map_or(&self.shown_v, |(_, v)| v);
+            kept.0.begin(&self.state, v, end - first, self.work.length);
+            self.work.allowed = kept.0.allowed();
         }
         let count = ((end - first) / self.step - 1e-9).ceil().max(0.0) as u64;
         for k in 1..=count {
@@ -257,11 +269,15 @@ impl<'a> Simulation<'a> {
             audit.clone_from(&self.audit);
             let outcome = self.substep(step, if parts == 1.0 { target } else { self.state.t + step });
             let ratio = match &outcome {
-                Ok(taken) => control.ratio(taken, step, &self.state, &mut self.work),
+                Ok(taken) => {
+                    let v = self.smooth.as_ref().map_or(&self.shown_v, |(_, v)| v);
+                    control.ratio(taken, step, self.state.t, v, &mut self.work)
+                }
                 Err(_) => f64::INFINITY,
             };
             if ratio <= 1.0 {
-                control.remember(&self.state);
+                let v = self.smooth.as_ref().map_or(&self.shown_v, |(_, v)| v);
+                control.remember(self.state.t, v);
                 control.accept(step, ratio);
                 continue;
             }
@@ -323,6 +339,12 @@ impl<'a> Simulation<'a> {
         if !self.method.projection.shadow {
             self.state.v.copy_from_slice(&work.v1);
             self.state.a.copy_from_slice(&work.a1);
+        }
+        if let Some((projection, v)) = &mut self.smooth {
+            if !projection.apply(system, target, step, work) {
+                return Err(Failure::NotFinite);
+            }
+            v.copy_from_slice(&work.v1);
         }
         std::mem::swap(&mut work.at_start, &mut work.at_end);
         Ok(taken)
@@ -401,6 +423,19 @@ impl<'a> Simulation<'a> {
     pub fn steps(&self) -> u64 {
         self.steps
     }
+}
+
+/// The projection of velocities that smooths them for the estimate from the steps before, where nothing else does.
+fn smoothing(method: &Method) -> Option<Projection> {
+    let rough = method.formulation.is_at_position() && !method.projection.velocity;
+    (rough && method.integrator.estimate == Estimate::History).then_some(Projection {
+        velocity: true,
+        acceleration: false,
+        metric: Metric::Mass,
+        solve: Solve::Exact,
+        strength: 1.0,
+        shadow: true,
+    })
 }
 
 impl State {

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use holonom::simulation::{Choice, Method, ProjectionChoice, Simulation, Status, Verdict};
+use holonom::simulation::{Choice, Method, ProjectionChoice, Simulation, Status, Verdict, combinations};
 use holonom::system::{ConstraintFunction, Differentiated, Number, Place, Signal, System, SystemBuilder};
 
 /// The paper's spherical compound pendulum: 1 kg at 1 m and 2 m on a straight rod, horizontal along x, azimuth rate
@@ -114,34 +114,13 @@ pub fn projected(name: &str, matrix: &str, solve: &str) -> Choice {
     Choice { projection: Some(projection), ..named(name) }
 }
 
-/// Every combination that the tables allow, with a word for it.
+/// Every combination that the tables allow, with its name.
 pub fn every_method() -> Vec<(String, Choice)> {
-    let mut all = Vec::new();
-    for entry in holonom::integrator::INTEGRATORS {
-        for formulation in entry.formulations {
-            for &order in entry.orders {
-                for iteration in entry.iterations {
-                    for levels in [&[][..], &["velocity"], &["velocity", "acceleration"]] {
-                        let choice = Choice {
-                            formulation: Some(formulation.to_string()),
-                            integrator: Some(entry.name.into()),
-                            order: Some(order),
-                            iteration: Some(iteration.to_string()),
-                            projection: Some(ProjectionChoice {
-                                levels: Some(levels.iter().map(|level| level.to_string()).collect()),
-                                ..ProjectionChoice::default()
-                            }),
-                            ..Choice::default()
-                        };
-                        if Method::resolve(&choice).is_ok() {
-                            all.push((format!("{formulation} {}-{order} {iteration} {levels:?}", entry.name), choice));
-                        }
-                    }
-                }
-            }
-        }
-    }
-    all
+    let named = |choice: Choice| {
+        let method = Method::resolve(&choice).expect("a combination goes together");
+        (format!("{}, {}", method.name, method.iteration), choice)
+    };
+    combinations().into_iter().map(named).collect()
 }
 
 /// What a run leaves for a test to look at.
