@@ -1,0 +1,99 @@
+//! Steps chosen by accuracy: the error at the end against reference solutions computed elsewhere in 113-bit arithmetic.
+
+use holonom::model::Model;
+use holonom::simulation::{Choice, Method, Simulation, Status, Summary, Verdict};
+use holonom::system::Place;
+use holonom_io::Source;
+
+struct Reference {
+    model: &'static str,
+    end: f64,
+    point: &'static str,
+    place: &'static [f64],
+}
+
+/// Sizes are about one or two metres, so that errors relative to them are errors in metres or half as much.
+const REFERENCES: [Reference; 6] = [
+    Reference {
+        model: "spherical-compound-pendulum",
+        end: 2.0,
+        point: "m2",
+        place: &[-1.27229634990966, -0.953716555813986, -1.21313096126217],
+    },
+    Reference { model: "simple-pendulum", end: 2.0, point: "bob", place: &[-0.793566195343322, -0.608483930443792] },
+    Reference { model: "double-pendulum", end: 2.0, point: "m2", place: &[0.458295895031555, -1.29605879684337] },
+    Reference { model: "car-axis", end: 0.5, point: "right", place: &[1.04357714997553, 0.404338653154628] },
+    Reference { model: "spring-pendulum", end: 2.0, point: "bob", place: &[0.787163379341288, -0.619690574822012] },
+    Reference { model: "four-bar", end: 0.5, point: "P[0]", place: &[0.701512678910477, 0.712656973113886] },
+];
+
+fn example(name: &str) -> Model {
+    let path = format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let source = Source::read(name, &std::fs::read(path).unwrap()).unwrap_or_else(|message| panic!("{message}"));
+    source.model().unwrap_or_else(|message| panic!("{message}"))
+}
+
+/// Error at the end, m, and the summary.
+fn run(reference: &Reference, end: f64, place: &[f64], method: &str, accuracy: f64) -> (f64, Summary) {
+    let model = example(reference.model);
+    let choice = Choice { method: Some(method.into()), accuracy: Some(accuracy), ..Choice::default() };
+    let mut simulation = Simulation::new(&model.system, Method::resolve(&choice).unwrap(), 0.1 * end).unwrap();
+    let status = simulation.run(end, &mut |_: &Simulation<'_>| Verdict::GoOn);
+    assert_eq!(status, Status::Completed, "{}, {method}, {accuracy:e}", reference.model);
+    let point = model.points.iter().find(|point| point.name == reference.point).expect("the point is there");
+    let Place::Node(node) = point.place else { panic!("{} moves", reference.point) };
+    let found = &simulation.state().x[node.index() * model.dimension..];
+    let error = place.iter().zip(found).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let size = holonom::analysis::rank(&model.system, &simulation.state().x, end).size(&model.system);
+    (error, simulation.summary("test", end, &status, size))
+}
+
+/// From 1e-3 to 1e-9 the error stays within ten times of what was asked for, in nine cases of ten.
+#[test]
+fn errors_are_what_was_asked_for() {
+    let (mut cases, mut kept) = (0, 0);
+    for method in ["conserving-ggl", "radau", "bdf", "ode/dopri5/velocity", "ode/dop853/velocity"] {
+        for reference in &REFERENCES[..5] {
+            let mut line = format!("{method:20} {:28}", reference.model);
+            for exponent in 3..=9 {
+                let accuracy = 10f64.powi(-exponent);
+                let (error, summary) = run(reference, reference.end, reference.place, method, accuracy);
+                line += &format!(" {:8.1e}", error);
+                cases += 1;
+                kept += i32::from(error <= 10.0 * accuracy);
+                if method == "conserving-ggl" {
+                    assert!(summary.energy.max_drift <= 1e-10, "{}: {}", reference.model, summary.energy.max_drift);
+                }
+            }
+            println!("{line}");
+        }
+    }
+    println!("{kept} of {cases} cases within ten times of the accuracy");
+    assert!(10 * kept >= 9 * cases);
+}
+
+/// Radau IIA of order 5 on the GGL form gives ten digits and more.
+#[test]
+fn radau_gives_ten_digits() {
+    let ends = [(0, 5.0, PENDULUM_AT_5.as_slice()), (2, 5.0, DOUBLE_AT_5.as_slice()), (3, 3.0, CAR_AT_3.as_slice())];
+    let shorter = [1, 4, 5].map(|k: usize| (k, REFERENCES[k].end, REFERENCES[k].place));
+    for (k, end, place) in ends.into_iter().chain(shorter) {
+        let (error, summary) = run(&REFERENCES[k], end, place, "radau", 1e-12);
+        println!("{:28} {end} s: error {error:.1e}, {} iterations", REFERENCES[k].model, summary.work.iterations);
+        assert!(error < 1e-10, "{}: {error:e}", REFERENCES[k].model);
+    }
+}
+
+const PENDULUM_AT_5: [f64; 3] = [-0.345203349034276, -1.69420997241737, -1.0052299324916];
+const DOUBLE_AT_5: [f64; 2] = [0.267403405386398, -1.62507455103253];
+const CAR_AT_3: [f64; 2] = [1.04174252488543, 0.373911027265366];
+
+/// What cannot tell its errors says so, and who can.
+#[test]
+fn integrators_without_estimate_are_refused() {
+    for (method, word) in [("ode/rk4", "rk4"), ("ggl/conserving-ggl-4", "order 4"), ("trapezoidal", "unstable")] {
+        let choice = Choice { method: Some(method.into()), accuracy: Some(1e-6), ..Choice::default() };
+        let message = Method::resolve(&choice).err().expect("it is refused").to_string();
+        assert!(message.contains(word), "{message}");
+    }
+}
