@@ -3,7 +3,9 @@
 
 mod chapter;
 mod draw;
+mod figure;
 mod figures;
+mod measure;
 mod results;
 mod runs;
 mod table;
@@ -12,7 +14,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use chapter::Chapter;
-use figures::{FIGURES, Figure, Measurement};
+use figure::{Figure, Measurement};
+use figures::FIGURES;
 use results::Results;
 
 /// Draws the figures and fills in the chapter's tables, or checks that both still hold.

@@ -8,7 +8,7 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::figures::{Axis, Figure, Scale};
+use super::figure::{Axis, Figure, Scale};
 use super::results::Results;
 
 /// Okabe and Ito's palette without its yellow, which is too light for lines.

@@ -1,7 +1,7 @@
 //! The tables that are written into the chapter.
 
 use super::chapter::ROUND_OFF;
-use super::figures::Figure;
+use super::figure::Figure;
 use super::results::{Results, Series};
 
 /// What becomes of a run.
@@ -74,9 +74,9 @@ fn row(run: &Series, fate: &Fate) -> Result<[String; 3], String> {
 }
 
 /// What was measured for a figure, and what is claimed of it.
-pub fn measured(figure_: &Figure, results: &Results) -> String {
+pub fn measured(drawn: &Figure, results: &Results) -> String {
     let mut text = String::from("| measured | here | checked |\n|---|---|---|\n");
-    for measurement in figure_.measurements {
+    for measurement in drawn.measurements {
         let claimed = measurement.claimed();
         let value = match measurement.is_seeded_by_round_off {
             true => "holds".into(),
