@@ -2,6 +2,7 @@
 
 use crate::Run;
 use crate::base64;
+use crate::outcome::Outcome;
 use crate::thin::{Keep, Thinning};
 use holonom::record::{Recording, Scene};
 use serde::Serialize;
@@ -25,7 +26,9 @@ const COLUMNS: [(&str, Keep); 11] = [
 /// One run.
 #[derive(Serialize)]
 pub struct RunData<'a> {
-    label: &'a str,
+    pub label: &'a str,
+    /// Axes are scaled to the runs that are sound.
+    sound: bool,
     scene: &'a Scene,
     /// Rows in the recording, before thinning.
     pub recorded: usize,
@@ -39,11 +42,12 @@ pub struct RunData<'a> {
 }
 
 impl<'a> RunData<'a> {
-    pub fn new(run: &Run<'a>) -> Self {
+    pub fn new(run: &Run<'a>, outcome: Outcome) -> Self {
         let (recording, scene) = (run.recording, run.scene);
         let thinning = Thinning::new(recording.rows(), scene.points.len() * scene.axes.len());
         Self {
             label: run.label,
+            sound: outcome == Outcome::Sound,
             scene,
             recorded: recording.rows(),
             stride: thinning.stride,

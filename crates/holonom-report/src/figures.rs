@@ -1,7 +1,7 @@
 //! The top of the page: which method, how it ended, and the figures a run is judged by.
 
 use crate::escape::html;
-use crate::{Run, format};
+use crate::{Run, comparison, format};
 use serde_json::Value;
 use std::io;
 
@@ -20,14 +20,14 @@ const FIGURES: [(&str, &str, &str); 7] = [
 pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
     match runs {
         [run] => one(run, out),
-        runs => several(runs, out),
+        runs => comparison::write(runs, out),
     }
 }
 
 fn one(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
-    writeln!(out, r#"<p class="method">{} {}{}</p>"#, badge(run.summary), method(run, true), reason(run.summary))?;
+    writeln!(out, r#"<p class="method">{} {}{}</p>"#, badge(run.summary), method(run.summary), reason(run.summary))?;
     writeln!(out, r#"<dl class="figures">"#)?;
-    for (pointer, name, unit) in shown(std::slice::from_ref(run)) {
+    for (pointer, name, unit) in FIGURES.into_iter().filter(|(pointer, ..)| known(run.summary, pointer)) {
         let value = figure(run.summary, pointer);
         let unit = if unit.is_empty() { String::new() } else { format!(" <small>{unit}</small>") };
         writeln!(out, "<div><dt>{name}</dt><dd>{value}{unit}</dd></div>")?;
@@ -35,33 +35,13 @@ fn one(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
     writeln!(out, "</dl>")
 }
 
-fn several(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
-    let figures = shown(runs);
-    writeln!(out, r#"<div class="scroll"><table class="figures"><thead><tr><th scope="col">run</th><th scope="col">status</th>"#)?;
-    for (_, name, unit) in &figures {
-        let unit = if unit.is_empty() { String::new() } else { format!(", {unit}") };
-        writeln!(out, r#"<th scope="col">{name}{unit}</th>"#)?;
-    }
-    writeln!(out, "</tr></thead><tbody>")?;
-    for (index, run) in runs.iter().enumerate() {
-        // The viewer fills the swatch with the colour of the run.
-        let name = format!(r#"<span class="swatch" data-run="{index}"></span>{}<small>{}</small>"#, html(run.label), method(run, false));
-        write!(out, r#"<tr><th scope="row">{name}</th><td>{}{}</td>"#, badge(run.summary), reason(run.summary))?;
-        for (pointer, ..) in &figures {
-            write!(out, r#"<td class="number">{}</td>"#, figure(run.summary, pointer))?;
-        }
-        writeln!(out, "</tr>")?;
-    }
-    writeln!(out, "</tbody></table></div>")
+/// Whether a summary says anything there.
+pub fn known(summary: &Value, pointer: &str) -> bool {
+    summary.pointer(pointer).is_some_and(|v| !v.is_null())
 }
 
-/// The figures that at least one run has.
-fn shown(runs: &[Run]) -> Vec<(&'static str, &'static str, &'static str)> {
-    let known = |pointer: &str| runs.iter().any(|run| run.summary.pointer(pointer).is_some_and(|v| !v.is_null()));
-    FIGURES.into_iter().filter(|(pointer, ..)| known(pointer)).collect()
-}
-
-fn figure(summary: &Value, pointer: &str) -> String {
+/// A figure of a summary as HTML.
+pub fn figure(summary: &Value, pointer: &str) -> String {
     match summary.pointer(pointer) {
         Some(Value::Number(n)) if n.is_f64() => format::figure(n.as_f64().unwrap_or(f64::NAN)),
         Some(value) => html(&format::value(value)),
@@ -69,19 +49,15 @@ fn figure(summary: &Value, pointer: &str) -> String {
     }
 }
 
-/// Method name, step and number of steps as HTML; no name where the label, which stands beside it, says the same.
-fn method(run: &Run, always_name: bool) -> String {
-    let text = |key: &str| run.summary.pointer(key).map(|v| html(&format::value(v)));
-    let parts = [
-        text("/method/name").filter(|name| always_name || *name != html(run.label)),
-        text("/step").map(|step| format!("step {step} s")),
-        text("/steps").map(|steps| format!("{steps} steps")),
-    ];
-    let parts: Vec<String> = parts.into_iter().flatten().collect();
-    parts.join(" · ")
+/// Method name, step and number of steps as HTML.
+fn method(summary: &Value) -> String {
+    let text = |key: &str| summary.pointer(key).map(|v| html(&format::value(v)));
+    let parts = [text("/method/name"), text("/step").map(|step| format!("step {step} s")), text("/steps").map(|steps| format!("{steps} steps"))];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
 }
 
-fn badge(summary: &Value) -> String {
+/// How a run ended, as a mark.
+pub fn badge(summary: &Value) -> String {
     let status = text(summary, "status").unwrap_or_else(|| "unknown".to_owned());
     if status == "completed" {
         return r#"<span class="badge completed">completed</span>"#.to_owned();
@@ -90,7 +66,8 @@ fn badge(summary: &Value) -> String {
     format!(r#"<span class="badge stopped">{status}{when}</span>"#)
 }
 
-fn reason(summary: &Value) -> String {
+/// Why a run stopped, if it did.
+pub fn reason(summary: &Value) -> String {
     text(summary, "reason").map_or(String::new(), |reason| format!(r#"<span class="reason">{reason}</span>"#))
 }
 

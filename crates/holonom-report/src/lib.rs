@@ -1,15 +1,18 @@
-//! The HTML report of one or several runs: one file that needs no network and opens from disk.
+//! The HTML report of one or several runs, and of a search for the largest steps: one file that needs no network and opens from disk.
 //!
 //! The page is made of three parts. What can be read without a script (title, key figures, summary, model file) is written as
 //! HTML here. The numbers go in as JSON. The viewer, bundled by `build.rs` from `viewer/`, turns them into the moving
 //! mechanism and the plots; without the feature `viewer` the page consists of the first part alone.
 
 mod base64;
+mod comparison;
 mod data;
 mod escape;
 mod figures;
 mod format;
+mod outcome;
 mod page;
+mod stability;
 mod summary;
 #[cfg(test)]
 mod tests;
@@ -17,6 +20,8 @@ mod thin;
 
 use holonom::record::{Recording, Scene};
 use std::io;
+
+pub use stability::{Search, StabilityReport};
 
 /// What is known of one run.
 pub struct Run<'a> {

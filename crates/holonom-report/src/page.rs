@@ -2,7 +2,8 @@
 
 use crate::data::RunData;
 use crate::escape::{html, json_in_script};
-use crate::{Report, figures, summary};
+use crate::outcome::outcomes;
+use crate::{Report, Run, figures, summary};
 use std::io::{self, Write};
 
 /// Nothing may be loaded from anywhere: what is not in the file does not exist.
@@ -24,25 +25,42 @@ const WITHOUT_VIEWER: &str = "<p class=\"note\">The moving picture and the plots
     (feature <code>viewer</code>).</p>";
 
 pub fn write(report: &Report, out: &mut dyn Write) -> io::Result<()> {
-    head(report, out)?;
+    head(report.title, VIEWER.map_or("", |(style, _)| style), out)?;
     writeln!(out, "<header>\n<h1>{}</h1>", html(report.title))?;
     figures::write(report.runs, out)?;
     writeln!(out, "</header>\n<main>")?;
+    let data = prepared(report.runs);
     match VIEWER {
-        Some(_) => stage(report, out)?,
+        Some(_) => stage(&data, out)?,
         None => writeln!(out, "{WITHOUT_VIEWER}")?,
     }
     writeln!(out, "<section>\n<h2>Summary</h2>")?;
     summary::write(report.runs, out)?;
-    writeln!(out, "</section>\n<section>\n<h2>Model</h2>\n<pre class=\"model\">{}</pre>\n</section>\n</main>", html(report.model_text))?;
+    writeln!(out, "</section>")?;
+    model(report.model_text, out)?;
+    writeln!(out, "</main>")?;
     if let Some((_, script)) = VIEWER {
-        scripts(report, script, out)?;
+        scripts(&data, script, out)?;
     }
+    end(out)
+}
+
+/// The model file at the bottom of a page.
+pub fn model(text: &str, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "<section>\n<h2>Model</h2>\n<pre class=\"model\">{}</pre>\n</section>", html(text))
+}
+
+/// What every page ends with.
+pub fn end(out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "</body>\n</html>")
 }
 
-fn head(report: &Report, out: &mut dyn Write) -> io::Result<()> {
-    let viewer_style = VIEWER.map_or("", |(style, _)| style);
+fn prepared<'a>(runs: &[Run<'a>]) -> Vec<RunData<'a>> {
+    runs.iter().zip(outcomes(runs)).map(|(run, outcome)| RunData::new(run, outcome)).collect()
+}
+
+/// What every page begins with; `style` comes before the style sheet of all pages.
+pub fn head(title: &str, style: &str, out: &mut dyn Write) -> io::Result<()> {
     write!(
         out,
         r#"<!DOCTYPE html>
@@ -56,17 +74,17 @@ fn head(report: &Report, out: &mut dyn Write) -> io::Result<()> {
 <title>{title}</title>
 <link rel="icon" href="{ICON}">
 <style>
-{viewer_style}{STYLE}</style>
+{style}{STYLE}</style>
 </head>
 <body>
 "#,
         version = env!("CARGO_PKG_VERSION"),
-        title = html(report.title),
+        title = html(title),
     )
 }
 
 /// Empty places which the viewer fills.
-fn stage(report: &Report, out: &mut dyn Write) -> io::Result<()> {
+fn stage(runs: &[RunData], out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,
         r#"<noscript><p class="note">The moving picture and the plots need JavaScript.</p></noscript>
@@ -74,23 +92,19 @@ fn stage(report: &Report, out: &mut dyn Write) -> io::Result<()> {
 <section id="motion" aria-label="Motion"></section>
 <section id="plots" aria-label="Plots"></section>"#
     )?;
-    for run in report.runs {
-        let data = RunData::new(run);
-        if data.stride > 1 {
-            let label = if report.runs.len() > 1 { format!("{}: ", html(run.label)) } else { String::new() };
-            let (stride, recorded) = (data.stride, data.recorded);
-            writeln!(
-                out,
-                "<p class=\"note\">{label}picture and plots show one in {stride} of {recorded} recorded rows; violations, iterations and \
-                 energy errors are the largest since the row before.</p>"
-            )?;
-        }
+    for run in runs.iter().filter(|run| run.stride > 1) {
+        let label = if runs.len() > 1 { format!("{}: ", html(run.label)) } else { String::new() };
+        let (stride, recorded) = (run.stride, run.recorded);
+        writeln!(
+            out,
+            "<p class=\"note\">{label}picture and plots show one in {stride} of {recorded} recorded rows; violations, iterations and \
+             energy errors are the largest since the row before.</p>"
+        )?;
     }
     Ok(())
 }
 
-fn scripts(report: &Report, script: &str, out: &mut dyn Write) -> io::Result<()> {
-    let runs: Vec<RunData> = report.runs.iter().map(RunData::new).collect();
+fn scripts(runs: &[RunData], script: &str, out: &mut dyn Write) -> io::Result<()> {
     let json = serde_json::to_string(&serde_json::json!({ "runs": runs })).map_err(io::Error::other)?;
     writeln!(out, "<script type=\"application/json\" id=\"holonom-data\">{}</script>", json_in_script(&json))?;
     writeln!(out, "<script>\n{script}</script>")

@@ -1,4 +1,4 @@
-//! `summary.json` as a table: one line per key, one column per run.
+//! `summary.json` as a table: one line per key, and one column per run where the runs differ.
 
 use crate::escape::html;
 use crate::{Run, format};
@@ -22,33 +22,63 @@ const UNITS: [(&str, &str); 13] = [
     ("time.realtime_factor", "×"),
 ];
 
-/// Writes the table.
+/// Keys that say nothing beside the heading of a column.
+const HEADINGS: [&str; 1] = ["label"];
+
+/// The summary of one run in two halves side by side; of several, what is the same in all of them so, and a column of the
+/// rest for each run.
 pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
     let columns: Vec<Vec<(String, &Value)>> = runs.iter().map(|run| flatten(run.summary)).collect();
-    let keys = union_of_keys(&columns);
-    // The table of a single run is narrow: two halves side by side.
-    let halves = if runs.len() == 1 { keys.split_at(keys.len().div_ceil(2)) } else { (&keys[..], &[][..]) };
+    let mut keys = union_of_keys(&columns);
+    if runs.len() < 2 {
+        return halves(&columns, &keys, out);
+    }
+    keys.retain(|key| !HEADINGS.contains(key));
+    let (shared, differing): (Vec<&str>, Vec<&str>) = keys.into_iter().partition(|key| is_shared(&columns, key));
+    if !shared.is_empty() {
+        writeln!(out, "<h3>The same in all runs</h3>")?;
+        halves(&columns[..1], &shared, out)?;
+    }
+    if !differing.is_empty() {
+        writeln!(out, "<h3>Of each run</h3>")?;
+        side_by_side(runs, &columns, &differing, out)?;
+    }
+    Ok(())
+}
+
+/// The first column of values, which is narrow: two halves side by side.
+fn halves(columns: &[Vec<(String, &Value)>], keys: &[&str], out: &mut dyn io::Write) -> io::Result<()> {
+    let (first, second) = keys.split_at(keys.len().div_ceil(2));
     writeln!(out, r#"<div class="scroll halves">"#)?;
-    for keys in [halves.0, halves.1] {
-        if !keys.is_empty() {
-            table(runs, &columns, keys, out)?;
+    for keys in [first, second].into_iter().filter(|keys| !keys.is_empty()) {
+        writeln!(out, r#"<table class="summary"><tbody>"#)?;
+        for key in keys {
+            let cells: String = columns.iter().map(|column| cell(column, key)).collect();
+            writeln!(out, r#"<tr><th scope="row">{}</th>{cells}</tr>"#, html(key))?;
         }
+        writeln!(out, "</tbody></table>")?;
     }
     writeln!(out, "</div>")
 }
 
-fn table(runs: &[Run], columns: &[Vec<(String, &Value)>], keys: &[&str], out: &mut dyn io::Write) -> io::Result<()> {
-    writeln!(out, r#"<table class="summary">"#)?;
-    if runs.len() > 1 {
-        let heads: String = runs.iter().map(|run| format!("<th scope=\"col\">{}</th>", html(run.label))).collect();
-        writeln!(out, "<thead><tr><th></th>{heads}</tr></thead>")?;
-    }
-    writeln!(out, "<tbody>")?;
+/// One column for each run: short numbers, and units once in a line.
+fn side_by_side(runs: &[Run], columns: &[Vec<(String, &Value)>], keys: &[&str], out: &mut dyn io::Write) -> io::Result<()> {
+    let heads: String = runs.iter().map(|run| format!("<th scope=\"col\">{}</th>", html(run.label))).collect();
+    writeln!(out, r#"<div class="scroll"><table class="summary compact"><thead><tr><th></th>{heads}</tr></thead><tbody>"#)?;
     for key in keys {
-        let cells: String = columns.iter().map(|column| cell(column, key)).collect();
-        writeln!(out, r#"<tr><th scope="row">{}</th>{cells}</tr>"#, html(key))?;
+        let cells: String = columns.iter().map(|column| short_cell(column, key)).collect();
+        writeln!(out, r#"<tr><th scope="row">{} <small>{}</small></th>{cells}</tr>"#, html(key), unit(key))?;
     }
-    writeln!(out, "</tbody></table>")
+    writeln!(out, "</tbody></table></div>")
+}
+
+fn is_shared(columns: &[Vec<(String, &Value)>], key: &str) -> bool {
+    let first = value(&columns[0], key);
+    columns.iter().all(|column| value(column, key) == first)
+}
+
+fn value<'a>(column: &[(String, &'a Value)], key: &str) -> Option<&'a Value> {
+    column.iter().find(|(name, _)| name == key).map(|(_, value)| *value)
 }
 
 /// `{"energy": {"initial": 1}}` → `energy.initial`, 1; in the order of the file.
@@ -82,7 +112,7 @@ fn union_of_keys<'a>(columns: &'a [Vec<(String, &Value)>]) -> Vec<&'a str> {
 }
 
 fn cell(column: &[(String, &Value)], key: &str) -> String {
-    let Some((_, value)) = column.iter().find(|(name, _)| name == key) else {
+    let Some(value) = value(column, key) else {
         return "<td></td>".to_owned();
     };
     let text = html(&format::value(value));
@@ -90,6 +120,16 @@ fn cell(column: &[(String, &Value)], key: &str) -> String {
         // The title holds every digit.
         Value::Number(n) => format!(r#"<td class="number" title="{n}">{text} <small>{}</small></td>"#, unit(key)),
         _ => format!("<td>{text}</td>"),
+    }
+}
+
+fn short_cell(column: &[(String, &Value)], key: &str) -> String {
+    match value(column, key) {
+        Some(Value::Number(n)) if n.is_f64() => {
+            format!(r#"<td class="number" title="{n}">{}</td>"#, format::figure(n.as_f64().unwrap_or(f64::NAN)))
+        }
+        Some(value) => format!("<td>{}</td>", html(&format::value(value))),
+        None => "<td></td>".to_owned(),
     }
 }
 

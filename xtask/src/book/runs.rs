@@ -129,7 +129,7 @@ impl Runs {
     /// Runs them, with the tables of numbers in a folder below `root`.
     pub fn run(&self, root: &Path, folder: &str) -> Result<(), String> {
         let mut command = Command::new("cargo");
-        command.current_dir(root).args(["run", "--release", "--quiet", "-p", "holonom-cli", "--", "compare", self.model]);
+        command.current_dir(root).args(["run", "--quiet", "-p", "holonom-cli", "--", "compare", self.model]);
         let keys = [("--method", self.methods), ("--step", self.steps), ("--set", self.set)];
         for (key, value) in keys.iter().flat_map(|(key, values)| values.iter().map(move |value| (key, value))) {
             command.args([key, value]);

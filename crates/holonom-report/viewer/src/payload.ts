@@ -15,6 +15,8 @@ export interface Scene {
 
 export interface Run {
   label: string;
+  /** Completed with its energy in bounds: axes are scaled to such runs. */
+  sound: boolean;
   scene: Scene;
   /** Name → one value per row. */
   columns: Map<string, Float64Array>;
@@ -26,6 +28,7 @@ export interface Run {
 
 interface RawRun {
   label: string;
+  sound: boolean;
   scene: Scene;
   columns: Record<string, string>;
   points: Record<string, string>;
@@ -37,7 +40,7 @@ export function readPayload(): Run[] {
   return runs.map((raw) => {
     const columns = decodeAll(raw.columns, (bytes) => new Float64Array(bytes));
     const points = decodeAll(raw.points, (bytes) => new Float32Array(bytes));
-    return { label: raw.label, scene: raw.scene, columns, points, times: columns.get("t") ?? new Float64Array() };
+    return { label: raw.label, sound: raw.sound, scene: raw.scene, columns, points, times: columns.get("t") ?? new Float64Array() };
   });
 }
 

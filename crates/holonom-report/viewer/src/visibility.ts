@@ -1,48 +1,84 @@
-// Which runs are shown, in the picture and in all plots alike, and the legend that switches them.
+// Which runs are shown in the plots, which one stands out, and the legend that switches both.
 
 import { element } from "./dom";
-import { curveColor, onThemeChange } from "./theme";
+import { fillSamples } from "./sample";
+import { onThemeChange } from "./theme";
 
 export class Visibility {
+  /** The run that the pointer is on in the legend. */
+  highlighted: number | undefined;
   private readonly hidden = new Set<number>();
   private readonly listeners: (() => void)[] = [];
+  private readonly highlightListeners: (() => void)[] = [];
 
   shows(run: number): boolean {
     return !this.hidden.has(run);
   }
 
+  get showsAll(): boolean {
+    return this.hidden.size === 0;
+  }
+
   toggle(run: number): void {
     if (!this.hidden.delete(run)) this.hidden.add(run);
-    for (const listener of this.listeners) listener();
+    this.changed();
+  }
+
+  showAll(): void {
+    this.hidden.clear();
+    this.changed();
+  }
+
+  /** Hides all runs but one. */
+  showOnly(run: number, runs: number): void {
+    for (let other = 0; other < runs; other++) this.hidden.add(other);
+    this.hidden.delete(run);
+    this.changed();
+  }
+
+  highlight(run: number | undefined): void {
+    this.highlighted = run;
+    for (const listener of this.highlightListeners) listener();
   }
 
   onChange(listener: () => void): void {
     this.listeners.push(listener);
   }
+
+  onHighlight(listener: () => void): void {
+    this.highlightListeners.push(listener);
+  }
+
+  private changed(): void {
+    for (const listener of this.listeners) listener();
+  }
 }
+
+const HINT = "click: show or hide · double click: only this one";
 
 /** One button per run; nothing for a single run. */
 export function buildLegend(container: HTMLElement, labels: string[], visibility: Visibility): void {
   if (labels.length < 2) return;
-  const buttons = labels.map((label, run) => {
-    const button = element("button", { type: "button", "data-run": String(run) }, element("span", { class: "swatch" }), label);
-    button.addEventListener("click", () => visibility.toggle(run));
-    return button;
-  });
-  container.append(...buttons);
+  const buttons = labels.map((label, run) => runButton(label, run, labels.length, visibility));
+  const all = element("button", { type: "button", class: "all" }, "show all");
+  all.addEventListener("click", () => visibility.showAll());
+  container.append(...buttons, all);
   const refresh = (): void => {
     buttons.forEach((button, run) => button.setAttribute("aria-pressed", String(visibility.shows(run))));
-    colourSwatches();
+    all.disabled = visibility.showsAll;
   };
   visibility.onChange(refresh);
-  onThemeChange(refresh);
+  onThemeChange(fillSamples);
   refresh();
+  fillSamples();
 }
 
-/** The table at the top of the page names the runs too; its swatches get the same colours. */
-function colourSwatches(): void {
-  for (const swatch of document.querySelectorAll<HTMLElement>(".swatch")) {
-    const owner = swatch.closest<HTMLElement>("[data-run]");
-    if (owner) swatch.style.background = curveColor(Number(owner.dataset["run"]));
-  }
+function runButton(label: string, run: number, runs: number, visibility: Visibility): HTMLButtonElement {
+  const swatch = element("span", { class: "swatch", "data-run": String(run) });
+  const button = element("button", { type: "button", title: HINT }, swatch, label);
+  button.addEventListener("click", () => visibility.toggle(run));
+  button.addEventListener("dblclick", () => visibility.showOnly(run, runs));
+  button.addEventListener("pointerenter", () => visibility.highlight(run));
+  button.addEventListener("pointerleave", () => visibility.highlight(undefined));
+  return button;
 }

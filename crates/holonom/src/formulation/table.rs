@@ -136,7 +136,7 @@ pub const FORMULATIONS: &[Formulation] = &[
         name: "ode",
         index: 0,
         source: "(4)",
-        doc: "(3) with λ eliminated, with the terms of rows that depend on time, for redundant rows too: Φ drifts",
+        doc: "(3) with λ eliminated, with the terms of rows that depend on time: Φ drifts, which redundant rows bear only so far",
         keeps: "Φ̈",
         doubled: false,
         soft: false,

@@ -234,7 +234,7 @@ pub const INTEGRATORS: &[Entry] = &[
     Entry {
         name: "bdf",
         source: "Gear 1971; Hairer and Wanner II, §III.5",
-        doc: "backward differentiation (key order, 1 … 5): dissipative; with an accuracy the order varies up to it",
+        doc: "backward differentiation (key order, 1 … 5): order 1 and 2 dissipate; with an accuracy the order varies up to it",
         use_for: "stiff, damped mechanisms",
         keeps: "",
         formulations: ALL_AND_GGL,

@@ -243,5 +243,6 @@ impl Audit {
 }
 
 fn norm(values: &[f64]) -> f64 {
-    values.iter().map(|v| v * v).sum::<f64>().sqrt()
+    // The sum of nothing is −0.
+    (0.0 + values.iter().map(|v| v * v).sum::<f64>()).sqrt()
 }

@@ -174,21 +174,20 @@ impl Method {
             None => Vec::new(),
         };
         if !levels.is_empty() && (!integrator.projects || formulation.doubled || formulation.soft) {
-            let fitting = INTEGRATORS.iter().filter(|entry| entry.projects).map(|entry| entry.name).collect::<Vec<_>>().join(", ");
             return Err(match integrator.projects {
                 true => MethodError::Pair {
                     kind: "projection",
                     name: levels.join(", "),
                     with: "formulation",
                     given: formulation.full_name(),
-                    partners: "every other formulation; this one keeps Φ̇ = 0 by itself".into(),
+                    partners: names(FORMULATIONS.iter().filter(|line| !line.doubled && !line.soft).map(Formulation::full_name)),
                 },
                 false => MethodError::Pair {
                     kind: "projection",
                     name: levels.join(", "),
                     with: "integrator",
                     given: integrator.name.into(),
-                    partners: fitting,
+                    partners: names(INTEGRATORS.iter().filter(|entry| entry.projects).map(|entry| entry.name.into())),
                 },
             });
         }
@@ -227,7 +226,7 @@ impl Method {
                 order,
                 adapts: accuracy.is_some(),
             },
-            projection: projection(choice.projection.as_ref(), &levels, formulation.soft)?,
+            projection: projection(choice.projection.as_ref(), &levels)?,
             subdivide: choice.subdivide.unwrap_or(true),
             accuracy,
         })
@@ -362,10 +361,13 @@ fn formulation(choice: &Choice) -> Result<Option<&'static Formulation>, MethodEr
     if let Some(full) = FORMULATIONS.iter().find(|line| line.full_name() == name && line.name != name) {
         return Ok(Some(full));
     }
-    let first = pick("formulation", name, FORMULATIONS, |line| line.name)?;
+    let Some(first) = FORMULATIONS.iter().find(|line| line.name == name) else {
+        let known = names(FORMULATIONS.iter().map(Formulation::full_name));
+        return Err(MethodError::Unknown { kind: "formulation", given: name.into(), known });
+    };
     let Some(index) = choice.index else { return Ok(Some(first)) };
     let of_name = || FORMULATIONS.iter().filter(|line| line.name == name);
-    let allowed = || of_name().map(|line| line.index.to_string()).collect::<Vec<_>>().join(", ");
+    let allowed = || names(of_name().map(|line| line.index.to_string()));
     let found = of_name().find(|line| line.index == index);
     found.map(Some).ok_or_else(|| MethodError::Value { key: "index", given: index.to_string(), allowed: allowed() })
 }
@@ -378,7 +380,7 @@ fn order(choice: &Choice, integrator: &Entry) -> Result<u8, MethodError> {
         false => Err(MethodError::Value {
             key: "order",
             given: order.to_string(),
-            allowed: integrator.orders.iter().map(u8::to_string).collect::<Vec<_>>().join(", "),
+            allowed: names(integrator.orders.iter().map(u8::to_string)),
         }),
     }
 }
@@ -388,7 +390,8 @@ fn accuracy(choice: &Choice, integrator: &Entry, order: u8, bare: bool) -> Resul
     let Some(accuracy) = choice.accuracy else { return Ok(None) };
     let estimates = |entry: &Entry, order: u8| match entry.estimate {
         Estimate::History => order == 2,
-        Estimate::Own => true,
+        // A first order would need steps by the million.
+        Estimate::Own => order > 1,
         Estimate::None => false,
     };
     if bare {
@@ -396,7 +399,7 @@ fn accuracy(choice: &Choice, integrator: &Entry, order: u8, bare: bool) -> Resul
     }
     if !estimates(integrator, order) {
         let with = |entry: &&Entry| estimates(entry, entry.orders[0]);
-        let partners = INTEGRATORS.iter().filter(with).map(|entry| entry.name).collect::<Vec<_>>().join(", ");
+        let partners = names(INTEGRATORS.iter().filter(with).map(|entry| entry.name.into()));
         let name = integrator.name;
         let name = if integrator.orders.len() > 1 { format!("{name} of order {order}") } else { name.into() };
         return Err(MethodError::NoEstimate { integrator: name, partners });
@@ -418,9 +421,8 @@ fn name(formulation: &Formulation, integrator: &Entry, order: u8, levels: &[Stri
     format!("{full}/{}{order}{levels}", integrator.name)
 }
 
-/// Off the manifold redundant rows are no longer so, and an exact projection would take motion away that the mechanism
-/// has: with the penalty formulation the penalty solve is the default.
-fn projection(choice: Option<&ProjectionChoice>, levels: &[String], soft: bool) -> Result<Projection, MethodError> {
+/// Projections from words.
+fn projection(choice: Option<&ProjectionChoice>, levels: &[String]) -> Result<Projection, MethodError> {
     let default = ProjectionChoice::default();
     let choice = choice.unwrap_or(&default);
     for level in levels {
@@ -445,7 +447,7 @@ fn projection(choice: Option<&ProjectionChoice>, levels: &[String], soft: bool) 
     };
     let solve = match pick(
         "projection solve",
-        choice.solve.as_deref().unwrap_or(if soft { "penalty" } else { "exact" }),
+        choice.solve.as_deref().unwrap_or("exact"),
         SOLVES,
         |s| s.0,
     )?
@@ -463,6 +465,10 @@ fn projection(choice: Option<&ProjectionChoice>, levels: &[String], soft: bool) 
         strength: positive("projection.strength", choice.strength, 1.0)?,
         shadow: choice.shadow.unwrap_or(false),
     })
+}
+
+fn names(names: impl Iterator<Item = String>) -> String {
+    names.collect::<Vec<_>>().join(", ")
 }
 
 /// The entry of a table that has a name.

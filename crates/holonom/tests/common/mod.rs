@@ -114,13 +114,21 @@ pub fn projected(name: &str, matrix: &str, solve: &str) -> Choice {
     Choice { projection: Some(projection), ..named(name) }
 }
 
-/// Every combination that the tables allow, with its name.
+/// Every combination that the tables allow, with its name; penalties so soft that explicit methods are stable. Where
+/// errors can be estimated, once more with steps by accuracy.
 pub fn every_method() -> Vec<(String, Choice)> {
-    let named = |choice: Choice| {
+    let named = |mut choice: Choice| {
         let method = Method::resolve(&choice).expect("a combination goes together");
+        choice.penalty = method.formulation.soft.then_some(1e3);
         (format!("{}, {}", method.name, method.iteration), choice)
     };
-    combinations().into_iter().map(named).collect()
+    let fixed: Vec<(String, Choice)> = combinations().into_iter().map(named).collect();
+    let by_accuracy = |(name, choice): &(String, Choice)| {
+        let choice = Choice { accuracy: Some(1e-3), ..choice.clone() };
+        Method::resolve(&choice).is_ok().then(|| (format!("{name}, by accuracy"), choice))
+    };
+    let adaptive: Vec<(String, Choice)> = fixed.iter().filter_map(by_accuracy).collect();
+    fixed.into_iter().chain(adaptive).collect()
 }
 
 /// What a run leaves for a test to look at.

@@ -1,6 +1,8 @@
 // Which plots there are, and which curves are in them.
 
 import type { Run } from "../payload";
+import { energyMoved } from "./bounds";
+import { envelope, mean } from "./smooth";
 
 export interface Curve {
   label: string;
@@ -8,6 +10,8 @@ export interface Curve {
   colour: number;
   /** Which run it belongs to. */
   run: number;
+  /** The axis is scaled to curves of sound runs. */
+  sound: boolean;
   x: Float64Array;
   y: Float64Array;
   shown: boolean;
@@ -19,6 +23,8 @@ export interface Chart {
   curves: Curve[];
   /** The y axis never spans less: rounding errors of a conserved quantity should not look like mountains. */
   leastSpan: number;
+  /** Curves of runs that are not sound may leave the axis when they reach farther than this and than all sound ones. */
+  allowed: number;
 }
 
 /** Column, name of the curve where one plot holds several. */
@@ -28,9 +34,9 @@ interface Plan {
   title: string;
   scale: Chart["scale"];
   sources: Source[];
+  /** What is done to a column before it is drawn. */
+  smooth?: (values: Float64Array) => Float64Array;
 }
-
-const DRIFT: Plan[] = [{ title: "Energy drift E − E(0) − W (J)", scale: "linear", sources: [["drift", ""]] }];
 
 const VIOLATIONS: Plan[] = [
   { title: "Position violation ‖Φ‖ (SI)", scale: "log", sources: [["phi", ""]] },
@@ -38,24 +44,22 @@ const VIOLATIONS: Plan[] = [
   { title: "Acceleration violation ‖Φ̈‖ (SI/s²)", scale: "log", sources: [["phi_ddot", ""]] },
 ];
 
-const ITERATIONS: Plan[] = [{ title: "Iterations per step", scale: "steps", sources: [["iterations", ""]] }];
-
 /** One run: what belongs together shares a plot. */
 const SINGLE: Plan[] = [
   { title: "Energy (J)", scale: "linear", sources: [["energy", "total"], ["kinetic", "kinetic"], ["potential", "potential"]] },
-  ...DRIFT,
+  { title: "Energy drift E − E(0) − W (J)", scale: "linear", sources: [["drift", ""]] },
   ...VIOLATIONS,
   { title: "ΔE per step (J)", scale: "linear", sources: [["dE_integrator", "integrator"], ["dE_projection", "projection"]] },
   { title: "ΔE summed (J)", scale: "linear", sources: [["sum_dE_integrator", "integrator"], ["sum_dE_projection", "projection"]] },
-  ...ITERATIONS,
+  { title: "Iterations per step", scale: "steps", sources: [["iterations", ""]] },
 ];
 
-/** Several runs: one quantity per plot, one curve per run. */
+/** Several runs: one quantity per plot, one curve per run, without the noise in which they would drown each other. */
 const COMPARED: Plan[] = [
   { title: "Total energy (J)", scale: "linear", sources: [["energy", ""]] },
-  ...DRIFT,
-  ...VIOLATIONS,
-  ...ITERATIONS,
+  { title: "Energy drift |E − E(0) − W| (J)", scale: "log", sources: [["drift", ""]], smooth: envelope },
+  ...VIOLATIONS.map((plan) => ({ ...plan, smooth: envelope })),
+  { title: "Iterations per step, running mean", scale: "steps", sources: [["iterations", ""]], smooth: mean },
   { title: "Integrator ΔEᵢ per step (J)", scale: "linear", sources: [["dE_integrator", ""]] },
   { title: "Projection ΔEₚ per step (J)", scale: "linear", sources: [["dE_projection", ""]] },
   { title: "Integrator ΔEᵢ summed (J)", scale: "linear", sources: [["sum_dE_integrator", ""]] },
@@ -65,26 +69,21 @@ const COMPARED: Plan[] = [
 /** Only plots that some run has data for. */
 export function charts(runs: Run[]): Chart[] {
   const compared = runs.length > 1;
+  const moved = energyMoved(runs);
   return (compared ? COMPARED : SINGLE)
-    .map(({ title, scale, sources }) => ({
-      title,
-      scale,
-      curves: runs.flatMap((run, index) => sources.flatMap((source, i) => curve(run, index, source, compared ? index : i))),
-      leastSpan: sources[0][0] === "energy" ? 0.02 * energyScale(runs) : 0,
+    .map((plan) => ({
+      title: plan.title,
+      scale: plan.scale,
+      curves: runs.flatMap((run, index) => plan.sources.flatMap((source, i) => curve(run, index, source, compared ? index : i, plan.smooth))),
+      leastSpan: plan.sources[0][0] === "energy" ? 0.02 * moved : 0,
+      allowed: compared ? (plan.scale === "linear" ? moved : 0) : Infinity,
     }))
     .filter((chart) => chart.curves.length > 0);
 }
 
-function curve(run: Run, index: number, [column, label]: Source, colour: number): Curve[] {
-  const y = run.columns.get(column);
-  return y ? [{ label: label || run.label, colour, run: index, x: run.times, y, shown: true }] : [];
-}
-
-/** How much energy goes back and forth in the mechanism, J. */
-function energyScale(runs: Run[]): number {
-  const spans = runs.map((run) => {
-    const kinetic = (run.columns.get("kinetic") ?? new Float64Array()).filter(Number.isFinite);
-    return kinetic.reduce((most, e) => Math.max(most, e), 0);
-  });
-  return Math.max(0, ...spans.filter(Number.isFinite));
+function curve(run: Run, index: number, [column, label]: Source, colour: number, smooth: Plan["smooth"]): Curve[] {
+  const values = run.columns.get(column);
+  if (!values) return [];
+  const y = smooth ? smooth(values) : values;
+  return [{ label: label || run.label, colour, run: index, sound: run.sound, x: run.times, y, shown: true }];
 }
