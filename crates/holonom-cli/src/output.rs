@@ -8,7 +8,8 @@ use std::sync::atomic::AtomicBool;
 
 use cpu_time::ProcessTime;
 use holonom::analysis;
-use holonom::record::{COLUMNS, RecordedPoint, Recorder, Recording};
+use holonom::model::Model;
+use holonom::record::{COLUMNS, RecordedPoint, Recorder, Recording, reaction_columns};
 use holonom::simulation::{Method, Simulation, State, Status};
 use holonom_io::Writer;
 use holonom_report::{Report, Run};
@@ -58,8 +59,11 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
         announce_corrections(&simulation);
     }
     let rank = analysis::rank(&model.system, &simulation.state().x, simulation.state().t);
-    let points = model.points.iter().map(|point| RecordedPoint { name: point.name.clone(), place: point.place });
-    let recorder = Recorder::new(points.collect(), model.axes, every);
+    let rows = model.output.reactions.unwrap_or(false).then(|| model.system.row_names());
+    if rows.is_some() {
+        simulation.find_reactions();
+    }
+    let recorder = Recorder::new(recorded_points(model), model.axes, every, rows);
     let mut watched = Watched::new(recorder, end, quiet, interrupted.clone());
     let (wall, cpu) = (std::time::Instant::now(), ProcessTime::now());
     let status = simulation.run(end, &mut watched);
@@ -102,13 +106,21 @@ pub fn writers(formats: &[String]) -> Result<Vec<&'static Writer>, Failure> {
     formats.iter().map(find).collect()
 }
 
+fn recorded_points(model: &Model) -> Vec<RecordedPoint> {
+    model.points.iter().map(|point| RecordedPoint { name: point.name.clone(), place: point.place }).collect()
+}
+
 /// A recording without the points that are not among `points`.
-fn only(recording: &Recording, points: &[String], axes: &str) -> Recording {
+fn only(recording: &Recording, points: &[String], model: &Model) -> Recording {
+    let axes = model.axes;
     let of_point = |point: &String| {
         let names = ["", "v"].map(|rate| axes.chars().map(|axis| format!("{point}.{rate}{axis}")).collect::<Vec<_>>());
         names.concat()
     };
-    let names: Vec<String> = COLUMNS.iter().map(|name| name.to_string()).chain(points.iter().flat_map(of_point)).collect();
+    let kept_points: Vec<RecordedPoint> = recorded_points(model).into_iter().filter(|point| points.contains(&point.name)).collect();
+    let of_rows = reaction_columns(model.system.row_names(), &kept_points, axes);
+    let names = COLUMNS.iter().map(|name| name.to_string()).chain(points.iter().flat_map(of_point)).chain(of_rows);
+    let names: Vec<String> = names.filter(|name| recording.column(name).is_some()).collect();
     let columns: Vec<&[f64]> = names.iter().filter_map(|name| recording.column(name)).collect();
     let mut kept = Recording::new(names);
     let mut row = Vec::new();
@@ -145,7 +157,7 @@ impl Folder {
 
     /// Writes the table of a run with each writer: the points that `[output]` asks for, in its order.
     pub fn write_trajectory(&self, prefix: &str, writers: &[&Writer], loaded: &Loaded, recording: &Recording) -> Result<(), Failure> {
-        let asked = loaded.model.output.points.as_ref().map(|points| only(recording, points, loaded.model.axes));
+        let asked = loaded.model.output.points.as_ref().map(|points| only(recording, points, &loaded.model));
         let recording = asked.as_ref().unwrap_or(recording);
         for writer in writers {
             self.write(&format!("{prefix}.{}", writer.extension), |out| (writer.write)(recording, out))?;

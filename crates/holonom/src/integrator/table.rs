@@ -39,15 +39,15 @@ pub struct Entry {
     /// Values of the key `order`, the usual one first.
     pub orders: &'static [u8],
     pub estimate: Estimate,
-    /// Order of convergence of positions, velocities and reactions that can be relied upon, for an `order`, a
+    /// Order of convergence of positions, velocities and reactions that can be relied upon, for parameters, a
     /// formulation, and with or without projections.
-    pub convergence: fn(u8, &Formulation, bool) -> [u8; 3],
+    pub convergence: fn(&Parameters, &Formulation, bool) -> [u8; 3],
     pub make: fn(&System, &SolveSettings, Parameters) -> Box<dyn Integrator>,
 }
 
 /// The integrator's order in everything.
-fn full(order: u8, _: &Formulation, _: bool) -> [u8; 3] {
-    [order; 3]
+fn full(parameters: &Parameters, _: &Formulation, _: bool) -> [u8; 3] {
+    [parameters.order; 3]
 }
 
 const ALL: &[&str] = &[
@@ -119,10 +119,10 @@ pub const INTEGRATORS: &[Entry] = &[
         needs_projection: false,
         orders: &[2, 4],
         estimate: Estimate::History,
-        convergence: |order, formulation, projected| match (order, projected) {
+        convergence: |parameters, formulation, projected| match (parameters.order, projected) {
             (4, false) if !formulation.soft => [4, 2, 2],
             (4, true) => [3; 3],
-            _ => [order; 3],
+            (order, _) => [order; 3],
         },
         make: |system, _, parameters| Composed::of(Box::new(conserving::Conserving { rows: parameters.rows }), parameters.order, system),
     },
@@ -153,7 +153,7 @@ pub const INTEGRATORS: &[Entry] = &[
         needs_projection: true,
         orders: &[2],
         estimate: Estimate::None,
-        convergence: full,
+        convergence: |parameters, _, _| if parameters.gamma == 0.5 { [2; 3] } else { [1; 3] },
         make: |_, _, parameters| Box::new(newmark::Newmark { beta: parameters.beta, gamma: parameters.gamma }),
     },
     Entry {
@@ -228,7 +228,10 @@ pub const INTEGRATORS: &[Entry] = &[
         needs_projection: false,
         orders: &[5, 3, 1],
         estimate: Estimate::Own,
-        convergence: |order, formulation, projected| if projected || !formulation.is_at_position() { [order; 3] } else { [order, order / 2 + 1, order / 2 + 1] },
+        convergence: |parameters, formulation, projected| match parameters.order {
+            order if projected || !formulation.is_at_position() => [order; 3],
+            order => [order, order / 2 + 1, order / 2 + 1],
+        },
         make: |system, settings, parameters| Box::new(RungeKutta::new(system, settings, Tableau::radau(parameters.order))),
     },
     Entry {
@@ -258,7 +261,10 @@ pub const INTEGRATORS: &[Entry] = &[
         needs_projection: false,
         orders: &[6, 4, 2],
         estimate: Estimate::None,
-        convergence: |order, formulation, projected| if projected || formulation.index < 2 { [order; 3] } else { [order, (order - 2).max(2), (order - 2).max(2)] },
+        convergence: |parameters, formulation, projected| match parameters.order {
+            order if projected || formulation.index < 2 => [order; 3],
+            order => [order, (order - 2).max(2), (order - 2).max(2)],
+        },
         make: |system, settings, parameters| Box::new(RungeKutta::new(system, settings, Tableau::gauss(parameters.order))),
     },
     Entry {

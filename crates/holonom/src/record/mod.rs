@@ -3,7 +3,7 @@
 mod recorder;
 mod scene;
 
-pub use recorder::{COLUMNS, RecordedPoint, Recorder};
+pub use recorder::{COLUMNS, RecordedPoint, Recorder, reaction_columns};
 pub use scene::{Anchor, Line, LineKind, PointKind, Scene, ScenePoint};
 
 /// A table of columns of equal length; row 0 is the start.

@@ -15,6 +15,13 @@ pub struct RecordedPoint {
 pub const COLUMNS: [&str; 11] =
     ["t", "energy", "kinetic", "potential", "work", "dE_integrator", "dE_projection", "phi", "phi_dot", "phi_ddot", "iterations"];
 
+/// Columns of the forces of constraints: the multiplier of each row, and the force on each point that moves.
+pub fn reaction_columns(rows: &[String], points: &[RecordedPoint], axes: &str) -> Vec<String> {
+    let multipliers = rows.iter().map(|row| format!("{row}.lambda"));
+    let moving = points.iter().filter(|point| matches!(point.place, Place::Node(_)));
+    multipliers.chain(moving.flat_map(|point| axes.chars().map(|axis| format!("{}.r{axis}", point.name)))).collect()
+}
+
 /// Records the start, every `every`-th step and nothing else. ΔE_i and ΔE_p of the steps between are summed into the
 /// row that follows them, so that the columns add up whatever is left out.
 pub struct Recorder {
@@ -23,20 +30,23 @@ pub struct Recorder {
     seen: u64,
     /// ΔE_i and ΔE_p since the last row, J.
     since: [f64; 2],
+    has_reactions: bool,
     row: Vec<f64>,
     recording: Recording,
 }
 
 impl Recorder {
-    /// Records points along the world axes `axes` (`"xyz"`, or two of them in the plane).
-    pub fn new(points: Vec<RecordedPoint>, axes: &str, every: u64) -> Self {
+    /// Records points along the world axes `axes` (`"xyz"`, or two of them in the plane), and the forces of the constraint
+    /// rows `rows` where the simulation finds them.
+    pub fn new(points: Vec<RecordedPoint>, axes: &str, every: u64, rows: Option<&[String]>) -> Self {
         let common = COLUMNS.iter().map(|name| name.to_string());
         let of_points = points.iter().flat_map(|point| {
             let positions = axes.chars().map(|axis| format!("{}.{axis}", point.name));
             positions.chain(axes.chars().map(|axis| format!("{}.v{axis}", point.name))).collect::<Vec<_>>()
         });
-        let recording = Recording::new(common.chain(of_points));
-        Self { row: Vec::with_capacity(recording.columns().len()), points, every: every.max(1), seen: 0, since: [0.0; 2], recording }
+        let of_rows = rows.map_or(Vec::new(), |rows| reaction_columns(rows, &points, axes));
+        let recording = Recording::new(common.chain(of_points).chain(of_rows));
+        Self { row: Vec::with_capacity(recording.columns().len()), points, every: every.max(1), seen: 0, since: [0.0; 2], has_reactions: rows.is_some(), recording }
     }
 
     /// What was recorded so far.
@@ -66,6 +76,14 @@ impl Recorder {
                 Place::Fixed(x) => {
                     self.row.extend_from_slice(&x[..dim]);
                     self.row.extend(std::iter::repeat_n(0.0, dim));
+                }
+            }
+        }
+        if let Some(reactions) = simulation.reactions().filter(|_| self.has_reactions) {
+            self.row.extend_from_slice(&reactions.lambda);
+            for point in &self.points {
+                if let Place::Node(node) = point.place {
+                    self.row.extend_from_slice(&reactions.force[node.index() * dim..(node.index() + 1) * dim]);
                 }
             }
         }

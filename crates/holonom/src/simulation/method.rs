@@ -235,7 +235,7 @@ impl Method {
     /// Order of convergence of positions, velocities and reactions.
     pub fn convergence(&self) -> [u8; 3] {
         let projected = self.projection.velocity && !self.projection.shadow;
-        (self.integrator.convergence)(self.parameters.order, self.formulation, projected)
+        (self.integrator.convergence)(&self.parameters, self.formulation, projected)
     }
 
     /// Order of a step's result: the lower one of positions and velocities.

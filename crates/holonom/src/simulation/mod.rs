@@ -265,7 +265,7 @@ impl<'a> Simulation<'a> {
             if step < SMALLEST_SHARE * control.span {
                 return Err(Failure::TooSmall);
             }
-            state.clone_from(&self.state);
+            state.copy_from(&self.state);
             audit.clone_from(&self.audit);
             let outcome = self.substep(step, if parts == 1.0 { target } else { self.state.t + step });
             let ratio = match &outcome {
@@ -285,7 +285,7 @@ impl<'a> Simulation<'a> {
             if outcome.is_ok() {
                 std::mem::swap(&mut self.work.at_start, &mut self.work.at_end);
             }
-            self.state.clone_from(state);
+            self.state.copy_from(state);
             self.audit.clone_from(audit);
             self.audit.reject();
             control.reject(step, ratio);
@@ -451,6 +451,14 @@ impl State {
             last_step: 0.0,
             memory: work.memory.clone(),
         }
+    }
+
+    /// Takes over another state of the same run, without allocating.
+    fn copy_from(&mut self, other: &Self) {
+        (self.t, self.last_step) = (other.t, other.last_step);
+        let own = [&mut self.x, &mut self.v, &mut self.a, &mut self.lambda, &mut self.a_change, &mut self.memory];
+        let others = [&other.x, &other.v, &other.a, &other.lambda, &other.a_change, &other.memory];
+        own.into_iter().zip(others).for_each(|(own, other)| own.copy_from_slice(other));
     }
 
     /// Copies the start of a step into a workspace.
