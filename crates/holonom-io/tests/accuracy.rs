@@ -88,6 +88,46 @@ const PENDULUM_AT_5: [f64; 3] = [-0.345203349034276, -1.69420997241737, -1.00522
 const DOUBLE_AT_5: [f64; 2] = [0.267403405386398, -1.62507455103253];
 const CAR_AT_3: [f64; 2] = [1.04174252488543, 0.373911027265366];
 
+/// Dense output: results between the steps are as good as those at their ends, cost no steps, and their balance of energy
+/// closes.
+#[test]
+fn dense_output_takes_no_steps() {
+    let model = example("spherical-compound-pendulum");
+    for method in ["ode/dopri5", "ode/dopri5/velocity", "ode/dop853/velocity"] {
+        let run = |interval: f64| {
+            let choice = Choice { method: Some(method.into()), accuracy: Some(1e-7), ..Choice::default() };
+            let mut simulation = Simulation::new(&model.system, Method::resolve(&choice).unwrap(), interval).unwrap();
+            let (mut rows, mut changes) = (Vec::new(), 0.0);
+            let status = simulation.run(2.0, &mut |simulation: &Simulation<'_>| {
+                let audit = simulation.audit();
+                changes += audit.integrator + audit.projection;
+                rows.push((simulation.state().t, simulation.state().x[3..].to_vec(), simulation.velocities()[..3].to_vec()));
+                Verdict::GoOn
+            });
+            assert_eq!(status, Status::Completed);
+            let size = holonom::analysis::rank(&model.system, &simulation.state().x, 2.0).size(&model.system);
+            let summary = simulation.summary("test", 2.0, &status, size);
+            assert!((summary.energy.last - summary.energy.initial - changes).abs() < 1e-12, "{method}: {changes}");
+            (rows, summary.work.iterations)
+        };
+        let ((sparse, few), (dense, many)) = (run(2.0), run(0.01));
+        assert_eq!(few, many, "{method}: iterations");
+        assert_eq!(sparse.last(), dense.last(), "{method}");
+        // r2 and v1 of the pendulum at 0.5 s in 113-bit arithmetic.
+        let (_, place, _) = dense.iter().find(|(t, ..)| (t - 0.5).abs() < 1e-9).expect("there is a row");
+        for (found, inner) in place.iter().zip([0.722991489655185, 0.210003143628563, -0.65816562167307]) {
+            assert!((found - 2.0 * inner).abs() < 1e-6, "{method}: {place:?}");
+        }
+        // Rates of positions are velocities, between steps and across their ends.
+        for w in dense.windows(3) {
+            for c in 0..3 {
+                let slope = (w[2].1[c] - w[0].1[c]) / (w[2].0 - w[0].0);
+                assert!((slope - 2.0 * w[1].2[c]).abs() < 2e-3, "{method} at {} s: {slope} and {}", w[1].0, w[1].2[c]);
+            }
+        }
+    }
+}
+
 /// What cannot tell its errors says so, and who can.
 #[test]
 fn integrators_without_estimate_are_refused() {

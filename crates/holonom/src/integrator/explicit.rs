@@ -17,6 +17,16 @@ pub(super) struct Tableau {
     tempering: &'static [f64],
     /// Order, and that of the estimate.
     orders: Option<[u8; 2]>,
+    dense: Dense,
+}
+
+/// The polynomial through a step.
+enum Dense {
+    None,
+    /// Coefficients of θ, θ² … of the weights of the stages and the end of the step.
+    Weights(&'static [[f64; 4]]),
+    /// Further stages, and the weights of all of them beyond the cubic through both ends.
+    Stages { nodes: &'static [f64], rows: &'static [&'static [f64]], weights: &'static [&'static [f64]] },
 }
 
 /// The classical method of order 4.
@@ -26,6 +36,7 @@ pub(super) const RK4: Tableau = Tableau {
     error: &[],
     tempering: &[],
     orders: None,
+    dense: Dense::None,
 };
 
 /// Dormand and Prince 1980, order 5(4).
@@ -43,34 +54,55 @@ pub(super) const DOPRI5: Tableau = Tableau {
     error: &[71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339_200.0, 22.0 / 525.0, -1.0 / 40.0],
     tempering: &[],
     orders: Some([5, 4]),
+    dense: Dense::Weights(DOPRI5_WEIGHTS),
 };
 
+/// Dense output of order 4 of the same (Shampine 1986).
+const DOPRI5_WEIGHTS: &[[f64; 4]] = &[
+    [1.0, -8_048_581_381.0 / 2_820_520_608.0, 8_663_915_743.0 / 2_820_520_608.0, -12_715_105_075.0 / 11_282_082_432.0],
+    [0.0; 4],
+    [0.0, 131_558_114_200.0 / 32_700_410_799.0, -68_118_460_800.0 / 10_900_136_933.0, 87_487_479_700.0 / 32_700_410_799.0],
+    [0.0, -1_754_552_775.0 / 470_086_768.0, 14_199_869_525.0 / 1_410_260_304.0, -10_690_763_975.0 / 1_880_347_072.0],
+    [0.0, 127_303_824_393.0 / 49_829_197_408.0, -318_862_633_887.0 / 49_829_197_408.0, 701_980_252_875.0 / 199_316_789_632.0],
+    [0.0, -282_668_133.0 / 205_662_961.0, 2_019_193_451.0 / 616_988_883.0, -1_453_857_185.0 / 822_651_844.0],
+    [0.0, 40_617_522.0 / 29_380_423.0, -110_615_467.0 / 29_380_423.0, 69_997_945.0 / 29_380_423.0],
+];
+
 /// Dormand and Prince, order 8(5,3).
-pub(super) const DOP853: Tableau =
-    Tableau { nodes: dop853::C.split_at(12).0, rows: dop853::A.split_at(13).0, error: dop853::E5, tempering: dop853::E3, orders: Some([8, 7]) };
+pub(super) const DOP853: Tableau = Tableau {
+        nodes: dop853::C.split_at(12).0,
+        rows: dop853::A.split_at(13).0,
+        error: dop853::E5,
+        tempering: dop853::E3,
+        orders: Some([8, 7]),
+        dense: Dense::Stages { nodes: dop853::C.split_at(13).1, rows: dop853::A.split_at(13).1, weights: dop853::D },
+    };
 
 pub(super) struct Explicit {
     tableau: Tableau,
     /// v_i and a_i of the stages and the end of the step, n numbers each.
     rates: Vec<f64>,
     slopes: Vec<f64>,
+    /// Whether the further stages of the dense output are those of the last step.
+    extended: bool,
 }
 
 impl Explicit {
     pub(super) fn new(system: &System, tableau: Tableau) -> Self {
-        let room = vec![0.0; (tableau.nodes.len() + 1) * system.coordinates()];
-        Self { tableau, rates: room.clone(), slopes: room }
+        let further = if let Dense::Stages { nodes, .. } = tableau.dense { nodes.len() } else { 0 };
+        let room = vec![0.0; (tableau.nodes.len() + 1 + further) * system.coordinates()];
+        Self { tableau, rates: room.clone(), slopes: room, extended: false }
     }
 
-    /// Puts the workspace at stage `i` (or the end of the step) and keeps its velocity and acceleration. Says the power
-    /// of what does work there.
-    fn take(&mut self, system: &System, i: usize, t: f64, h: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<f64, Failure> {
+    /// Puts the workspace at stage `i` (the one after the last is the end of the step), with the weights `row` of the
+    /// stages before, and keeps its velocity and acceleration. Says the power of what does work there.
+    fn take(&mut self, system: &System, (i, row): (usize, &[f64]), t: f64, h: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<f64, Failure> {
         let n = system.coordinates();
         let Workspace { x1, v1, a1, .. } = work;
         system.place_known(t, x1, v1, a1);
         for k in 0..n {
             let (mut x, mut v) = (0.0, 0.0);
-            for (j, weight) in self.tableau.rows[i].iter().enumerate() {
+            for (j, weight) in row.iter().enumerate() {
                 x += weight * self.rates[j * n + k];
                 v += weight * self.slopes[j * n + k];
             }
@@ -91,6 +123,33 @@ impl Explicit {
     fn error(&self, weights: &[f64], n: usize, h: f64, k: usize) -> [f64; 2] {
         let sum = |values: &[f64]| weights.iter().enumerate().map(|(i, e)| e * values[i * n + k]).sum::<f64>() * h;
         [sum(&self.rates), sum(&self.slopes)]
+    }
+
+    /// The integral from the start to the share `x` of the step of what the stages hold of coordinate `k`, over the step.
+    fn through(&self, values: &[f64], n: usize, k: usize, x: f64) -> f64 {
+        let at = |i: usize| values[i * n + k];
+        match self.tableau.dense {
+            Dense::None => unreachable!("the table promises no dense output"),
+            Dense::Weights(weights) => {
+                let weight = |[a, b, c, d]: [f64; 4]| x * (a + x * (b + x * (c + x * d)));
+                weights.iter().enumerate().map(|(i, row)| weight(*row) * at(i)).sum()
+            }
+            Dense::Stages { weights, .. } => {
+                let end = self.tableau.nodes.len();
+                let whole: f64 = self.tableau.rows[end].iter().enumerate().map(|(i, weight)| weight * at(i)).sum();
+                let further = weights.iter().map(|row| row.iter().enumerate().map(|(i, weight)| weight * at(i)).sum());
+                let cubic = [whole, at(0) - whole, 2.0 * whole - at(end) - at(0)];
+                let coefficients = cubic.into_iter().chain(further);
+                // x (c_0 + (1 − x) (c_1 + x (c_2 + (1 − x) (c_3 + …
+                let mut factor = x;
+                let term = |(i, coefficient): (usize, f64)| {
+                    let term = factor * coefficient;
+                    factor *= if i % 2 == 0 { 1.0 - x } else { x };
+                    term
+                };
+                coefficients.enumerate().map(term).sum()
+            }
+        }
     }
 
     fn estimate(&self, n: usize, h: f64, work: &mut Workspace) {
@@ -114,12 +173,41 @@ impl Integrator for Explicit {
         let (n, stages) = (system.coordinates(), self.tableau.nodes.len());
         let mut done = 0.0;
         for i in 0..stages {
-            let power = self.take(system, i, start + self.tableau.nodes[i] * h, h, settings, work)?;
+            let power = self.take(system, (i, self.tableau.rows[i]), start + self.tableau.nodes[i] * h, h, settings, work)?;
             done += h * self.tableau.rows[stages].get(i).unwrap_or(&0.0) * power;
         }
-        self.take(system, stages, start + h, h, settings, work)?;
+        self.take(system, (stages, self.tableau.rows[stages]), start + h, h, settings, work)?;
+        self.extended = false;
         self.estimate(n, h, work);
         let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start, step: h, inertia: h * h, rate: 1.0 / h };
         Ok(Step { iterations: stages + 1, stage, work: Work::Sum(done), estimate: self.tableau.orders })
+    }
+
+    fn interpolate(
+        &mut self,
+        system: &System,
+        start: f64,
+        h: f64,
+        share: f64,
+        settings: &SolveSettings,
+        work: &mut Workspace,
+    ) -> Result<(), Failure> {
+        let n = system.coordinates();
+        if let Dense::Stages { nodes, rows, .. } = self.tableau.dense
+            && !self.extended
+        {
+            for (k, (node, row)) in nodes.iter().zip(rows).enumerate() {
+                self.take(system, (self.tableau.rows.len() + k, row), start + node * h, h, settings, work)?;
+            }
+            self.extended = true;
+        }
+        let Workspace { x1, v1, a1, .. } = work;
+        system.place_known(start + share * h, x1, v1, a1);
+        for k in 0..n {
+            work.d[k] = h * self.through(&self.rates, n, k, share);
+            work.x1[k] = work.x0[k] + work.d[k];
+            work.v1[k] = work.v0[k] + h * self.through(&self.slopes, n, k, share);
+        }
+        work.accelerate(system, start + share * h, settings)
     }
 }

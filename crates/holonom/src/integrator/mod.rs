@@ -28,6 +28,20 @@ pub trait Integrator: Send {
     /// Takes one step; says how many iterations it took and where the work done in it is booked from. An estimate of the
     /// local errors, where the table promises one, is left in the workspace.
     fn step(&mut self, system: &System, start: f64, step: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure>;
+
+    /// Dense output: leaves in the workspace, put at the start of the last step again, what a step would leave that ended
+    /// after the share `share` of it. Only called where the table says that there is one.
+    fn interpolate(
+        &mut self,
+        _system: &System,
+        _start: f64,
+        _step: f64,
+        _share: f64,
+        _settings: &SolveSettings,
+        _work: &mut Workspace,
+    ) -> Result<(), Failure> {
+        unreachable!("the table promises no dense output")
+    }
 }
 
 /// What a step cost, and where its forces were taken.

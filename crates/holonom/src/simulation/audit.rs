@@ -30,8 +30,7 @@ pub struct Audit {
     kept_momenta: [bool; 6],
     momentum_drift: [f64; 6],
     initial: f64,
-    before: f64,
-    work_before: f64,
+    before: Mark,
     max_drift: f64,
     max_rise: f64,
     integrator_total: f64,
@@ -42,6 +41,16 @@ pub struct Audit {
     rejected: u64,
     power: f64,
     penalty: Option<f64>,
+}
+
+/// What was booked at the start of a nominal step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Mark {
+    energy: f64,
+    work: f64,
+    integrator: f64,
+    projection: f64,
+    iterations: u64,
 }
 
 /// T, V and work of a step before its projection.
@@ -79,8 +88,7 @@ impl Audit {
             kept_momenta,
             momentum_drift: [0.0; 6],
             initial: kinetic + potential,
-            before: kinetic + potential,
-            work_before: 0.0,
+            before: Mark { energy: kinetic + potential, ..Mark::default() },
             max_drift: 0.0,
             max_rise: 0.0,
             integrator_total: 0.0,
@@ -106,11 +114,26 @@ impl Audit {
     }
 
     pub(super) fn begin_step(&mut self) {
-        self.before = self.energy();
-        self.work_before = self.work;
-        self.integrator = 0.0;
-        self.projection = 0.0;
-        self.iterations = 0;
+        self.before = Mark {
+            energy: self.energy(),
+            work: self.work,
+            integrator: self.integrator_total,
+            projection: self.projection_total,
+            iterations: self.total_iterations,
+        };
+    }
+
+    /// Takes over from what was booked up to the last nominal time what a step that passed it does not know.
+    pub(super) fn follow(&mut self, shown: &Self) {
+        self.before = shown.before;
+        self.max_drift = shown.max_drift;
+        self.max_rise = shown.max_rise;
+        self.momentum_drift = shown.momentum_drift;
+        self.kept_momenta = shown.kept_momenta;
+        let (own, other) = (&mut self.violation, &shown.violation);
+        own.position = own.position.max(other.position);
+        own.velocity = own.velocity.max(other.velocity);
+        own.acceleration = own.acceleration.max(other.acceleration);
     }
 
     pub(super) fn reject(&mut self) {
@@ -119,7 +142,7 @@ impl Audit {
 
     /// Books what the integrator did: ΔE_i is the change of energy that no work accounts for (21).
     pub(super) fn integrated(&mut self, system: &System, taken: &Step, state: &State, work: &mut Workspace) -> Accounts {
-        self.iterations += taken.iterations as u64;
+        self.total_iterations += taken.iterations as u64;
         let done = match taken.work {
             Work::AtEnds => {
                 let power = energy::power(system, state.t, &work.v1, &work.a1, work);
@@ -136,7 +159,7 @@ impl Audit {
         let potential = energy::potential(system, &work.weight, &state.x, &work.at_end, penalty);
         let kinetic = energy::kinetic(system, &work.v1);
         let change = (kinetic - self.kinetic) + (potential - self.potential);
-        self.integrator += change - done;
+        self.integrator_total += change - done;
         self.work += done;
         self.kinetic = kinetic;
         Accounts { potential }
@@ -168,7 +191,7 @@ impl Audit {
         if method.projection.velocity {
             let change = energy::kinetic_difference(system, &work.v1, before, &mut work.full);
             if !method.projection.shadow {
-                self.projection += change;
+                self.projection_total += change;
                 self.kinetic = energy::kinetic(system, &work.v1);
             }
         }
@@ -190,11 +213,11 @@ impl Audit {
     }
 
     pub(super) fn end_step(&mut self, system: &System, work: &mut Workspace, state: &State, steps: u64) {
-        self.total_iterations += self.iterations;
-        self.integrator_total += self.integrator;
-        self.projection_total += self.projection;
+        self.iterations = self.total_iterations - self.before.iterations;
+        self.integrator = self.integrator_total - self.before.integrator;
+        self.projection = self.projection_total - self.before.projection;
         self.max_drift = self.max_drift.max((self.energy() - self.initial - self.work).abs());
-        self.max_rise = self.max_rise.max(self.energy() - self.before - (self.work - self.work_before));
+        self.max_rise = self.max_rise.max(self.energy() - self.before.energy - (self.work - self.before.work));
         self.momenta = energy::momenta(system, &state.x, &state.v, &mut work.full);
         if steps.is_power_of_two() {
             energy::drop_driven_momenta(system, work, &state.x, &mut self.kept_momenta);

@@ -1,5 +1,6 @@
 //! A method at work on a system: the step loop, step control, and how a run ended.
 
+mod adapt;
 mod audit;
 mod control;
 mod method;
@@ -14,9 +15,8 @@ pub use start::{Start, StartError};
 pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, ProjectionSummary, Summary, ViolationSummary, WorkSummary};
 
 use crate::formulation::{Failure, Iteration, Workspace};
-use control::Control;
-use crate::integrator::{Estimate, Integrator, Step};
-use crate::projection::{Metric, Projection, Solve};
+use adapt::Pilot;
+use crate::integrator::{Integrator, Step};
 use crate::system::System;
 
 /// Why words do not make a method.
@@ -86,9 +86,6 @@ impl<F: FnMut(&Simulation<'_>) -> Verdict> Observer for F {
 /// Halvings of a step before a run gives up.
 const MOST_HALVINGS: u32 = 12;
 
-/// Smallest step over the length of the run that an accuracy may ask for: below it times no longer tell steps apart.
-const SMALLEST_SHARE: f64 = 1e-13;
-
 /// A method at work on a system. Everything a step needs is allocated when it is made.
 pub struct Simulation<'a> {
     system: &'a System,
@@ -103,11 +100,8 @@ pub struct Simulation<'a> {
     start: Start,
     step: f64,
     steps: u64,
-    /// What chooses the steps by accuracy, and the state and books to go back to.
-    control: Option<Box<(Control, State, Audit)>>,
-    /// Velocities (D × nodes) that errors are estimated from: those shown, or where the method leaves them off the
-    /// constraints their projections.
-    smooth: Option<(Projection, Vec<f64>)>,
+    /// What chooses the steps by accuracy.
+    pilot: Option<Box<Pilot>>,
     /// Multipliers (r) and accelerations (D × nodes) of the index-1 system at the present state, where they are wanted.
     reactions: Option<Reactions>,
 }
@@ -155,11 +149,7 @@ impl<'a> Simulation<'a> {
 
     fn assemble(system: &'a System, method: Method, step: f64, mut work: Workspace, state: State, start: Start) -> Self {
         let audit = Audit::new(system, &method, &mut work, &state);
-        let control = method.accuracy.map(|accuracy| {
-            let control = Control::new(accuracy, method.order(), method.integrator.estimate, system.coordinates());
-            Box::new((control, state.clone(), audit.clone()))
-        });
-        let smooth = control.is_some().then(|| smoothing(&method)).flatten().map(|projection| (projection, state.v.clone()));
+        let pilot = Pilot::new(&method, &state, &audit, system.coordinates());
         Self {
             integrator: (method.integrator.make)(system, &method.settings, method.parameters),
             shown_v: state.v.clone(),
@@ -172,8 +162,7 @@ impl<'a> Simulation<'a> {
             start,
             step,
             steps: 0,
-            smooth,
-            control,
+            pilot,
             reactions: None,
         }
     }
@@ -196,11 +185,7 @@ impl<'a> Simulation<'a> {
             return self.interrupted();
         }
         let first = self.state.t;
-        if let Some(kept) = &mut self.control {
-            let v = self.smooth.as_ref().map_or(&self.shown_v, |(_, v)| v);
-            kept.0.begin(&self.state, v, end - first, self.work.length);
-            self.work.allowed = kept.0.allowed();
-        }
+        self.begin_adapting(end);
         let count = ((end - first) / self.step - 1e-9).ceil().max(0.0) as u64;
         for k in 1..=count {
             let target = if k == count { end } else { first + k as f64 * self.step };
@@ -221,11 +206,14 @@ impl<'a> Simulation<'a> {
     /// Takes the nominal step to `target`.
     fn advance(&mut self, target: f64) -> Result<(), Failure> {
         self.audit.begin_step();
-        match self.control.take() {
+        match self.pilot.take() {
             None => self.halve(target)?,
-            Some(mut kept) => {
-                let outcome = self.adapt(target, &mut kept);
-                self.control = Some(kept);
+            Some(mut pilot) => {
+                let outcome = match self.method.integrator.dense {
+                    true => self.cruise(target, &mut pilot),
+                    false => self.land(target, &mut pilot),
+                };
+                self.pilot = Some(pilot);
                 outcome?;
             }
         }
@@ -252,43 +240,6 @@ impl<'a> Simulation<'a> {
                     self.audit.reject();
                 }
             }
-        }
-        Ok(())
-    }
-
-    /// In equal parts no longer than the accuracy allows.
-    fn adapt(&mut self, target: f64, (control, state, audit): &mut (Control, State, Audit)) -> Result<(), Failure> {
-        while self.state.t < target {
-            let left = target - self.state.t;
-            let parts = (left / control.step - 1e-9).ceil().max(1.0);
-            let step = left / parts;
-            if step < SMALLEST_SHARE * control.span {
-                return Err(Failure::TooSmall);
-            }
-            state.copy_from(&self.state);
-            audit.clone_from(&self.audit);
-            let outcome = self.substep(step, if parts == 1.0 { target } else { self.state.t + step });
-            let ratio = match &outcome {
-                Ok(taken) => {
-                    let v = self.smooth.as_ref().map_or(&self.shown_v, |(_, v)| v);
-                    control.ratio(taken, step, self.state.t, v, &mut self.work)
-                }
-                Err(_) => f64::INFINITY,
-            };
-            if ratio <= 1.0 {
-                let v = self.smooth.as_ref().map_or(&self.shown_v, |(_, v)| v);
-                control.remember(self.state.t, v);
-                control.accept(step, ratio);
-                continue;
-            }
-            // What was swapped at the end of the step goes back.
-            if outcome.is_ok() {
-                std::mem::swap(&mut self.work.at_start, &mut self.work.at_end);
-            }
-            self.state.copy_from(state);
-            self.audit.clone_from(audit);
-            self.audit.reject();
-            control.reject(step, ratio);
         }
         Ok(())
     }
@@ -322,6 +273,12 @@ impl<'a> Simulation<'a> {
         self.state.load(work);
         system.constraint_values(&work.at_start, self.state.t, &mut work.phi_start);
         let taken = self.integrator.step(system, self.state.t, step, &self.method.settings, work)?;
+        self.finish(taken, step, target)
+    }
+
+    /// Takes over what the integrator left in the workspace: audits and projects it.
+    fn finish(&mut self, taken: Step, step: f64, target: f64) -> Result<Step, Failure> {
+        let (system, work) = (self.system, &mut self.work);
         // The paper's loops start from the paper's prediction.
         if self.method.settings.iteration == Iteration::Newton {
             self.state.remember(step, work);
@@ -339,12 +296,6 @@ impl<'a> Simulation<'a> {
         if !self.method.projection.shadow {
             self.state.v.copy_from_slice(&work.v1);
             self.state.a.copy_from_slice(&work.a1);
-        }
-        if let Some((projection, v)) = &mut self.smooth {
-            if !projection.apply(system, target, step, work) {
-                return Err(Failure::NotFinite);
-            }
-            v.copy_from_slice(&work.v1);
         }
         std::mem::swap(&mut work.at_start, &mut work.at_end);
         Ok(taken)
@@ -423,19 +374,6 @@ impl<'a> Simulation<'a> {
     pub fn steps(&self) -> u64 {
         self.steps
     }
-}
-
-/// The projection of velocities that smooths them for the estimate from the steps before, where nothing else does.
-fn smoothing(method: &Method) -> Option<Projection> {
-    let rough = method.formulation.is_at_position() && !method.projection.velocity;
-    (rough && method.integrator.estimate == Estimate::History).then_some(Projection {
-        velocity: true,
-        acceleration: false,
-        metric: Metric::Mass,
-        solve: Solve::Exact,
-        strength: 1.0,
-        shadow: true,
-    })
 }
 
 impl State {
