@@ -122,7 +122,7 @@ fn dense_output_takes_no_steps() {
         for w in dense.windows(3) {
             for c in 0..3 {
                 let slope = (w[2].1[c] - w[0].1[c]) / (w[2].0 - w[0].0);
-                assert!((slope - 2.0 * w[1].2[c]).abs() < 2e-3, "{method} at {} s: {slope} and {}", w[1].0, w[1].2[c]);
+                assert!((slope - 2.0 * w[1].2[c]).abs() < 5e-3, "{method} at {} s: {slope} and {}", w[1].0, w[1].2[c]);
             }
         }
     }

@@ -59,3 +59,33 @@ fn a_potential_of_several_invariants_keeps_energy_and_momenta() {
     assert!(run.summary.momentum.angular_drift > 0.0, "the angular momentum is watched");
     assert!(run.summary.work.iterations_per_step <= 5.0, "the tangent is that of the discrete gradient");
 }
+
+/// Composed to order 4 and 6 the schemes keep energy and momentum as exactly, with steps backwards among their parts.
+#[test]
+fn compositions_conserve() {
+    for (method, drift) in [("ggl/conserving-ggl-4", 1e-10), ("ggl/conserving-ggl-6", 1e-10), ("lagrange-3/conserving-4", 1e-10)] {
+        let run = run(&pendulum(), &named(method), 0.025, 20.0);
+        assert_eq!(run.status, Status::Completed);
+        println!("{method}: {:.1e} J", run.summary.energy.max_drift);
+        assert!(run.summary.energy.max_drift <= drift, "{method}: {}", run.summary.energy.max_drift);
+        assert!(run.summary.momentum.angular_drift <= 1e-10, "{method}");
+        assert!(run.summary.violation.position <= 1e-11, "{method}");
+    }
+}
+
+/// Steps of any length, forwards, keep the energy: one-step schemes have no past to disturb.
+#[test]
+fn conserving_ggl_keeps_the_energy_with_any_steps() {
+    use holonom::simulation::{Method, Simulation, Verdict};
+    let system = pendulum();
+    let mut simulation = Simulation::new(&system, Method::resolve(&named("conserving-ggl")).unwrap(), 1.0).unwrap();
+    let mut t = 0.0;
+    for k in 0..2000 {
+        // Between 1e-4 and 0.05 s, from one to the next by up to five hundred times.
+        t += 1e-4 * 500_f64.powf(0.5 + 0.5 * (12.9898 * f64::from(k)).sin());
+        assert_eq!(simulation.run(t, &mut |_: &Simulation<'_>| Verdict::GoOn), Status::Completed);
+    }
+    let energy = simulation.audit().energy_summary();
+    println!("{t:.1} s: {:.1e} J", energy.max_drift);
+    assert!(energy.max_drift <= 1e-10, "{}", energy.max_drift);
+}

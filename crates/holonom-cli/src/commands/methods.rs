@@ -27,7 +27,8 @@ fn overview() -> String {
     let full_names: Vec<String> = FORMULATIONS.iter().map(Formulation::full_name).collect();
     let formulations: Vec<(&str, String)> =
         FORMULATIONS.iter().zip(&full_names).map(|(line, name)| (name.as_str(), format!("{}: {}", line.source, line.doc))).collect();
-    let integrators: Vec<(&str, String)> = INTEGRATORS.iter().map(|entry| (entry.name, format!("{}; {}", entry.doc, entry.use_for))).collect();
+    let integrators: Vec<(&str, String)> =
+        INTEGRATORS.iter().map(|entry| (entry.name, format!("{}; {}", entry.doc, entry.use_for))).collect();
     let levels = [("velocity", "(10), (11): Φ̇ = 0".to_string()), ("acceleration", "(12), (13): Φ̈ = 0".to_string())];
     let iterations: Vec<(&str, String)> = ITERATIONS.iter().map(|&(name, _, doc)| (name, doc.to_string())).collect();
     let sections = [
@@ -98,8 +99,7 @@ fn explain(name: &str) -> Result<String, Failure> {
     parts.extend(plain.filter(|(_, own, _)| *own == name).map(|(kind, own, doc)| format!("{kind} {own}\n  {doc}")));
     if parts.is_empty() {
         let choice = Choice { method: Some(name.into()), ..Choice::default() };
-        let method = Method::resolve(&choice)
-            .map_err(|error| Failure::usage(error.to_string(), "`holonom methods` lists every name"))?;
+        let method = Method::resolve(&choice).map_err(|error| Failure::usage(error.to_string(), "`holonom methods` lists every name"))?;
         parts.push(format!("method {name}\n{}", list(&of_method(&method, method.integrator.doc, method.formulation.keeps))));
     }
     Ok(parts.join("\n\n"))

@@ -30,7 +30,8 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         quiet: output.quiet,
         resume: arguments.resume.as_deref().map(load::checkpoint).transpose()?,
     };
-    let path = output.out.clone().unwrap_or_else(|| PathBuf::from(format!("results/{}-{}", loaded.name, order.method.name.replace('/', "-"))));
+    let path =
+        output.out.clone().unwrap_or_else(|| PathBuf::from(format!("results/{}-{}", loaded.name, order.method.name.replace('/', "-"))));
     let folder = Folder::create(&path)?;
     let finished = simulate(&loaded, order, &interrupt_flag())?;
     write(&folder, &loaded, &finished, &writers, output)?;

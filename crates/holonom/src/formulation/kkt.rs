@@ -58,7 +58,8 @@ pub(super) const OWN_STAGE: Coupling = |_, node, row| node == row;
 
 /// The first half of the fields are positions of the stages, the second half velocities. Position rows do not react on
 /// velocities.
-pub(super) const TWO_LEVELS: Coupling = |fields, node, row| node % (fields / 2) == row % (fields / 2) && (node < fields / 2 || row >= fields / 2);
+pub(super) const TWO_LEVELS: Coupling =
+    |fields, node, row| node % (fields / 2) == row % (fields / 2) && (node < fields / 2 || row >= fields / 2);
 
 /// The planned matrix.
 pub struct Kkt {

@@ -14,7 +14,7 @@ fn suzuki() -> Vec<f64> {
 
 /// Kahan and Li 1997: nine steps, order 6.
 fn kahan_li() -> Vec<f64> {
-    let half = [0.392_161_444_007_314_14, 0.332_599_136_789_359_44, -0.706_246_172_557_639_4, 0.082_213_596_293_550_8];
+    let half = [0.392_161_444_007_314_1, 0.332_599_136_789_359_4, -0.706_246_172_557_639_4, 0.082_213_596_293_550_8];
     let middle = 1.0 - 2.0 * half.iter().sum::<f64>();
     half.iter().copied().chain([middle]).chain(half.iter().rev().copied()).collect()
 }

@@ -26,7 +26,11 @@ enum Dense {
     /// Coefficients of θ, θ² … of the weights of the stages and the end of the step.
     Weights(&'static [[f64; 4]]),
     /// Further stages, and the weights of all of them beyond the cubic through both ends.
-    Stages { nodes: &'static [f64], rows: &'static [&'static [f64]], weights: &'static [&'static [f64]] },
+    Stages {
+        nodes: &'static [f64],
+        rows: &'static [&'static [f64]],
+        weights: &'static [&'static [f64]],
+    },
 }
 
 /// The classical method of order 4.
@@ -70,13 +74,13 @@ const DOPRI5_WEIGHTS: &[[f64; 4]] = &[
 
 /// Dormand and Prince, order 8(5,3).
 pub(super) const DOP853: Tableau = Tableau {
-        nodes: dop853::C.split_at(12).0,
-        rows: dop853::A.split_at(13).0,
-        error: dop853::E5,
-        tempering: dop853::E3,
-        orders: Some([8, 7]),
-        dense: Dense::Stages { nodes: dop853::C.split_at(13).1, rows: dop853::A.split_at(13).1, weights: dop853::D },
-    };
+    nodes: dop853::C.split_at(12).0,
+    rows: dop853::A.split_at(13).0,
+    error: dop853::E5,
+    tempering: dop853::E3,
+    orders: Some([8, 7]),
+    dense: Dense::Stages { nodes: dop853::C.split_at(13).1, rows: dop853::A.split_at(13).1, weights: dop853::D },
+};
 
 pub(super) struct Explicit {
     tableau: Tableau,
@@ -96,7 +100,15 @@ impl Explicit {
 
     /// Puts the workspace at stage `i` (the one after the last is the end of the step), with the weights `row` of the
     /// stages before, and keeps its velocity and acceleration. Says the power of what does work there.
-    fn take(&mut self, system: &System, (i, row): (usize, &[f64]), t: f64, h: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<f64, Failure> {
+    fn take(
+        &mut self,
+        system: &System,
+        (i, row): (usize, &[f64]),
+        t: f64,
+        h: f64,
+        settings: &SolveSettings,
+        work: &mut Workspace,
+    ) -> Result<f64, Failure> {
         let n = system.coordinates();
         let Workspace { x1, v1, a1, .. } = work;
         system.place_known(t, x1, v1, a1);

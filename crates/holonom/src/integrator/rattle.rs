@@ -68,4 +68,3 @@ fn kick(system: &System, stage: &Stage, work: &mut Workspace) -> Result<(), Fail
     }
     Ok(())
 }
-

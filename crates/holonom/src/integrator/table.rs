@@ -77,16 +77,8 @@ const ALL_AND_GGL: &[&str] = &[
     "penalty",
     "penalty-stabilized",
 ];
-const LOW_INDEX: &[&str] = &[
-    "ode",
-    "lagrange-2",
-    "lagrange-1",
-    "augmented-lagrangian-2",
-    "augmented-lagrangian-1",
-    "baumgarte",
-    "penalty",
-    "penalty-stabilized",
-];
+const LOW_INDEX: &[&str] =
+    &["ode", "lagrange-2", "lagrange-1", "augmented-lagrangian-2", "augmented-lagrangian-1", "baumgarte", "penalty", "penalty-stabilized"];
 const ACCELERATIONS: &[&str] = &["ode", "lagrange-1", "augmented-lagrangian-1", "baumgarte", "penalty", "penalty-stabilized"];
 const POSITIONS: &[&str] = &["augmented-lagrangian-3", "lagrange-3"];
 const NEWTON: &[&str] = &["newton"];

@@ -46,7 +46,15 @@ impl Recorder {
         });
         let of_rows = rows.map_or(Vec::new(), |rows| reaction_columns(rows, &points, axes));
         let recording = Recording::new(common.chain(of_points).chain(of_rows));
-        Self { row: Vec::with_capacity(recording.columns().len()), points, every: every.max(1), seen: 0, since: [0.0; 2], has_reactions: rows.is_some(), recording }
+        Self {
+            row: Vec::with_capacity(recording.columns().len()),
+            points,
+            every: every.max(1),
+            seen: 0,
+            since: [0.0; 2],
+            has_reactions: rows.is_some(),
+            recording,
+        }
     }
 
     /// What was recorded so far.

@@ -377,11 +377,9 @@ fn order(choice: &Choice, integrator: &Entry) -> Result<u8, MethodError> {
     let order = choice.order.unwrap_or(usual);
     match integrator.orders.contains(&order) {
         true => Ok(order),
-        false => Err(MethodError::Value {
-            key: "order",
-            given: order.to_string(),
-            allowed: names(integrator.orders.iter().map(u8::to_string)),
-        }),
+        false => {
+            Err(MethodError::Value { key: "order", given: order.to_string(), allowed: names(integrator.orders.iter().map(u8::to_string)) })
+        }
     }
 }
 
@@ -410,9 +408,8 @@ fn accuracy(choice: &Choice, integrator: &Entry, order: u8, bare: bool) -> Resul
 /// The name of a method: one that people know, or its parts joined by strokes.
 fn name(formulation: &Formulation, integrator: &Entry, order: u8, levels: &[String]) -> String {
     let (full, is_usual) = (formulation.full_name(), order == integrator.orders[0]);
-    let known = NAMED.iter().find(|known| {
-        is_usual && known.integrator == integrator.name && known.levels == levels && known.formulation == full
-    });
+    let known =
+        NAMED.iter().find(|known| is_usual && known.integrator == integrator.name && known.levels == levels && known.formulation == full);
     if let Some(known) = known {
         return known.name.into();
     }
@@ -445,14 +442,7 @@ fn projection(choice: Option<&ProjectionChoice>, levels: &[String]) -> Result<Pr
             }
         },
     };
-    let solve = match pick(
-        "projection solve",
-        choice.solve.as_deref().unwrap_or("exact"),
-        SOLVES,
-        |s| s.0,
-    )?
-    .0
-    {
+    let solve = match pick("projection solve", choice.solve.as_deref().unwrap_or("exact"), SOLVES, |s| s.0)?.0 {
         "exact" => Solve::Exact,
         _ => Solve::Penalty(positive("projection.penalty", choice.penalty, PENALTY)?),
     };

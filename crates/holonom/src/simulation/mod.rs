@@ -15,9 +15,9 @@ pub use start::{Start, StartError};
 pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, ProjectionSummary, Summary, ViolationSummary, WorkSummary};
 
 use crate::formulation::{Failure, Iteration, Workspace};
-use adapt::Pilot;
 use crate::integrator::{Integrator, Step};
 use crate::system::System;
+use adapt::Pilot;
 
 /// Why words do not make a method.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -30,7 +30,9 @@ pub enum MethodError {
     Value { key: &'static str, given: String, allowed: String },
     #[error("the integrator `{integrator}` has no error estimate to choose steps by accuracy; these have: {partners}")]
     NoEstimate { integrator: String, partners: String },
-    #[error("the integrator `{integrator}` is unstable on index 3 without projection, so that no step gives an accuracy; project velocities")]
+    #[error(
+        "the integrator `{integrator}` is unstable on index 3 without projection, so that no step gives an accuracy; project velocities"
+    )]
     Unstable { integrator: &'static str },
 }
 
