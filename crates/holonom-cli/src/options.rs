@@ -115,9 +115,18 @@ pub struct StabilityArguments {
     /// First step to try, s [default: the model's]
     #[arg(long, value_name = "S")]
     pub step: Option<String>,
+    /// Folder for the results [default: results/<model>-stability]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Print the result as JSON on standard output, nothing else there
     #[arg(long)]
     pub json: bool,
+    /// Print nothing on standard output but errors
+    #[arg(long)]
+    pub quiet: bool,
+    /// Write no report
+    #[arg(long)]
+    pub no_report: bool,
 }
 
 #[derive(Debug, Args)]

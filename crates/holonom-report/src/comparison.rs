@@ -2,7 +2,7 @@
 
 use crate::escape::html;
 use crate::figures::{badge, figure, known, reason};
-use crate::outcome::{Outcome, outcomes};
+use crate::outcome::{Outcome, completed, outcomes};
 use crate::{Run, format};
 use serde_json::Value;
 use std::io;
@@ -50,7 +50,8 @@ const FACTS: [Fact; 6] = [
 
 /// A line of what all runs share, the table, and how to read it.
 pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
-    let shared: Vec<String> = FACTS.iter().filter(|fact| is_shared(runs, fact)).filter_map(|fact| say(runs.first()?.summary, fact)).collect();
+    let shared: Vec<String> =
+        FACTS.iter().filter(|fact| is_shared(runs, fact)).filter_map(|fact| say(runs.first()?.summary, fact)).collect();
     let count = format!("{} runs compared", runs.len());
     writeln!(out, r#"<p class="method">{}</p>"#, [vec![count], shared].concat().join(" · "))?;
     table(runs, out)?;
@@ -81,7 +82,8 @@ fn table(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
 /// Label with the sample of its curve, which the viewer draws, over what the method is made of.
 fn name_cell(runs: &[Run], index: usize) -> String {
     let run = &runs[index];
-    let own = FACTS.iter().filter(|fact| !is_shared(runs, fact)).filter_map(|fact| say(run.summary, fact));
+    // How many steps a run took follows from its step and its end.
+    let own = FACTS.iter().filter(|fact| fact.0 != "/steps" && !is_shared(runs, fact)).filter_map(|fact| say(run.summary, fact));
     let parts: Vec<String> = parts_of_method(run.summary).into_iter().chain(own).collect();
     let label = html(run.label);
     format!(r#"<th scope="row"><span class="swatch" data-run="{index}"></span>{label}<small>{}</small></th>"#, parts.join(" · "))
@@ -104,8 +106,13 @@ fn parts_of_method(summary: &Value) -> Vec<String> {
 }
 
 fn status_cell(summary: &Value, outcome: Outcome) -> String {
-    let blown_up = if outcome == Outcome::BlownUp { r#"<span class="reason">energy blew up</span>"# } else { "" };
-    format!("<td>{}{blown_up}{}</td>", badge(summary), reason(summary))
+    match outcome {
+        // It ended as a run should, and yet nobody should trust it.
+        Outcome::BlownUp if completed(summary) => {
+            r#"<td><span class="badge stopped">completed</span><span class="reason">energy blew up</span></td>"#.to_owned()
+        }
+        _ => format!("<td>{}{}</td>", badge(summary), reason(summary)),
+    }
 }
 
 fn figure_cell(summary: &Value, pointer: &str, sound: bool, best: f64) -> String {

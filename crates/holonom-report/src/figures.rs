@@ -52,7 +52,8 @@ pub fn figure(summary: &Value, pointer: &str) -> String {
 /// Method name, step and number of steps as HTML.
 fn method(summary: &Value) -> String {
     let text = |key: &str| summary.pointer(key).map(|v| html(&format::value(v)));
-    let parts = [text("/method/name"), text("/step").map(|step| format!("step {step} s")), text("/steps").map(|steps| format!("{steps} steps"))];
+    let parts =
+        [text("/method/name"), text("/step").map(|step| format!("step {step} s")), text("/steps").map(|steps| format!("{steps} steps"))];
     parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
 }
 

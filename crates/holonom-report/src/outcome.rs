@@ -61,7 +61,8 @@ mod tests {
             recording
         });
         let recordings: Vec<Recording> = recordings.collect();
-        let summaries: Vec<Value> = cases.iter().map(|(status, _, drift)| json!({"status": status, "energy": {"max_drift": drift}})).collect();
+        let summaries: Vec<Value> =
+            cases.iter().map(|(status, _, drift)| json!({"status": status, "energy": {"max_drift": drift}})).collect();
         let scene = Scene::default();
         let run = |(recording, summary)| Run { label: "", recording, scene: &scene, summary };
         let runs: Vec<Run> = recordings.iter().zip(&summaries).map(run).collect();

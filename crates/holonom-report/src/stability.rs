@@ -28,7 +28,7 @@ pub struct StabilityReport<'a> {
     pub limit: f64,
     /// The search ends when the step that fails is at most so many times the one that completes.
     pub ratio: f64,
-    /// Drift over the energy of the run beyond which it counts as failed.
+    /// Drift over |E(0)| + |W| + 1 J beyond which a run counts as failed; a power of ten.
     pub exploded: f64,
     pub searches: &'a [Search<'a>],
 }
@@ -58,10 +58,10 @@ impl StabilityReport<'_> {
 
     fn explanation(&self) -> String {
         format!(
-            "A step completes when the run reaches its end and the energy has never drifted by more than {} times what the run has of it; \
-             a step that fails is not divided. The axis is logarithmic. An arrow stands where the limit of the search was reached, so that the \
-             largest step is at least that.",
-            format::figure(self.exploded)
+            "A step completes when the run reaches its end and its energy never drifts by more than 10<sup>{:.0}</sup> times \
+             |E(0)| + |W| + 1 J; no step is divided. An arrow stands where the limit of the search was reached: the largest step is at least \
+             that. The axis is logarithmic.",
+            self.exploded.log10()
         )
     }
 
@@ -81,8 +81,8 @@ impl StabilityReport<'_> {
 
     fn row(&self, search: &Search, axis: &Axis, out: &mut dyn io::Write) -> io::Result<()> {
         let grid: String = axis.ticks().iter().map(|(at, _)| format!(r#"<i style="left:{at:.2}%"></i>"#)).collect();
-        let completes = if search.completes > 0.0 { format::figure(search.completes) } else { "none".to_owned() };
-        let fails = search.fails.map_or("–".to_owned(), format::figure);
+        let completes = if search.completes > 0.0 { digits(search.completes) } else { "none".to_owned() };
+        let fails = search.fails.map_or("–".to_owned(), digits);
         writeln!(
             out,
             r#"<tr><th scope="row">{}</th><td class="bars"><div class="track">{grid}{}</div></td><td class="number">{completes}</td><td class="number">{fails}</td><td class="number">{}</td></tr>"#,
@@ -96,10 +96,10 @@ impl StabilityReport<'_> {
 /// The bar of a method with its value beside it.
 fn bar(search: &Search, axis: &Axis) -> String {
     if search.completes <= 0.0 {
-        let tried = search.fails.map_or(String::new(), |fails| format!(", down to {} s", format::figure(fails)));
+        let tried = search.fails.map_or(String::new(), |fails| format!(", down to {} s", digits(fails)));
         return format!(r#"<b class="none">no step completes{tried}</b>"#);
     }
-    let (width, value) = (axis.place(search.completes), format::figure(search.completes));
+    let (width, value) = (axis.place(search.completes), digits(search.completes));
     match search.fails {
         None => format!(r#"<span class="bar open" style="width:{width:.2}%"></span><b style="left:{width:.2}%">≥ {value} s</b>"#),
         Some(_) => format!(r#"<span class="bar" style="width:{width:.2}%"></span><b style="left:{width:.2}%">{value} s</b>"#),
@@ -116,8 +116,8 @@ struct Axis {
 /// Share of the width that the axis takes, %.
 const WIDTH: f64 = 86.0;
 
-/// Up to so many decades, 2 and 5 have their ticks too.
-const FEW_DECADES: f64 = 3.5;
+/// Up to so many decades, 2 and 5 have their ticks too, where they can be written plainly.
+const FEW_DECADES: f64 = 2.5;
 
 impl Axis {
     fn of(report: &StabilityReport) -> Self {
@@ -135,11 +135,27 @@ impl Axis {
 
     /// Places and labels.
     fn ticks(&self) -> Vec<(f64, String)> {
-        let leading: &[f64] = if self.high - self.low <= FEW_DECADES { &[1.0, 2.0, 5.0] } else { &[1.0] };
+        let few = self.high - self.low <= FEW_DECADES && 10f64.powf(self.low) >= PLAIN;
+        let leading: &[f64] = if few { &[1.0, 2.0, 5.0] } else { &[1.0] };
         let decades = self.low as i32..=self.high.floor() as i32;
         let steps = decades.flat_map(|exponent| leading.iter().map(move |lead| lead * 10f64.powi(exponent)));
         let within = steps.filter(|step| step.log10() <= self.high + 1e-9);
-        within.map(|step| (self.place(step), format!("{} s", format::figure(step)))).collect()
+        within.map(|step| (self.place(step), tick_label(step))).collect()
+    }
+}
+
+/// Below this, s, powers of ten are written as such.
+const PLAIN: f64 = 0.99e-3;
+
+fn tick_label(step: f64) -> String {
+    if step >= PLAIN { format!("{} s", format::number(step)) } else { format!("10<sup>\u{2212}{:.0}</sup> s", -step.log10()) }
+}
+
+/// Three digits of a step.
+fn digits(step: f64) -> String {
+    match step.log10().floor() as i32 {
+        -3 => format!("{step:.5}").trim_end_matches('0').to_owned(),
+        _ => format::figure(step),
     }
 }
 
@@ -169,7 +185,16 @@ mod tests {
         assert_eq!((axis.place(0.01), axis.place(10.0)), (0.0, WIDTH));
         assert!((axis.place(1.0) - 2.0 * axis.place(0.1)).abs() < 1e-12);
         let labels: Vec<String> = axis.ticks().into_iter().map(|(_, label)| label).collect();
-        assert_eq!(labels, ["0.01 s", "0.02 s", "0.05 s", "0.1 s", "0.2 s", "0.5 s", "1 s", "2 s", "5 s", "10 s"]);
+        assert_eq!(labels, ["0.01 s", "0.1 s", "1 s", "10 s"]);
+        let labels: Vec<String> = Axis { low: -2.0, high: 0.0 }.ticks().into_iter().map(|(_, label)| label).collect();
+        assert_eq!(labels, ["0.01 s", "0.02 s", "0.05 s", "0.1 s", "0.2 s", "0.5 s", "1 s"]);
+    }
+
+    #[test]
+    fn short_steps_are_written_shortly() {
+        assert_eq!([digits(0.0078906), digits(0.005), digits(0.596875)], ["0.00789", "0.005", "0.597"]);
+        assert_eq!([tick_label(1e-3), tick_label(1e-5)], ["0.001 s", "10<sup>\u{2212}5</sup> s"]);
+        assert_eq!(Axis { low: -5.0, high: -2.0 }.ticks().len(), 4);
     }
 
     #[test]
@@ -179,7 +204,9 @@ mod tests {
             Search { method: "some", completes: 0.3, fails: Some(0.303), runs: 12 },
             Search { method: "none", completes: 0.0, fails: Some(1.22e-5), runs: 11 },
         ]);
-        for told in ["A &amp; B", "&lt;all&gt;", "≥ 2 s", ">0.3 s<", ">0.303<", "no step completes, down to 1.22", "3 methods", "within 1\u{202f}%"] {
+        for told in
+            ["A &amp; B", "&lt;all&gt;", "≥ 2 s", ">0.3 s<", ">0.303<", "no step completes, down to 1.22", "3 methods", "within 1\u{202f}%"]
+        {
             assert!(page.contains(told), "{told}");
         }
         assert!(!page.contains("<script") && page.matches("class=\"bar").count() - page.matches("class=\"bars").count() == 2);
@@ -188,10 +215,18 @@ mod tests {
     #[test]
     fn the_axis_holds_every_bar() {
         let searches = [3e-7, 0.01, 2.0].map(|completes| Search { method: "m", completes, fails: None, runs: 1 });
-        let report =
-            StabilityReport { title: "", model_text: "", end: 20.0, first: 0.025, limit: 2.0, ratio: 1.01, exploded: 1e6, searches: &searches };
+        let report = StabilityReport {
+            title: "",
+            model_text: "",
+            end: 20.0,
+            first: 0.025,
+            limit: 2.0,
+            ratio: 1.01,
+            exploded: 1e6,
+            searches: &searches,
+        };
         let axis = Axis::of(&report);
-        assert!(searches.iter().all(|search| (1.0..=WIDTH).contains(&axis.place(search.completes))));
+        assert!(searches.iter().all(|search| (1.0..WIDTH + 1e-9).contains(&axis.place(search.completes))));
     }
 
     #[test]

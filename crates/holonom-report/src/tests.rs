@@ -70,6 +70,66 @@ fn status_and_figures_are_readable_without_a_script() {
     assert!(!page.contains("time per step"), "the summary has no time");
 }
 
+/// A page that compares runs of summaries, each with a recording of its kinetic energy.
+fn compared(cases: &[(&str, f64, Value)]) -> String {
+    let recordings: Vec<Recording> = cases.iter().map(|(_, kinetic, _)| moving(*kinetic)).collect();
+    let scene = scene();
+    let pairs = cases.iter().zip(&recordings);
+    let runs: Vec<Run> = pairs.map(|((label, _, summary), recording)| Run { label, recording, scene: &scene, summary }).collect();
+    let mut out = Vec::new();
+    Report { title: "t", model_text: "m", runs: &runs }.write(&mut out).unwrap();
+    String::from_utf8(out).unwrap()
+}
+
+fn moving(kinetic: f64) -> Recording {
+    let mut recording = Recording::new(["t", "energy", "kinetic", "tip.x", "tip.y"].map(str::to_owned));
+    recording.push(&[0.0, 1.0, kinetic, 1.0, 0.0]);
+    recording
+}
+
+fn summary(status: &str, drift: f64, time: f64) -> Value {
+    json!({
+        "label": "not shown", "status": status, "step": 0.01, "end": 2.0, "dof": 1, "method": {"formulation": "ggl", "index": 2},
+        "energy": {"max_drift": drift}, "time": {"us_per_step": time},
+    })
+}
+
+#[test]
+fn runs_are_compared_in_a_table_with_the_best_marked() {
+    let page = compared(&[
+        ("exact", 9.0, summary("completed", 2e-13, 40.0)),
+        ("as exact", 9.0, summary("completed", 3e-13, 41.0)),
+        ("blown up", 9e9, summary("completed", 1e10, 1.0)),
+        ("stopped", 9.0, summary("stopped", 1e-14, 2.0)),
+    ]);
+    let table = page.split_once("<tbody>").unwrap().1.split_once("</tbody>").unwrap().0;
+    let best: Vec<&str> = table.split("class=\"best\">").skip(1).map(|rest| rest.split_once("</strong>").unwrap().0).collect();
+    let power = "\u{202f}×\u{202f}10<sup>\u{2212}13</sup>";
+    assert_eq!(best, [&format!("2.00{power}"), "40", &format!("3.00{power}"), "41"]);
+    assert_eq!(table.matches("energy blew up").count(), 1);
+    assert!(page.contains("4 runs compared · 2 s · step 0.01 s · 1 degree of freedom"));
+    assert!(table.contains("ggl, index\u{a0}2") && !table.contains("step 0.01 s"));
+}
+
+#[test]
+fn what_differs_between_runs_is_said_of_each() {
+    let with_step = |step: f64| json!({"step": step, "end": 2.0, "label": "a label"});
+    let page = compared(&[("a", 1.0, with_step(0.01)), ("b", 1.0, with_step(0.02))]);
+    assert!(page.contains("2 runs compared · 2 s<") && page.contains("step 0.01 s</small>") && page.contains("step 0.02 s</small>"));
+    let (shared, differing) = page.split_once("Of each run").unwrap();
+    let row = |key: &str| format!(r#"<th scope="row">{key}"#);
+    assert!(shared.contains(&row("end")) && !shared.contains(&row("step")));
+    assert!(differing.contains(&row("step")) && !differing.contains(&row("end")) && !page.contains(&row("label")));
+}
+
+#[test]
+#[cfg(feature = "viewer")]
+fn axes_are_told_which_runs_are_sound() {
+    let page = compared(&[("a", 9.0, summary("completed", 0.1, 1.0)), ("b", 9e9, summary("completed", 1e10, 1.0))]);
+    let runs = &embedded(&page)["runs"];
+    assert_eq!((&runs[0]["sound"], &runs[1]["sound"]), (&json!(true), &json!(false)));
+}
+
 #[test]
 fn nothing_is_loaded_from_elsewhere() {
     let page = page("t", "m", &recording(3, 0.0), &json!({}));

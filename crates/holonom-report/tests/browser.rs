@@ -39,6 +39,33 @@ fn two_runs_compared() {
 }
 
 #[test]
+fn ten_runs_and_one_of_them_blows_up() {
+    let mut runs: Vec<Sample> = (0..9).map(|k| sample::pendulum(&format!("method {k}"), 0.05, 400, 1.0 + f64::from(k))).collect();
+    runs.insert(4, sample::pendulum("wild", 0.05, 400, 1e12));
+    let seen = open("ten", &runs);
+    loads(&seen, 10);
+    moves(&seen, 20.0);
+    // It leaves the axes of energy, which the others would else be flat lines on; logarithmic axes have room for it.
+    let beyond: Vec<&str> = seen["beyond"].as_array().unwrap().iter().map(|text| text.as_str().unwrap()).collect();
+    assert_eq!(beyond.len(), 10, "{seen:#}");
+    assert!(beyond[0].starts_with("beyond the axis: wild from 0.05000 s (to "), "{seen:#}");
+    assert!(beyond[1..6].iter().all(|text| text.is_empty()), "{seen:#}");
+    // Ten runs and all of them; the first is shown, and another one looks different.
+    assert_eq!((&seen["choice"]["options"], &seen["choice"]["first"][0]), (&Value::from(11), &Value::from("0")), "{seen:#}");
+    assert_ne!(seen["choice"]["first"][1], seen["choice"]["second"][1], "the picture does not follow the choice");
+    assert_eq!(seen["samples"], 10, "a sample of every curve is in the table: {seen:#}");
+    let names = seen["readout"]["names"].as_array().unwrap();
+    assert_eq!(
+        (names.len(), &seen["readout"]["hidden"], &seen["readout"]["left"]),
+        (10, &Value::from(false), &Value::from(true)),
+        "{seen:#}"
+    );
+    // The pointer on the legend fades the others in every plot; a double click leaves one run, a button brings all back.
+    assert_eq!((&seen["highlighted"], &seen["only"]), (&Value::from(10), &Value::from(1)), "{seen:#}");
+    assert_eq!(seen["all"], Value::from(vec![10, 0]), "{seen:#}");
+}
+
+#[test]
 fn planar_and_stopped_early() {
     let seen = open("slider", &[sample::slider()]);
     loads(&seen, 3);

@@ -76,9 +76,13 @@ fn describe(loaded: &Loaded, summary: &Value) -> String {
         (
             "steps",
             format!(
-                "{} of {} s, {} iterations a step, {} rejected",
+                "{} of {} s{}, {} iterations in each, {} rejected",
                 summary["steps"],
                 short(summary["step"].as_f64().unwrap_or(0.0)),
+                match summary["method"]["accuracy"].as_f64() {
+                    None => String::new(),
+                    Some(accuracy) => format!(", {} taken for an accuracy of {}", summary["work"]["steps_taken"], short(accuracy)),
+                },
                 number("work", "iterations_per_step"),
                 summary["work"]["rejected_steps"]
             ),

@@ -1,14 +1,17 @@
 //! `holonom stability`.
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use holonom::analysis::largest_step;
-use holonom::simulation::{Method, NAMED, Simulation, Status, Verdict};
-use serde_json::json;
+use holonom::analysis::{LargestStep, largest_step};
+use holonom::simulation::{Choice, Method, NAMED, Simulation, Status, Verdict};
+use holonom_report::{Search, StabilityReport};
+use serde_json::{Value, json};
 
 use crate::failure::Failure;
-use crate::load;
+use crate::load::{self, Loaded};
 use crate::options::StabilityArguments;
+use crate::output::Folder;
 use crate::table::{short, table};
 
 /// Largest step tried, over the length of the run: beyond it there is little left to complete.
@@ -20,44 +23,107 @@ const RATIO: f64 = 1.01;
 /// Energy above its start, over the exchanged energy, at which a run counts as unstable although it went on.
 const EXPLODED: f64 = 1e6;
 
+/// Where the search takes place, s.
+struct Bounds {
+    end: f64,
+    first: f64,
+    limit: f64,
+}
+
 /// Searches the largest step of each method. Steps are never subdivided here.
 pub fn stability(arguments: &StabilityArguments) -> Result<ExitCode, Failure> {
     let mut overrides = load::overrides(&arguments.model.set);
     overrides.number("simulation.step", arguments.step.as_deref());
     overrides.number("simulation.end", arguments.end.as_deref());
     let loaded = load::load(&arguments.model.model, overrides)?;
-    let methods: Vec<String> = match arguments.methods.is_empty() {
-        true => NAMED.iter().map(|named| named.name.to_string()).collect(),
-        false => arguments.methods.clone(),
-    };
-    let (first, end) = (loaded.step()?, loaded.end()?);
-    let (mut rows, mut results) = (Vec::new(), Vec::new());
-    for name in &methods {
-        let mut choice = load::choice(&loaded, Some(name))?;
-        choice.subdivide = Some(false);
-        Method::resolve(&choice).map_err(load::method_failure)?;
-        let found = largest_step(first, LARGEST_SHARE * end, RATIO, |step| {
-            let method = Method::resolve(&choice).expect("the choice was resolved before");
-            let Ok(mut simulation) = Simulation::new(&loaded.model.system, method, step) else { return false };
-            let mut exploded = false;
-            let status = simulation.run(end, &mut |simulation: &Simulation<'_>| {
-                let energy = simulation.audit().energy_summary();
-                exploded = !energy.last.is_finite() || energy.max_drift > EXPLODED * (energy.initial.abs() + energy.work_total.abs() + 1.0);
-                if exploded { Verdict::Stop } else { Verdict::GoOn }
-            });
-            status == Status::Completed
-        });
-        let fails = found.fails.map_or("none tried".to_string(), short);
-        let completes = if found.completes > 0.0 { short(found.completes) } else { "none".into() };
-        rows.push(vec![name.clone(), completes, fails, found.runs.to_string()]);
-        results.push(json!({ "method": name, "completes": found.completes, "fails": found.fails, "runs": found.runs }));
+    let end = loaded.end()?;
+    let bounds = Bounds { end, first: loaded.step()?, limit: LARGEST_SHARE * end };
+    let choices = choices(arguments, &loaded)?;
+    let path = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("results/{}-stability", loaded.name)));
+    let folder = Folder::create(&path)?;
+    let found: Vec<(String, LargestStep)> = choices.into_iter().map(|(name, choice)| (name, search(&loaded, &choice, &bounds))).collect();
+    let results = results(&loaded, &bounds, &found);
+    folder.write("stability.json", |out| holonom_io::write_json(&results, out))?;
+    if !arguments.no_report {
+        write_report(&folder, &loaded, &bounds, &found)?;
     }
     if arguments.json {
         println!("{}", serde_json::to_string_pretty(&results).expect("a result is plain data"));
-    } else {
-        let header = ["method", "completes s", "fails s", "runs"];
-        println!("{}\nlargest step that completes {} s, up to {} s\n", loaded.title(), short(end), short(LARGEST_SHARE * end));
-        println!("{}", table(&header, &rows));
+    } else if !arguments.quiet {
+        println!("{}\n\nresults in {}", describe(&loaded, &bounds, &found), folder.path.display());
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Names and choices of the methods; what is wrong with one is said before anything runs.
+fn choices(arguments: &StabilityArguments, loaded: &Loaded) -> Result<Vec<(String, Choice)>, Failure> {
+    let names: Vec<&str> = match arguments.methods.is_empty() {
+        true => NAMED.iter().map(|named| named.name).collect(),
+        false => arguments.methods.iter().map(String::as_str).collect(),
+    };
+    let choice = |name: &str| {
+        let mut choice = load::choice(loaded, Some(name))?;
+        choice.subdivide = Some(false);
+        Method::resolve(&choice).map_err(load::method_failure)?;
+        Ok((name.to_string(), choice))
+    };
+    names.into_iter().map(choice).collect()
+}
+
+fn search(loaded: &Loaded, choice: &Choice, bounds: &Bounds) -> LargestStep {
+    largest_step(bounds.first, bounds.limit, RATIO, |step| completes(loaded, choice, step, bounds.end))
+}
+
+/// Whether a run reaches its end without its energy exploding on the way.
+fn completes(loaded: &Loaded, choice: &Choice, step: f64, end: f64) -> bool {
+    let method = Method::resolve(choice).expect("the choice was resolved before");
+    let Ok(mut simulation) = Simulation::new(&loaded.model.system, method, step) else { return false };
+    let status = simulation.run(end, &mut |simulation: &Simulation<'_>| {
+        let energy = simulation.audit().energy_summary();
+        let exploded = !energy.last.is_finite() || energy.max_drift > EXPLODED * (energy.initial.abs() + energy.work_total.abs() + 1.0);
+        if exploded { Verdict::Stop } else { Verdict::GoOn }
+    });
+    status == Status::Completed
+}
+
+/// Content of `stability.json`.
+fn results(loaded: &Loaded, bounds: &Bounds, found: &[(String, LargestStep)]) -> Value {
+    let result = |(name, found): &(String, LargestStep)| {
+        json!({
+            "method": name, "completes": found.completes, "fails": found.fails, "runs": found.runs,
+            "model": loaded.name, "end": bounds.end, "first": bounds.first, "limit": bounds.limit,
+        })
+    };
+    Value::Array(found.iter().map(result).collect())
+}
+
+fn write_report<'a>(folder: &Folder, loaded: &Loaded, bounds: &Bounds, found: &'a [(String, LargestStep)]) -> Result<(), Failure> {
+    let search =
+        |(method, found): &'a (String, LargestStep)| Search { method, completes: found.completes, fails: found.fails, runs: found.runs };
+    let searches: Vec<Search<'_>> = found.iter().map(search).collect();
+    let report = StabilityReport {
+        title: loaded.title(),
+        model_text: &loaded.text,
+        end: bounds.end,
+        first: bounds.first,
+        limit: bounds.limit,
+        ratio: RATIO,
+        exploded: EXPLODED,
+        searches: &searches,
+    };
+    folder.write("report.html", |out| report.write(out))
+}
+
+/// The search as people read it.
+fn describe(loaded: &Loaded, bounds: &Bounds, found: &[(String, LargestStep)]) -> String {
+    let header = ["method", "completes s", "fails s", "runs"];
+    let row = |(name, found): &(String, LargestStep)| {
+        let completes = if found.completes > 0.0 { short(found.completes) } else { "none".into() };
+        let fails = found.fails.map_or("none tried".to_string(), short);
+        vec![name.clone(), completes, fails, found.runs.to_string()]
+    };
+    let rows: Vec<Vec<String>> = found.iter().map(row).collect();
+    let Bounds { end, first, limit } = bounds;
+    let question = format!("largest step that completes {} s, searched from {} s up to {} s", short(*end), short(*first), short(*limit));
+    format!("{}\n{question}\n\n{}", loaded.title(), table(&header, &rows))
 }

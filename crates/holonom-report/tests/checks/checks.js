@@ -42,6 +42,27 @@
     seen.playing = holonom.time();
     document.querySelector(".play").click();
 
+    seen.beyond = [...document.querySelectorAll(".beyond")].map((node) => node.textContent);
+    seen.samples = document.querySelectorAll("table .swatch svg line").length;
+    const choice = document.querySelector(".choice select");
+    if (choice && !choice.parentElement.hidden) {
+      const shown = () => [choice.value, picture().hash];
+      seen.choice = { options: choice.options.length, first: shown() };
+      choice.value = "1";
+      choice.dispatchEvent(new Event("change"));
+      await frames(3);
+      seen.choice.second = shown();
+    }
+    const over = document.querySelector(".u-over");
+    if (over) {
+      const { left, top, width } = over.getBoundingClientRect();
+      over.dispatchEvent(new PointerEvent("pointermove", { clientX: left + width / 4, clientY: top + 20 }));
+      const readout = document.querySelector(".readout");
+      seen.readout = readout && { names: [...readout.querySelectorAll("span:not(.value)")].map((node) => node.textContent), hidden: readout.hidden };
+      over.dispatchEvent(new PointerEvent("pointerleave"));
+      if (readout) seen.readout.left = readout.hidden;
+    }
+
     const before = plots();
     await frames(3);
     const legend = document.querySelector("#legend button, button.entry");
@@ -52,6 +73,15 @@
       legend.click();
       await frames(3);
       seen.legendBack = changed(before, plots());
+      legend.dispatchEvent(new PointerEvent("pointerenter"));
+      await frames(3);
+      seen.highlighted = changed(before, plots());
+      legend.dispatchEvent(new PointerEvent("pointerleave"));
+      legend.dispatchEvent(new MouseEvent("dblclick"));
+      seen.only = document.querySelectorAll('#legend [aria-pressed="true"]').length;
+      document.querySelector("#legend .all")?.click();
+      await frames(3);
+      seen.all = [document.querySelectorAll('#legend [aria-pressed="true"]').length, changed(before, plots())];
     }
   } catch (fault) {
     faults.push(String(fault.stack ?? fault));

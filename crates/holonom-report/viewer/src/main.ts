@@ -8,7 +8,8 @@ import { element, place } from "./dom";
 import { Motion } from "./motion";
 import { readPayload, type Vec3 } from "./payload";
 import { charts } from "./plots/charts";
-import { buildPlot } from "./plots/plot";
+import { buildComparedPlot, buildPlot } from "./plots/plot";
+import { WINDOWS } from "./plots/smooth";
 import { buildTransport } from "./transport";
 import { buildStage } from "./view/stage";
 import { buildLegend, Visibility } from "./visibility";
@@ -21,6 +22,11 @@ interface Handle {
   /** World places of the points of the first run at the current time, m. */
   pointsAt(): Record<string, Vec3>;
 }
+
+const HOW_TO_READ = `Axes fit the runs that completed with their energy in bounds; a run that leaves one is named above it and drawn up \
+to there. Drift and violations are drawn as the largest within 1/${WINDOWS} of a run's rows, iterations as the mean there, everything else row \
+by row. On a logarithmic axis zeros lie at the lower end. Rest the pointer on a run in the legend to see it alone; drag across a plot to zoom, \
+double click to go back.`;
 
 declare global {
   interface Window {
@@ -48,7 +54,9 @@ function build(motions: Motion[], clock: Clock, visibility: Visibility): void {
 
   const plots = element("div", { class: "plots" });
   place("plots").append(plots);
-  for (const chart of charts(runs)) buildPlot(plots, chart, clock, visibility, runs.length > 1);
+  const build = runs.length > 1 ? buildComparedPlot : buildPlot;
+  for (const chart of charts(runs)) build(plots, chart, clock, visibility);
+  if (runs.length > 1) place("plots").append(element("p", { class: "note" }, HOW_TO_READ));
 }
 
 function pointsAt(motion: Motion | undefined, t: number): Record<string, Vec3> {

@@ -98,7 +98,7 @@ impl Workspace {
     /// so that later passes sample again.
     fn sum_reactions(&mut self, system: &System, t: f64, is_sampled: bool) {
         if !is_sampled {
-            self.sum_forces_again(system, t);
+            self.resample_end(system, t);
         }
         system.mass.times(system.dim, &self.a1, &mut self.inertial);
         self.inertial.iter_mut().zip(&self.force).for_each(|(sum, force)| *sum += force);

@@ -294,8 +294,8 @@ impl Workspace {
         self.sum_forces(system, &Stage::moment(t));
     }
 
-    /// Adds Gᵀ(λ − λ') for multipliers that changed since forces were sampled at the end by sampling them again.
-    pub(super) fn sum_forces_again(&mut self, system: &System, t: f64) {
+    /// Samples forces at the end again with other multipliers, where nothing moved since.
+    pub(super) fn resample_end(&mut self, system: &System, t: f64) {
         self.sum_forces(system, &Stage::moment(t));
     }
 

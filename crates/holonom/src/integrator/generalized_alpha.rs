@@ -70,7 +70,7 @@ impl GeneralizedAlpha {
 }
 
 impl Integrator for GeneralizedAlpha {
-    /// (a_n − v̇_n)/h, v̇_n, v̇ of the first step's start and λ there, and whether a step was taken.
+    /// (a_n − v̇_n)/h, scratch for v̇_n, and whether a step was taken.
     fn memory(&self, system: &System) -> usize {
         2 * system.coordinates() + 1
     }

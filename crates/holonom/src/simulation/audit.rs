@@ -37,6 +37,7 @@ pub struct Audit {
     projection_total: f64,
     violation: ViolationSummary,
     total_iterations: u64,
+    taken: u64,
     factorizations: u64,
     rejected: u64,
     power: f64,
@@ -95,6 +96,7 @@ impl Audit {
             projection_total: 0.0,
             violation: ViolationSummary::default(),
             total_iterations: 0,
+            taken: 0,
             factorizations: 0,
             rejected: 0,
             power,
@@ -143,6 +145,7 @@ impl Audit {
     /// Books what the integrator did: ΔE_i is the change of energy that no work accounts for (21).
     pub(super) fn integrated(&mut self, system: &System, taken: &Step, state: &State, work: &mut Workspace) -> Accounts {
         self.total_iterations += taken.iterations as u64;
+        self.taken += 1;
         let done = match taken.work {
             Work::AtEnds => {
                 let power = energy::power(system, state.t, &work.v1, &work.a1, work);
@@ -257,6 +260,7 @@ impl Audit {
     /// Work counters after `steps` nominal steps.
     pub fn work_summary(&self, steps: u64) -> WorkSummary {
         WorkSummary {
+            steps_taken: self.taken,
             iterations: self.total_iterations,
             iterations_per_step: self.total_iterations as f64 / steps.max(1) as f64,
             factorizations: self.factorizations,

@@ -267,6 +267,7 @@ impl Method {
             integrator: self.integrator.name.into(),
             order: self.parameters.order,
             iteration: self.iteration.into(),
+            accuracy: self.accuracy,
             projection: ProjectionSummary { levels, matrix: matrix.into(), solve: solve.into() },
         }
     }

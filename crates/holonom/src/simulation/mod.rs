@@ -129,15 +129,16 @@ impl<'a> Simulation<'a> {
         let integrator = (method.integrator.make)(system, &method.settings, method.parameters);
         work.memory = vec![0.0; integrator.memory(system)];
         let state = State::new(&work);
-        Ok(Self::assemble(system, method, step, work, state, start))
+        Ok(Self::assemble(system, method, integrator, step, work, state, start))
     }
 
     /// Goes on from a state of an earlier run of the same system. `None` when the state is of another size.
     pub fn resume(system: &'a System, method: Method, step: f64, state: State) -> Option<Self> {
         let all = system.nodes() * system.dim;
+        let integrator = (method.integrator.make)(system, &method.settings, method.parameters);
         let fits = [&state.x, &state.v, &state.a, &state.a_change].iter().all(|values| values.len() == all)
             && state.lambda.len() == system.constraints()
-            && state.memory.len() == (method.integrator.make)(system, &method.settings, method.parameters).memory(system);
+            && state.memory.len() == integrator.memory(system);
         if !fits {
             return None;
         }
@@ -146,14 +147,22 @@ impl<'a> Simulation<'a> {
         work.memory = state.memory.clone();
         state.load(&mut work);
         system.evaluate(&state.x, state.t, &mut work.at_start);
-        Some(Self::assemble(system, method, step, work, state, Start::default()))
+        Some(Self::assemble(system, method, integrator, step, work, state, Start::default()))
     }
 
-    fn assemble(system: &'a System, method: Method, step: f64, mut work: Workspace, state: State, start: Start) -> Self {
+    fn assemble(
+        system: &'a System,
+        method: Method,
+        integrator: Box<dyn Integrator>,
+        step: f64,
+        mut work: Workspace,
+        state: State,
+        start: Start,
+    ) -> Self {
         let audit = Audit::new(system, &method, &mut work, &state);
         let pilot = Pilot::new(&method, &state, &audit, system.coordinates());
         Self {
-            integrator: (method.integrator.make)(system, &method.settings, method.parameters),
+            integrator,
             shown_v: state.v.clone(),
             shown_a: state.a.clone(),
             system,
@@ -256,7 +265,7 @@ impl<'a> Simulation<'a> {
         work.lambda.copy_from_slice(&reactions.lambda);
         let Workspace { x1, v1, a1, .. } = work;
         system.place_known(state.t, x1, v1, a1);
-        // A penalty's force is its own; every other formulation errs of that of the constraints.
+        // A penalty's force is its own; that of every other formulation errs, and the constraints' is meant.
         let outcome = match self.method.formulation.soft {
             true => work.accelerate(system, state.t, &self.method.settings),
             false => work.react(system, state.t),

@@ -34,6 +34,8 @@ pub struct MethodSummary {
     pub integrator: String,
     pub order: u8,
     pub iteration: String,
+    /// Error of positions that steps were chosen for.
+    pub accuracy: Option<f64>,
     pub projection: ProjectionSummary,
 }
 
@@ -90,6 +92,8 @@ pub struct ViolationSummary {
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct WorkSummary {
+    /// Steps of the integrator: more than the nominal ones where these were taken in parts, fewer with dense output.
+    pub steps_taken: u64,
     pub iterations: u64,
     pub iterations_per_step: f64,
     pub factorizations: u64,

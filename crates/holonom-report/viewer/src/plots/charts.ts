@@ -34,6 +34,8 @@ interface Plan {
   title: string;
   scale: Chart["scale"];
   sources: Source[];
+  /** Left out where every value is zero. */
+  optional?: boolean;
   /** What is done to a column before it is drawn. */
   smooth?: (values: Float64Array) => Float64Array;
 }
@@ -61,9 +63,9 @@ const COMPARED: Plan[] = [
   ...VIOLATIONS.map((plan) => ({ ...plan, smooth: envelope })),
   { title: "Iterations per step, running mean", scale: "steps", sources: [["iterations", ""]], smooth: mean },
   { title: "Integrator ΔEᵢ per step (J)", scale: "linear", sources: [["dE_integrator", ""]] },
-  { title: "Projection ΔEₚ per step (J)", scale: "linear", sources: [["dE_projection", ""]] },
+  { title: "Projection ΔEₚ per step (J)", scale: "linear", sources: [["dE_projection", ""]], optional: true },
   { title: "Integrator ΔEᵢ summed (J)", scale: "linear", sources: [["sum_dE_integrator", ""]] },
-  { title: "Projection ΔEₚ summed (J)", scale: "linear", sources: [["sum_dE_projection", ""]] },
+  { title: "Projection ΔEₚ summed (J)", scale: "linear", sources: [["sum_dE_projection", ""]], optional: true },
 ];
 
 /** Only plots that some run has data for. */
@@ -71,12 +73,13 @@ export function charts(runs: Run[]): Chart[] {
   const compared = runs.length > 1;
   const moved = energyMoved(runs);
   return (compared ? COMPARED : SINGLE)
+    .filter((plan) => !plan.optional || runs.some((run) => run.columns.get(plan.sources[0][0])?.some((value) => value !== 0)))
     .map((plan) => ({
       title: plan.title,
       scale: plan.scale,
       curves: runs.flatMap((run, index) => plan.sources.flatMap((source, i) => curve(run, index, source, compared ? index : i, plan.smooth))),
       leastSpan: plan.sources[0][0] === "energy" ? 0.02 * moved : 0,
-      allowed: compared ? (plan.scale === "linear" ? moved : 0) : Infinity,
+      allowed: compared && plan.scale === "linear" ? moved : Infinity,
     }))
     .filter((chart) => chart.curves.length > 0);
 }

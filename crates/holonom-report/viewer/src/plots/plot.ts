@@ -1,14 +1,15 @@
-// One plot: heading with the values under the cursor, curves, and a marker at the current time.
+// One plot: heading, curves, and a marker at the current time.
 
 import uPlot from "uplot";
 import type { Clock } from "../clock";
 import { element } from "../dom";
-import { reading } from "../format";
-import { rowAt } from "../motion";
 import { curveColor, curveDash, onThemeChange, theme } from "../theme";
 import type { Visibility } from "../visibility";
+import { axisOf, departures, drawable, type Departure, type Extent } from "./bounds";
 import type { Chart, Curve } from "./charts";
-import { linearLabels, linearRange, logFloor, logLabels, logRange, logSplits } from "./scales";
+import { ComparedHeading, Readout } from "./comparison";
+import { Heading } from "./heading";
+import { linearLabels, logFloor, logLabels, logSplits } from "./scales";
 
 const HEIGHT = 215;
 const FONT = "11px system-ui, sans-serif";
@@ -16,106 +17,131 @@ const FONT = "11px system-ui, sans-serif";
 const LABEL_WIDTH = 66;
 /** A press that moves less is a click, not the choice of a range; px. */
 const CLICK = 3;
+/** How much is left of the curves beside the one that is pointed at in the legend. */
+const FADED = 0.12;
 
-export function buildPlot(container: HTMLElement, chart: Chart, clock: Clock, visibility: Visibility, compared: boolean): void {
-  const heading = new Heading(chart, compared);
-  const drawing = element("div", { class: "drawing" });
-  const figure = element("figure", { class: "plot" }, heading.node, drawing);
-  container.append(figure);
+/** A plot of one run, with the values of its curves in the heading. */
+export function buildPlot(container: HTMLElement, chart: Chart, clock: Clock, visibility: Visibility): void {
+  const heading = new Heading(chart);
+  const drawing = new Drawing(container, heading.node, chart, clock, visibility);
+  const read = (): void => heading.show(drawing.time());
+  drawing.on("setCursor", read);
+  clock.onTime(read);
+  const refresh = (): void => {
+    drawing.showCurves();
+    heading.refresh();
+  };
+  heading.onToggle = refresh;
+  onThemeChange(refresh);
+  refresh();
+  read();
+}
 
-  const marker = element("div", { class: "marker" });
-  const hovered = (plot: uPlot): number | undefined => {
-    const left = plot.cursor.left ?? -1;
-    return left >= 0 ? plot.posToVal(left, "x") : undefined;
-  };
-  const refresh = (plot: uPlot): void => heading.show(hovered(plot) ?? clock.time);
-  const mark = (plot: uPlot): void => {
-    const left = plot.valToPos(clock.time, "x");
-    marker.style.display = left >= 0 && left <= plot.over.clientWidth ? "" : "none";
-    marker.style.transform = `translateX(${left}px)`;
-  };
-  const options = plotOptions(chart, drawing.clientWidth || 500);
-  options.hooks = { setCursor: [refresh], setScale: [mark], setSize: [mark] };
-  const plot = new uPlot(options, tableOf(chart), drawing);
-  plot.over.append(marker);
-  onClick(plot.over, (x) => clock.setTime(plot.posToVal(x, "x")));
+/** A plot of several runs, with the values of their curves beside the pointer. */
+export function buildComparedPlot(container: HTMLElement, chart: Chart, clock: Clock, visibility: Visibility): void {
+  const heading = new ComparedHeading(chart);
+  const drawing = new Drawing(container, heading.node, chart, clock, visibility);
+  const { plot } = drawing;
+  const refresh = (): void => heading.refresh(drawing.showCurves());
+  visibility.onChange(refresh);
+  refresh();
 
-  const showCurves = (): void => {
-    chart.curves.forEach((curve, i) => {
-      const shown = curve.shown && visibility.shows(curve.run);
-      if (plot.series[i + 1].show !== shown) plot.setSeries(i + 1, { show: shown });
-    });
-    heading.refresh(visibility);
-  };
-  heading.onToggle = showCurves;
-  visibility.onChange(showCurves);
-  showCurves();
-  clock.onTime(() => {
-    mark(plot);
-    refresh(plot);
+  const readout = new Readout(chart, visibility);
+  plot.over.append(readout.node);
+  plot.over.addEventListener("pointermove", (event) => {
+    const left = event.clientX - plot.over.getBoundingClientRect().left;
+    readout.show(plot.posToVal(left, "x"), left, plot.over.clientWidth);
   });
-  heading.show(clock.time);
-  mark(plot);
-  new ResizeObserver(() => plot.setSize({ width: drawing.clientWidth, height: HEIGHT })).observe(drawing);
-  onThemeChange(() => {
-    plot.redraw(false);
-    showCurves();
+  plot.over.addEventListener("pointerleave", () => readout.hide());
+  visibility.onHighlight(() => {
+    const series = 1 + chart.curves.findIndex((curve) => curve.run === visibility.highlighted && visibility.shows(curve.run));
+    plot.setSeries(series === 0 ? null : series, { focus: series > 0 });
   });
 }
 
-/** Title and one entry per curve; entries are switches where the plot itself holds several curves of one run. */
-class Heading {
-  readonly node: HTMLElement;
-  onToggle = (): void => {};
-  private readonly entries: HTMLElement[];
-  private readonly values: HTMLElement[];
+/** The curves of a chart under a heading. */
+class Drawing {
+  readonly plot: uPlot;
+  private readonly marker = element("div", { class: "marker" });
+  /** The last rows of curves that are cut. */
+  private rows: Map<Curve, number>;
 
-  constructor(private readonly chart: Chart, private readonly compared: boolean) {
-    const switches = !compared && chart.curves.length > 1;
-    this.values = chart.curves.map(() => element("span", { class: "value" }));
-    this.entries = chart.curves.map((curve, i) => {
-      const swatch = element("span", { class: "swatch" });
-      if (!switches) return element("span", { class: "entry", title: curve.label }, ...(compared ? [swatch] : []), this.values[i]);
-      const button = element("button", { type: "button", class: "entry" }, swatch, curve.label, this.values[i]);
-      button.addEventListener("click", () => {
-        curve.shown = !curve.shown;
-        this.onToggle();
-      });
-      return button;
-    });
-    this.node = element("figcaption", {}, element("h3", {}, chart.title), element("div", { class: "entries" }, ...this.entries));
+  constructor(
+    container: HTMLElement,
+    heading: HTMLElement,
+    private readonly chart: Chart,
+    private readonly clock: Clock,
+    private readonly visibility: Visibility,
+  ) {
+    const place = element("div", { class: "drawing" });
+    container.append(element("figure", { class: "plot" }, heading, place));
+    this.rows = lastRows(departures(chart, this.shown()));
+    this.plot = new uPlot(plotOptions(chart, place.clientWidth || 500), tableOf(chart, this.rows), place);
+    this.plot.over.append(this.marker);
+    onClick(this.plot.over, (x) => clock.setTime(this.plot.posToVal(x, "x")));
+    const mark = (): void => this.mark();
+    this.on("setScale", mark);
+    this.on("setSize", mark);
+    clock.onTime(mark);
+    onThemeChange(() => this.plot.redraw(false));
+    new ResizeObserver(() => this.plot.setSize({ width: place.clientWidth, height: HEIGHT })).observe(place);
+    mark();
   }
 
-  show(t: number): void {
-    this.chart.curves.forEach((curve, i) => (this.values[i].textContent = reading(valueAt(curve, t))));
+  on(event: "setCursor" | "setScale" | "setSize", listener: () => void): void {
+    (this.plot.hooks[event] ??= []).push(listener);
   }
 
-  refresh(visibility: Visibility): void {
+  /** The time under the pointer, else that of the page. */
+  time(): number {
+    const left = this.plot.cursor.left ?? -1;
+    return left >= 0 ? this.plot.posToVal(left, "x") : this.clock.time;
+  }
+
+  /** Shows and hides curves, and cuts those that leave the axis; these are handed back. */
+  showCurves(): Departure[] {
+    const shown = this.shown();
+    const gone = departures(this.chart, shown);
     this.chart.curves.forEach((curve, i) => {
-      const entry = this.entries[i];
-      const shown = curve.shown && visibility.shows(curve.run);
-      const swatch = entry.querySelector<HTMLElement>(".swatch");
-      if (swatch) swatch.style.background = curveColor(curve.colour);
-      if (entry instanceof HTMLButtonElement) entry.setAttribute("aria-pressed", String(shown));
-      else entry.hidden = this.compared && !shown;
+      const show = shown.includes(curve);
+      if (this.plot.series[i + 1].show !== show) this.plot.setSeries(i + 1, { show });
     });
+    this.cut(lastRows(gone));
+    return gone;
+  }
+
+  private shown(): Curve[] {
+    return this.chart.curves.filter((curve) => curve.shown && this.visibility.shows(curve.run));
+  }
+
+  private cut(rows: Map<Curve, number>): void {
+    if (rows.size === this.rows.size && [...rows].every(([curve, row]) => this.rows.get(curve) === row)) return;
+    this.rows = rows;
+    const { min, max } = this.plot.scales["x"];
+    this.plot.setData(tableOf(this.chart, rows));
+    // New data show all of the time axis again.
+    if (typeof min === "number" && typeof max === "number") this.plot.setScale("x", { min, max });
+  }
+
+  private mark(): void {
+    const left = this.plot.valToPos(this.clock.time, "x");
+    this.marker.style.display = left >= 0 && left <= this.plot.over.clientWidth ? "" : "none";
+    this.marker.style.transform = `translateX(${left}px)`;
   }
 }
 
-function valueAt(curve: Curve, t: number): number | undefined {
-  const row = rowAt(curve.x, t);
-  const next = Math.min(row + 1, curve.x.length - 1);
-  return curve.y[curve.x[next] - t < t - curve.x[row] ? next : row];
+function lastRows(gone: Departure[]): Map<Curve, number> {
+  return new Map(gone.map(({ curve, row }) => [curve, row]));
 }
 
-/** All curves over one common time axis. */
-function tableOf(chart: Chart): uPlot.AlignedData {
-  const floor = chart.scale === "log" ? logFloor(chart.curves.flatMap((curve) => [...curve.y])) : undefined;
-  const drawn = (value: number): number | null => {
-    if (!Number.isFinite(value)) return null;
-    return floor === undefined ? value : Math.max(value, floor);
-  };
-  const tables = chart.curves.map((curve) => [[...curve.x], Array.from(curve.y, drawn)] as uPlot.AlignedData);
+/** All curves over one common time axis, cut after the rows given for some. */
+function tableOf(chart: Chart, cutAfter: Map<Curve, number>): uPlot.AlignedData {
+  const floor = chart.scale === "log" ? logFloor(chart.curves.flatMap((curve) => [...curve.y])) : -Infinity;
+  const tables = chart.curves.map((curve) => {
+    const last = cutAfter.get(curve) ?? Infinity;
+    const drawn = (value: number, row: number): number | null => (Number.isFinite(value) && row <= last ? drawable(Math.max(value, floor)) : null);
+    return [[...curve.x], Array.from(curve.y, drawn)] as uPlot.AlignedData;
+  });
   const same = chart.curves.every((curve) => curve.x === chart.curves[0].x);
   return same ? [tables[0][0], ...tables.map((table) => table[1])] as uPlot.AlignedData : uPlot.join(tables);
 }
@@ -129,10 +155,11 @@ function plotOptions(chart: Chart, width: number): uPlot.Options {
     height: HEIGHT,
     legend: { show: false },
     padding: [8, 12, 0, 0],
+    focus: { alpha: FADED },
     cursor: { sync: { key: "holonom" }, dataIdx: nearestRow, y: false, points: { size: 7 } },
     scales: {
       x: { time: false },
-      y: log ? { distr: 3, range: logRange } : { range: linearRange(chart.leastSpan, chart.scale === "steps") },
+      y: { distr: log ? 3 : 1, range: axisRange(chart) },
     },
     axes: [
       { ...axis, label: "t (s)", labelSize: 16, labelGap: 0, size: 26, values: linearLabels },
@@ -154,6 +181,17 @@ function plotOptions(chart: Chart, width: number): uPlot.Options {
         };
       }),
     ],
+  };
+}
+
+/** The axis for what the shown curves cover at present. */
+function axisRange(chart: Chart): uPlot.Range.Function {
+  return (plot) => {
+    const extents = chart.curves.flatMap(({ sound }, i): Extent[] => {
+      const { show, min, max } = plot.series[i + 1];
+      return show && Number.isFinite(min) && Number.isFinite(max) ? [{ min: min!, max: max!, sound }] : [];
+    });
+    return axisOf(chart, extents);
   };
 }
 

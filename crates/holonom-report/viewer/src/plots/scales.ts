@@ -3,6 +3,9 @@
 import uPlot from "uplot";
 import { power, ticks } from "../format";
 
+/** The lower and the upper end. */
+export type Range = [number, number];
+
 /** What is smaller than this is zero to a computer. */
 const FLOOR = 1e-18;
 
@@ -13,23 +16,25 @@ export function logFloor(values: Iterable<number>): number {
   return Number.isFinite(smallest) ? Math.max(FLOOR, decade(smallest)) : FLOOR;
 }
 
-export function logRange(_: uPlot, min: number | null, max: number | null): uPlot.Range.MinMax {
-  if (min === null || max === null) return [FLOOR, 1];
+/** Whole decades around a range. */
+export function logAxis(range: Range | undefined): Range {
+  if (!range || !(range[1] > 0)) return [FLOOR, 1];
+  const [min, max] = [Math.max(range[0], FLOOR), Math.max(range[1], FLOOR)];
   const low = decade(min);
   let high = decade(max);
   if (high < max * 0.999) high *= 10;
   return high / low < 50 ? [low / 10, high * 10] : [low, high];
 }
 
-export function linearRange(leastSpan: number, fromZero: boolean): uPlot.Range.Function {
-  return (_, min, max) => {
-    if (min === null || max === null) return [0, 1];
-    if (fromZero) return [0, Math.max(1, max) * 1.1];
-    const missing = Math.max(leastSpan - (max - min), 0);
-    const span = max - min + missing || Math.abs(max) * 0.1 || 1;
-    const margin = 0.07 * span + (max === min && missing === 0 ? span / 2 : missing / 2);
-    return [min - margin, max + margin];
-  };
+/** A range with margins, never narrower than `leastSpan`. */
+export function linearAxis(range: Range | undefined, leastSpan: number, fromZero: boolean): Range {
+  if (!range) return [0, 1];
+  const [min, max] = range;
+  if (fromZero) return [0, Math.max(1, max) * 1.1];
+  const missing = Math.max(leastSpan - (max - min), 0);
+  const span = max - min + missing || Math.abs(max) * 0.1 || 1;
+  const margin = 0.07 * span + (max === min && missing === 0 ? span / 2 : missing / 2);
+  return [min - margin, max + margin];
 }
 
 /** Whole decades, no more labels than fit. */

@@ -12,9 +12,8 @@ export function mean(values: Float64Array): Float64Array {
   return overWindows(values, (window) => window.reduce((sum, value) => sum + value, 0) / window.length);
 }
 
-/** The first row, which is before the first step, stands for itself; windows around it begin with the row after. */
+/** The first row, which is before the first step, takes no part: it has no error and no iterations yet. */
 function overWindows(values: Float64Array, represent: (window: Float64Array) => number): Float64Array {
-  const reach = Math.floor(values.length / WINDOWS / 2);
-  if (reach === 0) return values.map((_, row) => represent(values.subarray(row, row + 1)));
-  return values.map((_, row) => (row === 0 ? represent(values.subarray(0, 1)) : represent(values.subarray(Math.max(row - reach, 1), row + reach + 1))));
+  const reach = Math.max(Math.floor(values.length / WINDOWS / 2), 1);
+  return values.map((_, row) => (values.length < 2 ? represent(values) : represent(values.subarray(Math.max(row - reach, 1), row + reach + 1))));
 }

@@ -8,6 +8,7 @@ import type { Motion } from "../motion";
 import { onThemeChange, theme } from "../theme";
 import type { Visibility } from "../visibility";
 import { buildCamera, fitLens, frame, viewpoint } from "./camera";
+import { RunChoice } from "./choice";
 import { boundingBox, diagonal } from "./frame";
 import { buildGrid } from "./grid";
 import { Mechanism } from "./mechanism";
@@ -26,7 +27,7 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
   const renderer = new WebGLRenderer({ canvas, context: gl, antialias: true, preserveDrawingBuffer: true });
   const scene = new Scene();
   const view = viewpoint(motions[0].run.scene.axes);
-  const box = boundingBox(motions);
+  const box = boundingBox(measured(motions));
   const camera = buildCamera(view);
   const mechanisms = motions.map((motion, i) => new Mechanism(motion, diagonal(box), i, motions.length));
   const grid = buildGrid(view, box);
@@ -64,14 +65,24 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
   new ResizeObserver(resize).observe(container);
   onThemeChange(paint);
   clock.onTime(show);
-  visibility.onChange(() => {
-    mechanisms.forEach((mechanism, run) => (mechanism.group.visible = visibility.shows(run)));
+  const choice = new RunChoice(motions.map((motion) => motion.run.label), visibility);
+  const choose = (): void => {
+    mechanisms.forEach((mechanism, run) => (mechanism.group.visible = choice.shows(run)));
     render();
-  });
+  };
+  container.append(choice.node);
+  choice.onChange(choose);
+  choose();
   resize();
   home();
   paint();
   show(clock.time);
+}
+
+/** The motions that the picture has to have room for: runs that blew up go wherever they like. */
+function measured(motions: Motion[]): Motion[] {
+  const sound = motions.filter((motion) => motion.run.sound);
+  return sound.length > 0 ? sound : motions;
 }
 
 /** Many changes within a frame make one drawing. */
