@@ -13,7 +13,8 @@ use tempfile::TempDir;
 
 const PAPER: &str = "example:spherical-compound-pendulum";
 const COMMON: &str = "t,energy,kinetic,potential,work,dE_integrator,dE_projection,phi,phi_dot,phi_ddot,iterations";
-const NAMED: [&str; 5] = ["conserving-ggl", "conserving", "conserving-projected", "trapezoidal-projected", "trapezoidal"];
+const NAMED: [&str; 7] =
+    ["conserving-ggl", "conserving", "conserving-projected", "trapezoidal-projected", "trapezoidal", "generalized-alpha", "radau"];
 
 /// Runs the command in a folder; `words` are split at blanks.
 fn holonom(folder: &TempDir, words: &str) -> Output {

@@ -414,7 +414,7 @@ fn name(formulation: &Formulation, integrator: &Entry, order: u8, levels: &[Stri
     if let Some(known) = known {
         return known.name.into();
     }
-    let order = if is_usual { String::new() } else { format!("-{order}") };
+    let order = if integrator.orders.len() == 1 { String::new() } else { format!("-{order}") };
     let levels = if levels.is_empty() { String::new() } else { format!("/{}", levels.join("+")) };
     format!("{full}/{}{order}{levels}", integrator.name)
 }
