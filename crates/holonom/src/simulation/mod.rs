@@ -4,14 +4,19 @@ mod adapt;
 mod audit;
 mod control;
 mod method;
+mod reactions;
 mod start;
+mod state;
 mod summary;
+mod words;
 
 pub use audit::Audit;
 pub use method::{
     Choice, LEVELS, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, OMEGA, PENALTY, ProjectionChoice, TOLERANCE, XI, combinations,
 };
+pub use reactions::Reactions;
 pub use start::{Start, StartError};
+pub use state::State;
 pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, ProjectionSummary, Summary, ViolationSummary, WorkSummary};
 
 use crate::formulation::{Failure, Iteration, Workspace};
@@ -34,29 +39,6 @@ pub enum MethodError {
         "the integrator `{integrator}` is unstable on index 3 without projection, so that no step gives an accuracy; project velocities"
     )]
     Unstable { integrator: &'static str },
-}
-
-/// Numbers of a moment. A clone is a checkpoint.
-#[derive(Clone, Debug, PartialEq)]
-pub struct State {
-    /// s
-    pub t: f64,
-    /// Positions of all nodes (D × nodes), m.
-    pub x: Vec<f64>,
-    /// Velocities of all nodes (D × nodes), m/s.
-    pub v: Vec<f64>,
-    /// Accelerations of all nodes (D × nodes), m/s²; with midpoint kinematics the mean of the last step.
-    pub a: Vec<f64>,
-    /// Multipliers λ (r), in N over the unit of the row's gradient.
-    pub lambda: Vec<f64>,
-    /// Change of the accelerations in the last step (D × nodes), m/s², from which the next is predicted; zero where the
-    /// step before was of another length. Multipliers are not extrapolated: what redundant rows leave undetermined of
-    /// them would run away.
-    pub a_change: Vec<f64>,
-    /// Length of the last step, s.
-    pub last_step: f64,
-    /// What the integrator keeps from step to step.
-    pub memory: Vec<f64>,
 }
 
 /// How a run ended.
@@ -106,17 +88,6 @@ pub struct Simulation<'a> {
     pilot: Option<Box<Pilot>>,
     /// Multipliers (r) and accelerations (D × nodes) of the index-1 system at the present state, where they are wanted.
     reactions: Option<Reactions>,
-}
-
-/// Forces of the constraints at a state, of the order of its positions and velocities.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Reactions {
-    /// Multipliers λ (r).
-    pub lambda: Vec<f64>,
-    /// Accelerations of all nodes (D × nodes), m/s².
-    pub a: Vec<f64>,
-    /// Forces of the constraints on the nodes, −Gᵀλ (D × nodes), N. Redundant rows leave λ undetermined, not these.
-    pub force: Vec<f64>,
 }
 
 impl<'a> Simulation<'a> {
@@ -176,18 +147,6 @@ impl<'a> Simulation<'a> {
             pilot,
             reactions: None,
         }
-    }
-
-    /// Has the forces of the constraints found at the start and at every nominal step.
-    pub fn find_reactions(&mut self) {
-        let (r, all) = (self.system.constraints(), self.state.x.len());
-        self.reactions = Some(Reactions { lambda: vec![0.0; r], a: vec![0.0; all], force: vec![0.0; all] });
-        self.react();
-    }
-
-    /// Forces of the constraints at the present state, if they were asked for.
-    pub fn reactions(&self) -> Option<&Reactions> {
-        self.reactions.as_ref()
     }
 
     /// Runs to time `end` (s) and shows the start and every nominal step to the observer.
@@ -255,29 +214,6 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    /// Finds the forces of the constraints at the present state, where they are wanted.
-    fn react(&mut self) {
-        let Some(reactions) = &mut self.reactions else { return };
-        let (system, work, state) = (self.system, &mut self.work, &self.state);
-        work.x1.copy_from_slice(&state.x);
-        work.v1.copy_from_slice(&self.shown_v);
-        work.a1.copy_from_slice(&state.a);
-        work.lambda.copy_from_slice(&reactions.lambda);
-        let Workspace { x1, v1, a1, .. } = work;
-        system.place_known(state.t, x1, v1, a1);
-        // A penalty's force is its own; that of every other formulation errs, and the constraints' is meant.
-        let outcome = match self.method.formulation.soft {
-            true => work.accelerate(system, state.t, &self.method.settings),
-            false => work.react(system, state.t),
-        };
-        if outcome.is_err() {
-            work.lambda.fill(f64::NAN);
-        }
-        reactions.lambda.copy_from_slice(&work.lambda);
-        reactions.a.copy_from_slice(&work.a1);
-        work.constraint_forces(system, &mut reactions.force);
-    }
-
     /// One step of the method: integrate, audit, project.
     fn substep(&mut self, step: f64, target: f64) -> Result<Step, Failure> {
         let (system, work) = (self.system, &mut self.work);
@@ -314,6 +250,8 @@ impl<'a> Simulation<'a> {
 
     fn reason(&mut self, failure: Failure) -> String {
         let worst = self.work.phi.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        // A row at round-off is not to blame.
+        let worst = worst.filter(|(_, phi)| phi.is_nan() || phi.abs() >= 1e-9);
         let row = worst.map_or(String::new(), |(k, phi)| format!("; the worst row is `{}` with {phi:.1e}", self.system.row_names[k]));
         format!("{failure} at t = {:.6} s{row}", self.state.t)
     }
@@ -384,65 +322,5 @@ impl<'a> Simulation<'a> {
     /// Nominal steps taken.
     pub fn steps(&self) -> u64 {
         self.steps
-    }
-}
-
-impl State {
-    /// The start that a workspace was put at.
-    fn new(work: &Workspace) -> Self {
-        Self {
-            t: 0.0,
-            x: work.x1.clone(),
-            v: work.v1.clone(),
-            a: work.a1.clone(),
-            lambda: work.lambda.clone(),
-            a_change: vec![0.0; work.a1.len()],
-            last_step: 0.0,
-            memory: work.memory.clone(),
-        }
-    }
-
-    /// Takes over another state of the same run, without allocating.
-    fn copy_from(&mut self, other: &Self) {
-        (self.t, self.last_step) = (other.t, other.last_step);
-        let own = [&mut self.x, &mut self.v, &mut self.a, &mut self.lambda, &mut self.a_change, &mut self.memory];
-        let others = [&other.x, &other.v, &other.a, &other.lambda, &other.a_change, &other.memory];
-        own.into_iter().zip(others).for_each(|(own, other)| own.copy_from_slice(other));
-    }
-
-    /// Copies the start of a step into a workspace.
-    fn load(&self, work: &mut Workspace) {
-        work.x0.copy_from_slice(&self.x);
-        work.v0.copy_from_slice(&self.v);
-        work.x1.copy_from_slice(&self.x);
-        work.v1.copy_from_slice(&self.v);
-        work.a1.copy_from_slice(&self.a);
-        work.lambda.copy_from_slice(&self.lambda);
-        work.a_change.copy_from_slice(&self.a_change);
-        work.memory.copy_from_slice(&self.memory);
-    }
-
-    /// Remembers how the accelerations changed in a step, for the prediction of the next.
-    fn remember(&mut self, step: f64, work: &Workspace) {
-        // Two steps of the same length tell of a third; round-off of the times is no other length.
-        let same = if (step - self.last_step).abs() <= 1e-9 * step { 1.0 } else { 0.0 };
-        for (change, (new, old)) in self.a_change.iter_mut().zip(work.a1.iter().zip(&self.a)) {
-            *change = same * (new - old);
-        }
-        self.last_step = step;
-    }
-
-    /// Takes over the end of a step: its position, evaluated there, its acceleration and multipliers.
-    fn land(&mut self, system: &System, target: f64, work: &mut Workspace) {
-        let n = system.coordinates();
-        for i in 0..n {
-            work.x1[i] = work.x0[i] + work.d[i];
-        }
-        system.evaluate(&work.x1, target, &mut work.at_end);
-        self.t = target;
-        self.x.copy_from_slice(&work.x1);
-        self.a.copy_from_slice(&work.a1);
-        self.lambda.copy_from_slice(&work.lambda);
-        self.memory.copy_from_slice(&work.memory);
     }
 }

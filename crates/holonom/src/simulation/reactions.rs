@@ -1,0 +1,52 @@
+//! Forces of the constraints, by the index-1 system (3) at the states shown (methods §1.5).
+
+use super::Simulation;
+use crate::formulation::Workspace;
+
+/// Forces of the constraints at a state, of the order of its positions and velocities.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reactions {
+    /// Multipliers λ (r).
+    pub lambda: Vec<f64>,
+    /// Accelerations of all nodes (D × nodes), m/s².
+    pub a: Vec<f64>,
+    /// Forces of the constraints on the nodes, −Gᵀλ (D × nodes), N. Redundant rows leave λ undetermined, not these.
+    pub force: Vec<f64>,
+}
+
+impl Simulation<'_> {
+    /// Has the forces of the constraints found at the start and at every nominal step.
+    pub fn find_reactions(&mut self) {
+        let (r, all) = (self.system.constraints(), self.state.x.len());
+        self.reactions = Some(Reactions { lambda: vec![0.0; r], a: vec![0.0; all], force: vec![0.0; all] });
+        self.react();
+    }
+
+    /// Forces of the constraints at the present state, if they were asked for.
+    pub fn reactions(&self) -> Option<&Reactions> {
+        self.reactions.as_ref()
+    }
+
+    /// Finds the forces of the constraints at the present state, where they are wanted.
+    pub(super) fn react(&mut self) {
+        let Some(reactions) = &mut self.reactions else { return };
+        let (system, work, state) = (self.system, &mut self.work, &self.state);
+        work.x1.copy_from_slice(&state.x);
+        work.v1.copy_from_slice(&self.shown_v);
+        work.a1.copy_from_slice(&state.a);
+        work.lambda.copy_from_slice(&reactions.lambda);
+        let Workspace { x1, v1, a1, .. } = work;
+        system.place_known(state.t, x1, v1, a1);
+        // A penalty's force is its own; that of every other formulation errs, and the constraints' is meant.
+        let outcome = match self.method.formulation.soft {
+            true => work.accelerate(system, state.t, &self.method.settings),
+            false => work.react(system, state.t),
+        };
+        if outcome.is_err() {
+            work.lambda.fill(f64::NAN);
+        }
+        reactions.lambda.copy_from_slice(&work.lambda);
+        reactions.a.copy_from_slice(&work.a1);
+        work.constraint_forces(system, &mut reactions.force);
+    }
+}
