@@ -27,7 +27,7 @@ const PROBLEMS: [Problem; 4] = [
         time: 0.5,
         place: &[0.722991489655185, 0.210003143628563, -0.65816562167307],
     },
-    Problem { model: "four-bar", ends: [0.5, 0.5, 0.45, 0.7], penalty: 100.0, time: 0.5, place: &[0.701512678910477, 0.712656973113886] },
+    Problem { model: "four-bar", ends: [0.5, 0.5, 0.45, 0.52], penalty: 100.0, time: 0.5, place: &[0.701512678910477, 0.712656973113886] },
     Problem {
         model: "spring-pendulum",
         ends: [0.1, 0.2, 0.3, 0.8],
@@ -60,9 +60,10 @@ const OMEGA: f64 = 2.0;
 /// Most steps that are tried.
 const MOST: u32 = 8192;
 
-/// How far a measured order may lie from the documented one. Of order 8 double precision shows two or three halvings.
+/// How far a measured order may lie from the documented one. Of order 8 double precision shows two or three halvings; all
+/// but the reactions of the stabilised penalty on the four-bar (7.4) are within 0.2 all the same.
 fn tolerance(order: u8) -> f64 {
-    if order > 6 { 1.2 } else { 0.2 }
+    if order > 6 { 0.65 } else { 0.2 }
 }
 
 const QUANTITIES: [&str; 3] = ["positions", "velocities", "reactions"];
