@@ -1,9 +1,10 @@
 //! Steps chosen by accuracy: the error at the end against reference solutions computed elsewhere in 113-bit arithmetic.
 
-use holonom::model::Model;
+mod common;
+
+use common::example;
 use holonom::simulation::{Choice, Method, Simulation, Status, Summary, Verdict};
 use holonom::system::Place;
-use holonom_io::Source;
 
 struct Reference {
     model: &'static str,
@@ -26,12 +27,6 @@ const REFERENCES: [Reference; 6] = [
     Reference { model: "spring-pendulum", end: 2.0, point: "bob", place: &[0.787163379341288, -0.619690574822012] },
     Reference { model: "four-bar", end: 0.5, point: "P[0]", place: &[0.701512678910477, 0.712656973113886] },
 ];
-
-fn example(name: &str) -> Model {
-    let path = format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let source = Source::read(name, &std::fs::read(path).unwrap()).unwrap_or_else(|message| panic!("{message}"));
-    source.model().unwrap_or_else(|message| panic!("{message}"))
-}
 
 /// Error at the end, m, and the summary.
 fn run(reference: &Reference, end: f64, place: &[f64], method: &str, accuracy: f64) -> (f64, Summary) {

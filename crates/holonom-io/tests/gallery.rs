@@ -1,15 +1,11 @@
 //! The gallery against reference solutions computed elsewhere in 113-bit arithmetic.
 
+mod common;
+
+use common::example;
 use holonom::model::Model;
 use holonom::simulation::{Choice, Method, Simulation, Status, Summary, Verdict};
 use holonom::system::Place;
-use holonom_io::Source;
-
-fn example(name: &str) -> Model {
-    let path = format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let source = Source::read(name, &std::fs::read(path).unwrap()).unwrap_or_else(|message| panic!("{message}"));
-    source.model().unwrap_or_else(|message| panic!("{message}"))
-}
 
 /// Runs a model; the place of a point at the end, and the summary.
 fn run(model: &Model, method: &str, step: f64, end: f64, point: &str) -> ([f64; 2], Summary) {

@@ -1,11 +1,13 @@
 //! Every combination of formulation, integrator, order, iteration and projection on four models: it runs, comes to the
 //! reference solutions computed elsewhere in 113-bit arithmetic, and converges with the order that the table documents.
 
+mod common;
+
 use std::collections::BTreeMap;
 
+use common::example;
 use holonom::model::Model;
 use holonom::simulation::{Choice, Method, Simulation, Status, Verdict, combinations};
-use holonom_io::Source;
 
 /// A model and how it is run.
 struct Problem {
@@ -67,12 +69,6 @@ fn tolerance(order: u8) -> f64 {
 }
 
 const QUANTITIES: [&str; 3] = ["positions", "velocities", "reactions"];
-
-fn example(name: &str) -> Model {
-    let path = format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let source = Source::read(name, &std::fs::read(path).unwrap()).unwrap_or_else(|message| panic!("{message}"));
-    source.model().unwrap_or_else(|message| panic!("{message}"))
-}
 
 /// Positions, velocities and forces of the constraints at the sampled times.
 type Samples = [Vec<f64>; 3];

@@ -39,11 +39,6 @@ impl Formulation {
     pub fn is_at_position(&self) -> bool {
         self.index == 3
     }
-
-    /// Whether ω and ξ matter.
-    pub fn is_tuned(&self) -> bool {
-        (self.level)(1.0, 1.0) != (self.level)(2.0, 2.0)
-    }
 }
 
 const NEWTON: &[&str] = &["newton"];

@@ -52,18 +52,6 @@ fn full(parameters: &Parameters, _: &Formulation, _: bool) -> [u8; 3] {
     [parameters.order; 3]
 }
 
-const ALL: &[&str] = &[
-    "augmented-lagrangian-3",
-    "augmented-lagrangian-2",
-    "augmented-lagrangian-1",
-    "lagrange-3",
-    "lagrange-2",
-    "lagrange-1",
-    "ode",
-    "baumgarte",
-    "penalty",
-    "penalty-stabilized",
-];
 const ALL_AND_GGL: &[&str] = &[
     "ggl",
     "augmented-lagrangian-3",
@@ -77,6 +65,7 @@ const ALL_AND_GGL: &[&str] = &[
     "penalty",
     "penalty-stabilized",
 ];
+const ALL: &[&str] = ALL_AND_GGL.split_at(1).1;
 const LOW_INDEX: &[&str] =
     &["ode", "lagrange-2", "lagrange-1", "augmented-lagrangian-2", "augmented-lagrangian-1", "baumgarte", "penalty", "penalty-stabilized"];
 const ACCELERATIONS: &[&str] = &["ode", "lagrange-1", "augmented-lagrangian-1", "baumgarte", "penalty", "penalty-stabilized"];

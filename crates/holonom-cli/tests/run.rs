@@ -1,0 +1,152 @@
+//! `holonom run`: what it prints, what it leaves, and how it goes on.
+
+mod common;
+
+use std::fs;
+
+use common::*;
+use serde_json::Value;
+
+#[test]
+fn run_leaves_what_is_documented() {
+    let folder = folder();
+    let out = prints(&folder, &format!("run {PAPER} --end 0.5"), 0);
+    for word in ["Spherical compound pendulum", "completed", "degrees of freedom", "drift", "results in"] {
+        assert!(out.contains(word), "{word}\n{out}");
+    }
+    let results = folder.path().join("results/spherical-compound-pendulum-conserving-ggl");
+    assert_eq!(files(&results), names(&["checkpoint.json", "report.html", "summary.json", "trajectory.csv"]));
+
+    let summary = read_json(results.join("summary.json"));
+    assert_summary(&summary);
+    assert_eq!((&summary["status"], &summary["steps"], &summary["stopped_at"]), (&"completed".into(), &20.into(), &Value::Null));
+    assert_eq!((&summary["coordinates"], &summary["constraints"], &summary["rank"]), (&6.into(), &5.into(), &4.into()));
+    assert_eq!((&summary["redundant"], &summary["dof"]), (&1.into(), &2.into()));
+
+    let (header, rows) = csv(results.join("trajectory.csv"));
+    let of_points = "m1.x,m1.y,m1.z,m1.vx,m1.vy,m1.vz,m2.x,m2.y,m2.z,m2.vx,m2.vy,m2.vz";
+    assert_eq!(header, format!("{COMMON},{of_points}"));
+    assert_eq!(rows.len(), 21);
+    assert_eq!(rows[0][0], 0.0);
+    assert_eq!(&rows[0][11..17], [1.0, 0.0, 0.0, 0.0, 0.5, 0.0]);
+    assert_eq!(rows[20][0], 0.5);
+
+    let checkpoint = read_json(results.join("checkpoint.json"));
+    assert_eq!(checkpoint["t"], 0.5);
+    for (key, size) in [("x", 6), ("v", 6), ("a", 6), ("lambda", 5)] {
+        assert_eq!(checkpoint[key].as_array().unwrap().len(), size, "{key}");
+    }
+    let end: Vec<f64> = checkpoint["x"].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+    let last = [&rows[20][11..14], &rows[20][17..20]].concat();
+    assert!(last.iter().zip(&end).all(|(a, b)| (a - b).abs() < 1e-15), "{last:?} {end:?}");
+
+    let report = fs::read_to_string(results.join("report.html")).unwrap();
+    assert!(report.contains("Spherical compound pendulum") && report.contains("inner-rod"));
+}
+
+#[test]
+fn json_is_all_that_is_printed() {
+    let folder = folder();
+    let summary = json(&folder, &format!("run {PAPER} --end 0.1 --json --out a"));
+    assert_summary(&summary);
+    assert_eq!(summary, read_json(folder.path().join("a/summary.json")));
+    assert_eq!(prints(&folder, &format!("run {PAPER} --end 0.1 --quiet --out b"), 0), "");
+}
+
+#[test]
+fn formats_rows_and_report_are_chosen() {
+    let folder = folder();
+    prints(&folder, &format!("run {PAPER} --end 0.5 --out a --format npz --format csv --every 5 --no-report"), 0);
+    let out = folder.path().join("a");
+    assert_eq!(files(&out), names(&["checkpoint.json", "summary.json", "trajectory.csv", "trajectory.npz"]));
+    let times: Vec<f64> = csv(out.join("trajectory.csv")).1.iter().map(|row| row[0]).collect();
+    assert_eq!(times, [0.0, 0.125, 0.25, 0.375, 0.5]);
+    assert!(fs::read(out.join("trajectory.npz")).unwrap().starts_with(b"PK"));
+
+    prints(&folder, &format!("run {PAPER} --end 0.1 --out b --format npz --no-report"), 0);
+    assert_eq!(files(folder.path().join("b")), names(&["checkpoint.json", "summary.json", "trajectory.npz"]));
+
+    let message = fails(&folder, &format!("run {PAPER} --end 0.1 --out c --format xls"), 2);
+    assert!(message.contains("xls") && message.contains("csv") && message.contains("npz"), "{message}");
+    assert!(!folder.path().join("c").exists(), "nothing is begun for a format that is not there");
+}
+
+#[test]
+fn output_says_which_points_and_rows() {
+    let folder = folder();
+    prints(&folder, &format!("run {PAPER} --end 0.5 --out a --set output.points=[\"m2\"] --set output.every=10"), 0);
+    let (header, rows) = csv(folder.path().join("a/trajectory.csv"));
+    assert_eq!(header, format!("{COMMON},m2.x,m2.y,m2.z,m2.vx,m2.vy,m2.vz"));
+    assert_eq!((rows.len(), &rows[0][11..]), (3, &[2.0, 0.0, 0.0, 0.0, 1.0, 0.0][..]));
+
+    prints(&folder, "run example:double-pendulum --end 0.1 --out b --set output.points=[\"m2\",\"m1\"]", 0);
+    assert_eq!(csv(folder.path().join("b/trajectory.csv")).0, format!("{COMMON},m2.x,m2.y,m2.vx,m2.vy,m1.x,m1.y,m1.vx,m1.vy"));
+}
+
+#[test]
+fn any_key_of_the_model_can_be_set() {
+    let folder = folder();
+    let summary = json(&folder, "run example:four-bar --end 0.1 --json --no-report --set parameters.N=3");
+    assert_eq!((&summary["coordinates"], &summary["constraints"], &summary["dof"]), (&8.into(), &7.into(), &1.into()));
+    let summary = json(&folder, "run example:four-bar --end 1/10 --step 1/N --json --no-report --set parameters.N=20");
+    assert_eq!((&summary["step"], &summary["steps"]), (&0.05.into(), &2.into()));
+    let summary = json(&folder, &format!("run {PAPER} --end 0.1 --json --no-report --set simulation.method=conserving"));
+    assert_eq!(summary["method"]["name"], "conserving");
+}
+
+#[test]
+fn a_run_that_stops_keeps_its_results() {
+    let folder = folder();
+    let words = "--set simulation.iteration=simultaneous --set simulation.penalty=1e7 --set simulation.tolerance=1e-9 \
+                 --set simulation.subdivide=false";
+    let out = prints(&folder, &format!("run {PAPER} --method trapezoidal {words} --out a"), 3);
+    assert!(out.contains("stopped at"), "{out}");
+    let results = folder.path().join("a");
+    assert_eq!(files(&results), names(&["checkpoint.json", "report.html", "summary.json", "trajectory.csv"]));
+    let summary = read_json(results.join("summary.json"));
+    assert_summary(&summary);
+    let at = summary["stopped_at"].as_f64().unwrap();
+    assert_eq!(summary["status"], "stopped");
+    assert!(at > 1.0 && at < 6.5, "{at}");
+    assert!(!summary["reason"].as_str().unwrap().is_empty());
+    let (_, rows) = csv(results.join("trajectory.csv"));
+    assert_eq!(rows.len() as u64, summary["steps"].as_u64().unwrap() + 1);
+    assert!((rows.last().unwrap()[0] - at).abs() < 1e-9);
+}
+
+#[test]
+fn a_resumed_run_ends_where_one_long_run_does() {
+    for method in NAMED {
+        let folder = folder();
+        let run = |words: &str| prints(&folder, &format!("run {PAPER} --method {method} --quiet --no-report {words}"), 0);
+        run("--end 1 --out half");
+        run("--end 2 --out rest --resume half/checkpoint.json");
+        run("--end 2 --out whole");
+        let state = |name: &str| read_json(folder.path().join(name).join("checkpoint.json"));
+        let (rest, whole) = (state("rest"), state("whole"));
+        assert_eq!(rest["t"], 2.0);
+        for key in ["x", "v"] {
+            for (a, b) in rest[key].as_array().unwrap().iter().zip(whole[key].as_array().unwrap()) {
+                let (a, b) = (a.as_f64().unwrap(), b.as_f64().unwrap());
+                assert!((a - b).abs() < 1e-9, "{method} {key}: {a} {b}");
+            }
+        }
+        let (_, rows) = csv(folder.path().join("rest/trajectory.csv"));
+        assert_eq!((rows[0][0], rows.len()), (1.0, 41));
+    }
+}
+
+#[test]
+fn a_checkpoint_that_does_not_fit_is_refused() {
+    let folder = folder();
+    prints(&folder, &format!("run {PAPER} --end 1 --quiet --no-report --out a"), 0);
+    fs::write(folder.path().join("no.json"), "{}").unwrap();
+    for (words, told) in [
+        ("run example:four-bar --end 2 --resume a/checkpoint.json".to_string(), "another model"),
+        (format!("run {PAPER} --end 2 --resume no.json"), "no checkpoint"),
+        (format!("run {PAPER} --end 0.5 --resume a/checkpoint.json"), "later --end"),
+    ] {
+        let message = fails(&folder, &words, 2);
+        assert!(message.contains(told), "{words}\n{message}");
+    }
+}
