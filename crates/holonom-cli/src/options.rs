@@ -42,19 +42,13 @@ pub struct ModelArguments {
     pub set: Vec<String>,
 }
 
-/// Where results go.
+/// Where results go, and what is said of them.
 #[derive(Debug, Args)]
-pub struct OutputArguments {
-    /// Folder for the results [default: results/<model>-<method>]
+pub struct Destination {
+    /// Folder for the results [default: results/<model>-<method>, -compare or -stability]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Format of the trajectory; may be given several times
-    #[arg(long = "format", value_name = "FORMAT", default_value = "csv")]
-    pub formats: Vec<String>,
-    /// Record every N-th step
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    pub every: Option<u64>,
-    /// Print the summary as JSON on standard output, nothing else there
+    /// Print the result as JSON on standard output, nothing else there
     #[arg(long)]
     pub json: bool,
     /// Print nothing on standard output but errors
@@ -63,6 +57,26 @@ pub struct OutputArguments {
     /// Write no report
     #[arg(long)]
     pub no_report: bool,
+}
+
+impl Destination {
+    /// The folder asked for, or `usual` in the folder `results`.
+    pub fn folder(&self, usual: &str) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| PathBuf::from(format!("results/{usual}")))
+    }
+}
+
+/// What is kept of a run.
+#[derive(Debug, Args)]
+pub struct OutputArguments {
+    #[command(flatten)]
+    pub to: Destination,
+    /// Format of the trajectory; may be given several times
+    #[arg(long = "format", value_name = "FORMAT", default_value = "csv")]
+    pub formats: Vec<String>,
+    /// Record every N-th step
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub every: Option<u64>,
 }
 
 #[derive(Debug, Args)]
@@ -115,18 +129,8 @@ pub struct StabilityArguments {
     /// First step to try, s [default: the model's]
     #[arg(long, value_name = "S")]
     pub step: Option<String>,
-    /// Folder for the results [default: results/<model>-stability]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Print the result as JSON on standard output, nothing else there
-    #[arg(long)]
-    pub json: bool,
-    /// Print nothing on standard output but errors
-    #[arg(long)]
-    pub quiet: bool,
-    /// Write no report
-    #[arg(long)]
-    pub no_report: bool,
+    #[command(flatten)]
+    pub to: Destination,
 }
 
 #[derive(Debug, Args)]

@@ -1,6 +1,5 @@
 //! `holonom compare`.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use holonom::simulation::NAMED;
@@ -31,7 +30,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
     let models = models(arguments)?;
     let planned = plan(arguments, &models)?;
     let loaded = models.last().expect("there is at least one step");
-    let path = output.out.clone().unwrap_or_else(|| PathBuf::from(format!("results/{}-compare", loaded.name)));
+    let path = output.to.folder(&format!("{}-compare", loaded.name));
     let folder = Folder::create(&path)?;
     let interrupted = interrupt_flag();
     let mut finished: Vec<(String, Finished)> = Vec::new();
@@ -40,11 +39,11 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
         name(&mut run.summary, &label, &models[model]);
         finished.push((label, run));
     }
-    write(&folder, loaded, &finished, &writers, output.no_report)?;
+    write(&folder, loaded, &finished, &writers, output.to.no_report)?;
     let summaries: Vec<&Value> = finished.iter().map(|(_, run)| &run.summary).collect();
-    if output.json {
+    if output.to.json {
         println!("{}", serde_json::to_string_pretty(&summaries).expect("a summary is plain data"));
-    } else if !output.quiet {
+    } else if !output.to.quiet {
         println!("{}\n{}\n\nresults in {}", loaded.title(), describe(&summaries), folder.path.display());
     }
     Ok(ExitCode::SUCCESS)
@@ -78,7 +77,7 @@ fn plan(arguments: &CompareArguments, models: &[Loaded]) -> Result<Vec<Planned>,
                 step: loaded.step()?,
                 end: loaded.end()?,
                 every: arguments.output.every.unwrap_or(loaded.every()),
-                quiet: arguments.output.quiet,
+                quiet: arguments.output.to.quiet,
                 resume: None,
             };
             let label = if models.len() > 1 { format!("{name}, {} s", short(order.step)) } else { name.to_string() };

@@ -1,6 +1,5 @@
 //! `holonom run`.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use holonom_io::Writer;
@@ -27,17 +26,16 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         step: loaded.step()?,
         end: loaded.end()?,
         every: output.every.unwrap_or(loaded.every()),
-        quiet: output.quiet,
+        quiet: output.to.quiet,
         resume: arguments.resume.as_deref().map(load::checkpoint).transpose()?,
     };
-    let path =
-        output.out.clone().unwrap_or_else(|| PathBuf::from(format!("results/{}-{}", loaded.name, order.method.name.replace('/', "-"))));
+    let path = output.to.folder(&format!("{}-{}", loaded.name, order.method.name.replace('/', "-")));
     let folder = Folder::create(&path)?;
     let finished = simulate(&loaded, order, &interrupt_flag())?;
     write(&folder, &loaded, &finished, &writers, output)?;
-    if output.json {
+    if output.to.json {
         println!("{}", serde_json::to_string_pretty(&finished.summary).expect("a summary is plain data"));
-    } else if !output.quiet {
+    } else if !output.to.quiet {
         println!("{}", describe(&loaded, &finished.summary));
         println!("\nresults in {}", folder.path.display());
     }
@@ -48,7 +46,7 @@ fn write(folder: &Folder, loaded: &Loaded, finished: &Finished, writers: &[&Writ
     folder.write("summary.json", |out| holonom_io::write_json(&finished.summary, out))?;
     folder.write("checkpoint.json", |out| holonom_io::write_json(&load::checkpoint_value(&finished.state), out))?;
     folder.write_trajectory("trajectory", writers, loaded, &finished.recording)?;
-    if !output.no_report {
+    if !output.to.no_report {
         let runs =
             [Run { label: &finished.method, recording: &finished.recording, scene: &loaded.model.scene, summary: &finished.summary }];
         folder.write_report(loaded, &runs)?;

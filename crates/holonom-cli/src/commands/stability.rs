@@ -1,6 +1,5 @@
 //! `holonom stability`.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use holonom::analysis::{LargestStep, largest_step};
@@ -39,17 +38,17 @@ pub fn stability(arguments: &StabilityArguments) -> Result<ExitCode, Failure> {
     let end = loaded.end()?;
     let bounds = Bounds { end, first: loaded.step()?, limit: LARGEST_SHARE * end };
     let choices = choices(arguments, &loaded)?;
-    let path = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("results/{}-stability", loaded.name)));
+    let path = arguments.to.folder(&format!("{}-stability", loaded.name));
     let folder = Folder::create(&path)?;
     let found: Vec<(String, LargestStep)> = choices.into_iter().map(|(name, choice)| (name, search(&loaded, &choice, &bounds))).collect();
     let results = results(&loaded, &bounds, &found);
     folder.write("stability.json", |out| holonom_io::write_json(&results, out))?;
-    if !arguments.no_report {
+    if !arguments.to.no_report {
         write_report(&folder, &loaded, &bounds, &found)?;
     }
-    if arguments.json {
+    if arguments.to.json {
         println!("{}", serde_json::to_string_pretty(&results).expect("a result is plain data"));
-    } else if !arguments.quiet {
+    } else if !arguments.to.quiet {
         println!("{}\n\nresults in {}", describe(&loaded, &bounds, &found), folder.path.display());
     }
     Ok(ExitCode::SUCCESS)
