@@ -1,7 +1,7 @@
 //! The energy audit: T, V, what was done on the system, and momenta (§6).
 
 use crate::formulation::{Sampling, Stage, Workspace};
-use crate::system::{Evaluation, MAX_ARGUMENTS, System};
+use crate::system::{Evaluation, System};
 
 /// Kinetic energy ½ vᵀ M v, J.
 pub fn kinetic(system: &System, v: &[f64]) -> f64 {
@@ -20,9 +20,7 @@ pub fn kinetic_difference(system: &System, v: &[f64], before: &[f64], scratch: &
 pub fn potential(system: &System, weight: &[f64], x: &[f64], at: &Evaluation, penalty: Option<(f64, &[f64])>) -> f64 {
     let mut energy: f64 = weight.iter().zip(x).map(|(w, x)| w * x).sum();
     for law in system.laws.iter().filter(|law| law.law.conservative()) {
-        let mut value = [0.0; MAX_ARGUMENTS];
-        law.invariants.iter().zip(&mut value).for_each(|(id, out)| *out = at.value[id.0 as usize]);
-        energy += law.law.energy(&value[..law.invariants.len()]);
+        energy += law.law.energy(&system.arguments(law, at)[..law.arguments.len()]);
     }
     if let Some((alpha, phi)) = penalty {
         energy += 0.5 * alpha * phi.iter().map(|phi| phi * phi).sum::<f64>();
@@ -49,10 +47,13 @@ pub fn work_between(system: &System, stage: &Stage, work: &Workspace) -> f64 {
     }
     for node in system.free..system.nodes() {
         for (b, mass) in system.mass.row(node) {
+            let mut way = [[0.0; 3]; 2];
             for c in 0..dim {
                 let (i, j) = (node * dim + c, b * dim + c);
-                sum += 0.5 * (work.v0[i] + work.v1[i]) * mass * (work.v1[j] - work.v0[j]);
+                way[0][c] = 0.5 * (work.v0[i] + work.v1[i]);
+                way[1][c] = work.v1[j] - work.v0[j];
             }
+            sum += mass.product(&way[0], &way[1]);
         }
     }
     for (row, &lambda) in work.lambda.iter().enumerate() {
@@ -77,7 +78,7 @@ pub fn power(system: &System, t: f64, v: &[f64], a: &[f64], work: &Workspace) ->
     sum += (n..v.len()).map(|i| work.force[i] * v[i]).sum::<f64>();
     for node in system.free..system.nodes() {
         for (b, mass) in system.mass.row(node) {
-            sum += (0..dim).map(|c| v[node * dim + c] * mass * a[b * dim + c]).sum::<f64>();
+            sum += mass.product(&v[node * dim..(node + 1) * dim], &a[b * dim..(b + 1) * dim]);
         }
     }
     for (row, &lambda) in work.lambda.iter().enumerate() {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use common::*;
 use holonom::simulation::Status;
-use holonom::system::{Differentiated, Number, Place, PotentialFunction, SystemBuilder};
+use holonom::system::{Differentiated, Number, Place, SmoothFunction, SystemBuilder};
 
 /// The audit closes with the work of the drive: energy of the order of 10 J goes in and out.
 #[test]
@@ -33,7 +33,7 @@ fn custom_rows_close_the_balance() {
 /// Resists the bending of three points: a function of three invariants, homogeneous in none.
 struct Bending;
 
-impl PotentialFunction for Bending {
+impl SmoothFunction for Bending {
     fn evaluate<N: Number>(&self, value: &[N]) -> N {
         let straight = value[2] / (value[0] * value[1] * 4.0).sqrt() - 1.0;
         straight * straight * 80.0 + (value[0] - 0.5) * (value[0] - 0.5) * 300.0 + (value[1] - 0.5) * (value[1] - 0.5) * 300.0

@@ -35,7 +35,7 @@ pub fn projection_form(system: &System, projection: &Projection, alpha: f64, ste
     let mut m = vec![0.0; n * n];
     for node in 0..free {
         for (other, mass) in system.mass().row(node).filter(|&(other, _)| other < free) {
-            (0..dim).for_each(|c| m[(node * dim + c) * n + other * dim + c] = mass);
+            (0..dim).for_each(|c| m[(node * dim + c) * n + other * dim + c] = mass.m);
         }
     }
     let rows = system.constraints();

@@ -26,7 +26,7 @@ const INDEPENDENT: f64 = 1e-9;
 pub fn rank(system: &System, x: &[f64], t: f64) -> Rank {
     let mut work = Workspace::new(system);
     let block = Block(0, 0);
-    system.evaluate(x, t, &mut work.at_end);
+    system.evaluate_again(x, t, &mut work.at_end);
     work.kkt.clear();
     work.kkt.start_with_mass(1.0);
     work.kkt.write_sum(block);

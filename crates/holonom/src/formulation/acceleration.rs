@@ -107,7 +107,7 @@ impl Workspace {
     /// M a = Q − αGᵀΦ (5).
     fn push(&mut self, system: &System, t: f64, alpha: f64) -> Result<(), Failure> {
         let n = system.coordinates();
-        system.evaluate(&self.x1, t, &mut self.at_end);
+        system.evaluate(&self.x1, t, &self.at_start, &mut self.at_end);
         system.constraint_values(&self.at_end, t, &mut self.phi);
         self.lambda.iter_mut().zip(&self.phi).for_each(|(lambda, phi)| *lambda = alpha * phi);
         self.sample_end(system, t);

@@ -302,6 +302,7 @@ impl Collocation {
         let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start: t - h, step: h, inertia: h * h, rate };
         std::mem::swap(&mut work.kkt, &mut self.kkt);
         work.add_laws(system, &stage, block);
+        work.add_function_rows(system, &stage, block);
         work.add_loads(system, &stage, block);
         work.add_custom_hessians(system, t, block, h * h);
         std::mem::swap(&mut work.kkt, &mut self.kkt);

@@ -74,6 +74,9 @@ pub struct Kkt {
     pub slot_nodes: Vec<u32>,
     pub(super) pair_mass: Vec<f64>,
     pub(super) pair_sum: Vec<f64>,
+    /// Entries of the mass matrix that quarter turns of the plane make, and their factor in the sum at hand.
+    pub(super) turned_mass: Vec<SkewEntry>,
+    pub(super) mass_factor: f64,
     pub(super) own_pair: Vec<u32>,
     pub(super) diagonal: Vec<u32>,
     pub(super) full_index: Vec<u32>,
@@ -120,6 +123,7 @@ impl Kkt {
 
     /// Starts the sum over pairs of nodes with `factor` times the mass matrix.
     pub fn start_with_mass(&mut self, factor: f64) {
+        self.mass_factor = factor;
         for (sum, &mass) in self.pair_sum.iter_mut().zip(&self.pair_mass) {
             *sum = factor * mass;
         }
@@ -128,6 +132,7 @@ impl Kkt {
     /// Starts the sum over pairs of nodes with a weight for each free node.
     pub fn start_with_weights<'a>(&mut self, weights: impl IntoIterator<Item = &'a f64>) {
         self.pair_sum.fill(0.0);
+        self.mass_factor = 0.0;
         for (&pair, &weight) in self.own_pair.iter().zip(weights) {
             self.pair_sum[pair as usize] = weight;
         }
@@ -227,6 +232,12 @@ impl Kkt {
 
     /// Adds the sum over pairs to the diagonals of a block.
     pub fn write_sum(&mut self, Block(i, j): Block) {
+        if self.mass_factor != 0.0 {
+            for k in 0..self.turned_mass.len() {
+                let entry = self.turned_mass[k];
+                self.add_entry(Block(i, j), entry, self.mass_factor);
+            }
+        }
         let (dim, squared) = (self.dim, self.fields * self.fields);
         let combination = i * self.fields + j;
         let values = self.solver.values_mut();

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::kkt::{Coupling, Hessian, Kkt, NONE, OuterTerm, SkewEntry};
 use crate::linalg::{Solver, fill_reducing_order};
-use crate::system::{HessianBlock, InvariantId, NodeId, System, skew};
+use crate::system::{HessianBlock, InvariantId, NodeId, Quantity, Row, System, skew};
 
 /// Pairs of free nodes that share a block of the matrix.
 #[derive(Default)]
@@ -42,11 +42,20 @@ impl Kkt {
         let mut pairs = Pairs::default();
         for a in 0..free as u32 {
             pairs.add(a, a, false);
-            system.mass.row(a as usize).filter(|&(b, _)| b < free).for_each(|(b, _)| pairs.add(a, b as u32, false));
+            system.mass.row(a as usize).filter(|&(b, _)| b < free).for_each(|(b, block)| pairs.add(a, b as u32, block.s != 0.0));
         }
-        let of_rows = system.rows.iter().map(|row| row.invariant);
-        let of_laws = system.laws.iter().flat_map(|law| law.invariants.iter().copied());
-        for id in of_rows.chain(of_laws) {
+        let row_invariant = |row: &Row| match row.quantity {
+            Quantity::Invariant(id) => Some(id),
+            Quantity::Function(_) => None,
+        };
+        // A row that is a function of invariants has the tangent of a law of them.
+        let function_base = system.function_rows.iter().map(|&row| match system.rows[row as usize].quantity {
+            Quantity::Function(id) => system.functions.base(id),
+            Quantity::Invariant(_) => unreachable!("a row of a function"),
+        });
+        let laws: Vec<&[InvariantId]> = system.laws.iter().map(|law| law.invariants.as_slice()).chain(function_base).collect();
+        let of_rows = system.rows.iter().filter_map(row_invariant);
+        for id in of_rows.chain(laws.iter().flat_map(|law| law.iter().copied())) {
             for (a, b, block) in system.invariants.hessian(id) {
                 if is_free(a) && is_free(b) {
                     pairs.add(a, b, matches!(block, HessianBlock::Skew(..)));
@@ -57,8 +66,8 @@ impl Kkt {
             let slots = ids.iter().enumerate().flat_map(|(k, &id)| system.invariants.slots_of(id).map(move |s| (s as u32, k as u8)));
             slots.filter(|&(s, _)| is_free(slot_nodes[s as usize])).collect()
         };
-        for law in &system.laws {
-            let slots = law_slots(&law.invariants);
+        for law in &laws {
+            let slots = law_slots(law);
             for &(s, _) in &slots {
                 slots.iter().for_each(|&(t, _)| pairs.add(slot_nodes[s as usize], slot_nodes[t as usize], true));
             }
@@ -86,10 +95,10 @@ impl Kkt {
             }
             hessian
         };
-        let row_hessian = system.rows.iter().map(|row| hessian(row.invariant)).collect();
-        let law_hessian = system.laws.iter().map(|law| law.invariants.iter().map(|&id| hessian(id)).collect()).collect();
-        let law_outer = system.laws.iter().map(|law| {
-            let slots = law_slots(&law.invariants);
+        let row_hessian = system.rows.iter().map(|row| row_invariant(row).map_or_else(Hessian::default, hessian)).collect();
+        let law_hessian = laws.iter().map(|law| law.iter().map(|&id| hessian(id)).collect()).collect();
+        let law_outer = laws.iter().map(|law| {
+            let slots = law_slots(law);
             let terms = slots.iter().flat_map(|&(s, i)| slots.iter().map(move |&(t, j)| (s, i, t, j)));
             let term =
                 |(s, i, t, j)| OuterTerm { slot: [s, t], argument: [i, j], pair: pairs.at(slot_nodes[s as usize], slot_nodes[t as usize]) };
@@ -103,8 +112,15 @@ impl Kkt {
         let load_pairs = system.loads.iter().map(|load| group_pairs(&load.nodes)).collect();
         let custom_pairs = system.custom.iter().map(|custom| group_pairs(&custom.nodes)).collect();
         let pair_mass =
-            pairs.found.keys().map(|&(a, b)| system.mass.row(a as usize).find(|&(c, _)| c == b as usize).map_or(0.0, |(_, m)| m));
+            pairs.found.keys().map(|&(a, b)| system.mass.row(a as usize).find(|&(c, _)| c == b as usize).map_or(0.0, |(_, block)| block.m));
         let pair_mass: Vec<f64> = pair_mass.collect();
+        let mut turned_mass = Vec::new();
+        for a in 0..free {
+            for (b, block) in system.mass.row(a).filter(|&(b, block)| b < free && block.s != 0.0) {
+                let entry = |offset, value| SkewEntry { pair: pairs.at(a as u32, b as u32), offset, value };
+                turned_mass.extend([entry(1, -block.s), entry(2, block.s)]);
+            }
+        }
 
         let mut kkt = Self {
             solver: Solver::new(0, &[], &[]),
@@ -115,6 +131,8 @@ impl Kkt {
             row_first: Vec::new(),
             pair_sum: vec![0.0; pair_mass.len()],
             pair_mass,
+            turned_mass,
+            mass_factor: 0.0,
             own_pair: (0..free as u32).map(|a| pairs.at(a, a)).collect(),
             diagonal: Vec::new(),
             full_index: Vec::new(),

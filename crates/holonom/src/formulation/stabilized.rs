@@ -12,7 +12,7 @@ use super::iteration::{Convergence, Failure, RESTARTS, STALLED, SolveSettings, r
 use super::kkt::{Block, Kkt, TWO_LEVELS};
 use super::stage::Stage;
 use super::workspace::Workspace;
-use crate::system::System;
+use crate::system::{MAX_ARGUMENTS, NO_CHANGE, System};
 
 /// Scratch of the doubled system.
 pub struct Stabilized {
@@ -28,6 +28,7 @@ pub struct Stabilized {
     /// H w and H u, D a slot.
     turned_w: Vec<f64>,
     turned_u: Vec<f64>,
+    velocity_gradient: Vec<f64>,
     /// ½h Φ̇ (r).
     rate: Vec<f64>,
     unknowns: Vec<f64>,
@@ -48,6 +49,7 @@ impl Stabilized {
             w: vec![0.0; all],
             turned_w: vec![0.0; slots],
             turned_u: vec![0.0; slots],
+            velocity_gradient: vec![0.0; slots],
             rate: vec![0.0; r],
         }
     }
@@ -110,8 +112,49 @@ impl Stabilized {
         for i in 0..self.w.len() {
             self.w[i] = self.u[i] + 0.5 * stage.step * work.v0[i];
         }
-        system.turn(&work.xs, &self.w, stage.time(), &mut work.half, &mut self.turned_w);
-        system.turn(&work.xs, &self.u, stage.time(), &mut work.half, &mut self.turned_u);
+        system.turn(&work.sampled, &work.xs, &self.w, stage.time(), &mut work.half, &mut self.turned_w);
+        system.turn(&work.at_end, &work.x1, &self.u, stage.end(), &mut work.half, &mut self.turned_u);
+        self.turn_functions(system, stage.step, work);
+    }
+
+    /// Where rows are functions g of invariants, the rates Φ̇ = Σ g_i π̇_i have the discrete derivatives
+    /// ```text
+    /// D_v Φ̇ = Σ ḡ_i ∇π̄_i        D_q Φ̇ = Σ ḡ_i H_i v̄ + Σ mean(π̇_j) (D g_j)_i ∇π̄_i
+    /// ```
+    /// with ḡ the mean of the two ends and D g_j·Δπ = Δg_j, so that D_vΦ̇·Δv + D_qΦ̇·Δq = ΔΦ̇.
+    fn turn_functions(&mut self, system: &System, step: f64, work: &Workspace) {
+        if system.functions.is_empty() {
+            return;
+        }
+        let (from, to) = (&work.at_start, &work.at_end);
+        let mean = |k: usize| -> [f64; MAX_ARGUMENTS] {
+            let (a, b) = (&from.functions.local[k], &to.functions.local[k]);
+            std::array::from_fn(|i| 0.5 * (a.gradient[i] + b.gradient[i]))
+        };
+        self.velocity_gradient.copy_from_slice(&work.sampled.gradient);
+        system.turn_functions(&work.sampled, &mut self.velocity_gradient, |k, _| mean(k).map(|factor| [factor, 0.0]));
+        let (v0, u) = (&work.v0, &self.u);
+        system.turn_functions(&work.sampled, &mut self.turned_w, |k, base| {
+            let (start, end) = (system.rates(base, from, v0), system.rates(base, to, u));
+            let rates: [f64; MAX_ARGUMENTS] = std::array::from_fn(|j| end[j] + 0.5 * step * start[j]);
+            let (a, b) = (&from.functions.local[k], &to.functions.local[k]);
+            let change: [f64; MAX_ARGUMENTS] =
+                std::array::from_fn(|i| base.get(i).map_or(0.0, |id| to.value[id.0 as usize] - from.value[id.0 as usize]));
+            let size: f64 = change.iter().map(|c| c * c).sum();
+            // Of the change of the gradients along the rates, what the mean Hessian leaves.
+            let along = |i: usize| 0.5 * (a.bend(i, &rates) + b.bend(i, &rates));
+            let rise: f64 = (0..base.len()).map(|j| rates[j] * (b.gradient[j] - a.gradient[j])).sum();
+            let rest = rise - (0..base.len()).map(|i| along(i) * change[i]).sum::<f64>();
+            let scale: f64 = base.iter().map(|id| to.value[id.0 as usize].powi(2)).sum();
+            let factor = if size > NO_CHANGE * NO_CHANGE * scale { rest / size } else { 0.0 };
+            let mean = mean(k);
+            std::array::from_fn(|i| [mean[i], along(i) + factor * change[i]])
+        });
+    }
+
+    /// ∂Φ̇/∂v between the ends of the step, D a slot.
+    fn velocity_gradient<'a>(&'a self, system: &System, work: &'a Workspace) -> &'a [f64] {
+        if system.functions.is_empty() { &work.sampled.gradient } else { &self.velocity_gradient }
     }
 
     fn residual(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
@@ -142,7 +185,8 @@ impl Stabilized {
                 let to = self.kkt.coordinate(self.kkt.slot_nodes[s] as usize, 0, 0);
                 for c in 0..dim {
                     self.unknowns[to + c] -= 0.5 * gamma * self.turned_w[s * dim + c];
-                    self.unknowns[to + dim + c] -= gamma * work.sampled.gradient[s * dim + c];
+                    let gradient = if system.functions.is_empty() { &work.sampled.gradient } else { &self.velocity_gradient };
+                    self.unknowns[to + dim + c] -= gamma * gradient[s * dim + c];
                 }
             }
         }
@@ -163,12 +207,14 @@ impl Stabilized {
         kkt.add_row_hessians(Block(0, 0), &self.mu, 0.5);
         std::mem::swap(&mut work.kkt, kkt);
         work.add_laws(system, stage, Block(0, 0));
+        work.add_function_rows(system, stage, Block(0, 0));
         work.add_loads(system, stage, Block(0, 0));
         std::mem::swap(&mut work.kkt, kkt);
         kkt.write_sum(Block(0, 0));
         kkt.add_columns(Block(0, 0), &work.sampled.gradient, 1.0);
         kkt.add_columns(Block(0, 1), &self.turned_w, 0.5);
-        kkt.add_columns(Block(1, 1), &work.sampled.gradient, 1.0);
+        let velocity_gradient = if system.functions.is_empty() { &work.sampled.gradient } else { &self.velocity_gradient };
+        kkt.add_columns(Block(1, 1), velocity_gradient, 1.0);
         kkt.add_rows(Block(0, 0), &work.at_end.gradient, 1.0);
         kkt.add_rows(Block(1, 0), &self.turned_u, 1.0);
         kkt.add_rows(Block(1, 1), &work.at_end.gradient, 1.0);
@@ -211,12 +257,15 @@ impl Stabilized {
         let mut sum = 0.0;
         for known in system.free..system.nodes() {
             for (node, mass) in system.mass.row(known).filter(|&(node, _)| node < system.free) {
+                let [mut push, mut slip, mut lag, mut pull] = [[0.0; 3]; 4];
                 for c in 0..dim {
                     let (k, i) = (known * dim + c, node * dim + c);
-                    let slip = (self.w[i] - work.d[i]) / h;
-                    let lag = (work.x1[k] - work.x0[k]) / h - 0.5 * (work.v0[k] + work.v1[k]);
-                    sum += mass * ((work.v1[k] - work.v0[k]) * slip + (work.v1[i] - work.v0[i]) * lag);
+                    push[c] = work.v1[k] - work.v0[k];
+                    slip[c] = (self.w[i] - work.d[i]) / h;
+                    lag[c] = (work.x1[k] - work.x0[k]) / h - 0.5 * (work.v0[k] + work.v1[k]);
+                    pull[c] = work.v1[i] - work.v0[i];
                 }
+                sum += mass.product(&push, &slip) + mass.product(&lag, &pull);
             }
         }
         for (row, slots) in self.kkt.row_slots.iter().enumerate() {
@@ -225,7 +274,7 @@ impl Stabilized {
             for s in slots.clone().filter(|&s| self.kkt.slot_nodes[s] as usize >= system.free) {
                 let node = self.kkt.slot_nodes[s] as usize * dim;
                 for c in 0..dim {
-                    let (g, turned) = (work.sampled.gradient[s * dim + c], self.turned_w[s * dim + c] / h);
+                    let (g, turned) = (self.velocity_gradient(system, work)[s * dim + c], self.turned_w[s * dim + c] / h);
                     along += g * (work.v1[node + c] - work.v0[node + c]) + turned * (work.x1[node + c] - work.x0[node + c]);
                 }
             }

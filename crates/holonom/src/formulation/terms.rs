@@ -4,24 +4,25 @@ use super::kkt::{Block, LawFactors};
 use super::level::Level;
 use super::stage::{RowsAt, Sampling, Stage};
 use super::workspace::Workspace;
-use crate::system::{Between, LoadEntry, MAX_ARGUMENTS, Reach, Response, SIZE, System, gather};
+use crate::system::{Between, LoadEntry, MAX_ARGUMENTS, Quantity, Reach, Response, SIZE, System, gather};
 
 impl Workspace {
     /// Evaluates rows, laws and loads of a stage; leaves Φ in `phi` and the sum of forces in `force`.
     pub fn evaluate(&mut self, system: &System, stage: &Stage) {
         let Self { at_start, at_end, sampled, .. } = self;
+        let near = &*at_start;
         match stage.sampling {
             Sampling::End => {
-                system.evaluate(&self.x1, stage.end(), at_end);
+                system.evaluate(&self.x1, stage.end(), near, at_end);
                 sampled.copy_from(at_end);
             }
-            Sampling::Middle => system.evaluate(&self.xs, stage.time(), sampled),
+            Sampling::Middle => system.evaluate(&self.xs, stage.time(), near, sampled),
             Sampling::Start => {
-                system.evaluate(&self.x1, stage.end(), at_end);
+                system.evaluate(&self.x1, stage.end(), near, at_end);
                 sampled.copy_from(at_start);
             }
             Sampling::Between => {
-                system.evaluate(&self.x1, stage.end(), at_end);
+                system.evaluate(&self.x1, stage.end(), near, at_end);
                 let span = Between { from: &self.x0, to: &self.x1, start: stage.start, step: stage.step };
                 system.evaluate_between(span, at_start, at_end, sampled);
             }
@@ -64,10 +65,10 @@ impl Workspace {
 
     /// H v and H a of all rows at the sampled state.
     pub fn turn(&mut self, system: &System, t: f64) {
-        let Self { half, turned_v, turned_a, xs, vs, a1, .. } = self;
-        system.turn(xs, vs, t, half, turned_v);
+        let Self { sampled, half, turned_v, turned_a, xs, vs, a1, .. } = self;
+        system.turn(sampled, xs, vs, t, half, turned_v);
         if self.level.acceleration != 0.0 {
-            system.turn(xs, a1, t, half, turned_a);
+            system.turn(sampled, xs, a1, t, half, turned_a);
         }
     }
 
@@ -108,32 +109,38 @@ impl Workspace {
         }
     }
 
-    /// Responses of all laws at the sampled state.
+    /// Responses of all laws, and of the rows that are functions of invariants, at the sampled state.
     fn respond(&mut self, system: &System, stage: &Stage) {
-        if self.dissipative && stage.sampling != Sampling::Between {
-            system.invariants.curvature(&self.vs, &mut self.half, &mut self.motion);
+        let between = stage.sampling == Sampling::Between;
+        if self.dissipative && !between {
+            system.turn(&self.sampled, &self.xs, &self.vs, stage.time(), &mut self.half, &mut self.motion);
         }
         for (law, response) in system.laws.iter().zip(&mut self.responses) {
-            *response = Response::default();
-            let m = law.invariants.len();
-            let pick = |values: &[f64]| -> [f64; MAX_ARGUMENTS] {
-                let mut picked = [0.0; MAX_ARGUMENTS];
-                law.invariants.iter().zip(&mut picked).for_each(|(id, out)| *out = values[id.0 as usize]);
-                picked
-            };
-            if stage.sampling == Sampling::Between {
-                let (from, to) = (pick(&self.at_start.value), pick(&self.at_end.value));
+            let mut own = Response::default();
+            let m = law.arguments.len();
+            if between {
+                let (from, to) = (system.arguments(law, &self.at_start), system.arguments(law, &self.at_end));
                 let reach = Reach { from: &from[..m], to: &to[..m], step: stage.step, middle: stage.time() };
-                law.law.between(reach, response);
+                law.law.between(reach, &mut own);
             } else {
-                let value = pick(&self.sampled.value);
+                let value = system.arguments(law, &self.sampled);
                 let mut rate = [0.0; MAX_ARGUMENTS];
                 if !law.law.conservative() {
-                    for (rate, &id) in rate.iter_mut().zip(&law.invariants) {
-                        *rate = system.along(&system.invariants.slots_of(id), &self.kkt.slot_nodes, &self.sampled, &self.vs);
+                    for (rate, &quantity) in rate.iter_mut().zip(&law.arguments) {
+                        *rate = system.along(&system.slots_of(quantity), &self.kkt.slot_nodes, &self.sampled, &self.vs);
                     }
                 }
-                law.law.at(&value[..m], &rate[..m], stage.time(), response);
+                law.law.at(&value[..m], &rate[..m], stage.time(), &mut own);
+            }
+            let end = if between { &self.at_end } else { &self.sampled };
+            *response = system.by_invariants(law, own, &self.sampled, end, &self.vs);
+        }
+        for (&row, response) in system.function_rows.iter().zip(&mut self.responses[system.laws.len()..]) {
+            let Quantity::Function(id) = system.rows[row as usize].quantity else { unreachable!("a row of a function") };
+            let (local, lambda) = (&self.sampled.functions.local[id.0 as usize], self.lambda[row as usize]);
+            *response = Response { force: local.gradient.map(|g| lambda * g), ..Response::default() };
+            for (out, line) in response.by_value.iter_mut().zip(&local.hessian) {
+                *out = line.map(|h| lambda * h);
             }
         }
     }
@@ -173,6 +180,7 @@ impl Workspace {
         self.kkt.start_with_mass(1.0);
         if geometric != 0.0 {
             self.kkt.add_row_hessians(Block(0, 0), &self.lambda, geometric * weight);
+            self.add_function_rows(system, stage, Block(0, 0));
             self.add_custom_hessians(system, stage.time(), Block(0, 0), geometric * weight);
         }
         self.add_laws(system, stage, Block(0, 0));
@@ -220,6 +228,17 @@ impl Workspace {
             };
             let right = if between { &self.at_end.gradient } else { &self.sampled.gradient };
             self.kkt.add_law(block, law, &self.responses[law], factors, &self.sampled.gradient, right, &self.motion);
+        }
+    }
+
+    /// Adds Σ λ_k times the change of the derivatives of the rows that are functions of invariants, times ϖ.
+    pub fn add_function_rows(&mut self, system: &System, stage: &Stage, block: Block) {
+        let between = stage.sampling == Sampling::Between;
+        let share = stage.inertia * stage.share();
+        let factors = LawFactors { force: share, value: if between { stage.inertia } else { share }, rate: 0.0, motion: 0.0 };
+        let right = if between { &self.at_end.gradient } else { &self.sampled.gradient };
+        for k in system.laws.len()..self.responses.len() {
+            self.kkt.add_law(block, k, &self.responses[k], factors, &self.sampled.gradient, right, &self.motion);
         }
     }
 
@@ -281,7 +300,7 @@ impl Workspace {
 
     /// Samples forces at the end position with the multipliers as they are, and evaluates there.
     pub fn sample_end(&mut self, system: &System, t: f64) {
-        system.evaluate(&self.x1, t, &mut self.at_end);
+        system.evaluate(&self.x1, t, &self.at_start, &mut self.at_end);
         self.sampled.copy_from(&self.at_end);
         self.xs.copy_from_slice(&self.x1);
         self.vs.copy_from_slice(&self.v1);
@@ -290,7 +309,7 @@ impl Workspace {
 
     /// Samples forces at the position `xs` and velocity `vs`, with the multipliers as they are, and evaluates there.
     pub fn sample(&mut self, system: &System, t: f64) {
-        system.evaluate(&self.xs, t, &mut self.sampled);
+        system.evaluate(&self.xs, t, &self.at_start, &mut self.sampled);
         self.sum_forces(system, &Stage::moment(t));
     }
 
@@ -301,7 +320,7 @@ impl Workspace {
 
     /// Leaves Φ̈ at the sampled position, with the accelerations `a1`, in `rows`.
     pub fn sampled_acceleration_violation(&mut self, system: &System, time: f64) {
-        system.constraint_curvatures(&self.xs, &self.vs, time, &mut self.half, &mut self.motion, &mut self.rows);
+        system.constraint_curvatures(&self.sampled, &self.xs, &self.vs, time, &mut self.half, &mut self.motion, &mut self.rows);
         for (row, slots) in self.rows.iter_mut().zip(&self.kkt.row_slots) {
             *row += system.along(slots, &self.kkt.slot_nodes, &self.sampled, &self.a1);
         }
@@ -314,7 +333,7 @@ impl Workspace {
 
     /// Leaves Φ̈ at the end of the step in `rows`.
     pub fn acceleration_violation(&mut self, system: &System, time: f64) {
-        system.constraint_curvatures(&self.x1, &self.v1, time, &mut self.half, &mut self.motion, &mut self.rows);
+        system.constraint_curvatures(&self.at_end, &self.x1, &self.v1, time, &mut self.half, &mut self.motion, &mut self.rows);
         for (row, slots) in self.rows.iter_mut().zip(&self.kkt.row_slots) {
             *row += system.along(slots, &self.kkt.slot_nodes, &self.at_end, &self.a1);
         }

@@ -44,6 +44,7 @@ pub struct Workspace {
     pub phi_start: Vec<f64>,
     /// Sum of the gradients of laws, rows, gravity and minus the loads (full), N.
     pub force: Vec<f64>,
+    /// Responses of the laws, then of the rows that are functions of invariants, by the invariants they depend on.
     pub responses: Vec<Response>,
     /// Forces of the loads (D × their nodes, one after the other), N.
     pub load_force: Vec<f64>,
@@ -90,7 +91,10 @@ impl Workspace {
         let evaluation = system.evaluation();
         let mut weight = vec![0.0; all];
         for (a, weight) in weight.chunks_exact_mut(system.dim).enumerate() {
-            (0..system.dim).for_each(|c| weight[c] = -system.weighing[a] * system.gravity[c]);
+            let ([m, s], g) = (system.weighing[a], system.gravity);
+            (0..system.dim).for_each(|c| weight[c] = -m * g[c]);
+            weight[0] -= s * g[1];
+            weight[1] += s * g[0];
         }
         let loads: usize = system.loads.iter().map(|load| load.nodes.len() * system.dim).sum();
         let mut workspace = Self {
@@ -123,7 +127,7 @@ impl Workspace {
             phi: vec![0.0; r],
             phi_start: vec![0.0; r],
             force: vec![0.0; all],
-            responses: vec![Response::default(); system.laws.len()],
+            responses: vec![Response::default(); system.laws.len() + system.function_rows.len()],
             load_force: vec![0.0; loads],
             softness: vec![1.0; r],
             delta: vec![0.0; r],
@@ -138,7 +142,7 @@ impl Workspace {
             dissipative: system.laws.iter().any(|law| !law.law.conservative()),
             works: system.is_worked_on(),
         };
-        system.evaluate(&workspace.x0, 0.0, &mut workspace.at_start);
+        system.evaluate_again(&workspace.x0, 0.0, &mut workspace.at_start);
         workspace.measure_softness(system);
         workspace
     }
@@ -152,7 +156,7 @@ impl Workspace {
             for s in slots.clone() {
                 let node = self.kkt.slot_nodes[s] as usize;
                 if node < system.free {
-                    let lumped: f64 = system.mass.row(node).map(|(_, m)| m).sum();
+                    let lumped: f64 = system.mass.row(node).map(|(_, block)| block.m).sum();
                     let square: f64 = self.at_start.gradient[s * dim..s * dim + dim].iter().map(|g| g * g).sum();
                     self.softness[row] += square / lumped;
                 }

@@ -57,13 +57,13 @@ impl Integrator for Composed {
                 work.x0.copy_from_slice(&work.x1);
                 work.v0.copy_from_slice(&work.v1);
                 let t = start + passed * h;
-                system.evaluate(&work.x0, t, &mut work.at_start);
+                system.evaluate_again(&work.x0, t, &mut work.at_start);
                 system.constraint_values(&work.at_start, t, &mut work.phi_start);
             }
             let step = match self.inner.step(system, start + passed * h, share * h, settings, work) {
                 Ok(step) => step,
                 Err(failure) => {
-                    system.evaluate(&self.start, start, &mut work.at_start);
+                    system.evaluate_again(&self.start, start, &mut work.at_start);
                     return Err(failure);
                 }
             };

@@ -74,8 +74,8 @@ fn half_the_weight_of_a_bar_hangs_on_each_end_also_when_one_is_fixed() {
         let tip = table(&[("position", numbers(&[2.0, 0.0, 0.0]))]);
         let model = table(&[("point", table(&[("tip", tip)])), ("bar", table(&[("rod", bar)]))]);
         let model = Model::from_value(&model).unwrap_or_else(|faults| panic!("{faults}"));
-        let inertia: f64 = model.system.mass().row(0).map(|(_, m)| m).sum();
-        assert_eq!((inertia, model.system.weighing[0]), (2.0, 3.0), "m/3 of inertia, m/2 of weight");
+        let inertia: f64 = model.system.mass().row(0).map(|(_, block)| block.m).sum();
+        assert_eq!((inertia, model.system.weighing[0]), (2.0, [3.0, 0.0]), "m/3 of inertia, m/2 of weight");
     }
 }
 

@@ -32,7 +32,9 @@ impl Moment {
         simulation.shown_v.copy_from_slice(&self.v);
         simulation.shown_a.copy_from_slice(&self.a);
         simulation.audit.clone_from(&self.audit);
-        simulation.system.evaluate(&self.state.x, self.state.t, &mut simulation.work.at_start);
+        let work = &mut simulation.work;
+        work.at_start.functions.angle.copy_from_slice(&self.state.angle);
+        simulation.system.evaluate_again(&self.state.x, self.state.t, &mut work.at_start);
     }
 }
 

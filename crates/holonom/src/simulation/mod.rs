@@ -109,7 +109,8 @@ impl<'a> Simulation<'a> {
         let integrator = (method.integrator.make)(system, &method.settings, method.parameters);
         let fits = [&state.x, &state.v, &state.a, &state.a_change].iter().all(|values| values.len() == all)
             && state.lambda.len() == system.constraints()
-            && state.memory.len() == integrator.memory(system);
+            && state.memory.len() == integrator.memory(system)
+            && state.angle.len() == system.evaluation().functions.angle.len();
         if !fits {
             return None;
         }
@@ -117,7 +118,7 @@ impl<'a> Simulation<'a> {
         work.level = method.settings.level;
         work.memory = state.memory.clone();
         state.load(&mut work);
-        system.evaluate(&state.x, state.t, &mut work.at_start);
+        system.evaluate_again(&state.x, state.t, &mut work.at_start);
         Some(Self::assemble(system, method, integrator, step, work, state, Start::default()))
     }
 

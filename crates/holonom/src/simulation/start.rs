@@ -50,7 +50,7 @@ pub(super) fn prepare(system: &System, method: &Method, work: &mut Workspace) ->
 fn correct_positions(system: &System, work: &mut Workspace, start: &mut Start) -> Result<(), StartError> {
     let n = system.coordinates();
     for _ in 0..30 {
-        system.evaluate(&work.x1, 0.0, &mut work.at_end);
+        system.evaluate_again(&work.x1, 0.0, &mut work.at_end);
         system.constraint_values(&work.at_end, 0.0, &mut work.phi);
         if work.scaled_violation() <= ROUND_OFF || !work.factor_inertia() {
             break;
@@ -61,7 +61,7 @@ fn correct_positions(system: &System, work: &mut Workspace, start: &mut Start) -
         work.x1[..n].iter_mut().zip(&work.unknowns).for_each(|(x, step)| *x += step);
         start.moved = work.x1.iter().zip(&system.start_position).fold(0.0, |m, (x, x0)| f64::max(m, (x - x0).abs()));
         if start.moved.is_nan() || start.moved > LARGEST_MOVE * work.length {
-            system.evaluate(&system.start_position, 0.0, &mut work.at_end);
+            system.evaluate_again(&system.start_position, 0.0, &mut work.at_end);
             system.constraint_values(&work.at_end, 0.0, &mut work.phi);
             return Err(StartError::Position { rows: worst(system, &work.phi) });
         }

@@ -24,6 +24,8 @@ pub struct State {
     pub last_step: f64,
     /// What the integrator keeps from step to step.
     pub memory: Vec<f64>,
+    /// Angles of joints and couplings, counted over all turns, rad.
+    pub angle: Vec<f64>,
 }
 
 impl State {
@@ -38,14 +40,15 @@ impl State {
             a_change: vec![0.0; work.a1.len()],
             last_step: 0.0,
             memory: work.memory.clone(),
+            angle: work.at_start.functions.angle.clone(),
         }
     }
 
     /// Takes over another state of the same run, without allocating.
     pub(super) fn copy_from(&mut self, other: &Self) {
         (self.t, self.last_step) = (other.t, other.last_step);
-        let own = [&mut self.x, &mut self.v, &mut self.a, &mut self.lambda, &mut self.a_change, &mut self.memory];
-        let others = [&other.x, &other.v, &other.a, &other.lambda, &other.a_change, &other.memory];
+        let own = [&mut self.x, &mut self.v, &mut self.a, &mut self.lambda, &mut self.a_change, &mut self.memory, &mut self.angle];
+        let others = [&other.x, &other.v, &other.a, &other.lambda, &other.a_change, &other.memory, &other.angle];
         own.into_iter().zip(others).for_each(|(own, other)| own.copy_from_slice(other));
     }
 
@@ -59,6 +62,7 @@ impl State {
         work.lambda.copy_from_slice(&self.lambda);
         work.a_change.copy_from_slice(&self.a_change);
         work.memory.copy_from_slice(&self.memory);
+        work.at_start.functions.angle.copy_from_slice(&self.angle);
     }
 
     /// Remembers how the accelerations changed in a step, for the prediction of the next.
@@ -77,7 +81,8 @@ impl State {
         for i in 0..n {
             work.x1[i] = work.x0[i] + work.d[i];
         }
-        system.evaluate(&work.x1, target, &mut work.at_end);
+        system.evaluate(&work.x1, target, &work.at_start, &mut work.at_end);
+        self.angle.copy_from_slice(&work.at_end.functions.angle);
         self.t = target;
         self.x.copy_from_slice(&work.x1);
         self.a.copy_from_slice(&work.a1);

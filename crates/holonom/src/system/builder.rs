@@ -2,7 +2,11 @@
 
 use std::sync::Arc;
 
-use super::{Constant, CustomEntry, CustomRows, InvariantId, Invariants, Law, LawEntry, Load, LoadEntry, Mass, Row, Signal, System};
+use super::function::{FunctionId, Functions, Part, Quantity, Smooth};
+use super::{
+    Constant, CustomEntry, CustomRows, InvariantId, Invariants, Law, LawEntry, Load, LoadEntry, MAX_ARGUMENTS, Mass, MassBlock, Row, Signal,
+    System,
+};
 
 /// A node of a [`SystemBuilder`] and of the system it makes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -23,14 +27,35 @@ pub enum Place {
     Fixed([f64; 3]),
 }
 
+/// A summand of a point or direction: f x + g J x, with J the quarter turn of a planar model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Term {
+    pub place: Place,
+    /// f
+    pub factor: f64,
+    /// g, 0 in space.
+    pub turn: f64,
+}
+
+impl From<(Place, f64)> for Term {
+    fn from((place, factor): (Place, f64)) -> Self {
+        Self { place, factor, turn: 0.0 }
+    }
+}
+
+fn terms<T: Into<Term> + Copy>(terms: &[T]) -> Vec<Term> {
+    terms.iter().map(|&term| term.into()).collect()
+}
+
 /// Collects a system piece by piece. Free nodes must be added before known ones.
 pub struct SystemBuilder {
     dim: usize,
     free: usize,
     gravity: [f64; 3],
-    mass: Vec<(u32, u32, f64)>,
-    weight: Vec<(u32, f64)>,
+    mass: Vec<(u32, u32, MassBlock)>,
+    weight: Vec<(u32, [f64; 2])>,
     invariants: Invariants,
+    functions: Functions,
     rows: Vec<Row>,
     custom: Vec<CustomEntry>,
     laws: Vec<LawEntry>,
@@ -51,6 +76,7 @@ impl SystemBuilder {
             mass: Vec::new(),
             weight: Vec::new(),
             invariants: Invariants::new(dim),
+            functions: Functions::default(),
             rows: Vec::new(),
             custom: Vec::new(),
             laws: Vec::new(),
@@ -89,43 +115,52 @@ impl SystemBuilder {
         NodeId((self.free + self.motions.len()) as u32 - 1)
     }
 
-    /// Adds `m` (kg) to the entries (a, b) and (b, a) of the mass matrix, once when a = b. What belongs to a fixed
-    /// place never moves; only its share of the weight of the other is kept.
+    /// Adds `m` (kg) of points to the entries (a, b) and (b, a) of the mass matrix, once when a = b, and its weight to
+    /// both. What belongs to a fixed place never moves; only its share of the weight of the other is kept.
     pub fn mass(&mut self, a: Place, b: Place, m: f64) {
+        self.inertia(a, b, m, 0.0);
         let ends = if a == b { vec![a] } else { vec![a, b] };
-        for end in ends {
-            if let Place::Node(node) = end {
-                self.weight.push((node.0, m));
+        ends.into_iter().for_each(|end| self.weight((end, 1.0).into(), m));
+    }
+
+    /// Adds the block m 1 + s J (kg) to (a, b) of the mass matrix, and its transpose to (b, a), without weight. In space
+    /// there is no J.
+    pub fn inertia(&mut self, a: Place, b: Place, m: f64, s: f64) {
+        if let (Place::Node(a), Place::Node(b)) = (a, b) {
+            self.mass.push((a.0, b.0, MassBlock { m, s }));
+            if a != b {
+                self.mass.push((b.0, a.0, MassBlock { m, s: -s }));
             }
         }
-        if let (Place::Node(a), Place::Node(b)) = (a, b) {
-            self.mass.push((a.0, b.0, m));
-            if a != b {
-                self.mass.push((b.0, a.0, m));
-            }
+    }
+
+    /// Adds the weight of `m` (kg) at f x + g J x to the forces on a node.
+    pub fn weight(&mut self, term: Term, m: f64) {
+        if let Place::Node(node) = term.place {
+            self.weight.push((node.0, [m * term.factor, m * term.turn]));
         }
     }
 
     /// π = ½ |Σ u_a x_a|².
-    pub fn square(&mut self, u: &[(Place, f64)]) -> InvariantId {
-        self.invariants.square(u)
+    pub fn square<T: Into<Term> + Copy>(&mut self, u: &[T]) -> InvariantId {
+        self.invariants.square(&terms(u))
     }
 
     /// π = (Σ u_a x_a) · (Σ w_b x_b).
-    pub fn dot(&mut self, u: &[(Place, f64)], w: &[(Place, f64)]) -> InvariantId {
-        self.invariants.dot(u, w)
+    pub fn dot<T: Into<Term> + Copy, U: Into<Term> + Copy>(&mut self, u: &[T], w: &[U]) -> InvariantId {
+        self.invariants.dot(&terms(u), &terms(w))
     }
 
     /// π = e · (Σ u_a x_a): one component of a sum of points.
-    pub fn linear(&mut self, e: [f64; 3], u: &[(Place, f64)]) -> InvariantId {
-        self.invariants.dot(u, &[(Place::Fixed(e), 1.0)])
+    pub fn linear<T: Into<Term> + Copy>(&mut self, e: [f64; 3], u: &[T]) -> InvariantId {
+        self.dot(u, &[(Place::Fixed(e), 1.0)])
     }
 
     /// π = e · ((Σ u_a x_a) × (Σ w_b x_b)); in the plane the scalar cross product, and `e` is not read.
     ///
     /// In space a row of this kind is only equivariant: it may cost angular momentum (methods §2.2).
-    pub fn cross(&mut self, e: [f64; 3], u: &[(Place, f64)], w: &[(Place, f64)]) -> InvariantId {
-        self.invariants.cross(e, u, w)
+    pub fn cross<T: Into<Term> + Copy, U: Into<Term> + Copy>(&mut self, e: [f64; 3], u: &[T], w: &[U]) -> InvariantId {
+        self.invariants.cross(e, &terms(u), &terms(w))
     }
 
     /// Value of an invariant at the start.
@@ -133,20 +168,51 @@ impl SystemBuilder {
         self.invariants.value_of(invariant, &self.position)
     }
 
+    /// The angle whose cosine and sine are two invariants (times a common size), counted over any number of turns.
+    pub fn angle(&mut self, cosine: InvariantId, sine: InvariantId) -> Part {
+        Part::Angle { cosine, sine }
+    }
+
+    /// A smooth function of some invariants.
+    pub fn smooth(&mut self, of: &[InvariantId], function: Arc<dyn Smooth>) -> Part {
+        Part::Smooth { of: of.to_vec(), function }
+    }
+
+    /// The sum of some parts, each with its factor.
+    ///
+    /// # Panics
+    /// When the parts depend on more than [`MAX_ARGUMENTS`] invariants.
+    pub fn sum(&mut self, parts: &[(Part, f64)]) -> FunctionId {
+        self.functions.add(&self.invariants, parts)
+    }
+
     /// Adds the row Φ = π − c(t).
-    pub fn row(&mut self, name: impl Into<String>, invariant: InvariantId, target: Arc<dyn Signal>) {
-        self.rows.push(Row { name: name.into(), invariant, target });
+    pub fn row(&mut self, name: impl Into<String>, quantity: impl Into<Quantity>, target: Arc<dyn Signal>) {
+        self.rows.push(Row { name: name.into(), quantity: quantity.into(), target });
     }
 
     /// Adds the row Φ = π − c with a constant c.
-    pub fn constant_row(&mut self, name: impl Into<String>, invariant: InvariantId, target: f64) {
-        self.row(name, invariant, Arc::new(Constant(target)));
+    pub fn constant_row(&mut self, name: impl Into<String>, quantity: impl Into<Quantity>, target: f64) {
+        self.row(name, quantity, Arc::new(Constant(target)));
     }
 
-    /// Adds a potential or dissipative law of some invariants.
-    pub fn law(&mut self, name: impl Into<String>, invariants: &[InvariantId], law: Arc<dyn Law>) {
-        assert!(invariants.len() <= super::MAX_ARGUMENTS, "a law has at most {} arguments", super::MAX_ARGUMENTS);
-        self.laws.push(LawEntry { name: name.into(), invariants: invariants.to_vec(), law });
+    /// Adds a potential or dissipative law of some quantities.
+    ///
+    /// # Panics
+    /// When they depend on more than [`MAX_ARGUMENTS`] invariants.
+    pub fn law(&mut self, name: impl Into<String>, arguments: &[impl Into<Quantity> + Copy], law: Arc<dyn Law>) {
+        let arguments: Vec<Quantity> = arguments.iter().map(|&argument| argument.into()).collect();
+        let invariants: Vec<InvariantId> = arguments.iter().flat_map(|&argument| self.base(argument)).collect();
+        assert!(invariants.len() <= MAX_ARGUMENTS, "a law depends on at most {MAX_ARGUMENTS} invariants");
+        self.laws.push(LawEntry { name: name.into(), arguments, invariants, law });
+    }
+
+    /// The invariants that a quantity depends on.
+    fn base(&self, quantity: Quantity) -> Vec<InvariantId> {
+        match quantity {
+            Quantity::Invariant(id) => vec![id],
+            Quantity::Function(id) => self.functions.base(id).to_vec(),
+        }
     }
 
     /// Adds a load on nodes.
@@ -168,8 +234,12 @@ impl SystemBuilder {
                 several => row_names.extend((0..several).map(|k| format!("{}[{k}]", custom.name))),
             }
         }
-        let mut weighing = vec![0.0; self.free + self.motions.len()];
-        self.weight.iter().for_each(|&(node, m)| weighing[node as usize] += m);
+        let mut weighing = vec![[0.0; 2]; self.free + self.motions.len()];
+        for (node, [m, s]) in self.weight {
+            weighing[node as usize][0] += m;
+            weighing[node as usize][1] += s;
+        }
+        let function_rows = (0..self.rows.len() as u32).filter(|&k| matches!(self.rows[k as usize].quantity, Quantity::Function(_))).collect();
         System {
             weighing,
             dim: self.dim,
@@ -177,6 +247,8 @@ impl SystemBuilder {
             mass: Mass::new(self.free + self.motions.len(), self.mass),
             gravity: self.gravity,
             invariants: self.invariants,
+            functions: self.functions,
+            function_rows,
             rows: self.rows,
             custom: self.custom,
             laws: self.laws,

@@ -1,16 +1,18 @@
 //! Values and gradients of all invariants and constraint rows, *at* one position and *between* two.
 
-use super::{CustomEntry, NodeId, System};
+use super::{CustomEntry, FunctionValues, InvariantId, MAX_ARGUMENTS, NodeId, Quantity, System};
 
 /// Values and gradients at one position, or between two.
 ///
 /// Gradients are kept in slots of D numbers, one for each pair of an invariant (or custom row) and a node it names.
 #[derive(Clone, Debug, Default)]
 pub struct Evaluation {
-    /// Values of the invariants, then Φ of the custom rows.
+    /// Values of the invariants, then of the functions, then Φ of the custom rows.
     pub(crate) value: Vec<f64>,
     /// Gradients, D a slot.
     pub(crate) gradient: Vec<f64>,
+    /// Derivatives of the functions by their invariants.
+    pub(crate) functions: FunctionValues,
     /// ∂Φ/∂t of the custom rows.
     pub(crate) by_time: Vec<f64>,
     /// Where between the two positions each custom row has its gradient: the paper's β (15).
@@ -22,6 +24,8 @@ impl Evaluation {
     pub fn copy_from(&mut self, other: &Self) {
         self.value.copy_from_slice(&other.value);
         self.gradient.copy_from_slice(&other.gradient);
+        self.functions.local.copy_from_slice(&other.functions.local);
+        self.functions.angle.copy_from_slice(&other.functions.angle);
         self.by_time.copy_from_slice(&other.by_time);
         self.beta.copy_from_slice(&other.beta);
     }
@@ -44,26 +48,49 @@ impl System {
     pub fn evaluation(&self) -> Evaluation {
         let customs = self.constraints() - self.rows.len();
         Evaluation {
-            value: vec![0.0; self.invariants.len() + customs],
+            value: vec![0.0; self.invariants.len() + self.functions.len() + customs],
             gradient: vec![0.0; self.slot_nodes().count() * self.dim],
+            functions: self.functions.values(),
             by_time: vec![0.0; customs],
             beta: vec![0.5; customs],
         }
     }
 
-    /// The node of each slot: those of the invariants, then row by row those of the custom rows.
+    /// Position of a quantity among the values of an evaluation.
+    #[inline]
+    pub(crate) fn value_index(&self, quantity: Quantity) -> usize {
+        match quantity {
+            Quantity::Invariant(id) => id.0 as usize,
+            Quantity::Function(id) => self.invariants.len() + id.0 as usize,
+        }
+    }
+
+    /// The slots of a quantity.
+    pub(crate) fn slots_of(&self, quantity: Quantity) -> std::ops::Range<usize> {
+        match quantity {
+            Quantity::Invariant(id) => self.invariants.slots_of(id),
+            Quantity::Function(id) => {
+                let (slots, first) = (self.functions.slots_of(id), self.invariants.slots());
+                first + slots.start..first + slots.end
+            }
+        }
+    }
+
+    /// The node of each slot: those of the invariants, of the functions, then row by row those of the custom rows.
     pub(crate) fn slot_nodes(&self) -> impl Iterator<Item = usize> + '_ {
         let of_custom = |entry: &'_ CustomEntry| -> Vec<usize> {
             let nodes: Vec<usize> = entry.nodes.iter().map(|node| node.index()).collect();
             nodes.repeat(entry.rows.rows())
         };
-        self.invariants.slot_nodes().iter().map(|&node| node as usize).chain(self.custom.iter().flat_map(of_custom))
+        let of_invariants = self.invariants.slot_nodes();
+        let of_functions = self.functions.sources().map(|s| of_invariants[s] as usize);
+        of_invariants.iter().map(|&node| node as usize).chain(of_functions).chain(self.custom.iter().flat_map(of_custom))
     }
 
     /// The slots of each constraint row (r).
     pub(crate) fn row_slots(&self) -> Vec<std::ops::Range<usize>> {
-        let mut slots: Vec<_> = self.rows.iter().map(|row| self.invariants.slots_of(row.invariant)).collect();
-        let mut start = self.invariants.slots();
+        let mut slots: Vec<_> = self.rows.iter().map(|row| self.slots_of(row.quantity)).collect();
+        let mut start = self.invariants.slots() + self.functions.slots();
         for entry in &self.custom {
             for _ in 0..entry.rows.rows() {
                 slots.push(start..start + entry.nodes.len());
@@ -73,9 +100,20 @@ impl System {
         slots
     }
 
-    /// Evaluates everything at the positions `x` of all nodes and time `t`.
-    pub fn evaluate(&self, x: &[f64], t: f64, out: &mut Evaluation) {
+    /// Evaluates everything at the positions `x` of all nodes and time `t`. Angles are counted from those of `near`, less
+    /// than half a turn away.
+    pub fn evaluate(&self, x: &[f64], t: f64, near: &Evaluation, out: &mut Evaluation) {
+        out.functions.angle.copy_from_slice(&near.functions.angle);
+        self.evaluate_again(x, t, out);
+    }
+
+    /// The same with angles counted from those that `out` holds.
+    pub fn evaluate_again(&self, x: &[f64], t: f64, out: &mut Evaluation) {
         self.invariants.evaluate(x, &mut out.value, &mut out.gradient);
+        if !self.functions.is_empty() {
+            self.functions.evaluate(&out.value, &mut out.functions);
+            self.take_functions(out);
+        }
         self.each_custom(out, |entry, local, out| {
             let k = gather(self.dim, &entry.nodes, x, local);
             entry.rows.value(&local[..k], t, out.value);
@@ -83,8 +121,18 @@ impl System {
         });
     }
 
+    /// Values and gradients of the functions from their derivatives and the gradients of the invariants.
+    fn take_functions(&self, out: &mut Evaluation) {
+        let first = self.invariants.len();
+        out.value[first..].iter_mut().zip(&out.functions.local).for_each(|(value, local)| *value = local.value);
+        let (invariants, functions) = out.gradient.split_at_mut(self.invariants.slots() * self.dim);
+        let local = &out.functions.local;
+        self.functions.compose(self.dim, |k, _| local[k].gradient.map(|factor| [factor, 0.0]), invariants, invariants, functions);
+    }
+
     /// The gradients between two positions whose evaluations are `from` and `to`, such that gradient · Δx (+ ∂Φ/∂t Δt)
-    /// is the difference of the values: half way for quadratic forms, at the paper's β (15) for custom rows.
+    /// is the difference of the values: half way for quadratic forms, by discrete derivatives for functions of them, at
+    /// the paper's β (15) for custom rows.
     pub fn evaluate_between(&self, span: Between<'_>, from: &Evaluation, to: &Evaluation, out: &mut Evaluation) {
         for ((out, a), b) in out.gradient.iter_mut().zip(&from.gradient).zip(&to.gradient) {
             *out = 0.5 * (a + b);
@@ -92,7 +140,11 @@ impl System {
         for ((out, a), b) in out.value.iter_mut().zip(&from.value).zip(&to.value) {
             *out = 0.5 * (a + b);
         }
-        let mut first = self.invariants.len();
+        if !self.functions.is_empty() {
+            self.functions.evaluate_between([&from.value, &to.value], &from.functions, &to.functions, &mut out.functions);
+            self.take_functions(out);
+        }
+        let mut first = self.invariants.len() + self.functions.len();
         self.each_custom(out, |entry, local, mut out| {
             let rows = entry.rows.rows();
             for row in 0..rows {
@@ -106,9 +158,9 @@ impl System {
     /// Φ (r) from an evaluation and the time it belongs to.
     pub fn constraint_values(&self, at: &Evaluation, t: f64, phi: &mut [f64]) {
         for (phi, row) in phi.iter_mut().zip(&self.rows) {
-            *phi = at.value[row.invariant.0 as usize] - row.target.at(t)[0];
+            *phi = at.value[self.value_index(row.quantity)] - row.target.at(t)[0];
         }
-        phi[self.rows.len()..].copy_from_slice(&at.value[self.invariants.len()..]);
+        phi[self.rows.len()..].copy_from_slice(&at.value[self.invariants.len() + self.functions.len()..]);
     }
 
     /// Φ̇ = G v + Φ_t (r), `v` over all nodes.
@@ -139,12 +191,40 @@ impl System {
         sum
     }
 
-    /// Everything in Φ̈ but G a (r): (G v)_q v + 2 Φ_qt v + Φ_tt. `half` has room for one number an invariant and
-    /// `product` for D numbers a slot.
-    pub fn constraint_curvatures(&self, x: &[f64], v: &[f64], t: f64, half: &mut [f64], product: &mut [f64], out: &mut [f64]) {
+    /// Rates ∇π_i·v of some invariants at an evaluation.
+    pub(crate) fn rates(&self, of: &[InvariantId], at: &Evaluation, v: &[f64]) -> [f64; MAX_ARGUMENTS] {
+        let mut rates = [0.0; MAX_ARGUMENTS];
+        for (rate, &id) in rates.iter_mut().zip(of) {
+            *rate = self.along(&self.invariants.slots_of(id), self.invariants.slot_nodes(), at, v);
+        }
+        rates
+    }
+
+    /// Everything in Φ̈ but G a (r): (G v)_q v + 2 Φ_qt v + Φ_tt, at the evaluation `at` of `x`. `half` has room for one
+    /// number an invariant and `product` for D numbers a slot.
+    #[expect(clippy::too_many_arguments)] // a state, scratch and what comes of it
+    pub fn constraint_curvatures(
+        &self,
+        at: &Evaluation,
+        x: &[f64],
+        v: &[f64],
+        t: f64,
+        half: &mut [f64],
+        product: &mut [f64],
+        out: &mut [f64],
+    ) {
         self.invariants.curvature(v, half, product);
         for (out, row) in out.iter_mut().zip(&self.rows) {
-            *out = 2.0 * half[row.invariant.0 as usize] - row.target.at(t)[2];
+            let curvature = match row.quantity {
+                Quantity::Invariant(id) => 2.0 * half[id.0 as usize],
+                Quantity::Function(id) => {
+                    let (base, local) = (self.functions.base(id), &at.functions.local[id.0 as usize]);
+                    let rates = self.rates(base, at, v);
+                    let inner = base.iter().zip(&local.gradient).map(|(id, gradient)| 2.0 * gradient * half[id.0 as usize]);
+                    inner.sum::<f64>() + (0..base.len()).map(|i| rates[i] * local.bend(i, &rates)).sum::<f64>()
+                }
+            };
+            *out = curvature - row.target.at(t)[2];
         }
         let mut first = self.rows.len();
         let (mut position, mut velocity) = ([0.0; super::SIZE], [0.0; super::SIZE]);
@@ -157,11 +237,16 @@ impl System {
         }
     }
 
-    /// H v of all rows' and laws' slots (D a slot), their second derivatives times a direction over all nodes. `half`
-    /// has room for one number an invariant.
-    pub(crate) fn turn(&self, x: &[f64], v: &[f64], t: f64, half: &mut [f64], turned: &mut [f64]) {
+    /// H v of all rows' and laws' slots (D a slot), their second derivatives times a direction over all nodes, at the
+    /// evaluation `at` of `x`. `half` has room for one number an invariant.
+    pub(crate) fn turn(&self, at: &Evaluation, x: &[f64], v: &[f64], t: f64, half: &mut [f64], turned: &mut [f64]) {
         self.invariants.curvature(v, half, turned);
-        let mut slot = self.invariants.slots() * self.dim;
+        self.turn_functions(at, turned, |k, base| {
+            let rates = self.rates(base, at, v);
+            let local = &at.functions.local[k];
+            std::array::from_fn(|i| [local.gradient[i], local.bend(i, &rates)])
+        });
+        let mut slot = (self.invariants.slots() + self.functions.slots()) * self.dim;
         let (mut hessian, mut position, mut direction) = ([0.0; super::SIZE * super::SIZE], [0.0; super::SIZE], [0.0; super::SIZE]);
         for entry in &self.custom {
             let width = gather(self.dim, &entry.nodes, x, &mut position);
@@ -179,13 +264,28 @@ impl System {
         }
     }
 
+    /// Fills the slots of the functions with `factor` times what the slots of their invariants hold, plus `bend` times
+    /// the gradients there; `parts` gives both for each argument of a function.
+    pub(crate) fn turn_functions(
+        &self,
+        at: &Evaluation,
+        turned: &mut [f64],
+        parts: impl Fn(usize, &[InvariantId]) -> [[f64; 2]; MAX_ARGUMENTS],
+    ) {
+        if !self.functions.is_empty() {
+            let (inner, own) = turned.split_at_mut(self.invariants.slots() * self.dim);
+            self.functions.compose(self.dim, parts, inner, &at.gradient, own);
+        }
+    }
+
     /// Calls `f` for every custom entry with its part of an evaluation.
     fn each_custom(&self, out: &mut Evaluation, mut f: impl FnMut(&CustomEntry, &mut [f64; super::SIZE], CustomPart<'_>)) {
-        let (mut row, mut slot) = (0, self.invariants.slots() * self.dim);
+        let (mut row, mut slot) = (0, (self.invariants.slots() + self.functions.slots()) * self.dim);
+        let values = self.invariants.len() + self.functions.len();
         let mut local = [0.0; super::SIZE];
         for entry in &self.custom {
             let (rows, width) = (entry.rows.rows(), entry.nodes.len() * self.dim);
-            let first = self.invariants.len() + row;
+            let first = values + row;
             let part = CustomPart {
                 value: &mut out.value[first..first + rows],
                 gradient: &mut out.gradient[slot..slot + rows * width],

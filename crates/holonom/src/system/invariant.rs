@@ -3,7 +3,7 @@
 //! Every invariant is one product of two sums of nodes, `f U·W` or `f e·(U × W)`, with `U = Σ u_a x_a + u₀`. Differences of
 //! nodes are taken before they are multiplied, so that a row far from the origin loses no digits.
 
-use super::Place;
+use super::{Place, Term};
 
 /// An invariant of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +41,12 @@ pub struct Invariants {
     items: Vec<Invariant>,
     term_node: Vec<u32>,
     term_factor: Vec<f64>,
+    /// Factors of the quarter turns of the nodes, in the plane.
+    term_turn: Vec<f64>,
 }
+
+/// The normal of the plane of a planar model.
+const NORMAL: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// A constant block of a Hessian: ∂²π/∂x_a∂x_b.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,41 +59,44 @@ pub(crate) enum HessianBlock {
 
 impl Invariants {
     pub(crate) fn new(dim: usize) -> Self {
-        Self { dim, items: Vec::new(), term_node: Vec::new(), term_factor: Vec::new() }
+        Self { dim, items: Vec::new(), term_node: Vec::new(), term_factor: Vec::new(), term_turn: Vec::new() }
     }
 
-    pub(crate) fn square(&mut self, u: &[(Place, f64)]) -> InvariantId {
+    pub(crate) fn square(&mut self, u: &[Term]) -> InvariantId {
         self.add(Product::Square, u, &[])
     }
 
-    pub(crate) fn dot(&mut self, u: &[(Place, f64)], w: &[(Place, f64)]) -> InvariantId {
+    pub(crate) fn dot(&mut self, u: &[Term], w: &[Term]) -> InvariantId {
         self.add(Product::Dot, u, w)
     }
 
-    pub(crate) fn cross(&mut self, e: [f64; 3], u: &[(Place, f64)], w: &[(Place, f64)]) -> InvariantId {
-        let e = if self.dim == 2 { [0.0, 0.0, 1.0] } else { e };
+    pub(crate) fn cross(&mut self, e: [f64; 3], u: &[Term], w: &[Term]) -> InvariantId {
+        let e = if self.dim == 2 { NORMAL } else { e };
         self.add(Product::Cross(e), u, w)
     }
 
-    fn add(&mut self, product: Product, u: &[(Place, f64)], w: &[(Place, f64)]) -> InvariantId {
+    fn add(&mut self, product: Product, u: &[Term], w: &[Term]) -> InvariantId {
         let (u, w) = (self.sum(u), self.sum(w));
         self.items.push(Invariant { product, u, w });
         InvariantId(self.items.len() as u32 - 1)
     }
 
-    fn sum(&mut self, terms: &[(Place, f64)]) -> Sum {
+    fn sum(&mut self, terms: &[Term]) -> Sum {
         let start = self.term_node.len() as u32;
         let mut constant = [0.0; 3];
-        for &(place, factor) in terms {
+        for &Term { place, factor, turn } in terms {
             match place {
                 Place::Node(node) => {
                     self.term_node.push(node.0);
                     self.term_factor.push(factor);
+                    self.term_turn.push(turn);
                 }
                 Place::Fixed(x) => {
                     for c in 0..self.dim {
                         constant[c] += factor * x[c];
                     }
+                    constant[0] -= turn * x[1];
+                    constant[1] += turn * x[0];
                 }
             }
         }
@@ -122,24 +130,38 @@ impl Invariants {
     }
 
     /// The blocks ∂²π/∂x_a∂x_b of an invariant, both triangles; a pair of nodes may come more than once.
+    ///
+    /// With factors f + gJ, J the quarter turn of the plane, a block is f_a f_b + g_a g_b + (f_a g_b − f_b g_a) J.
     pub(crate) fn hessian(&self, id: InvariantId) -> Vec<(u32, u32, HessianBlock)> {
         let item = &self.items[id.0 as usize];
-        let terms = |sum: &Sum| (sum.start as usize..sum.end as usize).map(|s| (self.term_node[s], self.term_factor[s]));
+        let terms = |sum: &Sum| (sum.start as usize..sum.end as usize).map(|s| (self.term_node[s], [self.term_factor[s], self.term_turn[s]]));
         let mut blocks = Vec::new();
-        if item.product == Product::Square {
-            for (a, u) in terms(&item.u) {
-                blocks.extend(terms(&item.u).map(|(b, w)| (a, b, HessianBlock::Isotropic(u * w))));
+        let mut push = |a: u32, b: u32, isotropic: f64, skew: f64, e: [f64; 3]| {
+            if isotropic != 0.0 {
+                blocks.push((a, b, HessianBlock::Isotropic(isotropic)));
             }
-            return blocks;
-        }
+            if skew != 0.0 {
+                blocks.push((a, b, HessianBlock::Skew(skew, e)));
+            }
+        };
+        // J is minus the skew matrix of the plane's normal.
+        let product = |[f, g]: [f64; 2], [p, q]: [f64; 2]| (f * p + g * q, g * p - f * q);
+        let right = if item.product == Product::Square { &item.u } else { &item.w };
         for (a, u) in terms(&item.u) {
-            for (b, w) in terms(&item.w) {
-                let (forth, back) = match item.product {
-                    Product::Cross(e) => (HessianBlock::Skew(u * w, e), HessianBlock::Skew(-u * w, e)),
-                    _ => (HessianBlock::Isotropic(u * w), HessianBlock::Isotropic(u * w)),
-                };
-                blocks.push((a, b, forth));
-                blocks.push((b, a, back));
+            for (b, w) in terms(right) {
+                let (along, across) = product(u, w);
+                match item.product {
+                    Product::Square => push(a, b, along, across, NORMAL),
+                    Product::Dot => {
+                        push(a, b, along, across, NORMAL);
+                        push(b, a, along, -across, NORMAL);
+                    }
+                    Product::Cross(e) => {
+                        // e × and J multiply to −1 in the plane; in space there are no quarter turns.
+                        push(a, b, -across, along, e);
+                        push(b, a, -across, -along, e);
+                    }
+                }
             }
         }
         blocks
@@ -207,6 +229,11 @@ impl Invariants {
                 for c in 0..D {
                     sum[c] += factor * x[c];
                 }
+                if D == 2 {
+                    let turn = self.term_turn[s];
+                    sum[0] -= turn * x[1];
+                    sum[1] += turn * x[0];
+                }
             }
         }
         sums
@@ -225,6 +252,11 @@ impl Invariants {
                 let slot = &mut gradient[s * D..s * D + D];
                 for c in 0..D {
                     slot[c] = factor * direction[c];
+                }
+                if D == 2 {
+                    let turn = self.term_turn[s];
+                    slot[0] += turn * direction[1];
+                    slot[1] -= turn * direction[0];
                 }
             }
         }

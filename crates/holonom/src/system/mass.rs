@@ -1,25 +1,49 @@
-//! Constant mass matrix M = M₄ ⊗ 1: one number for each pair of nodes (methods §4.1).
+//! Constant mass matrix M = M₄ ⊗ 1: one number for each pair of nodes (methods §4.1), and in the plane a second one for
+//! the quarter turn J, as a body between two points with its centre of mass beside them needs it.
 
-/// Symmetric sparse matrix over nodes, rows compressed. The full matrix is this one times the unit matrix of a node.
+/// Symmetric sparse matrix over nodes, rows compressed.
 #[derive(Clone, Debug, Default)]
 pub struct Mass {
     start: Vec<u32>,
     column: Vec<u32>,
     value: Vec<f64>,
+    turn: Vec<f64>,
+}
+
+/// The block m 1 + s J of a pair of nodes, kg.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MassBlock {
+    pub m: f64,
+    /// 0 in space.
+    pub s: f64,
+}
+
+impl MassBlock {
+    /// x · (m 1 + s J) y of vectors with as many components as a node.
+    #[inline]
+    pub fn product(self, x: &[f64], y: &[f64]) -> f64 {
+        let along: f64 = x.iter().zip(y).map(|(x, y)| x * y).sum();
+        match self.s == 0.0 {
+            true => self.m * along,
+            false => self.m * along + self.s * (x[1] * y[0] - x[0] * y[1]),
+        }
+    }
 }
 
 impl Mass {
-    /// Adds up the entries `(a, b, m)` of a matrix over `nodes` nodes; both triangles must be among them.
-    pub(crate) fn new(nodes: usize, mut entries: Vec<(u32, u32, f64)>) -> Self {
+    /// Adds up the blocks `(a, b, m, s)` of a matrix over `nodes` nodes; both triangles must be among them.
+    pub(crate) fn new(nodes: usize, mut entries: Vec<(u32, u32, MassBlock)>) -> Self {
         entries.sort_by_key(|&(a, b, _)| (a, b));
         let mut mass = Self { start: vec![0; nodes + 1], ..Self::default() };
         let mut last = None;
-        for (a, b, m) in entries {
+        for (a, b, block) in entries {
             if last == Some((a, b)) {
-                *mass.value.last_mut().expect("an entry came before") += m;
+                *mass.value.last_mut().expect("an entry came before") += block.m;
+                *mass.turn.last_mut().expect("an entry came before") += block.s;
             } else {
                 mass.column.push(b);
-                mass.value.push(m);
+                mass.value.push(block.m);
+                mass.turn.push(block.s);
                 mass.start[a as usize + 1] += 1;
                 last = Some((a, b));
             }
@@ -35,32 +59,45 @@ impl Mass {
         self.start.len() - 1
     }
 
-    /// The entries of node `a`: pairs of node and kg.
-    pub fn row(&self, a: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    /// The blocks of node `a`: the other node and the block.
+    pub fn row(&self, a: usize) -> impl Iterator<Item = (usize, MassBlock)> + '_ {
         let range = self.start[a] as usize..self.start[a + 1] as usize;
-        self.column[range.clone()].iter().zip(&self.value[range]).map(|(&b, &m)| (b as usize, m))
+        range.map(|k| (self.column[k] as usize, MassBlock { m: self.value[k], s: self.turn[k] }))
     }
 
     /// The entry of the diagonal, kg.
     pub fn diagonal(&self, a: usize) -> f64 {
-        self.row(a).find(|&(b, _)| b == a).map_or(0.0, |(_, m)| m)
+        self.row(a).find(|&(b, _)| b == a).map_or(0.0, |(_, block)| block.m)
     }
 
     /// y = M x over the first `nodes` nodes of `y`, `x` over all nodes, `dim` numbers a node.
     pub fn times(&self, dim: usize, x: &[f64], y: &mut [f64]) {
         match dim {
-            2 => self.times_in::<2>(x, y),
-            _ => self.times_in::<3>(x, y),
+            2 => self.times_in_plane(x, y),
+            _ => self.times_in_space(x, y),
         }
     }
 
-    fn times_in<const D: usize>(&self, x: &[f64], y: &mut [f64]) {
-        for (a, y) in y.chunks_exact_mut(D).enumerate() {
-            let mut sum = [0.0; D];
-            for (b, m) in self.row(a) {
-                for c in 0..D {
-                    sum[c] += m * x[b * D + c];
+    fn times_in_space(&self, x: &[f64], y: &mut [f64]) {
+        for (a, y) in y.chunks_exact_mut(3).enumerate() {
+            let mut sum = [0.0; 3];
+            for k in self.start[a] as usize..self.start[a + 1] as usize {
+                let (b, m) = (self.column[k] as usize * 3, self.value[k]);
+                for c in 0..3 {
+                    sum[c] += m * x[b + c];
                 }
+            }
+            y.copy_from_slice(&sum);
+        }
+    }
+
+    fn times_in_plane(&self, x: &[f64], y: &mut [f64]) {
+        for (a, y) in y.chunks_exact_mut(2).enumerate() {
+            let mut sum = [0.0; 2];
+            for k in self.start[a] as usize..self.start[a + 1] as usize {
+                let (b, m, s) = (self.column[k] as usize * 2, self.value[k], self.turn[k]);
+                sum[0] += m * x[b] - s * x[b + 1];
+                sum[1] += m * x[b + 1] + s * x[b];
             }
             y.copy_from_slice(&sum);
         }
@@ -70,9 +107,9 @@ impl Mass {
     pub fn half_product(&self, dim: usize, x: &[f64], y: &[f64]) -> f64 {
         let mut sum = 0.0;
         for a in 0..self.nodes() {
-            for (b, m) in self.row(a) {
-                let dot: f64 = (0..dim).map(|c| x[a * dim + c] * y[b * dim + c]).sum();
-                sum += m * dot;
+            let x = &x[a * dim..(a + 1) * dim];
+            for (b, block) in self.row(a) {
+                sum += block.product(x, &y[b * dim..(b + 1) * dim]);
             }
         }
         0.5 * sum

@@ -7,35 +7,39 @@
 mod builder;
 mod custom;
 mod evaluate;
+mod function;
 mod invariant;
 mod law;
 mod mass;
 mod motion;
 mod potential;
+mod respond;
 
-pub use builder::{NodeId, Place, SystemBuilder};
+pub use builder::{NodeId, Place, SystemBuilder, Term};
 pub use custom::{ConstraintFunction, CustomRows, Differentiated, ForceFunction, Number, SIZE};
 pub(crate) use evaluate::gather;
 pub use evaluate::{Between, Evaluation};
+pub use function::{Derivatives, FunctionId, Part, Quantity, Smooth, SmoothFunction};
+pub(crate) use function::{FunctionValues, Functions, NO_CHANGE};
 pub(crate) use invariant::{HessianBlock, skew};
 pub use invariant::{InvariantId, Invariants};
 pub use law::{Law, Load, MAX_ARGUMENTS, Reach, Response};
-pub use mass::Mass;
+pub use mass::{Mass, MassBlock};
 pub use motion::{Constant, Signal};
-pub use potential::PotentialFunction;
 
 use std::sync::Arc;
 
 /// A constraint row Φ_k = π_k − c_k(t).
 pub(crate) struct Row {
     pub name: String,
-    pub invariant: InvariantId,
+    pub quantity: Quantity,
     pub target: Arc<dyn Signal>,
 }
 
-/// A law acting on the invariants `invariants`.
+/// A law acting on the quantities `arguments`, which depend on `invariants`, one after the other.
 pub(crate) struct LawEntry {
     pub name: String,
+    pub arguments: Vec<Quantity>,
     pub invariants: Vec<InvariantId>,
     pub law: Arc<dyn Law>,
 }
@@ -59,10 +63,13 @@ pub struct System {
     pub(crate) dim: usize,
     pub(crate) free: usize,
     pub(crate) mass: Mass,
-    /// Mass that weighs on each node, kg: the row of M and what couples it to fixed places.
-    pub(crate) weighing: Vec<f64>,
+    /// The weight on each node is (m 1 − s J) g, kg.
+    pub(crate) weighing: Vec<[f64; 2]>,
     pub(crate) gravity: [f64; 3],
     pub(crate) invariants: Invariants,
+    pub(crate) functions: Functions,
+    /// The rows that are no invariants but functions of them.
+    pub(crate) function_rows: Vec<u32>,
     pub(crate) rows: Vec<Row>,
     pub(crate) custom: Vec<CustomEntry>,
     pub(crate) laws: Vec<LawEntry>,

@@ -1,0 +1,358 @@
+//! Functions of invariants that are no quadratic forms themselves: sums of invariants, of angles and of smooth functions
+//! of them. Rows, laws and outputs take them like invariants.
+//!
+//! A function of invariants keeps what they keep: it does not change under rigid motion, and its discrete derivative,
+//! with D·Δπ = Δg, makes momenta and energy exact (methods §2.2).
+
+use std::sync::Arc;
+
+use num_dual::HyperDual64;
+
+use super::{Differentiated, InvariantId, Invariants, MAX_ARGUMENTS, Number};
+
+/// A function of a system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FunctionId(pub(crate) u32);
+
+/// What a row keeps, what a law acts on, what is recorded: an invariant or a function of some.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    Invariant(InvariantId),
+    Function(FunctionId),
+}
+
+impl From<InvariantId> for Quantity {
+    fn from(id: InvariantId) -> Self {
+        Self::Invariant(id)
+    }
+}
+
+impl From<FunctionId> for Quantity {
+    fn from(id: FunctionId) -> Self {
+        Self::Function(id)
+    }
+}
+
+/// A smooth function of some invariants, written once over any number type; [`Differentiated`] takes its derivatives.
+pub trait SmoothFunction: Send + Sync {
+    /// Its value.
+    fn evaluate<N: Number>(&self, value: &[N]) -> N;
+}
+
+/// Value, gradient and Hessian of a function of m numbers.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Derivatives {
+    pub value: f64,
+    /// ∂g/∂π_i; between two positions its discrete derivative D_i.
+    pub gradient: [f64; MAX_ARGUMENTS],
+    /// ∂²g/∂π_i∂π_j; between two positions ∂D_i/∂π_j with π_j at the second.
+    pub hessian: [[f64; MAX_ARGUMENTS]; MAX_ARGUMENTS],
+}
+
+impl Derivatives {
+    /// Σ_j ∂²g/∂π_i∂π_j r_j.
+    #[inline]
+    pub(crate) fn bend(&self, i: usize, rates: &[f64; MAX_ARGUMENTS]) -> f64 {
+        self.hessian[i].iter().zip(rates).map(|(h, rate)| h * rate).sum()
+    }
+}
+
+/// A smooth function as an engine sees it.
+pub trait Smooth: Send + Sync {
+    /// Value and derivatives.
+    fn derivatives(&self, value: &[f64]) -> Derivatives;
+}
+
+impl<F: SmoothFunction> Smooth for Differentiated<F> {
+    fn derivatives(&self, value: &[f64]) -> Derivatives {
+        let m = value.len();
+        let mut out = Derivatives { value: self.0.evaluate(value), ..Derivatives::default() };
+        for i in 0..m {
+            for j in 0..=i {
+                let mut point = [HyperDual64::from(0.0); MAX_ARGUMENTS];
+                point.iter_mut().zip(value).for_each(|(point, &value)| *point = HyperDual64::from(value));
+                point[i].eps1 = 1.0;
+                point[j].eps2 = 1.0;
+                let result = self.0.evaluate(&point[..m]);
+                out.gradient[i] = result.eps1;
+                out.hessian[i][j] = result.eps1eps2;
+                out.hessian[j][i] = result.eps1eps2;
+            }
+        }
+        out
+    }
+}
+
+/// Change of the arguments, over their size, below which the quotient of the discrete derivative would be round-off; the
+/// derivative half way is then as exact.
+pub(crate) const NO_CHANGE: f64 = 1e-6;
+
+/// The discrete derivative of a smooth function: D = g'(π̄) + (Δg − g'(π̄)·Δπ)/‖Δπ‖² Δπ, and what it changes by with the
+/// second position.
+pub(super) fn difference(smooth: &dyn Smooth, from: &[f64], to: &[f64]) -> Derivatives {
+    let m = from.len();
+    let (mut middle, mut change) = ([0.0; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS]);
+    for i in 0..m {
+        middle[i] = 0.5 * (from[i] + to[i]);
+        change[i] = to[i] - from[i];
+    }
+    let half = smooth.derivatives(&middle[..m]);
+    let mut out = half;
+    out.hessian.iter_mut().flatten().for_each(|h| *h *= 0.5);
+    let square = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>();
+    let size = square(&change);
+    if size <= NO_CHANGE * NO_CHANGE * square(&middle) {
+        return out;
+    }
+    let (start, end) = (smooth.derivatives(from), smooth.derivatives(to));
+    let along: f64 = (0..m).map(|i| half.gradient[i] * change[i]).sum();
+    let quotient = (end.value - start.value - along) / size;
+    for j in 0..m {
+        let bent: f64 = (0..m).map(|k| half.hessian[k][j] * change[k]).sum();
+        let slope = (end.gradient[j] - half.gradient[j] - 0.5 * bent - 2.0 * quotient * change[j]) / size;
+        (0..m).for_each(|i| out.hessian[i][j] += slope * change[i]);
+    }
+    for i in 0..m {
+        out.gradient[i] += quotient * change[i];
+        out.hessian[i][i] += quotient;
+    }
+    out
+}
+
+/// A summand of a function.
+#[derive(Clone)]
+pub enum Part {
+    /// An invariant.
+    Invariant(InvariantId),
+    /// The angle whose cosine and sine are two invariants, times whatever they have in common. It is counted over any
+    /// number of turns from where it was.
+    Angle { cosine: InvariantId, sine: InvariantId },
+    /// A smooth function of some invariants.
+    Smooth { of: Vec<InvariantId>, function: Arc<dyn Smooth> },
+}
+
+#[derive(Clone)]
+struct Summand {
+    part: Part,
+    factor: f64,
+    /// Position of its first argument among those of the function, and how many it has.
+    first: usize,
+    arguments: usize,
+}
+
+/// A sum of parts with its arguments and slots.
+#[derive(Clone)]
+struct Function {
+    summands: Vec<Summand>,
+    base: Vec<InvariantId>,
+    /// Its first slot among those of all functions.
+    slot: usize,
+    slots: usize,
+    /// Its first angle among those of all functions.
+    angle: usize,
+}
+
+/// All functions of a system.
+#[derive(Clone, Default)]
+pub(crate) struct Functions {
+    items: Vec<Function>,
+    /// For each slot of a function the slot of the invariant that it comes from, and which argument that is.
+    source: Vec<(u32, u8)>,
+    angles: usize,
+}
+
+/// Evaluated functions: value and derivatives by their arguments, and the angles counted.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FunctionValues {
+    pub local: Vec<Derivatives>,
+    pub angle: Vec<f64>,
+}
+
+impl Functions {
+    pub fn add(&mut self, invariants: &Invariants, parts: &[(Part, f64)]) -> FunctionId {
+        let mut function =
+            Function { summands: Vec::new(), base: Vec::new(), slot: self.source.len(), slots: 0, angle: self.angles };
+        for (part, factor) in parts {
+            let of = match part {
+                Part::Invariant(id) => vec![*id],
+                Part::Angle { cosine, sine } => vec![*cosine, *sine],
+                Part::Smooth { of, .. } => of.clone(),
+            };
+            self.angles += usize::from(matches!(part, Part::Angle { .. }));
+            let summand = Summand { part: part.clone(), factor: *factor, first: function.base.len(), arguments: of.len() };
+            function.summands.push(summand);
+            function.base.extend(of);
+        }
+        assert!(function.base.len() <= MAX_ARGUMENTS, "a function has at most {MAX_ARGUMENTS} arguments");
+        for (k, &id) in function.base.iter().enumerate() {
+            self.source.extend(invariants.slots_of(id).map(|s| (s as u32, k as u8)));
+        }
+        function.slots = self.source.len() - function.slot;
+        self.items.push(function);
+        FunctionId(self.items.len() as u32 - 1)
+    }
+
+    pub fn len(&self) -> usize {
+        self.items.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.items.is_empty()
+    }
+
+    pub fn slots(&self) -> usize {
+        self.source.len()
+    }
+
+    /// Slots of the invariants that the slots of the functions come from.
+    pub fn sources(&self) -> impl Iterator<Item = usize> + '_ {
+        self.source.iter().map(|&(s, _)| s as usize)
+    }
+
+    /// The slots of a function among those of all functions.
+    pub fn slots_of(&self, id: FunctionId) -> std::ops::Range<usize> {
+        let function = &self.items[id.0 as usize];
+        function.slot..function.slot + function.slots
+    }
+
+    /// The invariants a function depends on.
+    pub fn base(&self, id: FunctionId) -> &[InvariantId] {
+        &self.items[id.0 as usize].base
+    }
+
+    /// Room for values.
+    pub fn values(&self) -> FunctionValues {
+        FunctionValues { local: vec![Derivatives::default(); self.items.len()], angle: vec![0.0; self.angles] }
+    }
+
+    /// Values and derivatives at the invariants `pi`, with angles counted from those that `out` holds.
+    pub fn evaluate(&self, pi: &[f64], out: &mut FunctionValues) {
+        for (function, local) in self.items.iter().zip(&mut out.local) {
+            *local = Derivatives::default();
+            let mut angle = function.angle;
+            for summand in &function.summands {
+                let mut part = match &summand.part {
+                    Part::Invariant(id) => identity(pi[id.0 as usize]),
+                    Part::Angle { cosine, sine } => {
+                        let (c, s) = (pi[cosine.0 as usize], pi[sine.0 as usize]);
+                        let part = angle_at(c, s, out.angle[angle]);
+                        out.angle[angle] = part.value;
+                        angle += 1;
+                        part
+                    }
+                    Part::Smooth { of, function } => function.derivatives(&pick(of, pi)[..of.len()]),
+                };
+                summand.add(&mut part, local);
+            }
+        }
+    }
+
+    /// Discrete derivatives between two positions, and values half way.
+    pub fn evaluate_between(&self, pi: [&[f64]; 2], from: &FunctionValues, to: &FunctionValues, out: &mut FunctionValues) {
+        for (angle, (a, b)) in out.angle.iter_mut().zip(from.angle.iter().zip(&to.angle)) {
+            *angle = 0.5 * (a + b);
+        }
+        for (k, (function, local)) in self.items.iter().zip(&mut out.local).enumerate() {
+            *local = Derivatives::default();
+            for summand in &function.summands {
+                let mut part = match &summand.part {
+                    Part::Invariant(_) => identity(0.0),
+                    Part::Angle { cosine, sine } => angle_between(pi.map(|pi| [pi[cosine.0 as usize], pi[sine.0 as usize]])),
+                    Part::Smooth { of, function } => {
+                        let [from, to] = pi.map(|pi| pick(of, pi));
+                        difference(function.as_ref(), &from[..of.len()], &to[..of.len()])
+                    }
+                };
+                summand.add(&mut part, local);
+            }
+            local.value = 0.5 * (from.local[k].value + to.local[k].value);
+        }
+    }
+
+    /// Fills the functions' slots (D a slot): for each argument `factor` times what the slots of the invariant hold in
+    /// `inner`, plus `bend` times its gradient.
+    pub fn compose(
+        &self,
+        dim: usize,
+        parts: impl Fn(usize, &[InvariantId]) -> [[f64; 2]; MAX_ARGUMENTS],
+        inner: &[f64],
+        gradient: &[f64],
+        out: &mut [f64],
+    ) {
+        for (k, function) in self.items.iter().enumerate() {
+            let parts = parts(k, &function.base);
+            for s in function.slot..function.slot + function.slots {
+                let (source, argument) = self.source[s];
+                let [factor, bend] = parts[argument as usize];
+                let from = source as usize * dim;
+                for c in 0..dim {
+                    out[s * dim + c] = factor * inner[from + c] + bend * gradient[from + c];
+                }
+            }
+        }
+    }
+}
+
+impl Summand {
+    /// Adds the derivatives of this part to those of the function.
+    fn add(&self, part: &mut Derivatives, sum: &mut Derivatives) {
+        sum.value += self.factor * part.value;
+        for i in 0..self.arguments {
+            sum.gradient[self.first + i] += self.factor * part.gradient[i];
+            for j in 0..self.arguments {
+                sum.hessian[self.first + i][self.first + j] += self.factor * part.hessian[i][j];
+            }
+        }
+    }
+}
+
+pub(super) fn pick(ids: &[InvariantId], values: &[f64]) -> [f64; MAX_ARGUMENTS] {
+    let mut picked = [0.0; MAX_ARGUMENTS];
+    ids.iter().zip(&mut picked).for_each(|(id, out)| *out = values[id.0 as usize]);
+    picked
+}
+
+fn identity(value: f64) -> Derivatives {
+    let mut out = Derivatives { value, ..Derivatives::default() };
+    out.gradient[0] = 1.0;
+    out
+}
+
+/// θ with (c, s) = ρ (cos θ, sin θ), nearest to `near`, and its derivatives by c and s.
+fn angle_at(c: f64, s: f64, near: f64) -> Derivatives {
+    let (sin, cos) = near.sin_cos();
+    let square = c * c + s * s;
+    let mut out = Derivatives { value: near + (s * cos - c * sin).atan2(c * cos + s * sin), ..Derivatives::default() };
+    out.gradient[..2].copy_from_slice(&[-s / square, c / square]);
+    let (twist, bend) = (2.0 * c * s / (square * square), (s * s - c * c) / (square * square));
+    out.hessian[0][..2].copy_from_slice(&[twist, bend]);
+    out.hessian[1][..2].copy_from_slice(&[bend, -twist]);
+    out
+}
+
+/// The discrete derivative κ (−s̄, c̄) of an angle, κ = Δθ/(c₀s₁ − s₀c₁) (methods §2.2), for turns below π.
+fn angle_between([[c0, s0], [c1, s1]]: [[f64; 2]; 2]) -> Derivatives {
+    let (c, s) = (0.5 * (c0 + c1), 0.5 * (s0 + s1));
+    let turn = (c0 * s1 - s0 * c1).atan2(c0 * c1 + s0 * s1);
+    let end = c1 * c1 + s1 * s1;
+    let radius = (end * (c0 * c0 + s0 * s0)).sqrt();
+    // Δ/sin Δ and its derivative.
+    let (ratio, slope) = match turn.abs() < 0.01 {
+        true => {
+            let t2 = turn * turn;
+            (1.0 + t2 / 6.0 + 7.0 * t2 * t2 / 360.0, turn / 3.0 + 7.0 * turn * t2 / 90.0)
+        }
+        false => {
+            let (sin, cos) = turn.sin_cos();
+            (turn / sin, (sin - turn * cos) / (sin * sin))
+        }
+    };
+    let kappa = ratio / radius;
+    let by_c = (-slope * s1 - ratio * c1) / (radius * end);
+    let by_s = (slope * c1 - ratio * s1) / (radius * end);
+    let mut out = Derivatives::default();
+    out.gradient[..2].copy_from_slice(&[-kappa * s, kappa * c]);
+    out.hessian[0][..2].copy_from_slice(&[-s * by_c, -0.5 * kappa - s * by_s]);
+    out.hessian[1][..2].copy_from_slice(&[0.5 * kappa + c * by_c, c * by_s]);
+    out
+}

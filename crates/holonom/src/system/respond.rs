@@ -1,0 +1,61 @@
+//! From what laws do to their arguments to what they do to the invariants that these depend on.
+
+use super::{Evaluation, LawEntry, MAX_ARGUMENTS, Quantity, Response, System};
+
+impl System {
+    /// Values of the arguments of a law.
+    pub(crate) fn arguments(&self, law: &LawEntry, at: &Evaluation) -> [f64; MAX_ARGUMENTS] {
+        let mut values = [0.0; MAX_ARGUMENTS];
+        law.arguments.iter().zip(&mut values).for_each(|(&quantity, out)| *out = at.value[self.value_index(quantity)]);
+        values
+    }
+
+    /// A response by the invariants of a law, one after the other, from `own` by its arguments. `at` is where the
+    /// forces' gradients are, `end` where the values are that the forces depend on, `v` the velocities there.
+    ///
+    /// With J = ∂(arguments)/∂(invariants): f_π = Jᵀf and its derivative by invariants Jᵀ f_x J + f·∂J/∂π, and where f
+    /// depends on rates ẋ = Jπ̇ also Jᵀ f_ẋ ∂(Jπ̇)/∂π.
+    pub(crate) fn by_invariants(&self, law: &LawEntry, own: Response, at: &Evaluation, end: &Evaluation, v: &[f64]) -> Response {
+        if law.arguments.len() == law.invariants.len() && law.arguments.iter().all(|argument| matches!(argument, Quantity::Invariant(_))) {
+            return own;
+        }
+        let (mut out, m) = (Response::default(), law.arguments.len());
+        // J at both places, and ∂(Jπ̇)/∂π.
+        let [mut left, mut right, mut turned] = [[[0.0; MAX_ARGUMENTS]; MAX_ARGUMENTS]; 3];
+        let mut first = 0;
+        for (k, &argument) in law.arguments.iter().enumerate() {
+            match argument {
+                Quantity::Invariant(_) => {
+                    (left[k][first], right[k][first]) = (1.0, 1.0);
+                    first += 1;
+                }
+                Quantity::Function(id) => {
+                    let (base, function) = (self.functions.base(id), id.0 as usize);
+                    let (local, there) = (&at.functions.local[function], &end.functions.local[function]);
+                    let rates = if law.law.conservative() { [0.0; MAX_ARGUMENTS] } else { self.rates(base, at, v) };
+                    for i in 0..base.len() {
+                        left[k][first + i] = local.gradient[i];
+                        right[k][first + i] = there.gradient[i];
+                        turned[k][first + i] = local.bend(i, &rates);
+                        for j in 0..base.len() {
+                            out.by_value[first + i][first + j] += own.force[k] * local.hessian[i][j];
+                        }
+                    }
+                    first += base.len();
+                }
+            }
+        }
+        for k in 0..m {
+            for i in 0..first {
+                out.force[i] += left[k][i] * own.force[k];
+                for l in 0..m {
+                    for j in 0..first {
+                        out.by_value[i][j] += left[k][i] * (own.by_value[k][l] * right[l][j] + own.by_rate[k][l] * turned[l][j]);
+                        out.by_rate[i][j] += left[k][i] * own.by_rate[k][l] * right[l][j];
+                    }
+                }
+            }
+        }
+        out
+    }
+}
