@@ -77,6 +77,9 @@ pub fn load(argument: &str, overrides: Overrides) -> Result<Loaded, Failure> {
         }
     };
     let mut source = Source::read(&shown, &bytes).map_err(Failure::Model)?;
+    if !argument.starts_with("example:") {
+        source = source.beside(Path::new(argument).parent().unwrap_or(Path::new(".")));
+    }
     for given in &overrides.0 {
         let Some((key, value)) = given.split_once('=') else {
             return Err(Failure::usage(format!("`--set {given}` has no `=`"), "write --set KEY=VALUE, such as --set parameters.N=40"));
@@ -200,7 +203,7 @@ pub fn start_failure(error: StartError) -> Failure {
 
 /// A state as it is kept in `checkpoint.json`.
 pub fn checkpoint_value(state: &State) -> Value {
-    json!({ "t": state.t, "x": state.x, "v": state.v, "a": state.a, "lambda": state.lambda, "a_change": state.a_change, "last_step": state.last_step, "memory": state.memory })
+    json!({ "t": state.t, "x": state.x, "v": state.v, "a": state.a, "lambda": state.lambda, "a_change": state.a_change, "last_step": state.last_step, "memory": state.memory, "angle": state.angle })
 }
 
 /// Reads a `checkpoint.json`.
@@ -219,6 +222,7 @@ pub fn checkpoint(path: &Path) -> Result<State, Failure> {
             a_change: numbers(&value, "a_change")?,
             last_step: value["last_step"].as_f64()?,
             memory: numbers(&value, "memory")?,
+            angle: numbers(&value, "angle")?,
         })
     });
     state.ok_or_else(|| Failure::usage(format!("{} is no checkpoint", path.display()), "give the checkpoint.json of an earlier run"))

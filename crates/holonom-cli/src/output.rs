@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use cpu_time::ProcessTime;
 use holonom::analysis;
 use holonom::model::Model;
-use holonom::record::{COLUMNS, RecordedPoint, Recorder, Recording, reaction_columns};
+use holonom::record::{COLUMNS, Recorder, Recording};
 use holonom::simulation::{Method, Simulation, State, Status};
 use holonom_io::Writer;
 use holonom_report::{Report, Run};
@@ -59,11 +59,11 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
         announce_corrections(&simulation);
     }
     let rank = analysis::rank(&model.system, &simulation.state().x, simulation.state().t);
-    let rows = model.output.reactions.unwrap_or(false).then(|| model.system.row_names());
-    if rows.is_some() {
+    let reactions = model.output.reactions.unwrap_or(false);
+    if reactions {
         simulation.find_reactions();
     }
-    let recorder = Recorder::new(recorded_points(model), model.axes, every, rows);
+    let recorder = Recorder::new(&model.channels, &model.system, every, reactions);
     let mut watched = Watched::new(recorder, end, quiet, interrupted.clone());
     let (wall, cpu) = (std::time::Instant::now(), ProcessTime::now());
     let status = simulation.run(end, &mut watched);
@@ -106,20 +106,19 @@ pub fn writers(formats: &[String]) -> Result<Vec<&'static Writer>, Failure> {
     formats.iter().map(find).collect()
 }
 
-fn recorded_points(model: &Model) -> Vec<RecordedPoint> {
-    model.points.iter().map(|point| RecordedPoint { name: point.name.clone(), place: point.place }).collect()
-}
-
-/// A recording without the points that are not among `points`.
+/// A recording without the points and bodies that are not among `points`, which come in this order.
 fn only(recording: &Recording, points: &[String], model: &Model) -> Recording {
-    let axes = model.axes;
-    let of_point = |point: &String| {
-        let names = ["", "v"].map(|rate| axes.chars().map(|axis| format!("{point}.{rate}{axis}")).collect::<Vec<_>>());
-        names.concat()
+    let all = || recording.columns().iter().map(|column| column.name.as_str());
+    let of = |name: &'_ str, owner: &str| name.rsplit_once('.').is_some_and(|(known, _)| known == owner);
+    let has_owner = |name: &&str| {
+        let owners = model.points.iter().map(|point| &point.name).chain(model.bodies.iter().map(|body| &body.name));
+        owners.chain(model.channels.points.iter().map(|point| &point.name)).any(|owner| of(name, owner))
     };
-    let kept_points: Vec<RecordedPoint> = recorded_points(model).into_iter().filter(|point| points.contains(&point.name)).collect();
-    let of_rows = reaction_columns(model.system.row_names(), &kept_points, axes);
-    let names = COLUMNS.iter().map(|name| name.to_string()).chain(points.iter().flat_map(of_point)).chain(of_rows);
+    let is_force = |name: &&str| name.rsplit_once('.').is_some_and(|(_, suffix)| suffix.len() == 2 && suffix.starts_with('r'));
+    let kept = |name: &&str| points.iter().any(|point| of(name, point));
+    let motion = points.iter().flat_map(|point| all().filter(move |name| of(name, point) && !is_force(name)));
+    let others = all().skip(COLUMNS.len()).filter(|name| !has_owner(name) || (is_force(name) && kept(name)));
+    let names = COLUMNS.into_iter().chain(motion).chain(others).map(str::to_string);
     let names: Vec<String> = names.filter(|name| recording.column(name).is_some()).collect();
     let columns: Vec<&[f64]> = names.iter().filter_map(|name| recording.column(name)).collect();
     let mut kept = Recording::new(names);

@@ -12,17 +12,17 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 const LOOK: u64 = 64;
 
 /// A recorder with a progress bar that stops on an interrupt.
-pub struct Watched {
-    pub recorder: Recorder,
+pub struct Watched<'a> {
+    pub recorder: Recorder<'a>,
     bar: ProgressBar,
     end: f64,
     seen: u64,
     interrupted: Arc<AtomicBool>,
 }
 
-impl Watched {
+impl<'a> Watched<'a> {
     /// Watches a run to `end` (s).
-    pub fn new(recorder: Recorder, end: f64, quiet: bool, interrupted: Arc<AtomicBool>) -> Self {
+    pub fn new(recorder: Recorder<'a>, end: f64, quiet: bool, interrupted: Arc<AtomicBool>) -> Self {
         let bar = ProgressBar::new(1000);
         if quiet || !std::io::stderr().is_terminal() {
             bar.set_draw_target(ProgressDrawTarget::hidden());
@@ -45,7 +45,7 @@ impl Watched {
     }
 }
 
-impl Observer for Watched {
+impl Observer for Watched<'_> {
     fn after_step(&mut self, simulation: &Simulation<'_>) -> Verdict {
         self.recorder.after_step(simulation);
         self.seen += 1;

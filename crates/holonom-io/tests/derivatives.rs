@@ -1,7 +1,7 @@
 //! Derivatives are never trusted: the assembled tangent of every registered kind against differences of its residual.
 
 use holonom::formulation::{RowsAt, Sampling, Stage, Workspace};
-use holonom::model::{Model, constraints, forces};
+use holonom::model::{Model, constraints, forces, joints};
 use holonom_io::Source;
 
 /// Step of the central differences, m.
@@ -55,7 +55,7 @@ fn check(name: &str, text: &str) {
         (0..n).for_each(|i| work.offset[i] = 0.3 * noise(i + 7));
         (0..work.lambda.len()).for_each(|k| work.lambda[k] = 3.0 * noise(k + 3));
         let x0 = work.x0.clone();
-        system.evaluate(&x0, stage.start, &mut work.at_start);
+        system.evaluate_again(&x0, stage.start, &mut work.at_start);
         residual(&model, &stage, &mut work);
         work.tangent(system, &stage, 1.0);
         let size = n + system.constraints();
@@ -84,7 +84,7 @@ fn check(name: &str, text: &str) {
 #[test]
 fn every_kind_has_the_tangent_of_its_residual() {
     let mut kinds = 0;
-    for kind in constraints::KINDS.iter().chain(forces::KINDS) {
+    for kind in constraints::KINDS.iter().chain(forces::KINDS).chain(joints::kinds()) {
         check(kind.name, kind.example);
         kinds += 1;
     }

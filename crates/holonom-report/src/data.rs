@@ -29,7 +29,8 @@ pub struct RunData<'a> {
     pub label: &'a str,
     /// Axes are scaled to the runs that are sound.
     sound: bool,
-    scene: &'a Scene,
+    /// None: that of the first run.
+    scene: Option<&'a Scene>,
     /// Rows in the recording, before thinning.
     pub recorded: usize,
     /// Every `stride`-th row is here.
@@ -39,22 +40,35 @@ pub struct RunData<'a> {
     columns: BTreeMap<&'static str, String>,
     /// Name of a point → its coordinates along `scene.axes`, row after row, base64 of 32-bit floats.
     points: BTreeMap<&'a str, String>,
+    /// Name of a body → coordinates of its centre of mass along `scene.axes` and its orientation (`qw`, `qx`, `qy`, `qz`; in a plane
+    /// `angle`), row after row, base64 of 32-bit floats.
+    bodies: BTreeMap<&'a str, String>,
 }
 
 impl<'a> RunData<'a> {
-    pub fn new(run: &Run<'a>, outcome: Outcome) -> Self {
+    /// `first` is the first run of the report.
+    pub fn new(run: &Run<'a>, first: &Run<'a>, outcome: Outcome) -> Self {
         let (recording, scene) = (run.recording, run.scene);
-        let thinning = Thinning::new(recording.rows(), scene.points.len() * scene.axes.len());
+        let place: Vec<&str> = (0..scene.axes.len()).map(|i| &scene.axes[i..=i]).collect();
+        let pose: Vec<&str> = place.iter().chain(orientation(scene)).copied().collect();
+        let thinning = Thinning::new(recording.rows(), scene.points.len() * place.len() + scene.bodies.len() * pose.len());
+        let is_first = std::ptr::eq(run, first);
         Self {
             label: run.label,
             sound: outcome == Outcome::Sound,
-            scene,
+            scene: (is_first || scene != first.scene).then_some(scene),
             recorded: recording.rows(),
             stride: thinning.stride,
             columns: columns(recording, &thinning),
-            points: points(recording, scene, &thinning),
+            points: paths(recording, scene.points.iter().map(|point| point.name.as_str()), &place, &thinning),
+            bodies: paths(recording, scene.bodies.iter().map(|body| body.name.as_str()), &pose, &thinning),
         }
     }
+}
+
+/// Columns of the orientation of a body.
+fn orientation(scene: &Scene) -> &'static [&'static str] {
+    if scene.axes.len() == 3 { &["qw", "qx", "qy", "qz"] } else { &["angle"] }
 }
 
 fn columns(recording: &Recording, thinning: &Thinning) -> BTreeMap<&'static str, String> {
@@ -85,14 +99,19 @@ fn running_sum(values: Option<&[f64]>) -> Option<Vec<f64>> {
     Some(values?.iter().map(add).collect())
 }
 
-/// Points that the recording has no coordinates of are left out; the viewer then draws nothing that hangs on them.
-fn points<'a>(recording: &Recording, scene: &'a Scene, thinning: &Thinning) -> BTreeMap<&'a str, String> {
+/// What the recording has no coordinates of is left out; the viewer then draws nothing that hangs on it.
+fn paths<'a>(
+    recording: &Recording,
+    names: impl Iterator<Item = &'a str>,
+    coordinates: &[&str],
+    thinning: &Thinning,
+) -> BTreeMap<&'a str, String> {
     let path = |name: &str| -> Option<String> {
-        let axes = scene.axes.chars().map(|axis| recording.column(&format!("{name}.{axis}")));
-        let axes: Vec<Vec<f64>> = axes.map(|values| Some(thinning.apply(values?, Keep::Last))).collect::<Option<_>>()?;
+        let values = coordinates.iter().map(|coordinate| recording.column(&format!("{name}.{coordinate}")));
+        let values: Vec<Vec<f64>> = values.map(|values| Some(thinning.apply(values?, Keep::Last))).collect::<Option<_>>()?;
         let rows = 0..thinning.kept();
-        let places: Vec<f32> = rows.flat_map(|row| axes.iter().map(move |values| values[row] as f32)).collect();
-        Some(base64::singles(&places))
+        let numbers: Vec<f32> = rows.flat_map(|row| values.iter().map(move |values| values[row] as f32)).collect();
+        Some(base64::singles(&numbers))
     };
-    scene.points.iter().filter_map(|point| Some((point.name.as_str(), path(&point.name)?))).collect()
+    names.filter_map(|name| Some((name, path(name)?))).collect()
 }

@@ -4,6 +4,7 @@ use crate::data::RunData;
 use crate::escape::{html, json_in_script};
 use crate::outcome::outcomes;
 use crate::{Report, Run, figures, summary};
+use serde::Serialize;
 use std::io::{self, Write};
 
 /// Nothing may be loaded from anywhere: what is not in the file does not exist.
@@ -56,7 +57,7 @@ pub fn end(out: &mut dyn Write) -> io::Result<()> {
 }
 
 fn prepared<'a>(runs: &[Run<'a>]) -> Vec<RunData<'a>> {
-    runs.iter().zip(outcomes(runs)).map(|(run, outcome)| RunData::new(run, outcome)).collect()
+    runs.iter().zip(outcomes(runs)).map(|(run, outcome)| RunData::new(run, &runs[0], outcome)).collect()
 }
 
 /// What every page begins with; `style` comes before the style sheet of all pages.
@@ -104,8 +105,14 @@ fn stage(runs: &[RunData], out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
+/// What the viewer reads.
+#[derive(Serialize)]
+struct Data<'a> {
+    runs: &'a [RunData<'a>],
+}
+
 fn scripts(runs: &[RunData], script: &str, out: &mut dyn Write) -> io::Result<()> {
-    let json = serde_json::to_string(&serde_json::json!({ "runs": runs })).map_err(io::Error::other)?;
+    let json = serde_json::to_string(&Data { runs }).map_err(io::Error::other)?;
     writeln!(out, "<script type=\"application/json\" id=\"holonom-data\">{}</script>", json_in_script(&json))?;
     writeln!(out, "<script>\n{script}</script>")
 }

@@ -2,6 +2,8 @@
 
 use crate::{Report, Run};
 use holonom::record::{Anchor, Line, LineKind, PointKind, Recording, Scene, ScenePoint};
+#[cfg(feature = "viewer")]
+use holonom::record::{SceneBody, SceneShape};
 use serde_json::{Value, json};
 
 const COLUMNS: [&str; 11] =
@@ -30,6 +32,7 @@ fn scene() -> Scene {
             from: Anchor::Fixed([0.0; 3]),
             to: Anchor::Point("tip".to_owned()),
         }],
+        ..Scene::default()
     }
 }
 
@@ -152,6 +155,51 @@ fn every_column_is_in_the_page() {
     assert_eq!(run["points"]["tip"].as_str().map(str::len), Some(56));
     assert!(run["points"].get("unrecorded").is_none());
     assert_eq!(run["scene"]["lines"][0]["to"], json!({"point": "tip"}));
+}
+
+/// A page about a body called "top", in space or in the plane xy, whose columns are given; the run of its data.
+#[cfg(feature = "viewer")]
+fn with_body(axes: &str, columns: &[&str]) -> Value {
+    let names = std::iter::once("t".to_owned()).chain(columns.iter().map(|column| format!("top.{column}")));
+    let mut recording = Recording::new(names);
+    recording.push(&vec![0.0; columns.len() + 1]);
+    let shape = SceneShape::Mesh { vertices: vec![[0.1, 0.0, 0.0]; 3], triangles: vec![[0, 1, 2]] };
+    let scene = Scene {
+        axes: axes.to_owned(),
+        bodies: vec![SceneBody { name: "top".to_owned(), mass: 1.0, shape: Some(shape), places: Vec::new() }],
+        ..Scene::default()
+    };
+    let run = |label| Run { label, recording: &recording, scene: &scene, summary: &Value::Null };
+    let mut out = Vec::new();
+    Report { title: "t", model_text: "m", runs: &[run("a"), run("b")] }.write(&mut out).unwrap();
+    embedded(&String::from_utf8(out).unwrap())["runs"].take()
+}
+
+#[test]
+#[cfg(feature = "viewer")]
+fn bodies_have_a_place_and_an_orientation() {
+    // base64 of one row of 7 and of 3 coordinates of 4 bytes
+    let runs = with_body("xyz", &["x", "y", "z", "vx", "qw", "qx", "qy", "qz"]);
+    assert_eq!(runs[0]["bodies"]["top"].as_str().map(str::len), Some(40));
+    let runs = with_body("xy", &["x", "y", "angle"]);
+    assert_eq!(runs[0]["bodies"]["top"].as_str().map(str::len), Some(16));
+    assert!(with_body("xyz", &["x", "y", "z"])[0]["bodies"].get("top").is_none(), "without orientation there is nothing to draw");
+}
+
+#[test]
+#[cfg(feature = "viewer")]
+fn a_mesh_is_in_the_page_once_and_in_few_digits() {
+    let runs = with_body("xyz", &[]);
+    let shape = &runs[0]["scene"]["bodies"][0]["shape"];
+    assert_eq!((&shape["kind"], shape["vertices"][0].to_string()), (&json!("mesh"), "[0.1,0.0,0.0]".to_owned()));
+    assert_eq!(runs[1]["scene"], Value::Null, "the second run has the scene of the first");
+}
+
+#[test]
+#[cfg(feature = "viewer")]
+fn ends_of_lines_can_be_on_bodies() {
+    let anchor = Anchor::Body { body: "top".to_owned(), at: [1.0, 2.0, 3.0] };
+    assert_eq!(serde_json::to_value(anchor).unwrap(), json!({"body": {"body": "top", "at": [1.0, 2.0, 3.0]}}));
 }
 
 #[test]

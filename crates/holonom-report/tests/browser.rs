@@ -74,6 +74,37 @@ fn planar_and_stopped_early() {
 }
 
 #[test]
+fn solids_of_every_shape() {
+    let seen = open("shapes", &[sample::bodies::shapes()]);
+    loads(&seen, 3);
+    bodies_move(&seen, "brick", 6);
+}
+
+#[test]
+fn sketches_and_joints_in_space() {
+    let seen = open("crank", &[sample::bodies::crank_in_space()]);
+    loads(&seen, 3);
+    bodies_move(&seen, "slider", 7);
+}
+
+#[test]
+fn bodies_in_a_plane() {
+    let seen = open("four-bar", &[sample::bodies::four_bar(2.5)]);
+    loads(&seen, 3);
+    bodies_move(&seen, "coupler", 6);
+    assert_eq!(seen["middle"]["bodies"]["coupler"][1], 0, "the missing coordinate is 0: {seen:#}");
+}
+
+#[test]
+fn bodies_of_two_runs() {
+    let mut other = sample::bodies::four_bar(2.0);
+    other.label = "trapezoidal".to_owned();
+    let seen = open("two-linkages", &[sample::bodies::four_bar(2.5), other]);
+    assert_eq!(seen["faults"], Value::Array(Vec::new()), "{seen:#}");
+    bodies_move(&seen, "rocker", 6);
+}
+
+#[test]
 fn numbers_out_of_all_bounds() {
     loads(&open("blown-up", &[sample::blown_up()]), 3);
 }
@@ -103,6 +134,12 @@ fn moves(seen: &Value, end: f64) {
     assert!((time("end") - end).abs() < 1e-9 && seen["end"]["slider"] == true, "{seen:#}");
     let playing = seen["playing"].as_f64().unwrap();
     assert!(playing > 0.0 && playing < end, "playing moves time: {seen:#}");
+}
+
+fn bodies_move(seen: &Value, name: &str, count: usize) {
+    assert_eq!(seen["start"]["bodies"].as_object().unwrap().len(), count, "{seen:#}");
+    assert_ne!(seen["start"]["bodies"][name], seen["middle"]["bodies"][name], "{seen:#}");
+    assert_ne!(seen["start"]["picture"]["hash"], seen["middle"]["picture"]["hash"], "the picture does not follow the slider");
 }
 
 /// What the checks saw in the page.

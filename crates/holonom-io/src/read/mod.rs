@@ -1,11 +1,16 @@
 //! Model files: TOML in, a description with the place of everything in it out.
 
+mod mesh;
 mod places;
 mod render;
 mod toml;
 
-use holonom::model::{Faults, Model, Table, Value};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use holonom::model::{Faults, Mesh, Meshes, Model, NoMeshes, Table, Value};
+
+pub use mesh::{LARGEST_MESH, MOST_TRIANGLES, MeshError, read_mesh};
 use places::Places;
 
 /// Largest model file that is read, bytes: some 40 000 entries, while parsing takes up to fifty times as much memory.
@@ -21,6 +26,8 @@ pub struct Source {
     /// The description; [`Source::set`] changes it.
     value: Value,
     places: Places,
+    /// Where files that the model names are.
+    folder: Option<PathBuf>,
 }
 
 impl Source {
@@ -32,7 +39,13 @@ impl Source {
         let text = decode(name, bytes)?;
         let mut places = Places::default();
         let value = toml::parse(&text, &mut places).map_err(|error| render::syntax(name, &text, &error))?;
-        Ok(Self { name: name.into(), text, value, places })
+        Ok(Self { name: name.into(), text, value, places, folder: None })
+    }
+
+    /// Says in which folder the files are that the model names.
+    pub fn beside(mut self, folder: &Path) -> Self {
+        self.folder = Some(folder.into());
+        self
     }
 
     /// Sets a key such as `simulation.step` to a value written as in the file; what is no TOML value is a text, so that
@@ -70,7 +83,11 @@ impl Source {
     /// # Errors
     /// Every fault of it, ready to be shown.
     pub fn model(&self) -> Result<Model, String> {
-        Model::from_value(&self.value).map_err(|faults| self.render(&faults))
+        let model = match &self.folder {
+            Some(folder) => Model::from_value(&self.value, &MeshFiles(folder)),
+            None => Model::from_value(&self.value, &NoMeshes),
+        };
+        model.map_err(|faults| self.render(&faults))
     }
 
     /// Faults with their places in the file.
@@ -86,6 +103,21 @@ impl Source {
     /// The text of the file.
     pub fn text(&self) -> &str {
         &self.text
+    }
+}
+
+/// Meshes in files of a folder.
+struct MeshFiles<'a>(&'a Path);
+
+impl Meshes for MeshFiles<'_> {
+    fn mesh(&self, name: &str) -> Result<Arc<Mesh>, String> {
+        let path = self.0.join(name);
+        let size = std::fs::metadata(&path).map_err(|error| format!("{} cannot be read: {error}", path.display()))?.len();
+        if size > LARGEST_MESH as u64 {
+            return Err(format!("{} is larger than {} MB", path.display(), LARGEST_MESH / 1_000_000));
+        }
+        let bytes = std::fs::read(&path).map_err(|error| format!("{} cannot be read: {error}", path.display()))?;
+        read_mesh(name, &bytes).map(Arc::new).map_err(|error| error.to_string())
     }
 }
 

@@ -25,13 +25,13 @@
     seen.ready = window.holonom.ready;
     seen.plots = document.querySelectorAll(".plot").length;
     seen.emptyPlots = plots().filter((image) => image.length < 2000).length;
-    seen.start = { time: holonom.time(), points: holonom.pointsAt(), picture: picture() };
+    seen.start = { time: holonom.time(), points: holonom.pointsAt(), bodies: holonom.bodiesAt(), picture: picture() };
 
     const slider = document.querySelector("input#time");
     slider.value = String(Number(slider.max) / 2);
     slider.dispatchEvent(new Event("input", { bubbles: true }));
     await frames(3);
-    seen.middle = { time: holonom.time(), points: holonom.pointsAt(), picture: picture() };
+    seen.middle = { time: holonom.time(), points: holonom.pointsAt(), bodies: holonom.bodiesAt(), picture: picture() };
 
     holonom.setTime(1e9);
     await frames(3);

@@ -1,5 +1,7 @@
 //! Synthetic runs: the spherical compound pendulum, integrated here in the plainest way, with made-up errors.
 
+pub mod bodies;
+
 use holonom::record::{Anchor, Line, LineKind, PointKind, Recording, Scene, ScenePoint};
 use serde_json::{Value, json};
 
@@ -54,6 +56,7 @@ pub fn slider() -> Sample {
         gravity: [0.0, 0.0, -GRAVITY],
         points: vec![ScenePoint { name: "block".to_owned(), kind: PointKind::Free, mass: 1.0 }],
         lines: vec![line("spring", LineKind::Spring, [0.0; 3]), line("rail", LineKind::Guide, [2.0, 0.0, 0.0])],
+        ..Scene::default()
     };
     let summary = json!({
         "model": "Slider", "method": {"name": "baumgarte"}, "status": "stopped", "stopped_at": 2.99,
@@ -78,6 +81,7 @@ fn scene() -> Scene {
             line("outer-rod", LineKind::Rod, point("m1"), point("m2")),
             line("straight", LineKind::Guide, Anchor::Fixed([0.0; 3]), point("m2")),
         ],
+        ..Scene::default()
     }
 }
 

@@ -21,6 +21,8 @@ interface Handle {
   setTime(t: number): void;
   /** World places of the points of the first run at the current time, m. */
   pointsAt(): Record<string, Vec3>;
+  /** The same of the centres of mass of its bodies. */
+  bodiesAt(): Record<string, Vec3>;
 }
 
 const HOW_TO_READ = `Axes fit the runs that completed with their energy in bounds; a run that leaves one is named above it and drawn up \
@@ -39,7 +41,13 @@ function main(): void {
   const start = Math.min(...motions.map((motion) => motion.run.times[0] ?? 0));
   const clock = new Clock(start, Math.max(start, ...motions.map((motion) => motion.end)));
   const visibility = new Visibility();
-  window.holonom = { ready: false, time: () => clock.time, setTime: (t) => clock.setTime(t), pointsAt: () => pointsAt(motions[0], clock.time) };
+  window.holonom = {
+    ready: false,
+    time: () => clock.time,
+    setTime: (t) => clock.setTime(t),
+    pointsAt: () => placesOf(motions[0]?.run.scene.points, (name) => motions[0]?.at(name, clock.time)),
+    bodiesAt: () => placesOf(motions[0]?.run.scene.bodies, (name) => motions[0]?.poseAt(name, clock.time)?.place.toArray()),
+  };
   if (motions.length > 0) build(motions, clock, visibility);
   window.holonom.ready = true;
 }
@@ -59,10 +67,10 @@ function build(motions: Motion[], clock: Clock, visibility: Visibility): void {
   if (runs.length > 1) place("plots").append(element("p", { class: "note" }, HOW_TO_READ));
 }
 
-function pointsAt(motion: Motion | undefined, t: number): Record<string, Vec3> {
-  const places = motion?.run.scene.points.flatMap(({ name }) => {
-    const at = motion.at(name, t);
-    return at ? [[name, at] as const] : [];
+function placesOf(named: { name: string }[] | undefined, at: (name: string) => Vec3 | undefined): Record<string, Vec3> {
+  const places = named?.flatMap(({ name }) => {
+    const place = at(name);
+    return place ? [[name, place] as const] : [];
   });
   return Object.fromEntries(places ?? []);
 }

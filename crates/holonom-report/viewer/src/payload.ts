@@ -3,7 +3,34 @@
 export type PointKind = "free" | "driven" | "fixed";
 export type LineKind = "bar" | "rod" | "spring" | "guide";
 export type Vec3 = [number, number, number];
-export type Anchor = { point: string } | { fixed: Vec3 };
+export type Anchor = { point: string } | { fixed: Vec3 } | { body: { body: string; at: Vec3 } };
+
+/** Around the centre of mass; in a planar model along the first and second axis of the plane, and z across it. */
+export type Shape =
+  | { kind: "box"; size: Vec3 }
+  | { kind: "cylinder"; radius: number; length: number }
+  | { kind: "sphere"; radius: number }
+  | { kind: "rod"; length: number }
+  | { kind: "capsule"; radius: number; length: number }
+  | { kind: "mesh"; vertices: Vec3[]; triangles: Vec3[] };
+
+export interface Body {
+  name: string;
+  mass: number;
+  shape: Shape | null;
+  /** In body axes from the centre of mass, m. */
+  places: Vec3[];
+}
+
+export interface Joint {
+  name: string;
+  kind: string;
+  /** Carries the place and the axis; null: the world. */
+  body: string | null;
+  other: string | null;
+  at: Vec3;
+  axis: Vec3 | null;
+}
 
 export interface Scene {
   /** "xyz", or the plane of a planar model. */
@@ -11,6 +38,8 @@ export interface Scene {
   gravity: Vec3;
   points: { name: string; kind: PointKind; mass: number }[];
   lines: { name: string; kind: LineKind; from: Anchor; to: Anchor }[];
+  bodies: Body[];
+  joints: Joint[];
 }
 
 export interface Run {
@@ -22,6 +51,8 @@ export interface Run {
   columns: Map<string, Float64Array>;
   /** Name of a point → coordinates along `scene.axes`, row after row. */
   points: Map<string, Float32Array>;
+  /** Name of a body → centre of mass along `scene.axes` and orientation (qw, qx, qy, qz, or the angle in a plane), row after row. */
+  bodies: Map<string, Float32Array>;
   /** Times of the rows, s. */
   times: Float64Array;
 }
@@ -29,18 +60,23 @@ export interface Run {
 interface RawRun {
   label: string;
   sound: boolean;
-  scene: Scene;
+  /** null: that of the first run. */
+  scene: Scene | null;
   columns: Record<string, string>;
   points: Record<string, string>;
+  bodies: Record<string, string>;
 }
 
 export function readPayload(): Run[] {
   const text = document.getElementById("holonom-data")?.textContent ?? '{"runs":[]}';
   const { runs } = JSON.parse(text) as { runs: RawRun[] };
-  return runs.map((raw) => {
+  return runs.flatMap((raw) => {
+    const scene = raw.scene ?? runs[0].scene;
+    if (!scene) return [];
     const columns = decodeAll(raw.columns, (bytes) => new Float64Array(bytes));
     const points = decodeAll(raw.points, (bytes) => new Float32Array(bytes));
-    return { label: raw.label, sound: raw.sound, scene: raw.scene, columns, points, times: columns.get("t") ?? new Float64Array() };
+    const bodies = decodeAll(raw.bodies, (bytes) => new Float32Array(bytes));
+    return [{ label: raw.label, sound: raw.sound, scene, columns, points, bodies, times: columns.get("t") ?? new Float64Array() }];
   });
 }
 

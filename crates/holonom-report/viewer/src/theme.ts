@@ -22,6 +22,15 @@ export function curveDash(index: number): number[] | undefined {
   return lap === 0 ? undefined : DASHES[(lap - 1) % DASHES.length];
 }
 
+/** Bodies are large: calmer than curves, and apart from each other. */
+const LIGHT_BODIES = ["#4f83b8", "#d08a4e", "#5aa382", "#a8748f", "#c9ab45", "#58a3b5", "#c46f66", "#8087b5"];
+const DARK_BODIES = ["#5e93cb", "#d6935a", "#5fae8b", "#b4819d", "#cfb350", "#5fadbf", "#cd7b72", "#8d94c4"];
+
+export function bodyColor(index: number): string {
+  const palette = dark.matches ? DARK_BODIES : LIGHT_BODIES;
+  return palette[index % palette.length];
+}
+
 export interface Theme {
   page: string;
   ink: string;
@@ -32,12 +41,18 @@ export interface Theme {
   spring: string;
   ground: string;
   driven: string;
+  /** Hubs, balls and sleeves. */
+  joint: string;
+  /** What turns or slides in them. */
+  pin: string;
 }
 
 export function theme(): Theme {
   return dark.matches
-    ? { page: "#181c21", ink: "#e6e9ed", soft: "#98a2ae", line: "#313840", bar: "#8d9aa8", rod: "#a7b1bc", spring: "#2fc79a", ground: "#7b8794", driven: "#ff8a3d" }
-    : { page: "#fafbfc", ink: "#1b1f24", soft: "#5c6672", line: "#d9dee4", bar: "#75828f", rod: "#8a96a3", spring: "#009e73", ground: "#4b5561", driven: "#d55e00" };
+    ? { page: "#181c21", ink: "#e6e9ed", soft: "#98a2ae", line: "#313840", bar: "#8d9aa8", rod: "#a7b1bc", spring: "#2fc79a", ground: "#7b8794",
+        driven: "#ff8a3d", joint: "#4a545f", pin: "#dfe5eb" }
+    : { page: "#fafbfc", ink: "#1b1f24", soft: "#5c6672", line: "#d9dee4", bar: "#75828f", rod: "#8a96a3", spring: "#009e73", ground: "#4b5561",
+        driven: "#d55e00", joint: "#3d4650", pin: "#eef1f4" };
 }
 
 export function onThemeChange(listener: () => void): void {

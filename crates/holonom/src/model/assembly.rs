@@ -2,12 +2,17 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::bodies::Body;
+use super::bodies::frame::Frame;
+use super::bodies::nodes::Member;
 use super::entry::{Entry, Spot, all};
 use super::expression::{Mistake, Program, Scope};
-use super::fault::{Read, Refused, Sink, nearest};
+use super::fault::{Read, Refused, Sink, nearest, suggest};
+use super::geometry::Vec3;
+use super::joints::Joint;
 use super::value::Value;
-use crate::record::{Anchor, Line, LineKind};
-use crate::system::{NodeId, Place, SystemBuilder};
+use crate::record::{Anchor, Line, LineKind, SceneJoint};
+use crate::system::{NodeId, Place, SystemBuilder, Term};
 
 /// The name of the origin.
 pub const GROUND: &str = "ground";
@@ -53,13 +58,16 @@ impl Axes {
 /// An end of something: a point of the model or a fixed place.
 #[derive(Clone, Debug)]
 pub struct End {
-    pub place: Place,
+    /// The nodes it is made of.
+    pub terms: Vec<Term>,
     /// Position at the start in the axes of the model, m.
     pub start: [f64; 3],
     /// Whether its motion is sought.
     pub free: bool,
     /// Position in the list of points, if it is one.
     pub point: Option<usize>,
+    /// Position in the list of bodies, if it is a place of one.
+    pub body: Option<usize>,
     /// As it was written, for messages.
     pub name: String,
 }
@@ -91,6 +99,16 @@ pub struct Assembly<'a> {
     /// Names of entries of points that could not be read; what refers to them is no second fault.
     pub faulty: HashSet<String>,
     pub lines: Vec<Line>,
+    /// All bodies, in file order, and where their nodes are made, their frames.
+    pub bodies: Vec<Body>,
+    pub frames: Vec<Frame>,
+    /// Places of each body that something holds, in its axes, for the picture.
+    pub body_places: Vec<Vec<Vec3>>,
+    /// All joints that are no couplers, in file order.
+    pub joints: Vec<Joint>,
+    /// Names of joints and couplers that could not be read.
+    pub faulty_joints: HashSet<String>,
+    pub scene_joints: Vec<SceneJoint>,
 }
 
 impl Assembly<'_> {
@@ -122,7 +140,7 @@ impl Assembly<'_> {
             return Err(entry.refuse(key, format!("`{key}` wants {wanted} points, and this has {}", items.len()), cure));
         }
         let ends = all(items.iter().enumerate().map(|(k, item)| self.end_in(entry, Spot { key, item: Some(k) }, item)))?;
-        match (1..ends.len()).find(|&k| ends[k].place == ends[k - 1].place) {
+        match (1..ends.len()).find(|&k| ends[k].terms == ends[k - 1].terms) {
             Some(k) => Err(entry.refuse(Spot { key, item: Some(k) }, "the same point comes twice", "name two different points")),
             None => Ok(ends),
         }
@@ -149,6 +167,110 @@ impl Assembly<'_> {
         Err(entry.refuse(key, "none of these can move freely", "at least one must be a point that is neither fixed nor driven"))
     }
 
+    /// A side of a joint: a body, a point or the ground.
+    pub fn member(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<Member> {
+        if name == GROUND {
+            return Ok(Member::Ground);
+        }
+        let full = indexed(name, &entry.scope).map_err(|mistake| entry.mistaken(spot, mistake))?;
+        if let Some(k) = self.body_by_name(&full) {
+            return Ok(Member::Body(k));
+        }
+        if let Some(&k) = self.by_name.get(&full) {
+            return Ok(Member::Point(k));
+        }
+        let base = full.split('[').next().unwrap_or(&full);
+        if self.faulty.contains(base) {
+            return Err(Refused);
+        }
+        let names = self.bodies.iter().map(|body| body.name.as_str()).chain(self.points.iter().map(|point| point.name.as_str()));
+        let cure = match nearest(&full, names.chain([GROUND])) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("add [body.{base}], or name one that is there"),
+        };
+        Err(entry.refuse(spot, format!("there is no body `{full}`"), cure))
+    }
+
+    /// Position of a body in the list, by name.
+    pub fn body_by_name(&self, name: &str) -> Option<usize> {
+        self.bodies.iter().position(|body| body.name == name)
+    }
+
+    /// The frame of a side of a joint.
+    pub fn frame(&self, member: Member) -> Frame {
+        match member {
+            Member::Ground => Frame::Ground,
+            Member::Point(k) => Frame::Particle(self.points[k].end.place().expect("a point is a node")),
+            Member::Body(k) => self.frames[k].clone(),
+        }
+    }
+
+    /// A joint by name.
+    pub fn joint(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<&Joint> {
+        let full = indexed(name, &entry.scope).map_err(|mistake| entry.mistaken(spot, mistake))?;
+        if let Some(joint) = self.joints.iter().find(|joint| joint.name == full) {
+            return Ok(joint);
+        }
+        if self.faulty_joints.contains(full.split('[').next().unwrap_or(&full)) {
+            return Err(Refused);
+        }
+        let cure = suggest(&full, self.joints.iter().map(|joint| joint.name.as_str()));
+        Err(entry.refuse(spot, format!("there is no joint `{full}` before this one"), cure))
+    }
+
+    /// Where a place is at the start: `"BODY.POINT"`, the name of a point or a body, or coordinates.
+    pub fn place_at_start(&self, entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<Vec3> {
+        match value {
+            Value::Text(name) if self.frames.is_empty() && name.contains('.') => self.named_place(entry, spot, name).map(|(_, at)| at),
+            _ => self.end_in(entry, spot, value).map(|end| end.start),
+        }
+    }
+
+    /// A direction at the start: `"BODY.AXIS"`, or components.
+    pub fn direction_at_start(&self, entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<Vec3> {
+        let cure = "write a direction as a list of numbers, or \"BODY.AXIS\"";
+        match value {
+            Value::List(items) if items.len() == self.dimension() => numbers(entry, spot, items),
+            Value::Text(text) => {
+                let (body, axis) = text.split_once('.').ok_or_else(|| entry.refuse(spot, format!("\"{text}\" is no direction"), cure))?;
+                let Member::Body(k) = self.member(entry, spot, body)? else {
+                    return Err(entry.refuse(spot, format!("`{body}` is no body and has no axes"), cure));
+                };
+                let axes = &self.bodies[k].axes;
+                axes.iter().find(|(name, _)| name == axis).map(|&(_, direction)| direction).ok_or_else(|| {
+                    let known = suggest(axis, axes.iter().map(|(name, _)| name.as_str()));
+                    entry.refuse(spot, format!("the body `{body}` has no axis `{axis}`"), known)
+                })
+            }
+            Value::List(items) => {
+                let message = format!("a direction has {} numbers here, and this has {}", self.dimension(), items.len());
+                Err(entry.refuse(spot, message, "give one for each axis of the model"))
+            }
+            other => Err(entry.refuse(spot, format!("a direction is wanted here, and this is {}", other.type_name()), cure)),
+        }
+    }
+
+    /// A place of a body by its name, `BODY.POINT`, with its position at the start.
+    fn named_place(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<(usize, Vec3)> {
+        let (body, place) = name.split_once('.').expect("there is a dot");
+        let Member::Body(k) = self.member(entry, spot, body)? else {
+            return Err(entry.refuse(spot, format!("`{body}` is no body and has no named points"), "name a point of a [body.NAME]"));
+        };
+        let points = &self.bodies[k].points;
+        points.iter().find(|(known, _)| known == place).map(|&(_, at)| (k, at)).ok_or_else(|| {
+            let cure = match suggest(place, points.iter().map(|(name, _)| name.as_str())) {
+                none if points.is_empty() => format!("{none}: add [body.{body}.points]"),
+                cure => cure,
+            };
+            entry.refuse(spot, format!("the body `{body}` has no point `{place}`"), cure)
+        })
+    }
+
+    /// A place of a body as an end.
+    pub fn body_end(&self, body: usize, at: Vec3, name: &str) -> End {
+        End { terms: self.frames[body].point(at), start: at, free: true, point: None, body: Some(body), name: name.to_string() }
+    }
+
     fn end_in(&self, entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<End> {
         match value {
             Value::Text(name) if name == GROUND => Ok(fixed([0.0; 3], GROUND.into())),
@@ -171,6 +293,14 @@ impl Assembly<'_> {
     fn named(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<End> {
         if let Some(&k) = self.by_name.get(name) {
             return Ok(self.points[k].end.clone());
+        }
+        if !self.bodies.is_empty() {
+            if name.contains('.') {
+                return self.named_place(entry, spot, name).map(|(body, at)| self.body_end(body, at, name));
+            }
+            if let Ok(Some(k)) = indexed(name, &entry.scope).map(|full| self.body_by_name(&full)) {
+                return Ok(self.body_end(k, self.bodies[k].position, name));
+            }
         }
         let full = match indexed(name, &entry.scope) {
             Ok(full) => full,
@@ -201,12 +331,18 @@ impl Assembly<'_> {
 
     /// Draws a line between two ends.
     pub fn draw(&mut self, entry: &Entry<'_>, kind: LineKind, from: &End, to: &End) {
-        let anchor = |end: &End| match end.point {
-            Some(k) => Anchor::Point(self.points[k].name.clone()),
-            None => Anchor::Fixed(self.axes.in_world(end.start)),
+        let anchor = |end: &End| match (end.point, end.body) {
+            (Some(k), _) => Anchor::Point(self.points[k].name.clone()),
+            (None, Some(k)) => Anchor::Body { body: self.bodies[k].name.clone(), at: self.bodies[k].local(end.start) },
+            (None, None) => Anchor::Fixed(self.axes.in_world(end.start)),
         };
         let line = Line { name: entry.name.to_string(), kind, from: anchor(from), to: anchor(to) };
         self.lines.push(line);
+        for end in [from, to] {
+            if let Some(k) = end.body {
+                self.body_places[k].push(self.bodies[k].local(end.start));
+            }
+        }
     }
 
     /// Refuses a start that contradicts a constraint: `off` from where it should be, seen against `size`, both in m.
@@ -224,14 +360,24 @@ impl Assembly<'_> {
     }
 }
 
+impl End {
+    /// The node or place it is, where it is a single one.
+    pub fn place(&self) -> Option<Place> {
+        match self.terms[..] {
+            [Term { place, factor: 1.0, turn: 0.0 }] => Some(place),
+            _ => None,
+        }
+    }
+}
+
 /// A place that never moves.
 pub fn fixed(start: [f64; 3], name: String) -> End {
-    End { place: Place::Fixed(start), start, free: false, point: None, name }
+    End { terms: vec![(Place::Fixed(start), 1.0).into()], start, free: false, point: None, body: None, name }
 }
 
 /// A node as an end.
 pub fn node(id: NodeId, start: [f64; 3], free: bool, point: usize, name: &str) -> End {
-    End { place: Place::Node(id), start, free, point: Some(point), name: name.to_string() }
+    End { terms: vec![(Place::Node(id), 1.0).into()], start, free, point: Some(point), body: None, name: name.to_string() }
 }
 
 /// Numbers of a list that may itself be an item of a list, zeros behind them.
@@ -267,27 +413,28 @@ fn indexed(name: &str, scope: &Scope<'_>) -> Result<String, Mistake> {
     }
 }
 
-/// w − u
+/// The terms of the way from one end to another, those of the same node together.
+pub fn from_to(from: &End, to: &End) -> Vec<Term> {
+    subtract(&to.terms, &from.terms)
+}
+
+/// The terms of a difference, those of the same node together and none that vanishes.
+pub fn subtract(to: &[Term], from: &[Term]) -> Vec<Term> {
+    let mut difference = to.to_vec();
+    for term in from {
+        match difference.iter_mut().find(|known| known.place == term.place && matches!(term.place, Place::Node(_))) {
+            Some(known) => {
+                let gone = |a: f64, b: f64| if (a - b).abs() <= 1e-12 * a.abs().max(b.abs()) { 0.0 } else { a - b };
+                (known.factor, known.turn) = (gone(known.factor, term.factor), gone(known.turn, term.turn));
+            }
+            None => difference.push(Term { factor: -term.factor, turn: -term.turn, ..*term }),
+        }
+    }
+    difference.retain(|term| term.factor != 0.0 || term.turn != 0.0);
+    difference
+}
+
+/// Position of the second end minus that of the first, at the start.
 pub fn difference(from: &End, to: &End) -> [f64; 3] {
     std::array::from_fn(|c| to.start[c] - from.start[c])
-}
-
-/// u · w
-pub fn dot(u: [f64; 3], w: [f64; 3]) -> f64 {
-    u[0] * w[0] + u[1] * w[1] + u[2] * w[2]
-}
-
-/// Length of a vector.
-pub fn norm(u: [f64; 3]) -> f64 {
-    dot(u, u).sqrt()
-}
-
-/// u × w
-pub fn cross(u: [f64; 3], w: [f64; 3]) -> [f64; 3] {
-    [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]]
-}
-
-/// The k-th unit vector.
-pub fn unit(k: usize) -> [f64; 3] {
-    std::array::from_fn(|c| f64::from(u8::from(c == k)))
 }

@@ -1,6 +1,7 @@
 //! `[bar.NAME]`: uniform rigid rods between two points, the two-node body of natural coordinates (methods §4.1).
 
-use super::assembly::{Assembly, End, difference, norm};
+use super::assembly::{Assembly, End, difference, from_to};
+use super::geometry::norm;
 use super::entry::Entry;
 use super::fault::{Read, Refused};
 use super::key::{Key, REPEAT, Shape};
@@ -58,11 +59,15 @@ fn bar(entry: &Entry<'_>, assembly: &mut Assembly<'_>) -> Read<BarInfo> {
     if length == 0.0 {
         return Err(zero_length(entry, &ends));
     }
-    add_mass(assembly, &ends, mass);
-    let half_square = assembly.builder.square(&[(b.place, 1.0), (a.place, -1.0)]);
+    let (Some(first), Some(second)) = (a.place(), b.place()) else {
+        let cure = "give the bar ends of its own, [point.NAME], and join them, or use a body with shape = { rod = … }";
+        return Err(entry.refuse("between", "a bar ends at points and fixed places, not at places of bodies", cure));
+    };
+    add_mass(assembly, [first, second], mass);
+    let half_square = assembly.builder.square(&from_to(a, b));
     assembly.builder.constant_row(entry.name, half_square, 0.5 * length * length);
     assembly.draw(entry, LineKind::Bar, a, b);
-    Ok(BarInfo { name: entry.name.to_string(), ends: [a.place, b.place], mass, length })
+    Ok(BarInfo { name: entry.name.to_string(), ends: [first, second], mass, length })
 }
 
 fn zero_length(entry: &Entry<'_>, [a, b]: &[End; 2]) -> Refused {
@@ -70,8 +75,8 @@ fn zero_length(entry: &Entry<'_>, [a, b]: &[End; 2]) -> Refused {
     entry.refuse("between", message, "move one of them, or use a point with mass")
 }
 
-fn add_mass(assembly: &mut Assembly<'_>, [a, b]: &[End; 2], mass: f64) {
-    assembly.builder.mass(a.place, a.place, mass / 3.0);
-    assembly.builder.mass(b.place, b.place, mass / 3.0);
-    assembly.builder.mass(a.place, b.place, mass / 6.0);
+fn add_mass(assembly: &mut Assembly<'_>, [a, b]: [Place; 2], mass: f64) {
+    assembly.builder.mass(a, a, mass / 3.0);
+    assembly.builder.mass(b, b, mass / 3.0);
+    assembly.builder.mass(a, b, mass / 6.0);
 }

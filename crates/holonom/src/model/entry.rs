@@ -4,6 +4,7 @@
 //! asks which of them there are: one look at a file finds everything.
 
 use super::expression::{Mistake, Program, Scope};
+use super::bodies::Meshes;
 use super::fault::{Fault, Read, Refused, Sink, suggest};
 use super::key::Key;
 use super::value::{Table, Value, item_path, key_path};
@@ -31,6 +32,7 @@ pub struct Entry<'a> {
     pub table: &'a Table,
     pub scope: Scope<'a>,
     pub sink: &'a Sink,
+    pub meshes: &'a dyn Meshes,
 }
 
 impl<'a> Entry<'a> {
@@ -215,6 +217,41 @@ impl<'a> Entry<'a> {
             other => Err(self.wanted(Spot { key, item: Some(k) }, "texts", other)),
         };
         all(self.list(key)?.iter().enumerate().map(read))
+    }
+
+    /// A vector in space, a number about the normal in the plane.
+    pub fn spin(&self, key: &str, dim: usize) -> Read<[f64; 3]> {
+        if dim == 2 { self.number(key).map(|rate| [0.0, 0.0, rate]) } else { self.vector(key, 3) }
+    }
+
+    /// So many numbers above zero.
+    pub fn sizes<const N: usize>(&self, key: &str) -> Read<[f64; N]> {
+        let items = self.list(key)?;
+        if items.len() != N {
+            return Err(self.refuse(key, format!("`{key}` wants {N} numbers, and this has {}", items.len()), format!("give {N} numbers")));
+        }
+        let size = |(k, item)| {
+            let spot = Spot { key, item: Some(k) };
+            let size = self.number_in(spot, item)?;
+            if size > 0.0 { Ok(size) } else { Err(self.refuse(spot, format!("`{key}` has a size of {size}"), "give sizes above 0")) }
+        };
+        let sizes = all(items.iter().enumerate().map(size))?;
+        Ok(std::array::from_fn(|k| sizes[k]))
+    }
+
+    /// The tables of a list.
+    pub fn tables(&self, key: &str) -> Read<Vec<&'a Table>> {
+        let read = |(k, item): (usize, &'a Value)| match item {
+            Value::Table(table) => Ok(table),
+            other => Err(self.wanted(Spot { key, item: Some(k) }, "a table", other)),
+        };
+        all(self.list(key)?.iter().enumerate().map(read))
+    }
+
+    /// Reads a table inside this one, which is at `key`.
+    pub fn inside<T>(&self, key: &str, table: &'a Table, read: impl FnOnce(&Entry<'_>) -> Read<T>) -> Read<T> {
+        let path = format!("{}.{key}", self.path);
+        read(&Entry { name: self.name, path: &path, table, ..*self })
     }
 
     /// A table inside this one.

@@ -38,6 +38,28 @@ pub enum Shape {
     End,
     /// Several of these; the numbers say how many at least and at most.
     Ends(usize, usize),
+    /// The inertia of a body: 3 or 6 numbers or 3 × 3, in a planar model one.
+    Inertia,
+    /// A vector in space, a number in the plane.
+    Spin,
+    /// A table of named vectors.
+    Places,
+    /// So many numbers.
+    Numbers(usize),
+    /// Three rows of three numbers.
+    Rows,
+    /// Two names of bodies.
+    Members,
+    /// A place, the name of one, or two of these.
+    Site,
+    /// A direction, the name of one, or two of these.
+    Direction,
+    /// Two directions or names of some.
+    Directions,
+    /// Two names of joints or of their coordinates.
+    Coordinates,
+    /// A list of tables with a joint and a factor each.
+    Terms,
     /// Some words.
     Words(&'static [&'static str]),
     /// Names of points.

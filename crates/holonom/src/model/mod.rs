@@ -3,14 +3,17 @@
 //! No files, no clock, no printing. A description is a [`Value`] without places in a file; faults name paths in it, and
 //! who has read the file knows where they are.
 
+pub mod bodies;
 pub mod constraints;
 pub mod forces;
+pub mod joints;
 
 mod assembly;
 mod bars;
 mod entry;
 mod expression;
 mod fault;
+mod geometry;
 mod key;
 mod parameters;
 mod points;
@@ -23,6 +26,7 @@ mod tests;
 mod value;
 
 pub use assembly::{Axes, GROUND};
+pub use bodies::{Body, BodyInfo, KEYS as BODY_KEYS, Mesh, Meshes, NoMeshes};
 pub use bars::{BarInfo, KEYS as BAR_KEYS};
 pub use fault::{Fault, Faults, nearest};
 pub use key::{Key, Kind, REPEAT, Shape};
@@ -33,13 +37,17 @@ pub use settings::{
 };
 pub use value::{Table, Value, item_path, key_path};
 
+use std::collections::{HashMap, HashSet};
+
 use assembly::Assembly;
+use bodies::frame::Frame;
+use bodies::nodes::Member;
 use entry::Entry;
 use expression::Scope;
 use fault::{Read, Refused, Sink};
 use section::Sections;
 
-use crate::record::{PointKind, Scene, ScenePoint};
+use crate::record::{Channels, PointKind, RecordedJoint, RecordedPoint, Scene, SceneBody, ScenePoint};
 use crate::system::{Place, System, SystemBuilder};
 
 /// The version of the model file that is read.
@@ -63,7 +71,7 @@ pub const MODEL_KEYS: &[Key] = &[
 ];
 
 /// Names of the tables of a model.
-const TABLES: [&str; 7] = ["parameters", "point", "bar", "constraint", "force", "simulation", "output"];
+const TABLES: [&str; 9] = ["parameters", "point", "body", "bar", "joint", "constraint", "force", "simulation", "output"];
 
 /// A point of a model.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,6 +102,12 @@ pub struct Model {
     pub points: Vec<PointInfo>,
     /// In file order.
     pub bars: Vec<BarInfo>,
+    /// In file order.
+    pub bodies: Vec<BodyInfo>,
+    /// Joints between bodies, in file order.
+    pub joints: Vec<joints::Joint>,
+    /// What is recorded of it.
+    pub channels: Channels,
 }
 
 impl Model {
@@ -101,9 +115,9 @@ impl Model {
     ///
     /// # Errors
     /// Everything that is wrong with it, with paths into the description.
-    pub fn from_value(value: &Value) -> Result<Self, Faults> {
+    pub fn from_value(value: &Value, meshes: &dyn Meshes) -> Result<Self, Faults> {
         let sink = Sink::default();
-        let model = read(value, &sink);
+        let model = read(value, &sink, meshes);
         match (sink.finish(), model) {
             (Ok(()), Ok(model)) => Ok(model),
             (Err(faults), _) => Err(faults),
@@ -112,7 +126,7 @@ impl Model {
     }
 }
 
-fn read(value: &Value, sink: &Sink) -> Read<Model> {
+fn read(value: &Value, sink: &Sink, meshes: &dyn Meshes) -> Read<Model> {
     let Value::Table(table) = value else {
         return Err(sink.report(|| Fault::new("", value.quoted(), "a model is a table", "")));
     };
@@ -121,7 +135,7 @@ fn read(value: &Value, sink: &Sink) -> Read<Model> {
         _ => Default::default(),
     };
     let scope = Scope { parameters: Some(&parameters), indices: &[] };
-    let root = Entry { name: "", path: "", table, scope, sink };
+    let root = Entry { name: "", path: "", table, scope, sink, meshes };
     refuse_unknown(&root);
     let _ = root.optional("parameters", Entry::table);
     let _ = root.optional("schema", schema_version);
@@ -129,8 +143,9 @@ fn read(value: &Value, sink: &Sink) -> Read<Model> {
     let axes = axes(&root);
     let gravity = gravity(&root, axes).unwrap_or_default();
 
-    let mut sections = Sections::new(sink, &parameters);
+    let mut sections = Sections::new(sink, meshes, &parameters);
     let (specs, faulty) = points::read(&mut sections, table, axes);
+    let (bodies, faulty_bodies) = read_bodies(&mut sections, table, axes);
     let mut assembly = Assembly {
         builder: SystemBuilder::new(axes.dimension(), gravity),
         axes,
@@ -138,13 +153,25 @@ fn read(value: &Value, sink: &Sink) -> Read<Model> {
         sink,
         points: Vec::new(),
         by_name: Default::default(),
-        faulty,
+        faulty: &faulty | &faulty_bodies,
         lines: Vec::new(),
+        body_places: vec![Vec::new(); bodies.len()],
+        bodies,
+        frames: Vec::new(),
+        joints: Vec::new(),
+        faulty_joints: Default::default(),
+        scene_joints: Vec::new(),
     };
-    points::add(&mut assembly, specs);
+    points::add(&mut assembly, &specs);
+    make_bodies(&mut assembly, &root, &parameters, &specs);
+    points::complete(&mut assembly, specs);
     let bars = bars::read(&mut sections, table, &mut assembly);
-    build_kinds(&mut sections, table, "constraint", constraints::KINDS, &mut assembly);
-    build_kinds(&mut sections, table, "force", forces::KINDS, &mut assembly);
+    let kinds: Vec<&Kind> = constraints::KINDS.iter().collect();
+    build_kinds(&mut sections, table, "constraint", &kinds, &mut assembly);
+    // Couplers name joints, which may stand behind them.
+    build_joints(&mut sections, table, &mut assembly);
+    let kinds: Vec<&Kind> = forces::KINDS.iter().collect();
+    build_kinds(&mut sections, table, "force", &kinds, &mut assembly);
     points::check_mass(&assembly);
     let settings = settings::read(&root, &assembly).unwrap_or_default();
     let output = settings::output(&root, &assembly).unwrap_or_default();
@@ -154,23 +181,85 @@ fn read(value: &Value, sink: &Sink) -> Read<Model> {
     Ok(finish(assembly, title, settings, output, bars))
 }
 
+fn read_bodies(sections: &mut Sections<'_>, root: &Table, axes: Axes) -> (Vec<Body>, HashSet<String>) {
+    let keys: Vec<&Key> = bodies::KEYS.iter().collect();
+    let mut read = Vec::new();
+    let check = |entry: &Entry<'_>| {
+        let before = entry.sink.count();
+        entry.refuse_unknown_keys("a body", &keys);
+        if entry.sink.count() == before { Ok(()) } else { Err(Refused) }
+    };
+    let faulty = sections.read(root, "body", check, |entry| {
+        read.push(bodies::read(entry, axes.dimension())?);
+        Ok(())
+    });
+    (read, faulty)
+}
+
+/// Looks at the joints for what bodies can share, and makes the nodes. What is wrong with a joint is told when it is built.
+fn make_bodies(assembly: &mut Assembly<'_>, root: &Entry<'_>, parameters: &HashMap<String, expression::Value>, specs: &[points::Spec]) {
+    let share = !root.optional("output", Entry::table).ok().flatten().is_some_and(|output| output.get("reactions") == Some(&Value::Bool(true)));
+    let unheard = Sink::default();
+    let mut survey = joints::Survey::default();
+    let mut sections = Sections::new(&unheard, root.meshes, parameters);
+    sections.read(root.table, "joint", |_| Ok(()), |entry| joints::plan(assembly, entry, share, &mut survey));
+    let places: Vec<Option<Place>> =
+        assembly.points.iter().zip(specs).map(|(point, spec)| if points::is_driven(spec) { None } else { point.end.place() }).collect();
+    let wanted = bodies::nodes::Wanted {
+        bodies: &assembly.bodies,
+        shared: &survey.shared,
+        merged: &survey.merged,
+        needed: &survey.needed,
+        points: &|k| places[k],
+    };
+    assembly.frames = bodies::nodes::make(&mut assembly.builder, &wanted);
+}
+
+fn build_joints(sections: &mut Sections<'_>, root: &Table, assembly: &mut Assembly<'_>) {
+    let is_coupler = |entry: &Value| match entry {
+        Value::Table(table) => joints::COUPLERS.iter().any(|kind| table.get("type") == Some(&Value::text(kind.name))),
+        _ => false,
+    };
+    let Some(Value::Table(entries)) = root.get("joint") else {
+        build_kinds(sections, root, "joint", &joints::kinds(), assembly);
+        return;
+    };
+    for couplers in [false, true] {
+        let part: Table = entries.iter().filter(|(_, entry)| is_coupler(entry) == couplers).map(|(name, entry)| (name, entry.clone())).collect();
+        let table: Table = [("joint", Value::Table(part))].into_iter().collect();
+        let faulty = build_kinds(sections, &table, "joint", &joints::kinds(), assembly);
+        assembly.faulty_joints.extend(faulty);
+    }
+}
+
 /// Puts together what has been read without a fault.
 fn finish(assembly: Assembly<'_>, title: String, settings: Settings, output: Output, bars: Vec<BarInfo>) -> Model {
-    let Assembly { builder, axes, gravity, points, lines, .. } = assembly;
-    let kind = |point: &assembly::Point| match (point.end.place, point.end.free) {
+    let Assembly { mut builder, axes, gravity, points, lines, bodies, frames, body_places, joints, scene_joints, .. } = assembly;
+    let place = |point: &assembly::Point| point.end.place().expect("a point is a node");
+    let kind = |point: &assembly::Point| match (place(point), point.end.free) {
         (Place::Fixed(_), _) => PointKind::Fixed,
         (_, true) => PointKind::Free,
         (_, false) => PointKind::Driven,
     };
+    let scene_bodies = bodies.iter().zip(body_places).map(|(body, places)| SceneBody {
+        name: body.name.clone(),
+        mass: body.mass,
+        shape: body.shape.clone(),
+        places: places.into_iter().chain(body.points.iter().map(|&(_, at)| body.local(at))).collect(),
+    });
     let scene = Scene {
         axes: axes.name.to_string(),
         gravity: axes.in_world(gravity),
         points: points.iter().map(|point| ScenePoint { name: point.name.clone(), kind: kind(point), mass: point.mass }).collect(),
         lines,
+        bodies: scene_bodies.collect(),
+        joints: scene_joints,
     };
+    let channels = channels(axes, &points, &bodies, &frames, &joints);
+    let bodies: Vec<BodyInfo> = bodies.iter().zip(&frames).map(|(body, frame)| BodyInfo::new(body, frame, axes, &mut builder)).collect();
     let points = points
         .into_iter()
-        .map(|point| PointInfo { kind: kind(&point), name: point.name, place: point.end.place, mass: point.mass })
+        .map(|point| PointInfo { kind: kind(&point), place: place(&point), name: point.name, mass: point.mass })
         .collect();
     Model {
         title,
@@ -183,7 +272,35 @@ fn finish(assembly: Assembly<'_>, title: String, settings: Settings, output: Out
         scene,
         points,
         bars,
+        channels: Channels { bodies: bodies.iter().map(|body| body.recorded.clone()).collect(), ..channels },
+        bodies,
+        joints,
     }
+}
+
+/// Points, named points of bodies, and the forces of joints.
+fn channels(axes: Axes, points: &[assembly::Point], bodies: &[Body], frames: &[Frame], joints: &[joints::Joint]) -> Channels {
+    let own = points.iter().map(|point| RecordedPoint { name: point.name.clone(), terms: point.end.terms.clone() });
+    let named = bodies.iter().zip(frames).flat_map(|(body, frame)| {
+        body.points.iter().map(move |(name, at)| RecordedPoint { name: format!("{}.{name}", body.name), terms: frame.point(*at) })
+    });
+    let joint = |joint: &joints::Joint| {
+        // The second side, unless only the first has nodes.
+        let side = if matches!(joint.geometry.members[1], Member::Ground) { 0 } else { 1 };
+        let frame = match joint.geometry.members[side] {
+            Member::Ground => Frame::Ground,
+            Member::Point(k) => Frame::Particle(points[k].end.place().expect("a point is a node")),
+            Member::Body(k) => frames[k].clone(),
+        };
+        RecordedJoint {
+            name: joint.name.clone(),
+            rows: joint.rows.clone(),
+            nodes: frame.nodes(),
+            sign: if side == 1 { 1.0 } else { -1.0 },
+            at: frame.point(joint.geometry.at[side]),
+        }
+    };
+    Channels { axes: axes.name.to_string(), points: own.chain(named).collect(), bodies: Vec::new(), joints: joints.iter().map(joint).collect() }
 }
 
 fn refuse_unknown(root: &Entry<'_>) {
@@ -220,7 +337,13 @@ fn gravity(root: &Entry<'_>, axes: Axes) -> Read<[f64; 3]> {
 }
 
 /// Builds the entries of a section whose `type` is a line of a table.
-fn build_kinds(sections: &mut Sections<'_>, root: &Table, section: &str, kinds: &[Kind], assembly: &mut Assembly<'_>) {
+fn build_kinds(
+    sections: &mut Sections<'_>,
+    root: &Table,
+    section: &str,
+    kinds: &[&'static Kind],
+    assembly: &mut Assembly<'_>,
+) -> HashSet<String> {
     let type_key = Key::required("type", Shape::Text, "", "");
     let kind_of = |entry: &Entry<'_>| {
         if !entry.has("type") {
@@ -228,7 +351,7 @@ fn build_kinds(sections: &mut Sections<'_>, root: &Table, section: &str, kinds: 
             return Err(entry.refuse_all(format!("`{}` has no `type`", entry.name), format!("add type = {}", known.join(" or "))));
         }
         let text = entry.text("type")?;
-        let known = kinds.iter().find(|kind| kind.name == text);
+        let known = kinds.iter().copied().find(|kind| kind.name == text);
         known.ok_or_else(|| {
             entry.refuse(
                 "type",
@@ -249,5 +372,5 @@ fn build_kinds(sections: &mut Sections<'_>, root: &Table, section: &str, kinds: 
     sections.read(root, section, check, |entry| match chosen.get() {
         Some(kind) => (kind.build)(assembly, entry),
         None => Err(Refused),
-    });
+    })
 }

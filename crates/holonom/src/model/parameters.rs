@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::bodies::NoMeshes;
 use super::entry::Entry;
 use super::expression::{self, Scope, Value as Known};
 use super::fault::Sink;
@@ -16,7 +17,7 @@ pub fn read(table: &Table, sink: &Sink) -> HashMap<String, Known> {
     // What is part of a cycle, or behind one, is there but faulty, so that no second fault comes of it.
     known.extend(circular.iter().map(|name| (name.to_string(), Known::Faulty)));
     for name in order {
-        let entry = Entry { name: "", path: "parameters", table, scope: Scope { parameters: Some(&known), indices: &[] }, sink };
+        let entry = Entry { name: "", path: "parameters", table, scope: Scope { parameters: Some(&known), indices: &[] }, sink, meshes: &NoMeshes };
         let valid = is_valid(&entry, name);
         let number = entry.number(name);
         let value = if valid { number.map_or(Known::Faulty, Known::Known) } else { Known::Faulty };
@@ -82,7 +83,7 @@ fn report_cycles<'a>(table: &'a Table, needs: &HashMap<&'a str, Vec<String>>, or
     let fine: HashSet<&str> = order.iter().copied().collect();
     let left: Vec<&str> = table.keys().filter(|name| !fine.contains(name)).collect();
     let mut seen: HashSet<&str> = HashSet::new();
-    let entry = Entry { name: "", path: "parameters", table, scope: Scope::default(), sink };
+    let entry = Entry { name: "", path: "parameters", table, scope: Scope::default(), sink, meshes: &NoMeshes };
     for &start in &left {
         let mut way: Vec<&str> = Vec::new();
         let mut name = start;

@@ -105,31 +105,35 @@ fn driven_start(entry: &Entry<'_>, motion: &[Program]) -> Read<[f64; 3]> {
     Ok(start)
 }
 
-/// Adds the points to a system, free ones first.
-pub fn add(assembly: &mut Assembly<'_>, specs: Vec<Spec>) {
-    let mut ends: Vec<_> = specs
-        .iter()
-        .enumerate()
-        .map(|(k, spec)| match spec.motion {
-            Motion::Free { velocity } => Some(node(assembly.builder.free_node(spec.start, velocity), spec.start, true, k, &spec.name)),
-            _ => None,
-        })
-        .collect();
-    for (k, spec) in specs.into_iter().enumerate() {
+/// Adds the points to a system, all but the driven ones, which stay places until the free nodes are complete.
+pub fn add(assembly: &mut Assembly<'_>, specs: &[Spec]) {
+    for (k, spec) in specs.iter().enumerate() {
         let end = match spec.motion {
-            Motion::Free { .. } => ends[k].take().expect("added above"),
-            Motion::Fixed => super::assembly::End { point: Some(k), ..fixed(spec.start, spec.name.clone()) },
-            Motion::Driven(programs) => {
-                let id = assembly.builder.known_node(signals(programs));
-                node(id, spec.start, false, k, &spec.name)
-            }
+            Motion::Free { velocity } => node(assembly.builder.free_node(spec.start, velocity), spec.start, true, k, &spec.name),
+            _ => super::assembly::End { point: Some(k), ..fixed(spec.start, spec.name.clone()) },
         };
-        if spec.mass > 0.0 {
-            assembly.builder.mass(end.place, end.place, spec.mass);
-        }
         assembly.by_name.insert(spec.name.clone(), k);
-        assembly.points.push(Point { name: spec.name, path: spec.path, end, mass: spec.mass, carries_bar: false });
+        assembly.points.push(Point { name: spec.name.clone(), path: spec.path.clone(), end, mass: spec.mass, carries_bar: false });
     }
+}
+
+/// Adds the motion of the driven points and the mass of all.
+pub fn complete(assembly: &mut Assembly<'_>, specs: Vec<Spec>) {
+    for (k, spec) in specs.into_iter().enumerate() {
+        if let Motion::Driven(programs) = spec.motion {
+            let id = assembly.builder.known_node(signals(programs));
+            assembly.points[k].end = node(id, spec.start, false, k, &spec.name);
+        }
+        let place = assembly.points[k].end.place().expect("a point is a node");
+        if spec.mass > 0.0 {
+            assembly.builder.mass(place, place, spec.mass);
+        }
+    }
+}
+
+/// Whether a point is driven.
+pub fn is_driven(spec: &Spec) -> bool {
+    matches!(spec.motion, Motion::Driven(_))
 }
 
 fn signals(programs: Vec<Program>) -> [Arc<dyn Signal>; 3] {
@@ -146,15 +150,15 @@ pub fn check_mass(assembly: &Assembly<'_>) {
     for point in &assembly.points {
         // What is wrong with a faulty entry may be its mass.
         let name = point.name.split('[').next().unwrap_or(&point.name);
-        let massless = !assembly.faulty.contains(name) && point.mass == 0.0 && !point.carries_bar && point.end.free;
+        let massless = !assembly.faulty.contains(name) && point.mass == 0.0 && !point.carries_bar && point.end.free && !assembly.builder.has_inertia(&point.end.terms);
         if massless && told.insert(&point.path) {
             let message = format!("the free point `{}` has no mass", point.name);
             let cure = "give it a mass, attach a bar with mass, or tie it with fixed = true";
             assembly.sink.report(|| Fault::new(&*point.path, &*point.name, message, cure));
         }
     }
-    if assembly.faulty.is_empty() && !assembly.points.iter().any(|point| point.end.free) {
-        let cure = "add a [point.NAME] with mass and position";
-        assembly.sink.report(|| Fault::new("", "", "nothing in this model can move: it has no free point", cure));
+    if assembly.faulty.is_empty() && assembly.bodies.is_empty() && !assembly.points.iter().any(|point| point.end.free) {
+        let cure = "add a [body.NAME], or a [point.NAME] with mass and position";
+        assembly.sink.report(|| Fault::new("", "", "nothing in this model can move: it has no body and no free point", cure));
     }
 }

@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
 
 use super::assembly::GROUND;
+use super::bodies::Meshes;
 use super::entry::Entry;
 use super::expression::{Scope, Value as Known};
 use super::fault::{Fault, Read, Refused, Sink};
@@ -13,6 +14,7 @@ use super::value::{Table, Value, key_path};
 /// What all sections of a model share.
 pub struct Sections<'a> {
     pub sink: &'a Sink,
+    pub meshes: &'a dyn Meshes,
     pub parameters: &'a HashMap<String, Known>,
     /// Names so far: they are unique over all sections.
     names: HashSet<String>,
@@ -22,8 +24,8 @@ pub struct Sections<'a> {
 
 impl<'a> Sections<'a> {
     /// Nothing read so far.
-    pub fn new(sink: &'a Sink, parameters: &'a HashMap<String, Known>) -> Self {
-        Self { sink, parameters, names: HashSet::new(), room: Cell::new(repeat::MOST) }
+    pub fn new(sink: &'a Sink, meshes: &'a dyn Meshes, parameters: &'a HashMap<String, Known>) -> Self {
+        Self { sink, meshes, parameters, names: HashSet::new(), room: Cell::new(repeat::MOST) }
     }
 
     /// Goes through the entries of a section. `check` sees each table once, `each` all that a repetition makes of it.
@@ -56,7 +58,7 @@ impl<'a> Sections<'a> {
                 continue;
             };
             let scope = Scope { parameters: Some(self.parameters), indices: &[] };
-            let entry = Entry { name, path: &path, table, scope, sink: self.sink };
+            let entry = Entry { name, path: &path, table, scope, sink: self.sink, meshes: self.meshes };
             let checked = check(&entry);
             if valid.and(checked).and(self.instances(&entry, &mut each)).is_err() {
                 faulty.insert(name.to_string());
@@ -99,7 +101,7 @@ impl<'a> Sections<'a> {
         if !self.names.insert(name.to_string()) {
             return Err(report(
                 format!("the name `{name}` is used twice"),
-                "give one of them another name: points, bars, constraints and forces share their names",
+                "give one of them another name: points, bars, bodies, constraints, joints, drives and forces share their names",
             ));
         }
         Ok(())

@@ -1,10 +1,12 @@
 //! What is kept of a run: named columns in memory, one row per recorded step, and how the mechanism is drawn.
 
+mod channels;
 mod recorder;
 mod scene;
 
-pub use recorder::{COLUMNS, RecordedPoint, Recorder, reaction_columns};
-pub use scene::{Anchor, Line, LineKind, PointKind, Scene, ScenePoint};
+pub use channels::{Channels, RecordedBody, RecordedJoint, RecordedPoint};
+pub use recorder::{COLUMNS, Recorder};
+pub use scene::{Anchor, Line, LineKind, PointKind, Scene, SceneBody, SceneJoint, ScenePoint, SceneShape};
 
 /// A table of columns of equal length; row 0 is the start.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -21,7 +21,7 @@ pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, Proj
 
 use crate::formulation::{Failure, Iteration, Workspace};
 use crate::integrator::{Integrator, Step};
-use crate::system::System;
+use crate::system::{GaugeValues, System};
 use adapt::Pilot;
 
 /// Why words do not make a method.
@@ -86,6 +86,7 @@ pub struct Simulation<'a> {
     steps: u64,
     /// What chooses the steps by accuracy.
     pilot: Option<Box<Pilot>>,
+    gauges: GaugeValues,
     /// Multipliers (r) and accelerations (D × nodes) of the index-1 system at the present state, where they are wanted.
     reactions: Option<Reactions>,
 }
@@ -132,6 +133,8 @@ impl<'a> Simulation<'a> {
         start: Start,
     ) -> Self {
         let audit = Audit::new(system, &method, &mut work, &state);
+        let mut gauges = system.gauge_values();
+        system.measure(&state.x, &state.v, &mut gauges);
         let pilot = Pilot::new(&method, &state, &audit, system.coordinates());
         Self {
             integrator,
@@ -146,6 +149,7 @@ impl<'a> Simulation<'a> {
             step,
             steps: 0,
             pilot,
+            gauges,
             reactions: None,
         }
     }
@@ -246,6 +250,7 @@ impl<'a> Simulation<'a> {
             self.state.a.copy_from_slice(&work.a1);
         }
         std::mem::swap(&mut work.at_start, &mut work.at_end);
+        system.measure(&self.state.x, &self.shown_v, &mut self.gauges);
         Ok(taken)
     }
 
@@ -280,6 +285,11 @@ impl<'a> Simulation<'a> {
     /// Accelerations to show (D × nodes), m/s².
     pub fn accelerations(&self) -> &[f64] {
         &self.shown_a
+    }
+
+    /// Coordinates of joints and their rates, in the order of [`System::gauges`].
+    pub fn gauges(&self) -> &GaugeValues {
+        &self.gauges
     }
 
     /// The energy audit so far.

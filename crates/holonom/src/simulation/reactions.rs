@@ -2,6 +2,7 @@
 
 use super::Simulation;
 use crate::formulation::Workspace;
+use crate::system::NodeId;
 
 /// Forces of the constraints at a state, of the order of its positions and velocities.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +26,30 @@ impl Simulation<'_> {
     /// Forces of the constraints at the present state, if they were asked for.
     pub fn reactions(&self) -> Option<&Reactions> {
         self.reactions.as_ref()
+    }
+
+    /// Force (3) and moment about a place (3) of some rows on some nodes, points or directions, at the present state, N
+    /// and N·m; zero unless forces of the constraints were asked for.
+    pub fn wrench(&self, rows: std::ops::Range<usize>, nodes: &[(NodeId, bool)], about: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+        let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+        let Some(reactions) = &self.reactions else { return (force, moment) };
+        let (dim, kkt) = (self.system.dim, &self.work.kkt);
+        for row in rows {
+            for s in kkt.row_slots[row].clone() {
+                let Some(&(node, is_point)) = nodes.iter().find(|(node, _)| node.index() == kkt.slot_nodes[s] as usize) else { continue };
+                let (mut push, mut arm) = ([0.0; 3], [0.0; 3]);
+                for c in 0..dim {
+                    push[c] = -reactions.lambda[row] * self.work.at_start.gradient[s * dim + c];
+                    arm[c] = self.state.x[node.index() * dim + c] - if is_point { about[c] } else { 0.0 };
+                }
+                for c in 0..3 {
+                    let (i, j) = ((c + 1) % 3, (c + 2) % 3);
+                    force[c] += if is_point { push[c] } else { 0.0 };
+                    moment[c] += arm[i] * push[j] - arm[j] * push[i];
+                }
+            }
+        }
+        (force, moment)
     }
 
     /// Finds the forces of the constraints at the present state, where they are wanted.

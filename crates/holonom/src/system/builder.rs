@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::function::{FunctionId, Functions, Part, Quantity, Smooth};
+use super::function::{FunctionId, Functions, Part, Quantity};
+use super::gauge::{Form, Gauges};
 use super::{
     Constant, CustomEntry, CustomRows, InvariantId, Invariants, Law, LawEntry, Load, LoadEntry, MAX_ARGUMENTS, Mass, MassBlock, Row, Signal,
     System,
@@ -56,6 +57,7 @@ pub struct SystemBuilder {
     weight: Vec<(u32, [f64; 2])>,
     invariants: Invariants,
     functions: Functions,
+    pub(super) gauges: Gauges,
     rows: Vec<Row>,
     custom: Vec<CustomEntry>,
     laws: Vec<LawEntry>,
@@ -77,6 +79,7 @@ impl SystemBuilder {
             weight: Vec::new(),
             invariants: Invariants::new(dim),
             functions: Functions::default(),
+            gauges: Gauges::new(dim),
             rows: Vec::new(),
             custom: Vec::new(),
             laws: Vec::new(),
@@ -168,14 +171,20 @@ impl SystemBuilder {
         self.invariants.value_of(invariant, &self.position)
     }
 
-    /// The angle whose cosine and sine are two invariants (times a common size), counted over any number of turns.
-    pub fn angle(&mut self, cosine: InvariantId, sine: InvariantId) -> Part {
-        Part::Angle { cosine, sine }
+    /// A joint coordinate as a part of functions.
+    pub fn part(&mut self, form: &Form) -> Part {
+        form.part(&mut self.invariants)
     }
 
-    /// A smooth function of some invariants.
-    pub fn smooth(&mut self, of: &[InvariantId], function: Arc<dyn Smooth>) -> Part {
-        Part::Smooth { of: of.to_vec(), function }
+    /// Whether any of the nodes of a point has mass.
+    pub fn has_inertia(&self, terms: &[Term]) -> bool {
+        let is = |term: &Term, node: u32| term.place == Place::Node(NodeId(node));
+        self.mass.iter().any(|&(a, b, block)| a == b && block.m > 0.0 && terms.iter().any(|term| is(term, a)))
+    }
+
+    /// Number of rows so far, without custom ones.
+    pub fn rows(&self) -> usize {
+        self.rows.len()
     }
 
     /// The sum of some parts, each with its factor.
@@ -248,6 +257,7 @@ impl SystemBuilder {
             gravity: self.gravity,
             invariants: self.invariants,
             functions: self.functions,
+            gauges: self.gauges,
             function_rows,
             rows: self.rows,
             custom: self.custom,

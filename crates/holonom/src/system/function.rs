@@ -217,7 +217,12 @@ impl Functions {
 
     /// The invariants a function depends on.
     pub fn base(&self, id: FunctionId) -> &[InvariantId] {
-        &self.items[id.0 as usize].base
+        self.base_of(id.0 as usize)
+    }
+
+    /// The invariants the k-th function depends on.
+    pub fn base_of(&self, k: usize) -> &[InvariantId] {
+        &self.items[k].base
     }
 
     /// Room for values.

@@ -8,6 +8,7 @@ mod builder;
 mod custom;
 mod evaluate;
 mod function;
+mod gauge;
 mod invariant;
 mod law;
 mod mass;
@@ -20,6 +21,8 @@ pub use custom::{ConstraintFunction, CustomRows, Differentiated, ForceFunction, 
 pub(crate) use evaluate::gather;
 pub use evaluate::{Between, Evaluation};
 pub use function::{Derivatives, FunctionId, Part, Quantity, Smooth, SmoothFunction};
+pub(crate) use gauge::Gauges;
+pub use gauge::{Form, GaugeValues};
 pub(crate) use function::{FunctionValues, Functions, NO_CHANGE};
 pub(crate) use invariant::{HessianBlock, skew};
 pub use invariant::{InvariantId, Invariants};
@@ -68,6 +71,7 @@ pub struct System {
     pub(crate) gravity: [f64; 3],
     pub(crate) invariants: Invariants,
     pub(crate) functions: Functions,
+    pub(crate) gauges: Gauges,
     /// The rows that are no invariants but functions of them.
     pub(crate) function_rows: Vec<u32>,
     pub(crate) rows: Vec<Row>,

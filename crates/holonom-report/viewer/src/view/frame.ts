@@ -1,13 +1,18 @@
 // The part of space in which everything happens: what the camera has to show.
 
 import { Box3, Vector3 } from "three";
-import type { Motion } from "../motion";
+import { carried, type Motion } from "../motion";
 import type { Vec3 } from "../payload";
+import { outline } from "./outline";
 
 /** Rows looked at per run; a box needs no more. */
 const SAMPLES = 400;
+/** The same times the number of bodies. */
+const BODY_SAMPLES = 12_000;
 /** A run that blew up must not shrink the mechanism to a dot: beyond this many starting sizes, the outermost rows are left out. */
 const FAR = 30;
+/** Kinds of joints whose place in the world is drawn. */
+const HOLDS_PLACE = new Set(["revolute", "spherical", "universal", "fixed", "generic", "constant-velocity", "prismatic", "cylindrical", "screw"]);
 
 export function boundingBox(motions: Motion[]): Box3 {
   const fixed = motions.flatMap(fixedPlaces);
@@ -23,16 +28,33 @@ export function diagonal(box: Box3): number {
 }
 
 function fixedPlaces(motion: Motion): Vec3[] {
-  return motion.run.scene.lines.flatMap((line) => [line.from, line.to].flatMap((end) => ("fixed" in end ? [end.fixed] : [])));
+  const { lines, joints } = motion.run.scene;
+  const ends = lines.flatMap((line) => [line.from, line.to].flatMap((end) => ("fixed" in end ? [end.fixed] : [])));
+  return [...ends, ...joints.flatMap((joint) => (joint.body === null && HOLDS_PLACE.has(joint.kind) ? [joint.at] : []))];
 }
 
 function placesInRow(motion: Motion, row: number): Vec3[] {
-  return motion.run.scene.points.map((point) => motion.inRow(point.name, row)).filter((place) => place !== undefined);
+  const { points, bodies } = motion.run.scene;
+  const places = points.map((point) => motion.inRow(point.name, row)).filter((place) => place !== undefined);
+  for (const body of bodies) {
+    const pose = motion.poseInRow(body.name, row);
+    if (!pose) continue;
+    const { places: corners, round } = outline(body, motion.plane);
+    for (const corner of corners) places.push(...ball(carried(pose, corner), round));
+  }
+  return places;
+}
+
+/** A place, or the lowest and the highest corner of what encloses a ball around it. */
+function ball(centre: Vector3, radius: number): Vec3[] {
+  if (radius === 0) return [centre.toArray()];
+  return [centre.clone().addScalar(-radius).toArray(), centre.clone().addScalar(radius).toArray()];
 }
 
 function allPlaces(motion: Motion): Vec3[] {
   const rows = motion.run.times.length;
-  const step = Math.max(1, Math.floor(rows / SAMPLES));
+  const samples = Math.max(Math.min(SAMPLES, BODY_SAMPLES / Math.max(motion.run.scene.bodies.length, 1)), 20);
+  const step = Math.max(1, Math.floor(rows / samples));
   const places: Vec3[] = [];
   for (let row = 0; row < rows; row += step) places.push(...placesInRow(motion, row));
   return places;

@@ -1,9 +1,10 @@
-// One run's mechanism: points, what connects them, and trails.
+// One run's mechanism: points, what connects them, bodies, and trails.
 
 import { BackSide, BoxGeometry, BufferGeometry, Color, FrontSide, Group, Line, LineBasicMaterial, Mesh, MeshStandardMaterial, SphereGeometry, Vector3, type Side } from "three";
 import type { Motion } from "../motion";
 import type { Anchor, LineKind, Scene, Vec3 } from "../payload";
-import { curveColor, theme, type Theme } from "../theme";
+import { bodyColor, curveColor, theme, type Theme } from "../theme";
+import { Bodies } from "./bodies";
 import { coil, stick, stretch } from "./shapes";
 import { Trail } from "./trail";
 
@@ -26,6 +27,7 @@ export class Mechanism {
   private readonly side: Side;
   private readonly scale: number;
   private readonly scene: Scene;
+  private readonly bodies: Bodies;
 
   constructor(private readonly motion: Motion, private readonly size: number, index: number, runs: number) {
     this.scene = motion.run.scene;
@@ -35,6 +37,7 @@ export class Mechanism {
     for (const line of this.scene.lines) this.addLine(line.kind, line.from, line.to);
     this.addPoints();
     this.addGround();
+    this.bodies = this.addBodies();
     this.addTrails();
   }
 
@@ -45,6 +48,11 @@ export class Mechanism {
   paint(): void {
     const colours = theme();
     for (const paint of this.paints) paint(colours);
+  }
+
+  /** Shown along with another run. */
+  setGhost(ghost: boolean): void {
+    this.bodies.setGhost(ghost);
   }
 
   private addLine(kind: LineKind, from: Anchor, to: Anchor): void {
@@ -100,17 +108,29 @@ export class Mechanism {
     for (const place of places.values()) this.put(cube(), place);
   }
 
+  private addBodies(): Bodies {
+    const bodies = new Bodies(this.motion, this.size, this.runColour);
+    this.group.add(bodies.group);
+    this.updates.push((t) => bodies.update(t));
+    this.paints.push((colours) => bodies.paint(colours));
+    return bodies;
+  }
+
   private addTrails(): void {
-    const { times } = this.motion.run;
-    const duration = (times.at(-1) ?? 0) - (times[0] ?? 0);
     const free = this.scene.points.filter((point) => point.kind === "free");
     const every = Math.ceil(free.length / MOST_TRAILS);
-    for (const { name } of free.filter((_, i) => i % every === 0)) {
-      const trail = new Trail(this.motion, name, duration / 8);
-      this.group.add(trail.object);
-      this.updates.push((t) => trail.update(t));
-      this.paints.push((colours) => trail.setColours(new Color(this.runColour?.() ?? curveColor(0)), new Color(colours.page)));
-    }
+    for (const { name } of free.filter((_, i) => i % every === 0)) this.addTrail((t) => this.motion.at(name, t), () => curveColor(0));
+    if (free.length + this.scene.bodies.length > MOST_TRAILS) return;
+    this.scene.bodies.forEach(({ name }, i) => this.addTrail((t) => this.motion.poseAt(name, t)?.place.toArray(), () => bodyColor(i)));
+  }
+
+  private addTrail(at: (t: number) => Vec3 | undefined, colour: () => string): void {
+    const { times } = this.motion.run;
+    const first = times[0] ?? 0;
+    const trail = new Trail(at, first, ((times.at(-1) ?? 0) - first) / 8);
+    this.group.add(trail.object);
+    this.updates.push((t) => trail.update(t));
+    this.paints.push((colours) => trail.setColours(new Color(this.runColour?.() ?? colour()), new Color(colours.page)));
   }
 
   private solid(geometry: BufferGeometry, colour: (colours: Theme) => string, side: Side = this.side): Mesh {

@@ -67,7 +67,12 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
   clock.onTime(show);
   const choice = new RunChoice(motions.map((motion) => motion.run.label), visibility);
   const choose = (): void => {
-    mechanisms.forEach((mechanism, run) => (mechanism.group.visible = choice.shows(run)));
+    let alone = true;
+    mechanisms.forEach((mechanism, run) => {
+      mechanism.group.visible = choice.shows(run);
+      mechanism.setGhost(!alone);
+      if (choice.shows(run)) alone = false;
+    });
     render();
   };
   container.append(choice.node);

@@ -1,10 +1,10 @@
-// The path that a point has come, fading into the past.
+// The path that a point or the centre of a body has come, fading into the past.
 
 import { Color } from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
-import type { Motion } from "../motion";
+import type { Vec3 } from "../payload";
 
 const SEGMENTS = 180;
 
@@ -13,8 +13,8 @@ export class Trail {
   private readonly geometry = new LineSegmentsGeometry();
   private readonly places = new Float32Array(6 * SEGMENTS);
 
-  /** `window`: how far back it goes, s. */
-  constructor(private readonly motion: Motion, private readonly name: string, private readonly window: number) {
+  /** `first`: when the run starts; `window`: how far back the trail goes, s. */
+  constructor(private readonly at: (t: number) => Vec3 | undefined, private readonly first: number, private readonly window: number) {
     this.geometry.setPositions(this.places);
     this.geometry.setColors(new Float32Array(6 * SEGMENTS));
     this.object = new LineSegments2(this.geometry, new LineMaterial({ linewidth: 2.2, vertexColors: true, depthWrite: false }));
@@ -35,12 +35,12 @@ export class Trail {
   }
 
   update(t: number): void {
-    const first = this.motion.run.times[0] ?? 0;
-    let near = this.motion.at(this.name, t);
+    const { first } = this;
+    let near = this.at(t);
     let segments = 0;
     for (let i = 1; i <= SEGMENTS; i++) {
       const past = t - (this.window * i) / SEGMENTS;
-      const far = this.motion.at(this.name, Math.max(past, first));
+      const far = this.at(Math.max(past, first));
       if (!near || !far) break;
       this.places.set([...near, ...far], 6 * segments++);
       near = far;

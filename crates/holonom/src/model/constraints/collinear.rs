@@ -1,6 +1,7 @@
-use crate::model::assembly::{Assembly, End, cross, difference, norm, unit};
+use crate::model::assembly::{Assembly, End, difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
+use crate::model::geometry::{cross, norm, unit};
 use crate::model::key::{Key, Kind, Shape};
 use crate::record::LineKind;
 
@@ -33,9 +34,8 @@ fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
     let rows = each * (points.len() - 2);
     for (k, triple) in points.windows(3).enumerate() {
         check(assembly, entry, triple)?;
-        let [a, b, c] = [0, 1, 2].map(|i| triple[i].place);
         for component in 0..each {
-            let product = assembly.builder.cross(unit(component), &[(b, 1.0), (a, -1.0)], &[(c, 1.0), (b, -1.0)]);
+            let product = assembly.builder.cross(unit(component), &from_to(&triple[0], &triple[1]), &from_to(&triple[1], &triple[2]));
             assembly.builder.constant_row(Assembly::row_name(entry, each * k + component, rows), product, 0.0);
         }
     }

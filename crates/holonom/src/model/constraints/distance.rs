@@ -1,9 +1,10 @@
 use std::sync::Arc;
 
-use crate::model::assembly::{Assembly, End, difference, norm};
+use crate::model::assembly::{Assembly, End, difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::expression::{Program, TimeProgram};
 use crate::model::fault::Read;
+use crate::model::geometry::norm;
 use crate::model::key::{Key, Kind, Shape};
 use crate::record::LineKind;
 use crate::system::{Constant, Signal};
@@ -57,7 +58,7 @@ fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
             }
         }
     };
-    let half_square = assembly.builder.square(&[(b.place, 1.0), (a.place, -1.0)]);
+    let half_square = assembly.builder.square(&from_to(a, b));
     assembly.builder.row(entry.name, half_square, target);
     assembly.draw(entry, LineKind::Rod, a, b);
     Ok(())

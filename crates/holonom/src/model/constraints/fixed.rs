@@ -1,6 +1,7 @@
-use crate::model::assembly::{Assembly, End, difference, fixed, unit};
+use crate::model::assembly::{Assembly, End, difference, fixed, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
+use crate::model::geometry::unit;
 use crate::model::key::{Key, Kind, Shape};
 
 pub(super) const KIND: Kind = Kind {
@@ -33,7 +34,7 @@ fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
     let offset = difference(&a, &b);
     let axes = assembly.axes.name.as_bytes();
     for (c, &axis) in axes.iter().enumerate() {
-        let component = assembly.builder.linear(unit(c), &[(b.place, 1.0), (a.place, -1.0)]);
+        let component = assembly.builder.linear(unit(c), &from_to(&a, &b));
         assembly.builder.constant_row(format!("{}[{}]", entry.name, char::from(axis)), component, offset[c]);
     }
     Ok(())

@@ -1,6 +1,7 @@
-use crate::model::assembly::{Assembly, difference, dot, norm};
+use crate::model::assembly::{Assembly, difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
+use crate::model::geometry::{dot, norm};
 use crate::model::key::{Key, Kind, Shape};
 
 pub(super) const KIND: Kind = Kind {
@@ -42,7 +43,7 @@ fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
     let angle =
         || format!("the two directions are at {:.4}° at the start, not at 90°", (dot(u, w) / size).clamp(-1.0, 1.0).acos().to_degrees());
     assembly.check_start(entry, dot(u, w), size, angle)?;
-    let product = assembly.builder.dot(&[(b.place, 1.0), (a.place, -1.0)], &[(d.place, 1.0), (c.place, -1.0)]);
+    let product = assembly.builder.dot(&from_to(&a, &b), &from_to(&c, &d));
     assembly.builder.constant_row(entry.name, product, 0.0);
     Ok(())
 }

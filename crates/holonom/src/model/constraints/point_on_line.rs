@@ -1,6 +1,7 @@
-use crate::model::assembly::{Assembly, End, cross, difference, dot, fixed, norm, unit};
+use crate::model::assembly::{Assembly, End, difference, fixed, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
+use crate::model::geometry::{across, cross, dot, norm, unit};
 use crate::model::key::{Key, Kind, Shape};
 use crate::record::LineKind;
 
@@ -53,7 +54,7 @@ fn along_direction(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
     let size = norm(d).max(norm(point.start));
     assembly.check_start(entry, off, size, || format!("`{}` starts {off} m beside the line", point.name))?;
     for (row, &e) in across.iter().enumerate() {
-        let component = assembly.builder.linear(e, &[(point.place, 1.0), (through.place, -1.0)]);
+        let component = assembly.builder.linear(e, &from_to(&through, &point));
         assembly.builder.constant_row(Assembly::row_name(entry, row, across.len()), component, 0.0);
     }
     let (back, forth) = ([-1.0, 1.0].map(|s| fixed(std::array::from_fn(|c| through.start[c] + s * direction[c]), String::new()))).into();
@@ -61,18 +62,6 @@ fn along_direction(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         assembly.draw(entry, LineKind::Guide, &back, &forth);
     }
     Ok(())
-}
-
-/// Unit vectors at right angles to a unit vector and to each other: two in space, one in the plane.
-pub(super) fn across(u: [f64; 3], dim: usize) -> Vec<[f64; 3]> {
-    if dim == 2 {
-        return vec![[-u[1], u[0], 0.0]];
-    }
-    let least = (0..3).min_by(|&a, &b| u[a].abs().total_cmp(&u[b].abs())).expect("three components");
-    let first = cross(u, unit(least));
-    let size = norm(first);
-    let first = first.map(|c| c / size);
-    vec![first, cross(u, first)]
 }
 
 fn between_points(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
@@ -88,7 +77,7 @@ fn between_points(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
     check(assembly, entry, [&point, &a, &b], norm(u), norm(cross(u, w)))?;
     let rows = if assembly.dimension() == 3 { 3 } else { 1 };
     for row in 0..rows {
-        let product = assembly.builder.cross(unit(row), &[(b.place, 1.0), (a.place, -1.0)], &[(point.place, 1.0), (a.place, -1.0)]);
+        let product = assembly.builder.cross(unit(row), &from_to(&a, &b), &from_to(&a, &point));
         assembly.builder.constant_row(Assembly::row_name(entry, row, rows), product, 0.0);
     }
     assembly.draw(entry, LineKind::Guide, &a, &b);
@@ -104,7 +93,7 @@ fn check(assembly: &Assembly<'_>, entry: &Entry<'_>, [point, a, b]: [&End; 3], l
         ));
     }
     for other in [a, b] {
-        if other.place == point.place {
+        if other.terms == point.terms {
             return Err(entry.refuse("line", format!("`{}` is on this line anyway", point.name), "name two other points"));
         }
     }

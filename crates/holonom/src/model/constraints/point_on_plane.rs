@@ -1,6 +1,7 @@
-use crate::model::assembly::{Assembly, difference, dot, fixed, norm};
+use crate::model::assembly::{Assembly, difference, fixed, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
+use crate::model::geometry::{dot, norm};
 use crate::model::key::{Key, Kind, Shape};
 
 pub(super) const KIND: Kind = Kind {
@@ -43,7 +44,7 @@ fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
     let off = dot(normal, d);
     let size = norm(d).max(norm(point.start));
     assembly.check_start(entry, off, size, || format!("`{}` starts {} m off the plane", point.name, off.abs()))?;
-    let height = assembly.builder.linear(normal, &[(point.place, 1.0), (through.place, -1.0)]);
+    let height = assembly.builder.linear(normal, &from_to(&through, &point));
     assembly.builder.constant_row(entry.name, height, 0.0);
     Ok(())
 }

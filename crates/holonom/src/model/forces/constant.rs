@@ -1,14 +1,15 @@
 use std::sync::Arc;
 
+use super::point_load::PointLoad;
 use crate::model::assembly::Assembly;
 use crate::model::entry::Entry;
-use crate::model::fault::{Read, Refused};
+use crate::model::fault::Read;
 use crate::model::key::{Key, Kind, Shape};
-use crate::system::{Load, NodeId, Place};
+use crate::system::{Differentiated, ForceFunction, Number};
 
 pub(super) const KIND: Kind = Kind {
     name: "constant",
-    doc: "a force on a point that never changes, booked as work",
+    doc: "a force on a point, or on a place of a body, that never changes, booked as work",
     equations: "Q = F",
     keys: &[
         Key::required("point", Shape::Point, "", "the point it acts on"),
@@ -28,29 +29,16 @@ force = [0, 2, 0]
 };
 
 fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    let (node, force) = (loaded(assembly, entry), entry.vector("force", assembly.dimension()));
-    assembly.builder.load(entry.name, &[node?], Arc::new(Steady(force?)));
+    let (point, force) = (assembly.point(entry, "point"), entry.vector("force", assembly.dimension()));
+    let (load, nodes) = PointLoad::new(entry, &point?, Steady(force?))?;
+    assembly.builder.load(entry.name, &nodes, Arc::new(Differentiated(load)));
     Ok(())
-}
-
-/// The node of the point that a load acts on.
-pub(super) fn loaded(assembly: &Assembly<'_>, entry: &Entry<'_>) -> Read<NodeId> {
-    match assembly.point(entry, "point")?.place {
-        Place::Node(node) => Ok(node),
-        Place::Fixed(_) => Err(refused(entry)),
-    }
-}
-
-fn refused(entry: &Entry<'_>) -> Refused {
-    entry.refuse("point", "a force on a fixed point does nothing", "name a point that can move")
 }
 
 struct Steady([f64; 3]);
 
-impl Load for Steady {
-    fn force(&self, _x: &[f64], _v: &[f64], _t: f64, force: &mut [f64]) {
-        force.copy_from_slice(&self.0[..force.len()]);
+impl ForceFunction for Steady {
+    fn evaluate<N: Number>(&self, _x: &[N], _v: &[N], _t: N, force: &mut [N]) {
+        force.iter_mut().zip(self.0).for_each(|(force, steady)| *force = N::from(steady));
     }
-
-    fn tangent(&self, _x: &[f64], _v: &[f64], _t: f64, _by_position: &mut [f64], _by_velocity: &mut [f64]) {}
 }

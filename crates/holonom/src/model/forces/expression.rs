@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use super::constant::loaded;
+use super::point_load::PointLoad;
 use crate::model::assembly::Assembly;
 use crate::model::entry::{Entry, Spot};
 use crate::model::expression::Program;
@@ -42,9 +42,9 @@ fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
     let axes = assembly.axes.name;
     let here = |name: &&&str| **name == "t" || name.chars().last().is_some_and(|axis| axes.contains(axis));
     let variables: Vec<&str> = VARIABLES.iter().filter(here).copied().collect();
-    let (node, force) = (loaded(assembly, entry), entry.formulas("force", dim, &variables));
-    let (node, force) = (node?, force?);
-    let start = assembly.point(entry, "point")?.start;
+    let (point, force) = (assembly.point(entry, "point"), entry.formulas("force", dim, &variables));
+    let (point, force) = (point?, force?);
+    let start = point.start;
     let at: Vec<f64> = std::iter::once(0.0).chain(start[..dim].iter().copied()).chain([0.0; 3]).collect();
     for (k, component) in force.iter().enumerate() {
         let value = component.evaluate(&at);
@@ -57,7 +57,8 @@ fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
             ));
         }
     }
-    assembly.builder.load(entry.name, &[node], Arc::new(Differentiated(Formula(force))));
+    let (load, nodes) = PointLoad::new(entry, &point, Formula(force))?;
+    assembly.builder.load(entry.name, &nodes, Arc::new(Differentiated(load)));
     Ok(())
 }
 

@@ -3,6 +3,7 @@
 mod constant;
 mod expression;
 mod laws;
+mod point_load;
 mod spring;
 
 use super::key::Kind;

@@ -1,10 +1,11 @@
 use std::sync::Arc;
 
 use super::laws::{Damper, Energy, FORCE_VARIABLES, Force, LinearSpring, SHORTEST};
-use crate::model::assembly::{Assembly, difference, norm};
+use crate::model::assembly::{Assembly, difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::expression::Program;
 use crate::model::fault::Read;
+use crate::model::geometry::norm;
 use crate::model::key::{Key, Kind, Shape};
 use crate::record::LineKind;
 use crate::system::Law;
@@ -75,7 +76,7 @@ fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         finite(entry, "force", &force, &[start.max(SHORTEST), 0.0, 0.0])?;
         laws.push(Arc::new(Force(force)));
     }
-    let half_square = assembly.builder.square(&[(b.place, 1.0), (a.place, -1.0)]);
+    let half_square = assembly.builder.square(&from_to(&a, &b));
     for law in laws {
         assembly.builder.law(entry.name, &[half_square], law);
     }

@@ -1,0 +1,136 @@
+//! Every joint: freedom, motion and forces against solutions by Newton and Euler in minimal coordinates, which
+//! `joints/reference.py` computes; what the conserving scheme keeps; every named method.
+
+use std::collections::BTreeMap;
+
+use holonom::analysis;
+use holonom::model::{Model, joints};
+use holonom::record::{Recorder, Recording};
+use holonom::simulation::{Choice, Method, NAMED, Simulation, Status, Summary};
+use holonom_io::Source;
+use serde_json::Value;
+
+/// Largest difference from the reference, m, rad, N and so on, all of the order of one to ten.
+const AGREES: f64 = 1e-8;
+
+fn cases() -> Vec<Value> {
+    serde_json::from_str(include_str!("/tmp/i4/ref-now.json")).expect("the references are JSON")
+}
+
+fn name(case: &Value) -> &str {
+    case["name"].as_str().expect("a case has a name")
+}
+
+fn model(name: &str, text: &str) -> Model {
+    let source = Source::read(name, text.as_bytes()).unwrap_or_else(|message| panic!("{message}"));
+    source.model().unwrap_or_else(|message| panic!("{message}"))
+}
+
+/// The model of a case, with reactions or with the nodes shared that bodies may share.
+fn model_of(case: &Value, reactions: bool) -> Model {
+    let text = case["model"].as_str().expect("a case has a model");
+    model(name(case), &if reactions { text.to_string() } else { text.replace("reactions = true", "reactions = false") })
+}
+
+fn run(model: &Model, method: &str, accuracy: Option<f64>, step: f64, end: f64, reactions: bool) -> (Recording, Summary) {
+    let choice = Choice { method: Some(method.into()), accuracy, ..Choice::default() };
+    let method = Method::resolve(&choice).unwrap_or_else(|error| panic!("{error}"));
+    let label = method.name.clone();
+    let mut simulation = Simulation::new(&model.system, method, step).unwrap_or_else(|error| panic!("{label}: {error}"));
+    if reactions {
+        simulation.find_reactions();
+    }
+    let mut recorder = Recorder::new(&model.channels, &model.system, 1, reactions);
+    let status = simulation.run(end, &mut recorder);
+    assert_eq!(status, Status::Completed, "{label}");
+    let size = analysis::rank(&model.system, &simulation.state().x, end).size(&model.system);
+    (recorder.finish(), simulation.summary("test", end, &status, size))
+}
+
+fn last(recording: &Recording, column: &str) -> f64 {
+    *recording.column(column).unwrap_or_else(|| panic!("there is no column {column}")).last().expect("rows")
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Array(items) => items.iter().map(|item| item.as_f64().expect("a number")).collect(),
+        single => vec![single.as_f64().expect("a number")],
+    }
+}
+
+/// The largest difference between a recording's last row and the bodies and coordinates of a case.
+fn difference(case: &Value, recording: &Recording, dim: usize) -> f64 {
+    let axes = ["x", "y", "z"];
+    let mut worst = 0.0_f64;
+    let mut compare = |column: String, expected: f64| worst = worst.max((last(recording, &column) - expected).abs());
+    for (body, state) in case["bodies"].as_object().expect("bodies") {
+        let (position, velocity) = (numbers(&state["position"]), numbers(&state["velocity"]));
+        for c in 0..dim {
+            compare(format!("{body}.{}", axes[c]), position[c]);
+            compare(format!("{body}.v{}", axes[c]), velocity[c]);
+        }
+        if dim == 2 {
+            compare(format!("{body}.angle"), state["angle"].as_f64().expect("an angle"));
+            compare(format!("{body}.angle_rate"), state["omega"].as_f64().expect("a rate"));
+            continue;
+        }
+        let (quaternion, omega) = (numbers(&state["quat_wxyz"]), numbers(&state["angular_velocity"]));
+        let along: f64 = ["qw", "qx", "qy", "qz"].iter().zip(&quaternion).map(|(c, q)| last(recording, &format!("{body}.{c}")) * q).sum();
+        for (k, column) in ["qw", "qx", "qy", "qz"].iter().enumerate() {
+            compare(format!("{body}.{column}"), quaternion[k] * along.signum());
+        }
+        (0..3).for_each(|c| compare(format!("{body}.w{}", axes[c]), omega[c]));
+    }
+    for (coordinate, expected) in case["coordinates"].as_object().into_iter().flatten() {
+        if recording.column(coordinate).is_some() {
+            compare(coordinate.clone(), expected.as_f64().expect("a number"));
+        }
+    }
+    worst
+}
+
+/// The largest difference of the forces at the start and the end.
+fn force_difference(case: &Value, recording: &Recording, dim: usize) -> f64 {
+    let own = case.get("reaction").into_iter();
+    let mut worst = 0.0_f64;
+    for reaction in own.chain(case["reactions"].as_array().into_iter().flatten()) {
+        let joint = reaction["joint"].as_str().expect("a joint");
+        for (row, state) in [(0, &reaction["start"]), (recording.rows() - 1, &reaction["end"])] {
+            let columns: &[&str] = if dim == 3 { &["fx", "fy", "fz", "tx", "ty", "tz"] } else { &["fx", "fy", "t"] };
+            let expected = [numbers(&state["force"]), numbers(&state["moment"])].concat();
+            for (column, expected) in columns.iter().zip(expected) {
+                let found = recording.column(&format!("{joint}.{column}")).expect("the force is recorded")[row];
+                worst = worst.max((found - expected).abs());
+            }
+        }
+    }
+    worst
+}
+
+#[test]
+fn bodies_move_and_joints_pull_as_newton_and_euler_say() {
+    let mut wrong = Vec::new();
+    for case in cases() {
+        let end = case["end"].as_f64().expect("an end");
+        let plain = model_of(&case, true);
+        let dim = plain.dimension;
+        let (recording, _) = run(&plain, "radau", Some(1e-12), 0.1, end, true);
+        let (motion, force) = (difference(&case, &recording, dim), force_difference(&case, &recording, dim));
+        let shared = model_of(&case, false);
+        let (recording, _) = run(&shared, "radau", Some(1e-12), 0.1, end, false);
+        let of_shared = difference(&case, &recording, dim);
+        let line = format!(
+            "{:28} motion {motion:7.1e}, forces {force:7.1e}, {:2} coordinates and {:2} rows; shared {of_shared:7.1e}, {:2} and {:2}",
+            name(&case),
+            plain.system.coordinates(),
+            plain.system.constraints(),
+            shared.system.coordinates(),
+            shared.system.constraints(),
+        );
+        println!("{line}");
+        if motion.max(force).max(of_shared) > AGREES || (motion + force + of_shared).is_nan() {
+            wrong.push(line);
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

@@ -1,0 +1,108 @@
+// Puts the symbols of the joints on the bodies they belong to, and what stands still into the world.
+
+import { Group, Mesh, Vector3 } from "three";
+import { carried, type Motion } from "../motion";
+import type { Joint } from "../payload";
+import type { Frame } from "./bodies";
+import { foot } from "./foot";
+import type { Materials } from "./materials";
+import { outline } from "./outline";
+import { poseOf, sidesOf, travel, type Side } from "./side";
+import type { Pen } from "./sketch";
+import { RAIL, RAIL_END, railOf, REVERSIBLE, sliderOf, STANDS, symbolOf, type Piece } from "./symbols";
+
+const Z = new Vector3(0, 0, 1);
+
+/** The groups that hold the symbols. */
+export function addJoints(motion: Motion, pen: Pen, materials: Materials, frames: Map<string, Frame>, world: Group): Group[] {
+  const builder = new JointBuilder(motion, pen, materials, frames, world);
+  for (const joint of motion.run.scene.joints) builder.add(joint);
+  return builder.groups;
+}
+
+class JointBuilder {
+  readonly groups: Group[] = [];
+  private readonly stood = new Set<string>();
+
+  constructor(
+    private readonly motion: Motion,
+    private readonly pen: Pen,
+    private readonly materials: Materials,
+    private readonly frames: Map<string, Frame>,
+    private readonly world: Group,
+  ) {}
+
+  add(joint: Joint): void {
+    const sides = sidesOf(this.motion, joint);
+    if (!sides) return;
+    if (REVERSIBLE.has(joint.kind) && joint.other === null) sides.reverse();
+    const [here, other] = sides;
+    const hub = joint.kind === "revolute" ? this.hubLength(sides) : undefined;
+    this.hang(symbolOf(joint.kind), here, hub === undefined ? undefined : new Vector3(1, 1, hub / this.pen.unit));
+    const radius = railOf(joint.kind);
+    if (radius !== undefined) this.addRail(sides, radius);
+    // In a plane, what is held by the slider comes in front of it.
+    if (!this.isSolid(other.body)) this.hang(sliderOf(joint.kind), other, undefined, this.motion.planar ? -2 * this.pen.unit : 0);
+    if (STANDS.has(joint.kind) && (joint.body === null || joint.other === null)) this.addFoot(here, joint.body ?? joint.other, hub);
+  }
+
+  /** Puts pieces at a side of a joint, z along its axis; `depth`: how far in front of the true place, m. */
+  private hang(pieces: Piece[], side: Side, scale = new Vector3(1, 1, 1), depth = 0): void {
+    const frame = side.body === null ? undefined : this.frames.get(side.body);
+    if (pieces.length === 0 || (side.body !== null && !frame)) return;
+    const group = new Group();
+    for (const { geometry, part } of pieces) group.add(new Mesh(geometry, this.materials.part(part, frame?.index)));
+    group.scale.copy(scale).multiplyScalar(this.pen.unit);
+    group.quaternion.setFromUnitVectors(Z, side.axis);
+    // Bodies of a planar model lie in layers behind its plane, and joints in front of all of them.
+    group.position.copy(side.at).addScaledVector(this.motion.across, depth - (frame?.depth ?? 0));
+    (frame?.group ?? this.world).add(group);
+    this.groups.push(group);
+  }
+
+  /** Long enough to come out of the solids it joins. */
+  private hubLength(sides: [Side, Side]): number {
+    const { unit } = this.pen;
+    if (this.motion.planar) return 2.4 * unit;
+    const reach = sides.map(({ body, at, axis }) => {
+      const solid = this.motion.run.scene.bodies.find((other) => other.name === body && other.shape);
+      if (!solid) return 0;
+      const { places, round } = outline(solid, this.motion.plane);
+      const along = places.map((place) => Math.abs(new Vector3(...place).sub(at).dot(axis)));
+      return Math.max(...along) + round;
+    });
+    return Math.min(Math.max(3.6 * unit, 2 * Math.max(...reach) + 1.6 * unit), 14 * unit);
+  }
+
+  /** A rail along the way that the other side goes, with blocks at its ends where it is held in the world. */
+  private addRail(sides: [Side, Side], radius: number): void {
+    const { unit, thickness } = this.pen;
+    const [least, most] = travel(this.motion, sides);
+    const [low, high] = [least - 5 * unit, most + 5 * unit];
+    const [here] = sides;
+    const at = (along: number): Side => ({ ...here, at: here.at.clone().addScaledVector(here.axis, along) });
+    // In a plane, what slides on it comes in front.
+    const depth = this.motion.planar ? -5 * thickness : 0;
+    this.hang(RAIL, at((low + high) / 2), new Vector3(radius, radius, (high - low) / unit), depth);
+    if (here.body !== null) return;
+    for (const end of [low, high]) this.hang(RAIL_END, at(end), undefined, depth);
+  }
+
+  /** `body`: what is held. */
+  private addFoot(here: Side, body: string | null, hub: number | undefined): void {
+    const pose = poseOf(this.motion, here.body, 0);
+    if (!pose) return;
+    const side: Side = { body: null, at: carried(pose, here.at.toArray()), axis: here.axis.clone().applyQuaternion(pose.turn) };
+    // One is enough where several joints are in the same place.
+    const key = side.at.toArray().map((x) => Math.round(x / (0.1 * this.pen.unit))).join();
+    if (this.stood.has(key)) return;
+    this.stood.add(key);
+    const group = foot(this.motion, side, body, hub, this.pen, this.materials.part("ground", undefined));
+    this.world.add(group);
+    this.groups.push(group);
+  }
+
+  private isSolid(body: string | null): boolean {
+    return this.motion.run.scene.bodies.some((other) => other.name === body && other.shape !== null);
+  }
+}

@@ -1,0 +1,195 @@
+//! A rigid body as a few nodes: points and directions from which every other point and direction of it is a constant
+//! linear combination (methods §4.1).
+//!
+//! All geometry of a model is given where it is at the start, so that the *reference* coordinates of a point or a
+//! direction of a body are the world's at the start.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::model::geometry::{self, Vec3};
+use crate::system::{NodeId, Place, Term};
+
+/// A node of a body, with its reference coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Basis {
+    pub place: Place,
+    pub at: Vec3,
+    pub is_point: bool,
+}
+
+/// What the points and directions of a body, of a particle or of the ground are made of.
+#[derive(Clone, Debug)]
+pub enum Frame {
+    Ground,
+    /// A single point.
+    Particle(Place),
+    Body {
+        dim: usize,
+        basis: Vec<Basis>,
+        /// The pseudo-inverse of the matrix S with a column (1, x) for each point and (0, u) for each direction of the
+        /// basis (basis × D + 1), coordinates from the first point. In the plane its numbers are complex.
+        inverse: Vec<[Factor; 4]>,
+    },
+}
+
+/// f + g J, J the quarter turn of the plane; g is 0 in space.
+type Factor = [f64; 2];
+
+/// Largest part of a point or direction, over its size, that a basis may miss and still hold it.
+const HELD: f64 = 1e-9;
+
+impl Frame {
+    /// A body with these nodes, the first of them a point.
+    pub fn new(dim: usize, basis: Vec<Basis>) -> Self {
+        let inverse = if dim == 2 { planar_inverse(&basis) } else { inverse(&basis) };
+        Self::Body { dim, basis, inverse }
+    }
+
+    /// The point with reference coordinates `x`.
+    pub fn point(&self, x: Vec3) -> Vec<Term> {
+        match self {
+            Self::Ground => vec![(Place::Fixed(x), 1.0).into()],
+            Self::Particle(place) => vec![(*place, 1.0).into()],
+            Self::Body { basis, .. } => self.combine(1.0, geometry::subtract(x, basis[0].at)),
+        }
+    }
+
+    /// The direction with reference coordinates `u`.
+    ///
+    /// # Panics
+    /// When this is a particle, which has none.
+    pub fn vector(&self, u: Vec3) -> Vec<Term> {
+        match self {
+            Self::Ground => vec![(Place::Fixed(u), 1.0).into()],
+            Self::Particle(_) => unreachable!("a particle has no directions"),
+            Self::Body { .. } => self.combine(0.0, u),
+        }
+    }
+
+    /// The nodes that can move, and whether they are points.
+    pub fn nodes(&self) -> Vec<(NodeId, bool)> {
+        let node = |place: &Place, is_point: bool| match place {
+            Place::Node(node) => Some((*node, is_point)),
+            Place::Fixed(_) => None,
+        };
+        match self {
+            Self::Ground => Vec::new(),
+            Self::Particle(place) => node(place, true).into_iter().collect(),
+            Self::Body { basis, .. } => basis.iter().filter_map(|basis| node(&basis.place, basis.is_point)).collect(),
+        }
+    }
+
+    /// Whether the nodes span a direction.
+    pub fn holds(&self, u: Vec3) -> bool {
+        match self {
+            Self::Ground => true,
+            Self::Particle(_) => false,
+            Self::Body { dim: 2, .. } => true,
+            Self::Body { basis, .. } => {
+                let edges: Vec<Vec3> = edges(basis).into_iter().map(|edge| edge.reference).collect();
+                geometry::norm(geometry::rest(&edges, u)) <= HELD * geometry::norm(u)
+            }
+        }
+    }
+
+    fn combine(&self, one: f64, x: Vec3) -> Vec<Term> {
+        let Self::Body { dim, basis, inverse } = self else { unreachable!("only bodies combine nodes") };
+        let size = inverse.iter().flatten().flatten().fold(0.0_f64, |m, c| m.max(c.abs())) * (one + geometry::norm(x));
+        let terms = basis.iter().zip(inverse).map(|(basis, row)| {
+            let (mut factor, mut turn) = (row[0][0] * one, row[0][1] * one);
+            if *dim == 2 {
+                // Complex times complex: the row's second number times x + i y.
+                let [f, g] = row[1];
+                factor += f * x[0] - g * x[1];
+                turn += f * x[1] + g * x[0];
+            } else {
+                factor += (0..3).map(|c| row[c + 1][0] * x[c]).sum::<f64>();
+            }
+            let clean = |value: f64| if value.abs() <= 1e-15 * size { 0.0 } else { value };
+            Term { place: basis.place, factor: clean(factor), turn: clean(turn) }
+        });
+        terms.filter(|term| term.factor != 0.0 || term.turn != 0.0).collect()
+    }
+}
+
+fn inverse(basis: &[Basis]) -> Vec<[Factor; 4]> {
+    let s = DMatrix::from_fn(4, basis.len(), |row, column| {
+        let Basis { at, is_point, .. } = basis[column];
+        let relative = if is_point { geometry::subtract(at, basis[0].at) } else { at };
+        if row == 0 { f64::from(u8::from(is_point)) } else { relative[row - 1] }
+    });
+    // SᵀS is well conditioned, as nodes are chosen to be far from dependent.
+    let inverse = match s.is_square() {
+        true => s.clone().try_inverse(),
+        false => (s.transpose() * &s).try_inverse().map(|inner| inner * s.transpose()),
+    };
+    let inverse = inverse.expect("the nodes of a body are independent");
+    (0..basis.len()).map(|k| std::array::from_fn(|c| [inverse[(k, c)], 0.0])).collect()
+}
+
+/// With two points a and b: (1 − z) a + z b and z = x/(b − a); with a point and a direction u: z = x/u.
+fn planar_inverse(basis: &[Basis]) -> Vec<[Factor; 4]> {
+    let edge = if basis[1].is_point { geometry::subtract(basis[1].at, basis[0].at) } else { basis[1].at };
+    let square = geometry::dot(edge, edge);
+    let z = [edge[0] / square, -edge[1] / square];
+    let own = if basis[1].is_point { [-z[0], -z[1]] } else { [0.0; 2] };
+    vec![[[1.0, 0.0], own, [0.0; 2], [0.0; 2]], [[0.0; 2], z, [0.0; 2], [0.0; 2]]]
+}
+
+/// An edge of a body: from its first point to another one, or a direction.
+pub struct Edge {
+    pub terms: Vec<Term>,
+    pub reference: Vec3,
+}
+
+/// The edges of a basis, in its order.
+pub fn edges(basis: &[Basis]) -> Vec<Edge> {
+    let first = basis[0];
+    let edge = |node: &Basis| match node.is_point {
+        true => Edge {
+            terms: vec![(node.place, 1.0).into(), (first.place, -1.0).into()],
+            reference: geometry::subtract(node.at, first.at),
+        },
+        false => Edge { terms: vec![(node.place, 1.0).into()], reference: node.at },
+    };
+    basis[1..].iter().map(edge).collect()
+}
+
+/// Second moments of a body about the first point of its basis, in reference coordinates: ∫ (1, x)(1, x)ᵀ dm, the
+/// pseudo-inertia (4 × 4).
+pub type PseudoInertia = nalgebra::Matrix4<f64>;
+
+/// The mass matrix of a body: the blocks (a, b, m, s) of its nodes, S⁻¹ 𝒫 S⁻ᵀ.
+pub fn mass_blocks(frame: &Frame, inertia: &PseudoInertia) -> Vec<(Place, Place, f64, f64)> {
+    let Frame::Body { dim, basis, inverse } = frame else { return Vec::new() };
+    let mut blocks = Vec::new();
+    for (a, left) in basis.iter().zip(inverse).map(|(basis, row)| (basis.place, row)) {
+        for (b, right) in basis.iter().zip(inverse).map(|(basis, row)| (basis.place, row)) {
+            let (m, s) = match dim {
+                2 => planar_block(left, right, inertia),
+                _ => {
+                    let row = |row: &[Factor; 4]| DVector::from_fn(4, |c, _| row[c][0]);
+                    ((row(left).transpose() * inertia * row(right))[0], 0.0)
+                }
+            };
+            blocks.push((a, b, m, s));
+        }
+    }
+    blocks
+}
+
+/// ∫ conj(α) β dm for α = l₀ + l₁ z, β = r₀ + r₁ z with z = x + i y: its real part and its imaginary one, the turn of b
+/// against a.
+fn planar_block(left: &[Factor; 4], right: &[Factor; 4], inertia: &PseudoInertia) -> (f64, f64) {
+    let (mass, first) = (inertia[(0, 0)], [inertia[(0, 1)], inertia[(0, 2)]]);
+    let polar = inertia[(1, 1)] + inertia[(2, 2)];
+    let times = |[a, b]: Factor, [c, d]: Factor| [a * c - b * d, a * d + b * c];
+    let conj = |[a, b]: Factor| [a, -b];
+    let parts = [
+        times(conj(left[0]), right[0]).map(|c| c * mass),
+        times(conj(left[0]), times(right[1], first)),
+        times(conj(times(left[1], first)), right[0]),
+        times(conj(left[1]), right[1]).map(|c| c * polar),
+    ];
+    parts.iter().fold((0.0, 0.0), |(m, s), part| (m + part[0], s + part[1]))
+}

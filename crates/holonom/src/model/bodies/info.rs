@@ -1,0 +1,52 @@
+//! What is known of a body when a model is complete.
+
+use nalgebra::Matrix3;
+
+use super::Body;
+use super::frame::Frame;
+use crate::model::Axes;
+use crate::model::geometry::{norm, rest, scale, unit};
+use crate::record::RecordedBody;
+use crate::system::{Form, Place, SystemBuilder};
+
+/// A body of the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyInfo {
+    pub name: String,
+    /// kg
+    pub mass: f64,
+    /// Inertia tensor about the centre of mass in the axes of the model at the start, kg·m².
+    pub inertia: Matrix3<f64>,
+    /// How it is recorded.
+    pub recorded: RecordedBody,
+}
+
+impl BodyInfo {
+    /// Has the angle of a planar body measured, too, from the first axis of the plane to the body's.
+    pub fn new(body: &Body, frame: &Frame, axes: Axes, builder: &mut SystemBuilder) -> Self {
+        if axes.dimension() == 2 {
+            let moving = frame.vector(body.direction(unit(0)));
+            let product = |k| [vec![(Place::Fixed(unit(k)), 1.0).into()], moving.clone()];
+            builder.measure(format!("{}.angle", body.name), &Form::Angle { cosine: product(0), sine: product(1) });
+        }
+        let directions = if axes.dimension() == 2 { Vec::new() } else { directions(body, frame) };
+        let recorded =
+            RecordedBody { name: body.name.clone(), centre: frame.point(body.position), directions, start: body.world_from_body };
+        Self { name: body.name.clone(), mass: body.mass, inertia: body.inertia, recorded }
+    }
+}
+
+/// Orthogonal directions that the nodes of a body span, in body axes and as nodes.
+fn directions(body: &Body, frame: &Frame) -> Vec<([f64; 3], Vec<crate::system::Term>)> {
+    let with_nodes = |local: [f64; 3]| (local, frame.vector(body.direction(local)));
+    if (0..3).all(|k| frame.holds(body.direction(unit(k)))) {
+        return (0..3).map(|k| with_nodes(unit(k))).collect();
+    }
+    let Frame::Body { basis, .. } = frame else { unreachable!("a body has a frame of its own") };
+    let mut spanned: Vec<[f64; 3]> = Vec::new();
+    for edge in super::frame::edges(basis) {
+        let local = rest(&spanned, body.local_direction(edge.reference));
+        spanned.push(scale(local, 1.0 / norm(local)));
+    }
+    spanned.into_iter().map(with_nodes).collect()
+}

@@ -1,0 +1,280 @@
+//! Which nodes the bodies of a model are made of.
+//!
+//! Where a joint makes two bodies share a point or a direction, that becomes one node of both, as far as the nodes of a
+//! body stay independent: the rows that would hold the two together are then not needed (methods §4.1). Bodies that are
+//! joined rigidly are one.
+
+use std::collections::HashSet;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::frame::{Basis, Frame, PseudoInertia, edges, mass_blocks};
+use super::{Body, inertia};
+use crate::model::geometry::{Vec3, dot, norm, rest, scale, subtract};
+use crate::system::{Place, SystemBuilder, Term};
+
+/// Smallest part of a node's edge that is at right angles to the others, over its length, for it to become a node.
+const INDEPENDENT: f64 = 0.3;
+
+/// Shortest edge between two points, over the size of the body, for both to become nodes.
+const APART: f64 = 0.02;
+
+/// Second moments below this share of the largest are none: the body is a plate or a rod.
+const THIN: f64 = 1e-9;
+
+/// One side of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Member {
+    Ground,
+    /// A point, by its position in the list of points.
+    Point(usize),
+    /// A body, by its position in the list of bodies.
+    Body(usize),
+}
+
+/// A point or direction that two sides of a joint have in common, with its reference coordinates on each.
+#[derive(Clone, Debug)]
+pub struct Shared {
+    pub sides: [(Member, Vec3); 2],
+    pub is_point: bool,
+}
+
+/// What a plan of nodes is made from.
+pub struct Wanted<'a> {
+    pub bodies: &'a [Body],
+    pub shared: &'a [Shared],
+    /// Pairs of bodies that are joined rigidly and become one.
+    pub merged: &'a [[usize; 2]],
+    /// Directions that joints and forces need of a body, which a plate or a rod may lack.
+    pub needed: &'a [(usize, Vec3)],
+    /// Places of the points that may become nodes of bodies.
+    pub points: &'a dyn Fn(usize) -> Option<Place>,
+}
+
+/// Makes the nodes of all bodies, their mass and the rows that keep them rigid; a frame for each body.
+pub fn make(builder: &mut SystemBuilder, wanted: &Wanted<'_>) -> Vec<Frame> {
+    let groups = groups(wanted);
+    let mut places: Vec<Option<Place>> = wanted.shared.iter().map(|shared| known_place(shared, wanted)).collect();
+    let mut kept = HashSet::new();
+    let mut frames: Vec<Option<Frame>> = vec![None; wanted.bodies.len()];
+    for (root, members) in groups.iter().enumerate().filter(|(_, members)| !members.is_empty()) {
+        let group = Group { members, lead: &wanted.bodies[root], wanted };
+        let basis = group.basis(builder, &mut places);
+        let frame = Frame::new(builder.dimension(), basis.clone());
+        group.add_mass(builder, &frame, basis[0].at);
+        keep_rigid(builder, &group.lead.name, &basis, &mut kept);
+        members.iter().for_each(|&body| frames[body] = Some(frame.clone()));
+    }
+    frames.into_iter().map(|frame| frame.expect("every body is in a group")).collect()
+}
+
+/// The bodies of each group, at the first of them.
+fn groups(wanted: &Wanted<'_>) -> Vec<Vec<usize>> {
+    let mut root: Vec<usize> = (0..wanted.bodies.len()).collect();
+    let find = |root: &[usize], mut k: usize| {
+        while root[k] != k {
+            k = root[k];
+        }
+        k
+    };
+    for &[a, b] in wanted.merged {
+        let (a, b) = (find(&root, a), find(&root, b));
+        root[a.max(b)] = a.min(b);
+    }
+    let mut groups = vec![Vec::new(); wanted.bodies.len()];
+    (0..wanted.bodies.len()).for_each(|k| groups[find(&root, k)].push(k));
+    groups
+}
+
+/// Where a shared point or direction is, if that is known before any body has nodes.
+fn known_place(shared: &Shared, wanted: &Wanted<'_>) -> Option<Place> {
+    shared.sides.iter().find_map(|&(member, at)| match member {
+        Member::Ground => Some(Place::Fixed(at)),
+        Member::Point(k) => (wanted.points)(k),
+        Member::Body(_) => None,
+    })
+}
+
+struct Group<'a> {
+    members: &'a [usize],
+    lead: &'a Body,
+    wanted: &'a Wanted<'a>,
+}
+
+impl Group<'_> {
+    /// Chooses the nodes: shared points, shared directions, then its own; the first is a point.
+    fn basis(&self, builder: &mut SystemBuilder, places: &mut [Option<Place>]) -> Vec<Basis> {
+        let own = |shared: &Shared| {
+            shared.sides.iter().find_map(|&(member, at)| matches!(member, Member::Body(k) if self.members.contains(&k)).then_some(at))
+        };
+        // Fixed places first: they are no unknowns.
+        let candidates = |is_point: bool, places: &[Option<Place>]| -> Vec<(usize, Vec3)> {
+            let of_kind = self.wanted.shared.iter().enumerate().filter(|(_, shared)| shared.is_point == is_point);
+            let mut found: Vec<(usize, Vec3)> = of_kind.filter_map(|(k, shared)| Some((k, own(shared)?))).collect();
+            found.sort_by_key(|&(k, _)| !matches!(places[k], Some(Place::Fixed(_))));
+            found
+        };
+        let mut basis: Vec<Basis> = Vec::new();
+        let mut spanned: Vec<Vec3> = Vec::new();
+        let points = candidates(true, places);
+        let size = points.iter().map(|&(_, at)| norm(subtract(at, self.lead.position))).fold(0.0, f64::max);
+        let wanted_edges = self.needed_edges(builder.dimension(), &points, &candidates(false, places));
+        for (k, at) in points {
+            let Some(first) = basis.first() else {
+                basis.push(Basis { place: self.place(builder, &mut places[k], at, true), at, is_point: true });
+                continue;
+            };
+            let edge = subtract(at, first.at);
+            if spanned.len() < wanted_edges && norm(edge) > APART * size && is_independent(&spanned, edge) {
+                spanned.push(edge);
+                basis.push(Basis { place: self.place(builder, &mut places[k], at, true), at, is_point: true });
+            }
+        }
+        if basis.is_empty() {
+            let at = self.lead.position;
+            basis.push(Basis { place: self.place(builder, &mut None, at, true), at, is_point: true });
+        }
+        for (k, at) in candidates(false, places) {
+            if spanned.len() < wanted_edges && is_independent(&spanned, at) {
+                spanned.push(at);
+                basis.push(Basis { place: self.place(builder, &mut places[k], at, false), at, is_point: false });
+            }
+        }
+        while spanned.len() < wanted_edges {
+            let at = self.own_direction(builder.dimension(), &spanned);
+            spanned.push(at);
+            basis.push(Basis { place: self.place(builder, &mut None, at, false), at, is_point: false });
+        }
+        basis
+    }
+
+    /// The node of a point or direction, made where there is none yet.
+    fn place(&self, builder: &mut SystemBuilder, known: &mut Option<Place>, at: Vec3, is_point: bool) -> Place {
+        *known.get_or_insert_with(|| {
+            let rate = if is_point { self.lead.velocity_at(at) } else { self.lead.rate_of(at) };
+            Place::Node(builder.free_node(at, rate))
+        })
+    }
+
+    /// A direction that is not yet spanned: as much of one of the principal axes as is new.
+    fn own_direction(&self, dim: usize, spanned: &[Vec3]) -> Vec3 {
+        if dim == 2 {
+            return self.lead.direction([1.0, 0.0, 0.0]);
+        }
+        let (_, axes) = self.principal();
+        let new = axes.map(|axis| rest(spanned, axis));
+        let longest = new.into_iter().max_by(|a, b| norm(*a).total_cmp(&norm(*b))).expect("three axes");
+        scale(longest, 1.0 / norm(longest))
+    }
+
+    /// Second moments ∫ x² dm along the principal axes, kg·m², and these axes.
+    fn principal(&self) -> ([f64; 3], [Vec3; 3]) {
+        let tensor = self.inertia_about(self.centre());
+        let (moments, axes) = inertia::principal(std::array::from_fn(|i| std::array::from_fn(|j| tensor[(i, j)])));
+        let half: f64 = 0.5 * moments.iter().sum::<f64>();
+        (moments.map(|moment| half - moment), axes)
+    }
+
+    /// How many edges it takes: three, and of a plate two and of a rod one, where nothing needs more.
+    fn needed_edges(&self, dim: usize, points: &[(usize, Vec3)], directions: &[(usize, Vec3)]) -> usize {
+        if dim == 2 {
+            return 1;
+        }
+        let (second, axes) = self.principal();
+        let largest = second.iter().copied().fold(0.0, f64::max);
+        let spanned: Vec<Vec3> = (0..3).filter(|&k| second[k] > THIN * largest).map(|k| axes[k]).collect();
+        if spanned.is_empty() || spanned.len() == 3 {
+            return 3;
+        }
+        let centre = self.centre();
+        let own = self.wanted.needed.iter().filter(|(body, _)| self.members.contains(body)).map(|&(_, u)| u);
+        let edges = points.iter().map(|&(_, at)| subtract(at, centre)).chain(directions.iter().map(|&(_, u)| u)).chain(own);
+        let mut held = edges.into_iter().all(|edge| norm(rest(&spanned, edge)) <= THIN * norm(edge).max(f64::MIN_POSITIVE));
+        held &= self.members.len() == 1;
+        if held { spanned.len() } else { 3 }
+    }
+
+    fn centre(&self) -> Vec3 {
+        let bodies = self.members.iter().map(|&k| &self.wanted.bodies[k]);
+        let mass: f64 = bodies.clone().map(|body| body.mass).sum();
+        let moment = bodies.fold(Vector3::zeros(), |sum, body| sum + body.mass * Vector3::from(body.position));
+        (moment / mass).into()
+    }
+
+    fn inertia_about(&self, place: Vec3) -> Matrix3<f64> {
+        let bodies = self.members.iter().map(|&k| &self.wanted.bodies[k]);
+        bodies.fold(Matrix3::zeros(), |sum, body| {
+            let x = Vector3::from(body.position) - Vector3::from(place);
+            sum + body.inertia + body.mass * (Matrix3::identity() * x.norm_squared() - x * x.transpose())
+        })
+    }
+
+    fn add_mass(&self, builder: &mut SystemBuilder, frame: &Frame, origin: Vec3) {
+        let tensor = self.inertia_about(origin);
+        let second = Matrix3::identity() * (0.5 * tensor.trace()) - tensor;
+        let mass: f64 = self.members.iter().map(|&k| self.wanted.bodies[k].mass).sum();
+        let first = mass * (Vector3::from(self.centre()) - Vector3::from(origin));
+        let mut pseudo = PseudoInertia::zeros();
+        pseudo[(0, 0)] = mass;
+        for i in 0..3 {
+            (pseudo[(0, i + 1)], pseudo[(i + 1, 0)]) = (first[i], first[i]);
+            (0..3).for_each(|j| pseudo[(i + 1, j + 1)] = second[(i, j)]);
+        }
+        if builder.dimension() == 2 {
+            // Of the polar moment any split will do.
+            (pseudo[(1, 1)], pseudo[(2, 2)]) = (0.5 * tensor[(2, 2)], 0.5 * tensor[(2, 2)]);
+        }
+        let blocks = mass_blocks(frame, &pseudo);
+        let count = blocks.len().isqrt();
+        for (k, (a, b, m, s)) in blocks.into_iter().enumerate() {
+            if k / count <= k % count {
+                builder.inertia(a, b, m, s);
+            }
+        }
+        frame.point(self.centre()).into_iter().for_each(|term| builder.weight(term, mass));
+    }
+}
+
+fn is_independent(spanned: &[Vec3], edge: Vec3) -> bool {
+    norm(rest(spanned, edge)) > INDEPENDENT * norm(edge)
+}
+
+/// The nodes that an edge is made of, whichever way it goes.
+type EdgeCode = [[u64; 3]; 2];
+
+fn code(terms: &[Term]) -> EdgeCode {
+    let mut nodes = [[u64::MAX; 3]; 2];
+    for (code, term) in nodes.iter_mut().zip(terms) {
+        *code = match term.place {
+            Place::Node(node) => [0, 0, node.index() as u64],
+            Place::Fixed(x) => x.map(f64::to_bits),
+        };
+    }
+    nodes.sort_unstable();
+    nodes
+}
+
+/// The rows of a rigid body: all products of its edges. What holds between the same nodes for another body already, or
+/// between fixed places, is left out.
+fn keep_rigid(builder: &mut SystemBuilder, name: &str, basis: &[Basis], kept: &mut HashSet<[EdgeCode; 2]>) {
+    let edges = edges(basis);
+    for (i, a) in edges.iter().enumerate() {
+        for (j, b) in edges.iter().enumerate().skip(i) {
+            let is_fixed = |terms: &[Term]| terms.iter().all(|term| matches!(term.place, Place::Fixed(_)));
+            if is_fixed(&a.terms) && is_fixed(&b.terms) {
+                continue;
+            }
+            let mut key = [a, b].map(|edge| code(&edge.terms));
+            key.sort_unstable();
+            if !kept.insert(key) {
+                continue;
+            }
+            let product = dot(a.reference, b.reference);
+            let (invariant, target) = match i == j {
+                true => (builder.square(&a.terms), 0.5 * product),
+                false => (builder.dot(&a.terms, &b.terms), product),
+            };
+            builder.constant_row(format!("{name}[{}{}]", i + 1, j + 1), invariant, target);
+        }
+    }
+}

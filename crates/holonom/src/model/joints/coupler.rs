@@ -1,0 +1,67 @@
+//! What couplers have in common: rows that are sums of coordinates of joints.
+
+use crate::model::assembly::Assembly;
+use crate::model::entry::{Entry, Spot};
+use crate::model::fault::{Read, suggest};
+use crate::model::key::{Key, Shape};
+
+use super::pair::Coordinate;
+
+/// The two joints of a coupler.
+pub(super) const JOINTS: Key =
+    Key::required("joints", Shape::Coordinates, "", "two joints, or coordinates of joints as \"JOINT.angle\" or \"JOINT.displacement\"");
+
+/// The coordinate that a text names: that of a joint with one, or `JOINT.COORDINATE`.
+pub fn coordinate(assembly: &Assembly<'_>, entry: &Entry<'_>, spot: Spot<'_>, text: &str) -> Read<Coordinate> {
+    let (name, wanted) = match text.split_once('.') {
+        Some((name, wanted)) => (name, Some(wanted)),
+        None => (text, None),
+    };
+    let joint = assembly.joint(entry, spot, name)?;
+    let names = || joint.coordinates.iter().map(|coordinate| coordinate.name);
+    match (wanted, &joint.coordinates[..]) {
+        (_, []) => Err(entry.refuse(
+            spot,
+            format!("the {} joint `{name}` has no coordinate", joint.kind),
+            "name a joint with an angle or a displacement, such as a revolute or a prismatic one",
+        )),
+        (None, [only]) => Ok(only.clone()),
+        (None, several) => {
+            let cure = format!("write \"{name}.{}\", or another of {}", several[0].name, names().collect::<Vec<_>>().join(", "));
+            Err(entry.refuse(spot, format!("the joint `{name}` has more than one coordinate"), cure))
+        }
+        (Some(wanted), known) => known.iter().find(|coordinate| coordinate.name == wanted).cloned().ok_or_else(|| {
+            entry.refuse(spot, format!("the {} joint `{name}` has no coordinate `{wanted}`", joint.kind), suggest(wanted, names()))
+        }),
+    }
+}
+
+/// Two coordinates at the key `joints`, each of the kind that `angles` says.
+pub(super) fn two(assembly: &Assembly<'_>, entry: &Entry<'_>, angles: Option<[bool; 2]>) -> Read<[Coordinate; 2]> {
+    let texts = entry.texts("joints")?;
+    let [first, second] = texts[..] else {
+        return Err(entry.refuse("joints", format!("two joints are wanted, and this names {}", texts.len()), "write joints = [\"A\", \"B\"]"));
+    };
+    let spot = |k| Spot { key: "joints", item: Some(k) };
+    if first == second {
+        return Err(entry.refuse(spot(1), format!("`{first}` is coupled to itself"), "name two different joints"));
+    }
+    let (a, b) = (coordinate(assembly, entry, spot(0), first), coordinate(assembly, entry, spot(1), second));
+    let pair = [a?, b?];
+    for (k, wanted) in angles.into_iter().flatten().enumerate() {
+        if pair[k].is_angle != wanted {
+            let what = if wanted { "an angle" } else { "a displacement" };
+            let message = format!("{what} is wanted here, and this is the {} of `{}`", pair[k].name, [first, second][k]);
+            return Err(entry.refuse(spot(k), message, if wanted { "name a revolute joint" } else { "name a prismatic joint" }));
+        }
+    }
+    Ok(pair)
+}
+
+/// Adds the row Σ factor · coordinate = 0.
+pub(super) fn couple(assembly: &mut Assembly<'_>, entry: &Entry<'_>, terms: &[(Coordinate, f64)]) -> Read<()> {
+    let parts: Vec<_> = terms.iter().map(|(coordinate, factor)| (assembly.builder.part(&coordinate.form), *factor)).collect();
+    let sum = assembly.builder.sum(&parts);
+    assembly.builder.constant_row(entry.name, sum, 0.0);
+    Ok(())
+}

@@ -1,0 +1,45 @@
+use super::pair::{Pair, build};
+use super::{BETWEEN, JointKind, Site};
+use crate::model::geometry::{norm, subtract};
+use crate::model::fault::Read;
+use crate::model::key::{Key, Kind, Shape};
+
+pub(super) const JOINT: JointKind = JointKind {
+    kind: Kind {
+        name: "distance",
+        doc: "a massless rod between a place of the one body and a place of the other; the two may be points",
+        equations: "½ d·d − ½ L² = 0 with the length L of the start",
+        keys: &[BETWEEN, Key::required("at", Shape::Site, "m", "a place of the first body and one of the second, at the start")],
+        example: r#"
+[body.load]
+mass = 1
+shape = { box = [0.2, 0.2, 0.2] }
+position = [0, 0, -1]
+velocity = [1, 0, 0]
+
+[joint.rope]
+type = "distance"
+between = ["ground", "load"]
+at = [[0, 0, 0], [0, 0, -0.9]]
+"#,
+        build,
+    },
+    freedom: [Some(5), Some(2)],
+    at: Site::Two,
+    axes: [0, 0],
+    shares: [&[], &[]],
+    rows,
+};
+
+fn rows(pair: &mut Pair<'_, '_>) -> Read<()> {
+    let d = pair.d();
+    let [a, b] = pair.geometry.at;
+    let length = norm(subtract(b, a));
+    if length == 0.0 {
+        let cure = "give two places apart from each other, or use a spherical joint";
+        return Err(pair.entry.refuse("at", "the two places are the same, and a distance of zero has no direction", cure));
+    }
+    let half_square = pair.assembly.builder.square(&d);
+    pair.row(half_square, 0.5 * length * length, false);
+    Ok(())
+}

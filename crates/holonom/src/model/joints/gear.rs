@@ -1,0 +1,52 @@
+use super::coupler::{JOINTS, couple, two};
+use crate::model::assembly::Assembly;
+use crate::model::entry::{Entry};
+use crate::model::fault::Read;
+use crate::model::key::{Key, Kind, Shape};
+
+pub(super) const KIND: Kind = Kind {
+    name: "gear",
+    doc: "wheels that mesh, or any two coordinates of which one is a multiple of the other",
+    equations: "q_1 − ratio q_2 = 0, angles counted over any number of turns",
+    keys: &[JOINTS, Key::required("ratio", Shape::Number, "", "how many times the second coordinate the first is; negative for outside gears about parallel axes")],
+    example: r#"
+[body.wheel1]
+mass = 1
+shape = { cylinder = [0.1, 0.02] }
+position = [0, 0, 0]
+angular_velocity = [0, 0, 2]
+
+[body.wheel2]
+mass = 4
+shape = { cylinder = [0.2, 0.02] }
+position = [0.3, 0, 0]
+angular_velocity = [0, 0, -1]
+
+[joint.axle1]
+type = "revolute"
+between = ["ground", "wheel1"]
+at = [0, 0, 0]
+axis = [0, 0, 1]
+
+[joint.axle2]
+type = "revolute"
+between = ["ground", "wheel2"]
+at = [0.3, 0, 0]
+axis = [0, 0, 1]
+
+[joint.mesh]
+type = "gear"
+joints = ["axle1", "axle2"]
+ratio = -2
+"#,
+    build,
+};
+
+fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+    let (joints, ratio) = (two(assembly, entry, None), entry.number("ratio"));
+    let ([first, second], ratio) = (joints?, ratio?);
+    if ratio == 0.0 {
+        return Err(entry.refuse("ratio", "a ratio of zero locks the first joint and frees the second", "give the ratio of the two"));
+    }
+    couple(assembly, entry, &[(first, 1.0), (second, -ratio)])
+}

@@ -1,0 +1,195 @@
+//! Where a joint is at the start, from its keys `between`, `at`, `axis` and `axes`.
+
+use super::{Feature, JOINTS, JointKind, Site};
+use crate::model::assembly::Assembly;
+use crate::model::bodies::nodes::{Member, Shared};
+use crate::model::entry::{Entry, Spot};
+use crate::model::fault::Read;
+use crate::model::geometry::{Vec3, across, carried, cross, dot, norm, scale, unit};
+use crate::model::value::Value;
+
+/// A joint at the start, first and second side: reference coordinates in the axes of the model.
+#[derive(Clone, Debug)]
+pub struct Geometry {
+    pub members: [Member; 2],
+    /// Where it sits, m.
+    pub at: [Vec3; 2],
+    /// Unit vectors u, v, w: the axis and two across it. In the plane u and its quarter turn.
+    pub triad: [[Vec3; 3]; 2],
+}
+
+/// What can be shared and merged at the joints of a model, and what is needed of its bodies.
+#[derive(Default)]
+pub struct Survey {
+    pub shared: Vec<Shared>,
+    pub merged: Vec<[usize; 2]>,
+    pub needed: Vec<(usize, Vec3)>,
+}
+
+/// Adds what a joint asks of the nodes of its bodies.
+pub fn plan(assembly: &Assembly<'_>, entry: &Entry<'_>, share: bool, survey: &mut Survey) -> Read<()> {
+    let kind = entry.text("type")?;
+    let Some(joint) = JOINTS.iter().find(|joint| joint.kind.name == kind) else { return Ok(()) };
+    let geometry = Geometry::read(assembly, entry, joint)?;
+    let directions = geometry.triad;
+    for (side, member) in geometry.members.iter().enumerate() {
+        if let Member::Body(k) = *member {
+            let used = if joint.shares[0] == [Feature::Point] && joint.axes[0] == 0 { &[][..] } else { &directions[side][..] };
+            survey.needed.extend(used.iter().map(|&u| (k, u)));
+            let arm = crate::model::geometry::subtract(geometry.at[side], assembly.bodies[k].position);
+            survey.needed.push((k, arm));
+        }
+    }
+    if !share {
+        return Ok(());
+    }
+    let sides = |of: [Vec3; 2]| [(geometry.members[0], of[0]), (geometry.members[1], of[1])];
+    for feature in joint.shares[usize::from(assembly.dimension() == 2)] {
+        match *feature {
+            Feature::Point => survey.shared.push(Shared { sides: sides(geometry.at), is_point: true }),
+            Feature::Axis(k) => survey.shared.push(Shared { sides: sides(directions.map(|triad| triad[k])), is_point: false }),
+            Feature::All => {
+                if let [Member::Body(a), Member::Body(b)] = geometry.members {
+                    survey.merged.push([a, b]);
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+impl Geometry {
+    pub fn read(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &JointKind) -> Read<Self> {
+        let members = members(assembly, entry, joint);
+        let dim = assembly.dimension();
+        if joint.freedom[usize::from(dim == 2)].is_none() {
+            return Err(entry.refuse("type", format!("there is no {} joint in a planar model", joint.kind.name), "use one of those in the plane"));
+        }
+        let at = match (joint.at, entry.has("at")) {
+            (Site::Any, false) => {
+                let members = members?;
+                let centre = members.iter().rev().find_map(|member| match member {
+                    Member::Body(k) => Some(assembly.bodies[*k].position),
+                    _ => None,
+                });
+                Ok([centre.unwrap_or_default(); 2])
+            }
+            (Site::Two, _) => sites(assembly, entry, true),
+            _ => sites(assembly, entry, false),
+        };
+        let triad = triad(assembly, entry, joint, dim);
+        Ok(Self { members: members?, at: at?, triad: triad? })
+    }
+}
+
+/// The two sides, of which at least one can move.
+fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &JointKind) -> Read<[Member; 2]> {
+    let names = entry.texts("between")?;
+    let [first, second] = names[..] else {
+        let message = format!("a joint is between two bodies, and this names {}", names.len());
+        return Err(entry.refuse("between", message, "write between = [\"A\", \"B\"], or [\"ground\", \"B\"]"));
+    };
+    let spot = |k| Spot { key: "between", item: Some(k) };
+    let (a, b) = (assembly.member(entry, spot(0), first), assembly.member(entry, spot(1), second));
+    let members = [a?, b?];
+    if members[0] == members[1] {
+        return Err(entry.refuse(spot(1), format!("`{}` joins `{first}` to itself", entry.name), "name two different bodies"));
+    }
+    let turns = joint.shares[0] != [Feature::Point] || joint.axes[0] > 0;
+    for (k, member) in members.iter().enumerate() {
+        if matches!(member, Member::Point(_)) && turns && !(k == 1 && joint.kind.name.starts_with("point-on")) {
+            let message = format!("`{}` is a point, and a {} joint needs a body there", names[k], joint.kind.name);
+            return Err(entry.refuse(spot(k), message, "name a [body.NAME], or use a joint that holds points only"));
+        }
+    }
+    let moves = |member: &Member| match member {
+        Member::Ground => false,
+        Member::Point(k) => assembly.points[*k].end.free,
+        Member::Body(_) => true,
+    };
+    if !members.iter().any(moves) {
+        return Err(entry.refuse("between", format!("neither `{first}` nor `{second}` can move"), "at least one must be a body, or a free point"));
+    }
+    Ok(members)
+}
+
+/// The places of the key `at`: one for both sides, or one for each.
+fn sites(assembly: &Assembly<'_>, entry: &Entry<'_>, two: bool) -> Read<[Vec3; 2]> {
+    match entry.value("at")? {
+        Value::List(items) if is_one_of_each(assembly, items) => {
+            let site = |k: usize| assembly.place_at_start(entry, Spot { key: "at", item: Some(k) }, &items[k]);
+            let (a, b) = (site(0), site(1));
+            Ok([a?, b?])
+        }
+        _ if two => Err(entry.refuse("at", "this joint wants two places, one of each body", "write at = [[x, y, z], [x, y, z]]")),
+        value => assembly.place_at_start(entry, "at".into(), value).map(|place| [place; 2]),
+    }
+}
+
+/// Whether these are two places or directions and not the numbers of one, which may be texts with expressions.
+fn is_one_of_each(assembly: &Assembly<'_>, items: &[Value]) -> bool {
+    let is_place = |item: &Value| match item {
+        Value::List(_) => true,
+        Value::Text(text) => text.split_once('.').is_some_and(|(body, _)| assembly.body_by_name(body).is_some()),
+        _ => false,
+    };
+    items.len() == 2 && items.iter().any(is_place)
+}
+
+/// The triads of both sides.
+fn triad(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &JointKind, dim: usize) -> Read<[[Vec3; 3]; 2]> {
+    let axes = joint.axes[usize::from(dim == 2)];
+    if axes == 0 && entry.has("axis") && dim == 2 {
+        return Err(entry.refuse_key("axis", "in a planar model this joint has no axis", "remove it"));
+    }
+    let [a, b] = match axes {
+        0 => [unit(if dim == 2 { 0 } else { 2 }); 2],
+        1 => {
+            let [a, b] = directions(assembly, entry, "axis")?;
+            if dot(a, b) < 0.5 {
+                let degrees = dot(a, b).clamp(-1.0, 1.0).acos().to_degrees();
+                let message = format!("the axis of the one body is at {degrees:.1}° to that of the other at the start");
+                return Err(entry.refuse("axis", message, "turn one of them, or one of the bodies: they must be alike"));
+            }
+            [a, b]
+        }
+        _ => directions(assembly, entry, "axes")?,
+    };
+    if dim == 2 {
+        return Ok([a, b].map(|u| [u, [-u[1], u[0], 0.0], [0.0; 3]]));
+    }
+    let v = match axes {
+        2 => {
+            let normal = cross(a, b);
+            let size = norm(normal);
+            [if size > 1e-9 { scale(normal, 1.0 / size) } else { across(a, 3)[0] }; 2]
+        }
+        _ => {
+            let v = across(a, 3)[0];
+            [v, carried(v, a, b)]
+        }
+    };
+    Ok([[a, v[0], cross(a, v[0])], [b, v[1], cross(b, v[1])]])
+}
+
+/// The unit vectors at `axis`, one for both sides or one for each, or at `axes`.
+pub(super) fn directions(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &str) -> Read<[Vec3; 2]> {
+    let value = entry.value(key)?;
+    let read = |spot: Spot<'_>, value: &Value| -> Read<Vec3> {
+        let u = assembly.direction_at_start(entry, spot, value)?;
+        let size = norm(u);
+        if size == 0.0 {
+            return Err(entry.refuse(spot, "an axis of zero length has no direction", "give the direction of the axis"));
+        }
+        Ok(scale(u, 1.0 / size))
+    };
+    match value {
+        Value::List(items) if is_one_of_each(assembly, items) => {
+            let axis = |k: usize| read(Spot { key, item: Some(k) }, &items[k]);
+            let (a, b) = (axis(0), axis(1));
+            Ok([a?, b?])
+        }
+        _ if key == "axes" => Err(entry.refuse(key, "this joint wants two directions, one of each body", "write axes = [[1, 0, 0], [0, 1, 0]]")),
+        value => read(key.into(), value).map(|u| [u; 2]),
+    }
+}

@@ -1,0 +1,212 @@
+//! What the files of joints write their rows with: two bodies, a place and a triad on each.
+
+use super::geometry::Geometry;
+use super::{Feature, JOINTS, JointKind};
+use crate::model::assembly::{Assembly, subtract};
+use crate::model::bodies::frame::Frame;
+use crate::model::bodies::nodes::Member;
+use crate::model::entry::Entry;
+use crate::model::fault::Read;
+use crate::model::geometry::{Vec3, unit};
+use crate::record::SceneJoint;
+use crate::system::{Form, InvariantId, Term};
+
+/// A coordinate of a joint, counted from the start.
+#[derive(Clone, Debug)]
+pub struct Coordinate {
+    /// `"angle"`, `"displacement"`, …
+    pub name: &'static str,
+    pub form: Form,
+    /// Whether it is an angle (rad) and not a displacement (m).
+    pub is_angle: bool,
+}
+
+/// A joint of the model.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    pub name: String,
+    /// What `type` says.
+    pub kind: &'static str,
+    pub geometry: Geometry,
+    pub coordinates: Vec<Coordinate>,
+    /// Its rows among those of the system.
+    pub rows: std::ops::Range<usize>,
+}
+
+/// Two bodies at a joint.
+pub struct Pair<'a, 'b> {
+    pub assembly: &'a mut Assembly<'b>,
+    pub entry: &'a Entry<'a>,
+    pub geometry: Geometry,
+    pub coordinates: Vec<Coordinate>,
+    frames: [Frame; 2],
+    names: usize,
+}
+
+/// The first and the second body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    A,
+    B,
+}
+
+/// Builds a joint from its entry: its rows, coordinates and symbol.
+pub(super) fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+    let kind = entry.text("type")?;
+    let joint: &JointKind = JOINTS.iter().find(|joint| joint.kind.name == kind).expect("the table has this kind");
+    let geometry = Geometry::read(assembly, entry, joint)?;
+    let frames = [0, 1].map(|side| assembly.frame(geometry.members[side]));
+    let first = assembly.builder.rows();
+    let mut pair = Pair { assembly, entry, geometry, coordinates: Vec::new(), frames, names: 0 };
+    (joint.rows)(&mut pair)?;
+    let Pair { geometry, coordinates, .. } = pair;
+    let rows = first..assembly.builder.rows();
+    let has_axis = joint.axes[usize::from(assembly.dimension() == 2)] > 0;
+    draw(assembly, entry, joint.kind.name, &geometry, has_axis);
+    if joint.shares[0] != [Feature::All] {
+        for coordinate in &coordinates {
+            assembly.builder.measure(format!("{}.{}", entry.name, coordinate.name), &coordinate.form);
+        }
+    }
+    assembly.joints.push(Joint { name: entry.name.to_string(), kind: joint.kind.name, geometry, coordinates, rows });
+    Ok(())
+}
+
+fn draw(assembly: &mut Assembly<'_>, entry: &Entry<'_>, kind: &str, geometry: &Geometry, has_axis: bool) {
+    let name = |member: Member| match member {
+        Member::Body(k) => Some(assembly.bodies[k].name.clone()),
+        Member::Point(k) => Some(assembly.points[k].name.clone()),
+        Member::Ground => None,
+    };
+    // Drawn with the first side, which carries the axes, unless that is a point.
+    let side = usize::from(matches!(geometry.members[0], Member::Point(_)));
+    let (mut at, mut axis) = (geometry.at[side], geometry.triad[side][0]);
+    if let Member::Body(k) = geometry.members[side] {
+        (at, axis) = (assembly.bodies[k].local(at), assembly.bodies[k].local_direction(axis));
+    } else {
+        (at, axis) = (assembly.axes.in_world(at), assembly.axes.in_world(axis));
+    }
+    let [body, other] = [side, 1 - side].map(|side| name(geometry.members[side]));
+    let axis = has_axis.then_some(axis);
+    assembly.scene_joints.push(SceneJoint { name: entry.name.to_string(), kind: kind.to_string(), body, other, at, axis });
+    for side in 0..2 {
+        if let Member::Body(k) = geometry.members[side] {
+            let local = assembly.bodies[k].local(geometry.at[side]);
+            assembly.body_places[k].push(local);
+        }
+    }
+}
+
+impl Pair<'_, '_> {
+    pub fn is_planar(&self) -> bool {
+        self.assembly.dimension() == 2
+    }
+
+    /// d = r_B − r_A between the places of the joint.
+    pub fn d(&self) -> Vec<Term> {
+        let [a, b] = [0, 1].map(|side| self.frames[side].point(self.geometry.at[side]));
+        subtract(&b, &a)
+    }
+
+    /// The direction k of the triad u, v, w on a side.
+    pub fn e(&self, side: Side, k: usize) -> Vec<Term> {
+        self.fixed_to(side, self.geometry.triad[side as usize][k])
+    }
+
+    /// A direction fixed to a side, by its reference coordinates.
+    pub fn fixed_to(&self, side: Side, direction: Vec3) -> Vec<Term> {
+        self.frames[side as usize].vector(direction)
+    }
+
+    /// d = 0: a row an axis, none where the two share the point.
+    pub fn coincide(&mut self) {
+        let d = self.d();
+        for c in 0..self.assembly.dimension() {
+            let invariant = self.assembly.builder.linear(unit(c), &d);
+            self.row(invariant, 0.0, d.is_empty());
+        }
+    }
+
+    /// d·e_k(A) = 0.
+    pub fn stay(&mut self, k: usize) {
+        let (d, e) = (self.d(), self.e(Side::A, k));
+        let invariant = self.assembly.builder.dot(&d, &e);
+        self.row(invariant, 0.0, d.is_empty());
+    }
+
+    /// e_k(B)·e_l(A) = 0. Where the two bodies share one of the two directions, each of them keeps this anyway.
+    pub fn perpendicular(&mut self, k: usize, l: usize) {
+        let is_shared = |m: usize| subtract(&self.e(Side::A, m), &self.e(Side::B, m)).is_empty();
+        let implied = is_shared(k) || is_shared(l);
+        let invariant = self.assembly.builder.dot(&self.e(Side::B, k), &self.e(Side::A, l));
+        self.row(invariant, 0.0, implied);
+    }
+
+    /// u_B ∥ u_A: no rotation but that about the axis; in the plane none at all.
+    pub fn align(&mut self) {
+        self.perpendicular(0, 1);
+        if !self.is_planar() {
+            self.perpendicular(0, 2);
+        }
+    }
+
+    /// No rotation at all.
+    pub fn lock_rotation(&mut self) {
+        self.align();
+        if !self.is_planar() {
+            self.perpendicular(1, 2);
+        }
+    }
+
+    /// Adds the row π = target, unless it is implied by what the bodies share.
+    pub fn row(&mut self, invariant: InvariantId, target: f64, implied: bool) {
+        let name = format!("{}[{}]", self.entry.name, self.names);
+        self.names += 1;
+        if !implied {
+            self.assembly.builder.constant_row(name, invariant, target);
+        }
+    }
+
+    /// Adds the row that keeps the sum of some of the joint's coordinates, each with its factor.
+    pub fn couple(&mut self, terms: &[(&str, f64)]) {
+        let find = |name: &str| self.coordinates.iter().find(|known| known.name == name).expect("a coordinate of this joint");
+        let forms: Vec<(Form, f64)> = terms.iter().map(|&(name, factor)| (find(name).form.clone(), factor)).collect();
+        self.keep(&forms);
+    }
+
+    /// Adds the row first − second = 0.
+    pub fn difference(&mut self, first: &Form, second: &Form) {
+        self.keep(&[(first.clone(), 1.0), (second.clone(), -1.0)]);
+    }
+
+    fn keep(&mut self, forms: &[(Form, f64)]) {
+        let builder = &mut self.assembly.builder;
+        let parts: Vec<_> = forms.iter().map(|(form, factor)| (builder.part(form), *factor)).collect();
+        let sum = builder.sum(&parts);
+        builder.constant_row(format!("{}[{}]", self.entry.name, self.names), sum, 0.0);
+        self.names += 1;
+    }
+
+    /// The angle of B against A about the axis, as a coordinate.
+    pub fn angle(&mut self) {
+        let form = self.angle_between([1, 2]);
+        self.coordinate("angle", form, true);
+    }
+
+    /// The displacement d·e_k(A), as a coordinate.
+    pub fn displacement(&mut self, name: &'static str, k: usize) {
+        let form = Form::Product([self.d(), self.e(Side::A, k)]);
+        self.coordinate(name, form, false);
+    }
+
+    pub fn coordinate(&mut self, name: &'static str, form: Form, is_angle: bool) {
+        self.coordinates.push(Coordinate { name, form, is_angle });
+    }
+
+    /// The angle from e_k(A) to e_k(B), positive from k to l; in the plane from u to its quarter turn.
+    pub fn angle_between(&self, [k, l]: [usize; 2]) -> Form {
+        let [k, l] = if self.is_planar() { [0, 1] } else { [k, l] };
+        let moving = self.e(Side::B, k);
+        Form::Angle { cosine: [self.e(Side::A, k), moving.clone()], sine: [self.e(Side::A, l), moving] }
+    }
+}

@@ -1,0 +1,194 @@
+//! What is recorded of a model, by name: points, bodies, coordinates of joints and their forces.
+
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+
+use crate::simulation::Simulation;
+use crate::system::{NodeId, Place, Term};
+
+/// A point whose motion is recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedPoint {
+    pub name: String,
+    /// The nodes it is made of.
+    pub terms: Vec<Term>,
+}
+
+/// A body whose motion is recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedBody {
+    pub name: String,
+    /// Its centre of mass.
+    pub centre: Vec<Term>,
+    /// Orthogonal unit vectors in body axes, with their nodes: three, two of a plate, one of a rod, none in the plane.
+    pub directions: Vec<([f64; 3], Vec<Term>)>,
+    /// From body axes to the world's at the start, which says how a rod is turned about itself.
+    pub start: Matrix3<f64>,
+}
+
+/// A joint whose force is recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedJoint {
+    pub name: String,
+    /// Its rows among those of the system.
+    pub rows: std::ops::Range<usize>,
+    /// The nodes of one of its bodies, and whether they are points.
+    pub nodes: Vec<(NodeId, bool)>,
+    /// 1 when that is the second body, −1 when it is the first.
+    pub sign: f64,
+    /// Its place on that body.
+    pub at: Vec<Term>,
+}
+
+/// All that is recorded of a model, in the order of the columns.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Channels {
+    /// World axes of the coordinates, `"xyz"` or two of them.
+    pub axes: String,
+    pub points: Vec<RecordedPoint>,
+    pub bodies: Vec<RecordedBody>,
+    pub joints: Vec<RecordedJoint>,
+}
+
+/// Suffixes of the columns of a body in space behind those of its centre: the unit quaternion of its orientation (from
+/// body axes to the world's), and its angular velocity in world axes.
+const TURNED: [&str; 7] = ["qw", "qx", "qy", "qz", "wx", "wy", "wz"];
+
+impl Channels {
+    /// Names of the columns of motion.
+    pub fn motion_columns(&self) -> Vec<String> {
+        let mut names = Vec::new();
+        for point in &self.points {
+            names.extend(self.of_point(&point.name));
+        }
+        for body in &self.bodies {
+            names.extend(self.of_point(&body.name));
+            if self.axes.len() == 3 {
+                names.extend(TURNED.map(|suffix| format!("{}.{suffix}", body.name)));
+            }
+        }
+        names
+    }
+
+    fn of_point(&self, name: &str) -> Vec<String> {
+        let position = self.axes.chars().map(|axis| format!("{name}.{axis}"));
+        position.chain(self.axes.chars().map(|axis| format!("{name}.v{axis}"))).collect()
+    }
+
+    /// Names of the columns of forces: the multiplier of each row of the system, the force of the constraints on each
+    /// point that is a free node, and force and moment of each joint on its second body.
+    pub fn reaction_columns(&self, rows: &[String]) -> Vec<String> {
+        let mut names: Vec<String> = rows.iter().map(|row| format!("{row}.lambda")).collect();
+        for point in self.points.iter().filter(|point| node(point).is_some()) {
+            names.extend(self.axes.chars().map(|axis| format!("{}.r{axis}", point.name)));
+        }
+        for joint in &self.joints {
+            names.extend(self.axes.chars().map(|axis| format!("{}.f{axis}", joint.name)));
+            match self.axes.len() {
+                3 => names.extend(self.axes.chars().map(|axis| format!("{}.t{axis}", joint.name))),
+                _ => names.push(format!("{}.t", joint.name)),
+            }
+        }
+        names
+    }
+
+    /// Appends the columns of motion.
+    pub fn motion(&self, simulation: &Simulation<'_>, last: &mut [UnitQuaternion<f64>], row: &mut Vec<f64>) {
+        let (x, v, dim) = (&simulation.state().x[..], simulation.velocities(), self.axes.len());
+        for terms in self.points.iter().map(|point| &point.terms) {
+            row.extend_from_slice(&at(terms, x, dim)[..dim]);
+            row.extend_from_slice(&rate(terms, v, dim)[..dim]);
+        }
+        for (body, last) in self.bodies.iter().zip(last) {
+            row.extend_from_slice(&at(&body.centre, x, dim)[..dim]);
+            row.extend_from_slice(&rate(&body.centre, v, dim)[..dim]);
+            if dim == 3 {
+                let (orientation, omega) = body.turned(x, v);
+                // Of the two quaternions of an orientation the one near the last.
+                *last = if orientation.coords.dot(&last.coords) < 0.0 { UnitQuaternion::new_unchecked(-orientation.into_inner()) } else { orientation };
+                row.extend([last.w, last.i, last.j, last.k, omega[0], omega[1], omega[2]]);
+            }
+        }
+    }
+
+    /// Appends the columns of forces.
+    pub fn reactions(&self, simulation: &Simulation<'_>, row: &mut Vec<f64>) {
+        let Some(reactions) = simulation.reactions() else { return };
+        let dim = self.axes.len();
+        row.extend_from_slice(&reactions.lambda);
+        for node in self.points.iter().filter_map(node) {
+            row.extend_from_slice(&reactions.force[node.index() * dim..(node.index() + 1) * dim]);
+        }
+        for joint in &self.joints {
+            let about = at(&joint.at, &simulation.state().x, dim);
+            let (force, moment) = simulation.wrench(joint.rows.clone(), &joint.nodes, about);
+            row.extend(force[..dim].iter().map(|f| joint.sign * f));
+            match dim {
+                3 => row.extend(moment.map(|m| joint.sign * m)),
+                _ => row.push(joint.sign * moment[2]),
+            }
+        }
+    }
+}
+
+/// The node that a point is, where it is one.
+fn node(point: &RecordedPoint) -> Option<NodeId> {
+    match point.terms[..] {
+        [Term { place: Place::Node(node), factor: 1.0, turn: 0.0 }] => Some(node),
+        _ => None,
+    }
+}
+
+fn sum(terms: &[Term], x: &[f64], dim: usize, fixed: f64) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for term in terms {
+        let mut part = [0.0; 3];
+        match term.place {
+            Place::Node(node) => part[..dim].copy_from_slice(&x[node.index() * dim..(node.index() + 1) * dim]),
+            Place::Fixed(x) => (0..dim).for_each(|c| part[c] = fixed * x[c]),
+        }
+        (0..dim).for_each(|c| sum[c] += term.factor * part[c]);
+        sum[0] -= term.turn * part[1];
+        sum[1] += term.turn * part[0];
+    }
+    sum
+}
+
+/// Where a sum of nodes is.
+fn at(terms: &[Term], x: &[f64], dim: usize) -> [f64; 3] {
+    sum(terms, x, dim, 1.0)
+}
+
+/// How fast a sum of nodes moves.
+fn rate(terms: &[Term], v: &[f64], dim: usize) -> [f64; 3] {
+    sum(terms, v, dim, 0.0)
+}
+
+impl RecordedBody {
+    /// Orientation and angular velocity in space.
+    fn turned(&self, x: &[f64], v: &[f64]) -> (UnitQuaternion<f64>, Vector3<f64>) {
+        let world: Vec<Vector3<f64>> = self.directions.iter().map(|(_, terms)| at(terms, x, 3).into()).collect();
+        let rates: Vec<Vector3<f64>> = self.directions.iter().map(|(_, terms)| rate(terms, v, 3).into()).collect();
+        let local: Vec<Vector3<f64>> = self.directions.iter().map(|&(local, _)| local.into()).collect();
+        match world[..] {
+            [axis] => {
+                // Of a rod the turn about itself is not known: the shortest from the start.
+                let turn = Rotation3::rotation_between(&(self.start * local[0]), &axis).unwrap_or_else(Rotation3::identity);
+                (quaternion(turn.into_inner() * self.start), axis.cross(&rates[0]))
+            }
+            [e, f] => {
+                let (g, rate) = (e.cross(&f), rates[0].cross(&f) + e.cross(&rates[1]));
+                let matrix = Matrix3::from_columns(&[e, f, g]) * Matrix3::from_columns(&[local[0], local[1], local[0].cross(&local[1])]).transpose();
+                (quaternion(matrix), 0.5 * (e.cross(&rates[0]) + f.cross(&rates[1]) + g.cross(&rate)))
+            }
+            [e, f, g] => {
+                let matrix = Matrix3::from_columns(&[e, f, g]) * Matrix3::from_columns(&[local[0], local[1], local[2]]).transpose();
+                (quaternion(matrix), 0.5 * (e.cross(&rates[0]) + f.cross(&rates[1]) + g.cross(&rates[2])))
+            }
+            _ => unreachable!("a body in space has one to three directions"),
+        }
+    }
+}
+
+fn quaternion(matrix: Matrix3<f64>) -> UnitQuaternion<f64> {
+    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix))
+}

@@ -1,0 +1,107 @@
+//! What is measured beside the equations: coordinates of joints, with their rates.
+
+use super::function::Part;
+use super::{FunctionValues, Functions, Invariants, System, SystemBuilder, Term};
+
+/// A joint coordinate, before it is a quantity of a system.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Form {
+    /// U·W
+    Product([Vec<Term>; 2]),
+    /// The angle with these products as cosine and sine.
+    Angle { cosine: [Vec<Term>; 2], sine: [Vec<Term>; 2] },
+}
+
+impl Form {
+    pub(crate) fn part(&self, invariants: &mut Invariants) -> Part {
+        let mut product = |[u, w]: &[Vec<Term>; 2]| invariants.dot(u, w);
+        match self {
+            Self::Product(factors) => Part::Invariant(product(factors)),
+            Self::Angle { cosine, sine } => Part::Angle { cosine: product(cosine), sine: product(sine) },
+        }
+    }
+}
+
+/// Functions of the positions that no equation needs, by name.
+#[derive(Clone)]
+pub(crate) struct Gauges {
+    invariants: Invariants,
+    functions: Functions,
+    names: Vec<String>,
+}
+
+/// Values and rates of what a system measures.
+#[derive(Clone, Debug, Default)]
+pub struct GaugeValues {
+    invariants: Vec<f64>,
+    gradient: Vec<f64>,
+    functions: FunctionValues,
+    /// Values, rad or m.
+    pub value: Vec<f64>,
+    /// Rates, rad/s or m/s.
+    pub rate: Vec<f64>,
+}
+
+impl Gauges {
+    pub fn new(dim: usize) -> Self {
+        Self { invariants: Invariants::new(dim), functions: Functions::default(), names: Vec::new() }
+    }
+
+    pub fn add(&mut self, name: String, form: &Form) {
+        let part = form.part(&mut self.invariants);
+        self.functions.add(&self.invariants, &[(part, 1.0)]);
+        self.names.push(name);
+    }
+}
+
+impl SystemBuilder {
+    /// Measures a joint coordinate under a name.
+    pub fn measure(&mut self, name: impl Into<String>, form: &Form) {
+        self.gauges.add(name.into(), form);
+    }
+}
+
+impl System {
+    /// Names of what is measured.
+    pub fn gauges(&self) -> &[String] {
+        &self.gauges.names
+    }
+
+    /// Room for what is measured; angles start between −π and π.
+    pub fn gauge_values(&self) -> GaugeValues {
+        let Gauges { invariants, functions, names } = &self.gauges;
+        GaugeValues {
+            invariants: vec![0.0; invariants.len()],
+            gradient: vec![0.0; invariants.slots() * self.dim],
+            functions: functions.values(),
+            value: vec![0.0; names.len()],
+            rate: vec![0.0; names.len()],
+        }
+    }
+
+    /// Measures at positions `x` and velocities `v` of all nodes. Angles are counted on from those measured last, less
+    /// than half a turn away.
+    pub fn measure(&self, x: &[f64], v: &[f64], out: &mut GaugeValues) {
+        let Gauges { invariants, functions, names } = &self.gauges;
+        if names.is_empty() {
+            return;
+        }
+        invariants.evaluate(x, &mut out.invariants, &mut out.gradient);
+        functions.evaluate(&out.invariants, &mut out.functions);
+        for k in 0..names.len() {
+            let local = &out.functions.local[k];
+            out.value[k] = local.value;
+            out.rate[k] = functions.base_of(k).iter().zip(&local.gradient).map(|(&id, g)| g * self.slope(&out.gradient, id, v)).sum();
+        }
+    }
+
+    fn slope(&self, gradient: &[f64], id: super::InvariantId, v: &[f64]) -> f64 {
+        let (invariants, dim) = (&self.gauges.invariants, self.dim);
+        let mut sum = 0.0;
+        for s in invariants.slots_of(id) {
+            let node = invariants.slot_nodes()[s] as usize * dim;
+            sum += (0..dim).map(|c| gradient[s * dim + c] * v[node + c]).sum::<f64>();
+        }
+        sum
+    }
+}
