@@ -60,7 +60,7 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
     }
     let rank = analysis::rank(&model.system, &simulation.state().x, simulation.state().t);
     let reactions = model.output.reactions.unwrap_or(false);
-    if reactions {
+    if reactions || !model.channels.efforts.is_empty() {
         simulation.find_reactions();
     }
     let recorder = Recorder::new(&model.channels, &model.system, every, reactions);

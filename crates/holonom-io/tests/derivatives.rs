@@ -1,7 +1,7 @@
 //! Derivatives are never trusted: the assembled tangent of every registered kind against differences of its residual.
 
 use holonom::formulation::{RowsAt, Sampling, Stage, Workspace};
-use holonom::model::{Model, constraints, forces, joints};
+use holonom::model::{Model, constraints, drives, forces, joints};
 use holonom_io::Source;
 
 /// Step of the central differences, m.
@@ -84,7 +84,7 @@ fn check(name: &str, text: &str) {
 #[test]
 fn every_kind_has_the_tangent_of_its_residual() {
     let mut kinds = 0;
-    for kind in constraints::KINDS.iter().chain(forces::KINDS).chain(joints::kinds()) {
+    for kind in constraints::KINDS.iter().chain(forces::KINDS).chain(joints::kinds()).chain(drives::KINDS) {
         check(kind.name, kind.example);
         kinds += 1;
     }

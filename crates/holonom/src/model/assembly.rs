@@ -1,6 +1,7 @@
 //! What the readers of points, bars, constraints and forces build on: the system so far, and the points by name.
 
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 use super::bodies::Body;
 use super::bodies::frame::Frame;
@@ -12,7 +13,7 @@ use super::geometry::Vec3;
 use super::joints::Joint;
 use super::value::Value;
 use crate::record::{Anchor, Line, LineKind, SceneJoint};
-use crate::system::{NodeId, Place, SystemBuilder, Term};
+use crate::system::{NodeId, Place, Signal, SystemBuilder, Term};
 
 /// The name of the origin.
 pub const GROUND: &str = "ground";
@@ -109,6 +110,16 @@ pub struct Assembly<'a> {
     /// Names of joints and couplers that could not be read.
     pub faulty_joints: HashSet<String>,
     pub scene_joints: Vec<SceneJoint>,
+    /// Efforts of the drives.
+    pub efforts: Vec<Effort>,
+}
+
+/// What a drive exerts: −λ of its row, times the length where the row is one of half a square.
+#[derive(Clone)]
+pub struct Effort {
+    pub name: String,
+    pub row: usize,
+    pub length: Option<Arc<dyn Signal>>,
 }
 
 impl Assembly<'_> {

@@ -44,10 +44,16 @@ pub enum Shape {
     Spin,
     /// A table of named vectors.
     Places,
-    /// So many numbers.
-    Numbers(usize),
+    /// Numbers: at least and at most so many.
+    Numbers(usize, usize),
     /// Three rows of three numbers.
     Rows,
+    /// A formula of t, or a table of times and values.
+    Profile,
+    /// A table of named texts.
+    Named,
+    /// Three formulas, in a planar model one.
+    Torque(&'static [&'static str]),
     /// Two names of bodies.
     Members,
     /// A place, the name of one, or two of these.

@@ -5,6 +5,7 @@
 
 pub mod bodies;
 pub mod constraints;
+pub mod drives;
 pub mod forces;
 pub mod joints;
 
@@ -20,6 +21,7 @@ mod points;
 mod repeat;
 mod schema;
 mod section;
+mod spline;
 mod settings;
 #[cfg(test)]
 mod tests;
@@ -47,7 +49,7 @@ use expression::Scope;
 use fault::{Read, Refused, Sink};
 use section::Sections;
 
-use crate::record::{Channels, PointKind, RecordedJoint, RecordedPoint, Scene, SceneBody, ScenePoint};
+use crate::record::{Channels, PointKind, RecordedEffort, RecordedJoint, RecordedPoint, Scene, SceneBody, ScenePoint};
 use crate::system::{Place, System, SystemBuilder};
 
 /// The version of the model file that is read.
@@ -71,7 +73,7 @@ pub const MODEL_KEYS: &[Key] = &[
 ];
 
 /// Names of the tables of a model.
-const TABLES: [&str; 9] = ["parameters", "point", "body", "bar", "joint", "constraint", "force", "simulation", "output"];
+const TABLES: [&str; 10] = ["parameters", "point", "body", "bar", "joint", "constraint", "drive", "force", "simulation", "output"];
 
 /// A point of a model.
 #[derive(Clone, Debug, PartialEq)]
@@ -161,6 +163,7 @@ fn read(value: &Value, sink: &Sink, meshes: &dyn Meshes) -> Read<Model> {
         joints: Vec::new(),
         faulty_joints: Default::default(),
         scene_joints: Vec::new(),
+        efforts: Vec::new(),
     };
     points::add(&mut assembly, &specs);
     make_bodies(&mut assembly, &root, &parameters, &specs);
@@ -170,6 +173,8 @@ fn read(value: &Value, sink: &Sink, meshes: &dyn Meshes) -> Read<Model> {
     build_kinds(&mut sections, table, "constraint", &kinds, &mut assembly);
     // Couplers name joints, which may stand behind them.
     build_joints(&mut sections, table, &mut assembly);
+    let kinds: Vec<&Kind> = drives::KINDS.iter().collect();
+    build_kinds(&mut sections, table, "drive", &kinds, &mut assembly);
     let kinds: Vec<&Kind> = forces::KINDS.iter().collect();
     build_kinds(&mut sections, table, "force", &kinds, &mut assembly);
     points::check_mass(&assembly);
@@ -203,6 +208,10 @@ fn make_bodies(assembly: &mut Assembly<'_>, root: &Entry<'_>, parameters: &HashM
     let mut survey = joints::Survey::default();
     let mut sections = Sections::new(&unheard, root.meshes, parameters);
     sections.read(root.table, "joint", |_| Ok(()), |entry| joints::plan(assembly, entry, share, &mut survey));
+    sections.read(root.table, "force", |_| Ok(()), |entry| {
+        forces::needed(assembly, entry, &mut survey.needed);
+        Ok(())
+    });
     let places: Vec<Option<Place>> =
         assembly.points.iter().zip(specs).map(|(point, spec)| if points::is_driven(spec) { None } else { point.end.place() }).collect();
     let wanted = bodies::nodes::Wanted {
@@ -234,7 +243,7 @@ fn build_joints(sections: &mut Sections<'_>, root: &Table, assembly: &mut Assemb
 
 /// Puts together what has been read without a fault.
 fn finish(assembly: Assembly<'_>, title: String, settings: Settings, output: Output, bars: Vec<BarInfo>) -> Model {
-    let Assembly { mut builder, axes, gravity, points, lines, bodies, frames, body_places, joints, scene_joints, .. } = assembly;
+    let Assembly { mut builder, axes, gravity, points, lines, bodies, frames, body_places, joints, scene_joints, efforts, .. } = assembly;
     let place = |point: &assembly::Point| point.end.place().expect("a point is a node");
     let kind = |point: &assembly::Point| match (place(point), point.end.free) {
         (Place::Fixed(_), _) => PointKind::Fixed,
@@ -272,10 +281,14 @@ fn finish(assembly: Assembly<'_>, title: String, settings: Settings, output: Out
         scene,
         points,
         bars,
-        channels: Channels { bodies: bodies.iter().map(|body| body.recorded.clone()).collect(), ..channels },
+        channels: Channels { bodies: bodies.iter().map(|body| body.recorded.clone()).collect(), efforts: recorded_efforts(efforts), ..channels },
         bodies,
         joints,
     }
+}
+
+fn recorded_efforts(efforts: Vec<assembly::Effort>) -> Vec<RecordedEffort> {
+    efforts.into_iter().map(|assembly::Effort { name, row, length }| RecordedEffort { name, row, length }).collect()
 }
 
 /// Points, named points of bodies, and the forces of joints.
@@ -300,7 +313,7 @@ fn channels(axes: Axes, points: &[assembly::Point], bodies: &[Body], frames: &[F
             at: frame.point(joint.geometry.at[side]),
         }
     };
-    Channels { axes: axes.name.to_string(), points: own.chain(named).collect(), bodies: Vec::new(), joints: joints.iter().map(joint).collect() }
+    Channels { axes: axes.name.to_string(), points: own.chain(named).collect(), bodies: Vec::new(), joints: joints.iter().map(joint).collect(), efforts: Vec::new() }
 }
 
 fn refuse_unknown(root: &Entry<'_>) {

@@ -1,9 +1,11 @@
 //! What is recorded of a model, by name: points, bodies, coordinates of joints and their forces.
 
+use std::sync::Arc;
+
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::simulation::Simulation;
-use crate::system::{NodeId, Place, Term};
+use crate::system::{NodeId, Place, Signal, Term};
 
 /// A point whose motion is recorded.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,14 +41,23 @@ pub struct RecordedJoint {
     pub at: Vec<Term>,
 }
 
+/// A drive whose effort is recorded: −λ of its row, times a length where the row is one of half a square.
+#[derive(Clone)]
+pub struct RecordedEffort {
+    pub name: String,
+    pub row: usize,
+    pub length: Option<Arc<dyn Signal>>,
+}
+
 /// All that is recorded of a model, in the order of the columns.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Default)]
 pub struct Channels {
     /// World axes of the coordinates, `"xyz"` or two of them.
     pub axes: String,
     pub points: Vec<RecordedPoint>,
     pub bodies: Vec<RecordedBody>,
     pub joints: Vec<RecordedJoint>,
+    pub efforts: Vec<RecordedEffort>,
 }
 
 /// Suffixes of the columns of a body in space behind those of its centre: the unit quaternion of its orientation (from
@@ -72,6 +83,20 @@ impl Channels {
     fn of_point(&self, name: &str) -> Vec<String> {
         let position = self.axes.chars().map(|axis| format!("{name}.{axis}"));
         position.chain(self.axes.chars().map(|axis| format!("{name}.v{axis}"))).collect()
+    }
+
+    /// Names of the columns of efforts, N or N·m.
+    pub fn effort_columns(&self) -> impl Iterator<Item = String> + '_ {
+        self.efforts.iter().map(|effort| format!("{}.effort", effort.name))
+    }
+
+    /// Appends the columns of efforts, where the simulation finds forces.
+    pub fn efforts(&self, simulation: &Simulation<'_>, row: &mut Vec<f64>) {
+        let t = simulation.state().t;
+        for effort in &self.efforts {
+            let lambda = simulation.reactions().map_or(f64::NAN, |reactions| reactions.lambda[effort.row]);
+            row.push(-lambda * effort.length.as_ref().map_or(1.0, |length| length.at(t)[0]));
+        }
     }
 
     /// Names of the columns of forces: the multiplier of each row of the system, the force of the constraints on each

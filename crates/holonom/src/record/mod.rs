@@ -4,7 +4,7 @@ mod channels;
 mod recorder;
 mod scene;
 
-pub use channels::{Channels, RecordedBody, RecordedJoint, RecordedPoint};
+pub use channels::{Channels, RecordedBody, RecordedEffort, RecordedJoint, RecordedPoint};
 pub use recorder::{COLUMNS, Recorder};
 pub use scene::{Anchor, Line, LineKind, PointKind, Scene, SceneBody, SceneJoint, ScenePoint, SceneShape};
 

@@ -9,8 +9,8 @@ use crate::model::value::Value;
 
 /// The keys of an orientation; one of its spellings is given.
 pub const KEYS: &[Key] = &[
-    Key::optional("quat_wxyz", Shape::Numbers(4), "none", "", "unit quaternion, its real part first"),
-    Key::optional("quat_xyzw", Shape::Numbers(4), "none", "", "unit quaternion, its real part last"),
+    Key::optional("quat_wxyz", Shape::Numbers(4, 4), "none", "", "unit quaternion, its real part first"),
+    Key::optional("quat_xyzw", Shape::Numbers(4, 4), "none", "", "unit quaternion, its real part last"),
     Key::optional("axis", Shape::Vector, "none", "any", "axis of a rotation, with angle or angle_deg; not in a planar model"),
     Key::optional("angle", Shape::Number, "none", "rad", "angle about the axis; in a planar model from its first axis to its second"),
     Key::optional("angle_deg", Shape::Number, "none", "°", "the same in degrees"),

@@ -1,0 +1,11 @@
+//! `[drive.NAME]`: motion that is imposed, with the effort it takes. A kind is one file here and its line in the table.
+
+mod coordinate;
+mod distance;
+mod point;
+mod profile;
+
+use super::key::Kind;
+
+/// All kinds of drives.
+pub const KINDS: &[Kind] = &[coordinate::ANGLE, coordinate::DISPLACEMENT, distance::KIND, point::KIND];

@@ -1,0 +1,52 @@
+//! A number over time: a formula of t, or a spline through a table.
+
+use std::sync::Arc;
+
+use crate::model::entry::{Entry, Spot, all};
+use crate::model::expression::TimeProgram;
+use crate::model::fault::Read;
+use crate::model::key::{Key, Shape};
+use crate::model::spline::Spline;
+use crate::model::value::Value;
+use crate::system::Signal;
+
+/// The key of the profile of a drive, in a unit.
+pub(super) const fn key(unit: &'static str, doc: &'static str) -> Key {
+    Key::required("profile", Shape::Profile, unit, doc)
+}
+
+/// The signal at `profile`.
+pub(super) fn read(entry: &Entry<'_>) -> Read<Arc<dyn Signal>> {
+    let signal: Arc<dyn Signal> = match entry.value("profile")? {
+        Value::Table(_) => Arc::new(table(entry)?),
+        _ => Arc::new(TimeProgram(entry.formula("profile", &["t"])?)),
+    };
+    let start = signal.at(0.0);
+    if start.iter().any(|value| !value.is_finite()) {
+        return Err(entry.refuse("profile", format!("value, rate and second derivative are {start:?} at t = 0"), "all must be finite"));
+    }
+    Ok(signal)
+}
+
+fn table(entry: &Entry<'_>) -> Read<Spline> {
+    let table = entry.table("profile")?;
+    entry.inside("profile", table, |inner| {
+        inner.refuse_unknown_keys("a profile", &[&Key::required("table", Shape::Rows, "", "")]);
+        let rows = inner.list("table")?;
+        let row = |(k, row): (usize, &Value)| match row {
+            Value::List(items) if items.len() == 2 => {
+                all(items.iter().map(|item| inner.number_in(Spot { key: "table", item: Some(k) }, item)))
+            }
+            _ => Err(inner.refuse(Spot { key: "table", item: Some(k) }, "a row has a time and a value", "write [[t, value], [t, value], …]")),
+        };
+        if rows.len() < 2 {
+            return Err(inner.refuse("table", format!("a table has at least two rows, and this has {}", rows.len()), "add [t, value]"));
+        }
+        let rows = all(rows.iter().enumerate().map(row))?;
+        if let Some(k) = (1..rows.len()).find(|&k| rows[k][0] <= rows[k - 1][0]) {
+            let message = format!("the time {} comes after {}", rows[k][0], rows[k - 1][0]);
+            return Err(inner.refuse(Spot { key: "table", item: Some(k) }, message, "let the times rise from row to row"));
+        }
+        Ok(Spline::natural(rows.iter().map(|row| row[0]).collect(), rows.iter().map(|row| row[1]).collect()))
+    })
+}

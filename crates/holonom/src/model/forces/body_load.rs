@@ -1,0 +1,216 @@
+//! Forces and torques on bodies, as formulas of time and of the motion of the body.
+//!
+//! A force at a place goes to the nodes that the place is made of; a torque n is ½ n × e_k on each of the three axes of
+//! the body, and these go to their nodes: work and moment are exact (methods §4.1).
+
+use std::sync::Arc;
+
+use crate::model::assembly::{Assembly, End};
+use crate::model::bodies::nodes::Member;
+use crate::model::entry::{Entry, Spot};
+use crate::model::expression::Program;
+use crate::model::fault::Read;
+use crate::model::geometry::unit;
+use crate::model::key::{Key, Shape};
+use crate::system::{Differentiated, ForceFunction, NodeId, Number, Place, SIZE, Term};
+
+/// Time, place, its velocity, and angular velocity of the body.
+pub(super) const VARIABLES: &[&str] = &["t", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz"];
+
+/// Those of a planar model whose plane has the axes of these letters; `w` is the angular velocity.
+fn variables(axes: &str) -> Vec<String> {
+    let own = |prefix: &'static str| axes.chars().map(move |axis| format!("{prefix}{axis}"));
+    let turns = if axes.len() == 2 { vec!["w".to_string()] } else { own("w").collect() };
+    std::iter::once("t".to_string()).chain(own("")).chain(own("v")).chain(turns).collect()
+}
+
+/// The key that says in which axes a force or torque is given.
+pub(super) const AXES: Key =
+    Key::optional("axes", Shape::Choice(&["world", "body"]), "\"world\"", "", "whether it is given in the axes of the model or of the body");
+
+/// A body by its key.
+pub(super) fn body(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &str) -> Read<usize> {
+    let name = entry.text(key)?;
+    match assembly.member(entry, key.into(), name)? {
+        Member::Body(k) => Ok(k),
+        _ => Err(entry.refuse(key, format!("`{name}` is no body"), "name a [body.NAME]")),
+    }
+}
+
+/// A sum of nodes by their positions in the list of a load.
+#[derive(Default)]
+struct Sum {
+    terms: Vec<(usize, [f64; 2])>,
+    fixed: [f64; 3],
+}
+
+impl Sum {
+    fn new(terms: &[Term], nodes: &mut Vec<NodeId>) -> Self {
+        let mut sum = Self::default();
+        for term in terms {
+            match term.place {
+                Place::Node(node) => {
+                    let index = nodes.iter().position(|&known| known == node).unwrap_or_else(|| {
+                        nodes.push(node);
+                        nodes.len() - 1
+                    });
+                    sum.terms.push((index, [term.factor, term.turn]));
+                }
+                Place::Fixed(x) => {
+                    (0..3).for_each(|c| sum.fixed[c] += term.factor * x[c]);
+                    sum.fixed[0] -= term.turn * x[1];
+                    sum.fixed[1] += term.turn * x[0];
+                }
+            }
+        }
+        sum
+    }
+
+    /// Its position, or with `fixed` 0 its velocity.
+    fn at<N: Number>(&self, x: &[N], dim: usize, fixed: f64) -> [N; 3] {
+        let mut sum = self.fixed.map(|c| N::from(fixed * c));
+        for &(node, [f, g]) in &self.terms {
+            let own = &x[node * dim..(node + 1) * dim];
+            (0..dim).for_each(|c| sum[c] += own[c] * f);
+            if g != 0.0 {
+                sum[0] -= own[1] * g;
+                sum[1] += own[0] * g;
+            }
+        }
+        sum
+    }
+
+    /// Adds a force on it to those on the nodes.
+    fn spread<N: Number>(&self, force: [N; 3], dim: usize, out: &mut [N]) {
+        for &(node, [f, g]) in &self.terms {
+            let own = &mut out[node * dim..(node + 1) * dim];
+            (0..dim).for_each(|c| own[c] += force[c] * f);
+            if g != 0.0 {
+                own[0] += force[1] * g;
+                own[1] -= force[0] * g;
+            }
+        }
+    }
+}
+
+/// A force at a place of a body, or a torque on it and its reaction on another one.
+struct BodyLoad {
+    dim: usize,
+    point: Sum,
+    /// Body axes: three, in the plane the first.
+    axes: Vec<Sum>,
+    /// Those of the body that takes the reaction.
+    other: Vec<Sum>,
+    formulas: Vec<Program>,
+    is_torque: bool,
+    in_body_axes: bool,
+}
+
+fn cross<N: Number>(u: [N; 3], w: [N; 3]) -> [N; 3] {
+    [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]]
+}
+
+impl BodyLoad {
+    /// The formulas at a state.
+    fn given<N: Number>(&self, x: &[N], v: &[N], t: N, axes: &[[N; 3]]) -> [N; 3] {
+        let (dim, zero) = (self.dim, N::from(0.0));
+        let mut turn = [zero; 3];
+        for (sum, &axis) in self.axes.iter().zip(axes) {
+            let own = cross(axis, sum.at(v, dim, 0.0));
+            (0..3).for_each(|c| turn[c] += own[c] * if dim == 2 { 1.0 } else { 0.5 });
+        }
+        let mut variables = [t; VARIABLES.len()];
+        variables[1..1 + dim].copy_from_slice(&self.point.at(x, dim, 1.0)[..dim]);
+        variables[1 + dim..1 + 2 * dim].copy_from_slice(&self.point.at(v, dim, 0.0)[..dim]);
+        let turns = if dim == 2 { &turn[2..] } else { &turn[..] };
+        variables[1 + 2 * dim..1 + 2 * dim + turns.len()].copy_from_slice(turns);
+        let mut given = [zero; 3];
+        given.iter_mut().zip(&self.formulas).for_each(|(given, formula)| *given = formula.evaluate(&variables));
+        given
+    }
+
+    /// Σ g_k e_k.
+    fn in_world<N: Number>(&self, given: [N; 3], axes: &[[N; 3]]) -> [N; 3] {
+        if self.dim == 2 {
+            let [x, y, _] = axes[0];
+            return [x * given[0] - y * given[1], y * given[0] + x * given[1], N::from(0.0)];
+        }
+        std::array::from_fn(|c| axes[0][c] * given[0] + axes[1][c] * given[1] + axes[2][c] * given[2])
+    }
+}
+
+impl ForceFunction for BodyLoad {
+    fn evaluate<N: Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
+        let (dim, zero) = (self.dim, N::from(0.0));
+        let mut axes = [[zero; 3]; 3];
+        axes.iter_mut().zip(&self.axes).for_each(|(axis, sum)| *axis = sum.at(x, dim, 1.0));
+        let axes = &axes[..self.axes.len()];
+        let mut given = self.given(x, v, t, axes);
+        force.fill(zero);
+        if self.in_body_axes && !(dim == 2 && self.is_torque) {
+            given = self.in_world(given, axes);
+        }
+        if !self.is_torque {
+            self.point.spread(given, dim, force);
+            return;
+        }
+        let torque = if dim == 2 { [zero, zero, given[0]] } else { given };
+        let share = if dim == 2 { 1.0 } else { 0.5 };
+        for (sums, sign) in [(&self.axes, share), (&self.other, -share)] {
+            for sum in sums {
+                sum.spread(cross(torque, sum.at(x, dim, 1.0)).map(|c| c * sign), dim, force);
+            }
+        }
+    }
+}
+
+/// What is read of a force or torque before it becomes a load.
+pub(super) struct Given<'a> {
+    pub body: usize,
+    pub at: End,
+    pub other: Option<usize>,
+    /// The key with the formulas.
+    pub key: &'a str,
+    pub is_torque: bool,
+}
+
+/// Adds a force or torque whose formulas are at a key.
+pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, given: &Given<'_>) -> Read<()> {
+    let dim = assembly.dimension();
+    let names = variables(assembly.axes.name);
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let formulas = match given.is_torque && dim == 2 {
+        true => entry.formula(given.key, &names).map(|formula| vec![formula]),
+        false => entry.formulas(given.key, dim, &names),
+    };
+    let in_body_axes = entry.optional("axes", |entry, key| entry.choice(key, &["world", "body"]));
+    let (formulas, in_body_axes) = (formulas?, in_body_axes? == Some("body"));
+    finite(entry, given, &formulas, dim)?;
+    let mut nodes = Vec::new();
+    let point = Sum::new(&given.at.terms, &mut nodes);
+    let mut axes = |body: usize| -> Vec<Sum> {
+        let own = |k: usize| assembly.frames[body].vector(assembly.bodies[body].direction(unit(k)));
+        (0..if dim == 2 { 1 } else { 3 }).map(|k| Sum::new(&own(k), &mut nodes)).collect()
+    };
+    let own = axes(given.body);
+    let other = given.other.map_or(Vec::new(), axes);
+    assert!(nodes.len() * dim <= SIZE, "two bodies have at most eight nodes");
+    let load = BodyLoad { dim, point, axes: own, other, formulas, is_torque: given.is_torque, in_body_axes };
+    assembly.builder.load(entry.name, &nodes, Arc::new(Differentiated(load)));
+    Ok(())
+}
+
+/// Formulas must at least be numbers where the body starts.
+fn finite(entry: &Entry<'_>, given: &Given<'_>, formulas: &[Program], dim: usize) -> Read<()> {
+    let mut at = [0.0; VARIABLES.len()];
+    at[1..1 + dim].copy_from_slice(&given.at.start[..dim]);
+    for (k, formula) in formulas.iter().enumerate() {
+        let value = formula.evaluate(&at);
+        if !value.is_finite() {
+            let item = (formulas.len() > 1).then_some(k);
+            let message = format!("this formula is {value} where the body starts, at rest and at t = 0");
+            return Err(entry.refuse(Spot { key: given.key, item }, message, "it must be finite"));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,111 @@
+use std::sync::Arc;
+
+use super::coordinate_laws::{Resisting, Spring, Viscous};
+use crate::model::assembly::{Assembly, subtract};
+use crate::model::bodies::nodes::Member;
+use crate::model::entry::{Entry, Spot, all};
+use crate::model::fault::Read;
+use crate::model::geometry::unit;
+use crate::model::key::{Key, Kind, Shape};
+
+use crate::system::{FunctionId, Part};
+
+pub(super) const KIND: Kind = Kind {
+    name: "bushing",
+    doc: "a rubber bearing between two bodies: springs and dampers along and about three axes of the first body, which are those of \
+          the model at the start; without force as the bodies start; for rotations well below a right angle",
+    equations: "V = ½ Σ k q², effort −c q̇, with q = d·e_k(A) and about e_k the mean of e_j(A)·e_i(B) and −e_i(A)·e_j(B), (i, j, k) \
+                cyclic: the sine of a rotation about one axis alone",
+    keys: &[
+        Key::required("between", Shape::Members, "", "the two bodies, or \"ground\" and a body"),
+        Key::required("at", Shape::End, "m", "where it sits at the start"),
+        Key::required("stiffness", Shape::Numbers(3, 6), "N/m, N·m/rad", "along x, y, z and about x, y, z; in a planar model three: along both axes and about the normal"),
+        Key::optional("damping", Shape::Numbers(3, 6), "none", "N·s/m, N·m·s/rad", "in the same order; what it takes is booked as work"),
+    ],
+    example: r#"
+[body.engine]
+mass = 50
+shape = { box = [0.5, 0.4, 0.4] }
+position = [0, 0, 0.5]
+angular_velocity = [1, 0, 0]
+
+[force.mount]
+type = "bushing"
+between = ["ground", "engine"]
+at = [0.1, 0, 0.3]
+stiffness = [2e3, 2e3, 5e3, 100, 120, 90]
+damping = [20, 20, 50, 1, 1, 1]
+"#,
+    build,
+};
+
+fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+    let count = if assembly.dimension() == 2 { 3 } else { 6 };
+    let members = members(assembly, entry);
+    let at = entry.value("at").and_then(|value| assembly.place_at_start(entry, "at".into(), value));
+    let stiffness = numbers(entry, "stiffness", count);
+    let damping = entry.optional("damping", |entry, key| numbers(entry, key, count));
+    let (members, at, stiffness, damping) = (members?, at?, stiffness?, damping?);
+    let coordinates = coordinates(assembly, members, at);
+    for (k, &q) in coordinates.iter().enumerate() {
+        if stiffness[k] > 0.0 {
+            assembly.builder.law(entry.name, &[q], Arc::new(Spring { stiffness: stiffness[k], rest: 0.0 }));
+        }
+        if let Some(damping) = damping.as_ref().map(|damping| damping[k]).filter(|&damping| damping > 0.0) {
+            assembly.builder.law(entry.name, &[q], Arc::new(Resisting(Viscous(damping))));
+        }
+    }
+    Ok(())
+}
+
+fn members(assembly: &Assembly<'_>, entry: &Entry<'_>) -> Read<[Member; 2]> {
+    let names = entry.texts("between")?;
+    let [first, second] = names[..] else {
+        return Err(entry.refuse("between", "a bushing is between two bodies", "write between = [\"A\", \"B\"]"));
+    };
+    let member = |k: usize, name: &str| {
+        let spot = Spot { key: "between", item: Some(k) };
+        match assembly.member(entry, spot, name)? {
+            Member::Point(_) => Err(entry.refuse(spot, format!("`{name}` is a point and does not turn"), "name a body, or use springs")),
+            member => Ok(member),
+        }
+    };
+    let (a, b) = (member(0, first), member(1, second));
+    let members = [a?, b?];
+    if members[0] == members[1] {
+        return Err(entry.refuse("between", format!("`{first}` is joined to itself"), "name two different bodies"));
+    }
+    Ok(members)
+}
+
+fn numbers(entry: &Entry<'_>, key: &str, count: usize) -> Read<Vec<f64>> {
+    let items = entry.list(key)?;
+    if items.len() != count {
+        return Err(entry.refuse(key, format!("`{key}` wants {count} numbers, and this has {}", items.len()), format!("give {count} numbers")));
+    }
+    let number = |(k, item)| {
+        let spot = Spot { key, item: Some(k) };
+        let number = entry.number_in(spot, item)?;
+        if number >= 0.0 { Ok(number) } else { Err(entry.refuse(spot, format!("`{key}` is negative: {number}"), "it must be at least 0")) }
+    };
+    all(items.iter().enumerate().map(number))
+}
+
+/// Displacements and rotations, zero at the start.
+fn coordinates(assembly: &mut Assembly<'_>, members: [Member; 2], at: [f64; 3]) -> Vec<FunctionId> {
+    let [a, b] = members.map(|member| assembly.frame(member));
+    let d = subtract(&b.point(at), &a.point(at));
+    let dim = assembly.dimension();
+    let mut sums: Vec<FunctionId> = Vec::new();
+    for k in 0..dim {
+        let product = assembly.builder.dot(&d, &a.vector(unit(k)));
+        sums.push(assembly.builder.sum(&[(Part::Invariant(product), 1.0)]));
+    }
+    for k in if dim == 2 { 2..3 } else { 0..3 } {
+        let (i, j) = (unit((k + 1) % 3), unit((k + 2) % 3));
+        let forth = assembly.builder.dot(&a.vector(j), &b.vector(i));
+        let back = assembly.builder.dot(&a.vector(i), &b.vector(j));
+        sums.push(assembly.builder.sum(&[(Part::Invariant(forth), 0.5), (Part::Invariant(back), -0.5)]));
+    }
+    sums
+}

@@ -1,0 +1,205 @@
+//! Laws of a joint coordinate q: springs, dampers, friction, stops and formulas.
+//!
+//! A law hands over f with effort −f along q. Between two positions the coordinate is taken half way and its rate is
+//! Δq/h, so that f Δq is exactly the change of energy, or the energy that is taken out (methods §2.2, §2.3).
+
+use num_dual::Dual64;
+
+use crate::model::expression::Program;
+use crate::system::{Law, MAX_ARGUMENTS, Reach, Response};
+
+/// V = ½ k (q − q₀)².
+pub struct Spring {
+    pub stiffness: f64,
+    pub rest: f64,
+}
+
+impl Law for Spring {
+    fn energy(&self, value: &[f64]) -> f64 {
+        0.5 * self.stiffness * (value[0] - self.rest).powi(2)
+    }
+
+    fn conservative(&self) -> bool {
+        true
+    }
+
+    fn at(&self, value: &[f64], _rate: &[f64], _t: f64, out: &mut Response) {
+        out.force[0] = self.stiffness * (value[0] - self.rest);
+        out.by_value[0][0] = self.stiffness;
+    }
+
+    fn between(&self, reach: Reach<'_>, out: &mut Response) {
+        out.force[0] = self.stiffness * (0.5 * (reach.from[0] + reach.to[0]) - self.rest);
+        out.by_value[0][0] = 0.5 * self.stiffness;
+    }
+}
+
+/// f(q̇), against the motion: the force and its derivative.
+pub trait Resistance: Send + Sync {
+    fn at(&self, rate: f64) -> [f64; 2];
+}
+
+/// f = c q̇.
+pub struct Viscous(pub f64);
+
+impl Resistance for Viscous {
+    fn at(&self, rate: f64) -> [f64; 2] {
+        [self.0 * rate, self.0]
+    }
+}
+
+/// f = F tanh(q̇/v): dry friction, smooth at rest.
+pub struct Dry {
+    pub effort: f64,
+    pub speed: f64,
+}
+
+impl Resistance for Dry {
+    fn at(&self, rate: f64) -> [f64; 2] {
+        let tanh = (rate / self.speed).tanh();
+        [self.effort * tanh, self.effort / self.speed * (1.0 - tanh * tanh)]
+    }
+}
+
+/// A resistance as a law.
+pub struct Resisting<R>(pub R);
+
+impl<R: Resistance> Law for Resisting<R> {
+    fn conservative(&self) -> bool {
+        false
+    }
+
+    fn at(&self, _value: &[f64], rate: &[f64], _t: f64, out: &mut Response) {
+        [out.force[0], out.by_rate[0][0]] = self.0.at(rate[0]);
+    }
+
+    fn between(&self, reach: Reach<'_>, out: &mut Response) {
+        let [force, slope] = self.0.at((reach.to[0] - reach.from[0]) / reach.step);
+        out.force[0] = force;
+        out.by_value[0][0] = slope / reach.step;
+    }
+}
+
+/// A stop: V = ½ k p² with p how far q is beyond a limit, above it for `sign` 1 and below it for −1.
+pub struct Stop {
+    pub stiffness: f64,
+    pub limit: f64,
+    pub sign: f64,
+}
+
+impl Stop {
+    fn beyond(&self, q: f64) -> f64 {
+        (self.sign * (q - self.limit)).max(0.0)
+    }
+}
+
+impl Law for Stop {
+    fn energy(&self, value: &[f64]) -> f64 {
+        0.5 * self.stiffness * self.beyond(value[0]).powi(2)
+    }
+
+    fn conservative(&self) -> bool {
+        true
+    }
+
+    fn at(&self, value: &[f64], _rate: &[f64], _t: f64, out: &mut Response) {
+        let p = self.beyond(value[0]);
+        out.force[0] = self.sign * self.stiffness * p;
+        out.by_value[0][0] = if p > 0.0 { self.stiffness } else { 0.0 };
+    }
+
+    /// f = k p̄ Δp/Δq.
+    fn between(&self, reach: Reach<'_>, out: &mut Response) {
+        let (q0, q1) = (reach.from[0], reach.to[0]);
+        let (p0, p1) = (self.beyond(q0), self.beyond(q1));
+        let (mean, change) = (0.5 * (p0 + p1), q1 - q0);
+        let in_contact = |p: f64| if p > 0.0 { self.sign } else { 0.0 };
+        if (p0 > 0.0) == (p1 > 0.0) {
+            out.force[0] = self.stiffness * mean * in_contact(p1);
+            out.by_value[0][0] = 0.5 * self.stiffness * in_contact(p1).powi(2);
+            return;
+        }
+        let slope = (p1 - p0) / change;
+        out.force[0] = self.stiffness * mean * slope;
+        out.by_value[0][0] = self.stiffness * (0.5 * in_contact(p1) * slope + mean * (in_contact(p1) - slope) / change);
+    }
+}
+
+/// What a stop takes out: f = k d p q̇, as in Hunt and Crossley's impact.
+pub struct Impact {
+    pub stop: Stop,
+    /// d, s/m or s/rad.
+    pub dissipation: f64,
+}
+
+impl Law for Impact {
+    fn conservative(&self) -> bool {
+        false
+    }
+
+    fn at(&self, value: &[f64], rate: &[f64], _t: f64, out: &mut Response) {
+        let factor = self.stop.stiffness * self.dissipation;
+        let p = self.stop.beyond(value[0]);
+        out.force[0] = factor * p * rate[0];
+        out.by_value[0][0] = if p > 0.0 { factor * self.stop.sign * rate[0] } else { 0.0 };
+        out.by_rate[0][0] = factor * p;
+    }
+
+    fn between(&self, reach: Reach<'_>, out: &mut Response) {
+        let factor = self.stop.stiffness * self.dissipation;
+        let (p0, p1) = (self.stop.beyond(reach.from[0]), self.stop.beyond(reach.to[0]));
+        let rate = (reach.to[0] - reach.from[0]) / reach.step;
+        let mean = 0.5 * (p0 + p1);
+        out.force[0] = factor * mean * rate;
+        out.by_value[0][0] = factor * (mean / reach.step + if p1 > 0.0 { 0.5 * self.stop.sign * rate } else { 0.0 });
+    }
+}
+
+/// An effort E(t, q, q̇, …) along the first coordinate as a formula of time and of all coordinates and rates: variables
+/// t, then each coordinate followed by its rate.
+pub struct Effort(pub Program);
+
+impl Effort {
+    /// E, and its derivatives by coordinates and by rates.
+    fn evaluate(&self, value: &[f64], rate: &[f64], t: f64) -> (f64, [f64; MAX_ARGUMENTS], [f64; MAX_ARGUMENTS]) {
+        let m = value.len();
+        let mut variables = [Dual64::from(t); 1 + 2 * MAX_ARGUMENTS];
+        for k in 0..m {
+            variables[1 + 2 * k] = Dual64::from(value[k]);
+            variables[2 + 2 * k] = Dual64::from(rate[k]);
+        }
+        let (mut effort, mut by) = (0.0, [[0.0; MAX_ARGUMENTS]; 2]);
+        for k in 0..2 * m {
+            variables[1 + k].eps = 1.0;
+            let result: Dual64 = self.0.evaluate(&variables[..1 + 2 * m]);
+            variables[1 + k].eps = 0.0;
+            effort = result.re;
+            by[k % 2][k / 2] = result.eps;
+        }
+        (effort, by[0], by[1])
+    }
+}
+
+impl Law for Effort {
+    fn conservative(&self) -> bool {
+        false
+    }
+
+    fn at(&self, value: &[f64], rate: &[f64], t: f64, out: &mut Response) {
+        let (effort, by_value, by_rate) = self.evaluate(value, rate, t);
+        out.force[0] = -effort;
+        (out.by_value[0], out.by_rate[0]) = (by_value.map(|d| -d), by_rate.map(|d| -d));
+    }
+
+    fn between(&self, reach: Reach<'_>, out: &mut Response) {
+        let m = reach.from.len();
+        let (mut middle, mut rate) = ([0.0; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS]);
+        for k in 0..m {
+            middle[k] = 0.5 * (reach.from[k] + reach.to[k]);
+            rate[k] = (reach.to[k] - reach.from[k]) / reach.step;
+        }
+        let (effort, by_value, by_rate) = self.evaluate(&middle[..m], &rate[..m], reach.middle);
+        out.force[0] = -effort;
+        (0..m).for_each(|k| out.by_value[0][k] = -(0.5 * by_value[k] + by_rate[k] / reach.step));
+    }
+}
