@@ -134,3 +134,62 @@ fn bodies_move_and_joints_pull_as_newton_and_euler_say() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
+
+/// Whether nothing but gravity acts from outside.
+fn is_free(case: &Value) -> bool {
+    case["bodies"].as_object().expect("bodies").contains_key("A")
+}
+
+#[test]
+fn joints_leave_the_freedom_they_say() {
+    let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+    for case in cases() {
+        let dim = if name(&case).starts_with("planar-") { 2 } else { 3 };
+        let freedom = case["freedom"].as_u64().expect("a freedom") as usize;
+        let kind = case["kind"].as_str().expect("a kind");
+        *seen.entry(kind.to_string()).or_default() += 1;
+        if let Some(joint) = joints::JOINTS.iter().find(|joint| joint.kind.name == kind && kind != "generic") {
+            assert_eq!(joint.freedom[usize::from(dim == 2)], Some(freedom), "{}", name(&case));
+        }
+        let of_first_body = if !is_free(&case) { 0 } else { 3 * (dim - 1) };
+        for reactions in [true, false] {
+            let model = model_of(&case, reactions);
+            let rank = analysis::rank(&model.system, model.system.start_position(), 0.0);
+            assert_eq!(rank.redundant, Vec::<String>::new(), "{}", name(&case));
+            assert_eq!(rank.size(&model.system).dof, of_first_body + freedom, "{}", name(&case));
+        }
+    }
+    for kind in joints::kinds() {
+        assert!(seen.contains_key(kind.name), "there is a reference for `{}`", kind.name);
+    }
+}
+
+/// Energy and both momenta, in J, N·s and N·m·s, all of the order of ten.
+const KEPT: f64 = 1e-10;
+
+#[test]
+fn the_conserving_scheme_keeps_energy_and_momenta_in_free_flight() {
+    for case in cases().iter().filter(|case| is_free(case)) {
+        let text = case["model"].as_str().expect("a model").replace("gravity = [0.0, 0.0, -9.81]", "gravity = [0, 0, 0]");
+        let text = text.replace("gravity = [0.0, -9.81]", "gravity = [0, 0]");
+        for text in [text.clone(), text.replace("reactions = true", "reactions = false")] {
+            let model = model(name(case), &text);
+            let (_, summary) = run(&model, "conserving-ggl", None, 0.01, 0.5, false);
+            let kept = [summary.energy.max_drift, summary.momentum.linear_drift, summary.momentum.angular_drift];
+            println!("{:24} E {:7.1e} P {:7.1e} L {:7.1e}", name(case), kept[0], kept[1], kept[2]);
+            assert!(kept.iter().all(|&drift| drift <= KEPT), "{}: {kept:?}", name(case));
+            assert!(summary.violation.position <= KEPT && summary.violation.velocity <= KEPT, "{}: {:?}", name(case), summary.violation);
+        }
+    }
+}
+
+#[test]
+fn joints_run_with_every_named_method() {
+    for case in cases() {
+        let model = model_of(&case, false);
+        for method in NAMED {
+            let (recording, _) = run(&model, method.name, None, 0.01, 0.5, false);
+            assert!(recording.column("energy").expect("the energy").iter().all(|e| e.is_finite()), "{}, {}", name(&case), method.name);
+        }
+    }
+}

@@ -108,11 +108,11 @@ pub fn momenta(system: &System, x: &[f64], v: &[f64], scratch: &mut [f64]) -> [f
     let dim = system.dim;
     system.mass.times(dim, v, scratch);
     let mut sum = [0.0; 6];
-    for (x, p) in x.chunks_exact(dim).zip(scratch.chunks_exact(dim)) {
+    for ((x, p), &is_point) in x.chunks_exact(dim).zip(scratch.chunks_exact(dim)).zip(&system.is_point) {
         let at = |v: &[f64], c: usize| if c < dim { v[c] } else { 0.0 };
         for c in 0..3 {
             let (i, j) = ((c + 1) % 3, (c + 2) % 3);
-            sum[c] += at(p, c);
+            sum[c] += if is_point { at(p, c) } else { 0.0 };
             sum[3 + c] += at(x, i) * at(p, j) - at(x, j) * at(p, i);
         }
     }
@@ -123,11 +123,11 @@ pub fn momenta(system: &System, x: &[f64], v: &[f64], scratch: &mut [f64]) -> [f
 /// neither push nor turn that way, whatever their size. `kept` loses those that do.
 pub fn drop_driven_momenta(system: &System, work: &Workspace, x: &[f64], kept: &mut [bool; 6]) {
     let dim = system.dim;
-    let flow = |k: usize, x: &[f64]| -> [f64; 3] {
+    let flow = |k: usize, node: usize, x: &[f64]| -> [f64; 3] {
         let at = |c: usize| if c < dim { x[c] } else { 0.0 };
         let mut flow = [0.0; 3];
         if k < 3 {
-            flow[k] = 1.0;
+            flow[k] = f64::from(u8::from(system.is_point[node]));
         } else {
             let (i, j) = ((k - 2) % 3, (k - 1) % 3);
             flow[j] = at(i);
@@ -145,7 +145,7 @@ pub fn drop_driven_momenta(system: &System, work: &Workspace, x: &[f64], kept: &
             let (mut sum, mut size) = (0.0_f64, 0.0_f64);
             for s in slots {
                 let node = work.kkt.slot_nodes[s] as usize * dim;
-                let direction = flow(k, &x[node..node + dim]);
+                let direction = flow(k, node / dim, &x[node..node + dim]);
                 for c in 0..dim {
                     sum += work.at_start.gradient[s * dim + c] * direction[c];
                     size += work.at_start.gradient[s * dim + c].abs() * (1.0 + direction[c].abs());
@@ -159,8 +159,9 @@ pub fn drop_driven_momenta(system: &System, work: &Workspace, x: &[f64], kept: &
         let turned: f64 = x
             .chunks_exact(dim)
             .zip(work.weight.chunks_exact(dim))
-            .map(|(x, w)| {
-                let direction = flow(k, x);
+            .enumerate()
+            .map(|(node, (x, w))| {
+                let direction = flow(k, node, x);
                 (0..dim).map(|c| w[c] * direction[c]).sum::<f64>()
             })
             .sum();

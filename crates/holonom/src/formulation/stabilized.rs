@@ -29,6 +29,8 @@ pub struct Stabilized {
     turned_w: Vec<f64>,
     turned_u: Vec<f64>,
     velocity_gradient: Vec<f64>,
+    /// DΦ − D_vΦ̇ (D a slot).
+    columns: Vec<f64>,
     /// ½h Φ̇ (r).
     rate: Vec<f64>,
     unknowns: Vec<f64>,
@@ -50,6 +52,7 @@ impl Stabilized {
             turned_w: vec![0.0; slots],
             turned_u: vec![0.0; slots],
             velocity_gradient: vec![0.0; slots],
+            columns: vec![0.0; slots],
             rate: vec![0.0; r],
         }
     }
@@ -121,7 +124,8 @@ impl Stabilized {
     /// ```text
     /// D_v Φ̇ = Σ ḡ_i ∇π̄_i        D_q Φ̇ = Σ ḡ_i H_i v̄ + Σ mean(π̇_j) (D g_j)_i ∇π̄_i
     /// ```
-    /// with ḡ the mean of the two ends and D g_j·Δπ = Δg_j, so that D_vΦ̇·Δv + D_qΦ̇·Δq = ΔΦ̇.
+    /// with ḡ the mean of the two ends and D g_j·Δπ = Δg_j, so that D_vΦ̇·Δv + D_qΦ̇·Δq = ΔΦ̇. As D_vΦ̇ is not DΦ there,
+    /// the first equation gets (DΦ − D_vΦ̇)ᵀγ' more.
     fn turn_functions(&mut self, system: &System, step: f64, work: &Workspace) {
         if system.functions.is_empty() {
             return;
@@ -150,6 +154,9 @@ impl Stabilized {
             let mean = mean(k);
             std::array::from_fn(|i| [mean[i], along(i) + factor * change[i]])
         });
+        for ((columns, position), velocity) in self.columns.iter_mut().zip(&work.sampled.gradient).zip(&self.velocity_gradient) {
+            *columns = position - velocity;
+        }
     }
 
     /// ∂Φ̇/∂v between the ends of the step, D a slot.
@@ -184,7 +191,7 @@ impl Stabilized {
             for s in plan[row].clone().filter(|&s| (self.kkt.slot_nodes[s] as usize) < system.free) {
                 let to = self.kkt.coordinate(self.kkt.slot_nodes[s] as usize, 0, 0);
                 for c in 0..dim {
-                    self.unknowns[to + c] -= 0.5 * gamma * self.turned_w[s * dim + c];
+                    self.unknowns[to + c] -= gamma * (0.5 * self.turned_w[s * dim + c] + self.columns[s * dim + c]);
                     let gradient = if system.functions.is_empty() { &work.sampled.gradient } else { &self.velocity_gradient };
                     self.unknowns[to + dim + c] -= gamma * gradient[s * dim + c];
                 }
@@ -213,6 +220,9 @@ impl Stabilized {
         kkt.write_sum(Block(0, 0));
         kkt.add_columns(Block(0, 0), &work.sampled.gradient, 1.0);
         kkt.add_columns(Block(0, 1), &self.turned_w, 0.5);
+        if !system.functions.is_empty() {
+            kkt.add_columns(Block(0, 1), &self.columns, 1.0);
+        }
         let velocity_gradient = if system.functions.is_empty() { &work.sampled.gradient } else { &self.velocity_gradient };
         kkt.add_columns(Block(1, 1), velocity_gradient, 1.0);
         kkt.add_rows(Block(0, 0), &work.at_end.gradient, 1.0);

@@ -9,7 +9,7 @@ use super::bodies::nodes::Member;
 use super::entry::{Entry, Spot, all};
 use super::expression::{Mistake, Program, Scope};
 use super::fault::{Read, Refused, Sink, nearest, suggest};
-use super::geometry::Vec3;
+use super::geometry::{Vec3, add, norm};
 use super::joints::Joint;
 use super::value::Value;
 use crate::record::{Anchor, Line, LineKind, SceneJoint};
@@ -429,11 +429,98 @@ pub fn from_to(from: &End, to: &End) -> Vec<Term> {
     subtract(&to.terms, &from.terms)
 }
 
+/// The terms of a difference: those of the same node together, all fixed places together, and none that vanishes.
+pub fn subtract(to: &[Term], from: &[Term]) -> Vec<Term> {
+    let negative = from.iter().map(|term| Term { factor: -term.factor, turn: -term.turn, ..*term });
+    let (mut difference, mut fixed, mut size) = (Vec::<Term>::new(), [0.0; 3], 0.0);
+    for term in to.iter().copied().chain(negative) {
+        if let Place::Fixed(x) = term.place {
+            let part = [term.factor * x[0] - term.turn * x[1], term.factor * x[1] + term.turn * x[0], term.factor * x[2]];
+            size += norm(part);
+            fixed = add(fixed, part);
+            continue;
+        }
+        match difference.iter_mut().find(|known| known.place == term.place) {
+            Some(known) => {
+                let sum = |a: f64, b: f64| if (a + b).abs() <= GONE * a.abs().max(b.abs()) { 0.0 } else { a + b };
+                (known.factor, known.turn) = (sum(known.factor, term.factor), sum(known.turn, term.turn));
+            }
+            None => difference.push(term),
+        }
+    }
+    difference.retain(|term| term.factor != 0.0 || term.turn != 0.0);
+    if norm(fixed) > GONE * size {
+        difference.push((Place::Fixed(fixed), 1.0).into());
+    }
+    difference
+}
+
+/// What a difference leaves of its terms, over their size, that is round-off.
+const GONE: f64 = 1e-12;
+
+impl End {
+    /// The node or place it is, where it is a single one.
+    pub fn place(&self) -> Option<Place> {
+        match self.terms[..] {
+            [Term { place, factor: 1.0, turn: 0.0 }] => Some(place),
+            _ => None,
+        }
+    }
+}
+
+/// A place that never moves.
+pub fn fixed(start: [f64; 3], name: String) -> End {
+    End { terms: vec![(Place::Fixed(start), 1.0).into()], start, free: false, point: None, body: None, name }
+}
+
+/// A node as an end.
+pub fn node(id: NodeId, start: [f64; 3], free: bool, point: usize, name: &str) -> End {
+    End { terms: vec![(Place::Node(id), 1.0).into()], start, free, point: Some(point), body: None, name: name.to_string() }
+}
+
+/// Numbers of a list that may itself be an item of a list, zeros behind them.
+fn numbers(entry: &Entry<'_>, spot: Spot<'_>, items: &[Value]) -> Read<[f64; 3]> {
+    let read = all(items.iter().map(|item| entry.number_in(spot, item)))?;
+    Ok(std::array::from_fn(|k| read.get(k).copied().unwrap_or(0.0)))
+}
+
+/// A reference with its indices worked out: `P[i-1]` becomes `P[2]`.
+fn indexed(name: &str, scope: &Scope<'_>) -> Result<String, Mistake> {
+    let Some((base, mut rest)) = name.split_once('[') else {
+        return Ok(name.to_string());
+    };
+    let mut full = base.to_string();
+    let mut at = base.chars().count() + 1;
+    let wrong = |character: usize, message: String| Mistake { character, message, cure: "write \"NAME[i]\"".into(), known: false };
+    loop {
+        let Some((text, after)) = rest.split_once(']') else {
+            return Err(wrong(at, "a closing ] is missing".into()));
+        };
+        let index = Program::parse(text, &[], scope).map_err(|inner| Mistake { character: at + inner.character, ..inner })?;
+        let value = index.as_constant().expect("no variables");
+        if value.is_nan() || (value - value.round()).abs() > 1e-9 {
+            return Err(wrong(at, format!("the index `{text}` is {value}, which is no whole number")));
+        }
+        full.push_str(&format!("[{}]", value.round()));
+        at += text.chars().count() + 2;
+        match after.strip_prefix('[') {
+            Some(next) => rest = next,
+            None if after.is_empty() => return Ok(full),
+            None => return Err(wrong(at - 1, "nothing may follow an index but another one".into())),
+        }
+    }
+}
+
+/// The terms of the way from one end to another, those of the same node together.
+pub fn from_to(from: &End, to: &End) -> Vec<Term> {
+    subtract(&to.terms, &from.terms)
+}
+
 /// The terms of a difference, those of the same node together and none that vanishes.
 pub fn subtract(to: &[Term], from: &[Term]) -> Vec<Term> {
     let mut difference = to.to_vec();
     for term in from {
-        match difference.iter_mut().find(|known| known.place == term.place && matches!(term.place, Place::Node(_))) {
+        match difference.iter_mut().find(|known| known.place == term.place) {
             Some(known) => {
                 let gone = |a: f64, b: f64| if (a - b).abs() <= 1e-12 * a.abs().max(b.abs()) { 0.0 } else { a - b };
                 (known.factor, known.turn) = (gone(known.factor, term.factor), gone(known.turn, term.turn));

@@ -219,6 +219,7 @@ fn make_bodies(assembly: &mut Assembly<'_>, root: &Entry<'_>, parameters: &HashM
         shared: &survey.shared,
         merged: &survey.merged,
         needed: &survey.needed,
+        length: survey.length(&assembly.bodies),
         points: &|k| places[k],
     };
     assembly.frames = bodies::nodes::make(&mut assembly.builder, &wanted);

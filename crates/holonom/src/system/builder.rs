@@ -63,6 +63,7 @@ pub struct SystemBuilder {
     laws: Vec<LawEntry>,
     loads: Vec<LoadEntry>,
     motions: Vec<[Arc<dyn Signal>; 3]>,
+    directions: Vec<u32>,
     position: Vec<f64>,
     velocity: Vec<f64>,
 }
@@ -85,6 +86,7 @@ impl SystemBuilder {
             laws: Vec::new(),
             loads: Vec::new(),
             motions: Vec::new(),
+            directions: Vec::new(),
             position: Vec::new(),
             velocity: Vec::new(),
         }
@@ -105,6 +107,16 @@ impl SystemBuilder {
         self.velocity.extend_from_slice(&velocity[..self.dim]);
         self.free += 1;
         NodeId(self.free as u32 - 1)
+    }
+
+    /// Adds a node that is a direction and not a point: it turns with the mechanism and does not move along with it.
+    ///
+    /// # Panics
+    /// When a known node has been added before.
+    pub fn free_direction(&mut self, direction: [f64; 3], rate: [f64; 3]) -> NodeId {
+        let node = self.free_node(direction, rate);
+        self.directions.push(node.0);
+        node
     }
 
     /// Adds a node whose motion is a known function of time, one signal a coordinate (m).
@@ -248,9 +260,12 @@ impl SystemBuilder {
             weighing[node as usize][0] += m;
             weighing[node as usize][1] += s;
         }
+        let mut is_point = vec![true; self.free + self.motions.len()];
+        self.directions.iter().for_each(|&node| is_point[node as usize] = false);
         let function_rows = (0..self.rows.len() as u32).filter(|&k| matches!(self.rows[k as usize].quantity, Quantity::Function(_))).collect();
         System {
             weighing,
+            is_point,
             dim: self.dim,
             free: self.free,
             mass: Mass::new(self.free + self.motions.len(), self.mass),

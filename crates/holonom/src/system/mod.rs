@@ -68,6 +68,8 @@ pub struct System {
     pub(crate) mass: Mass,
     /// The weight on each node is (m 1 − s J) g, kg.
     pub(crate) weighing: Vec<[f64; 2]>,
+    /// Whether each node is a point and not a direction.
+    pub(crate) is_point: Vec<bool>,
     pub(crate) gravity: [f64; 3],
     pub(crate) invariants: Invariants,
     pub(crate) functions: Functions,

@@ -47,6 +47,8 @@ pub struct Wanted<'a> {
     pub merged: &'a [[usize; 2]],
     /// Directions that joints and forces need of a body, which a plate or a rod may lack.
     pub needed: &'a [(usize, Vec3)],
+    /// Length of the nodes that are directions, m: that of the mechanism, so that they weigh like its points.
+    pub length: f64,
     /// Places of the points that may become nodes of bodies.
     pub points: &'a dyn Fn(usize) -> Option<Place>,
 }
@@ -89,7 +91,8 @@ fn groups(wanted: &Wanted<'_>) -> Vec<Vec<usize>> {
 /// Where a shared point or direction is, if that is known before any body has nodes.
 fn known_place(shared: &Shared, wanted: &Wanted<'_>) -> Option<Place> {
     shared.sides.iter().find_map(|&(member, at)| match member {
-        Member::Ground => Some(Place::Fixed(at)),
+        Member::Ground if shared.is_point => Some(Place::Fixed(at)),
+        Member::Ground => Some(Place::Fixed(scale(at, wanted.length))),
         Member::Point(k) => (wanted.points)(k),
         Member::Body(_) => None,
     })
@@ -135,13 +138,14 @@ impl Group<'_> {
             basis.push(Basis { place: self.place(builder, &mut None, at, true), at, is_point: true });
         }
         for (k, at) in candidates(false, places) {
+            let at = scale(at, self.wanted.length);
             if spanned.len() < wanted_edges && is_independent(&spanned, at) {
                 spanned.push(at);
                 basis.push(Basis { place: self.place(builder, &mut places[k], at, false), at, is_point: false });
             }
         }
         while spanned.len() < wanted_edges {
-            let at = self.own_direction(builder.dimension(), &spanned);
+            let at = scale(self.own_direction(builder.dimension(), &spanned), self.wanted.length);
             spanned.push(at);
             basis.push(Basis { place: self.place(builder, &mut None, at, false), at, is_point: false });
         }
@@ -151,8 +155,10 @@ impl Group<'_> {
     /// The node of a point or direction, made where there is none yet.
     fn place(&self, builder: &mut SystemBuilder, known: &mut Option<Place>, at: Vec3, is_point: bool) -> Place {
         *known.get_or_insert_with(|| {
-            let rate = if is_point { self.lead.velocity_at(at) } else { self.lead.rate_of(at) };
-            Place::Node(builder.free_node(at, rate))
+            Place::Node(match is_point {
+                true => builder.free_node(at, self.lead.velocity_at(at)),
+                false => builder.free_direction(at, self.lead.rate_of(at)),
+            })
         })
     }
 

@@ -2,10 +2,11 @@
 
 use super::{Feature, JOINTS, JointKind, Site};
 use crate::model::assembly::Assembly;
+use crate::model::bodies::Body;
 use crate::model::bodies::nodes::{Member, Shared};
 use crate::model::entry::{Entry, Spot};
 use crate::model::fault::Read;
-use crate::model::geometry::{Vec3, across, carried, cross, dot, norm, scale, unit};
+use crate::model::geometry::{Vec3, across, carried, cross, dot, norm, scale, subtract, unit};
 use crate::model::value::Value;
 
 /// A joint at the start, first and second side: reference coordinates in the axes of the model.
@@ -24,6 +25,23 @@ pub struct Survey {
     pub shared: Vec<Shared>,
     pub merged: Vec<[usize; 2]>,
     pub needed: Vec<(usize, Vec3)>,
+    /// Where joints sit.
+    pub sites: Vec<Vec3>,
+}
+
+impl Survey {
+    /// The size of the mechanism, m: the diagonal of the box around all bodies and joints, and of a single body its
+    /// radius of gyration.
+    pub fn length(&self, bodies: &[Body]) -> f64 {
+        let places = bodies.iter().map(|body| body.position).chain(self.sites.iter().copied());
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for place in places {
+            (0..3).for_each(|c| (low[c], high[c]) = (low[c].min(place[c]), high[c].max(place[c])));
+        }
+        let gyration = bodies.iter().map(|body| (body.inertia.trace() / body.mass).sqrt()).fold(0.0, f64::max);
+        let size = if bodies.is_empty() { 0.0 } else { norm(subtract(high, low)) };
+        [size, gyration, 1.0].into_iter().find(|&size| size > 0.0).expect("one is above zero")
+    }
 }
 
 /// Adds what a joint asks of the nodes of its bodies.
@@ -32,11 +50,12 @@ pub fn plan(assembly: &Assembly<'_>, entry: &Entry<'_>, share: bool, survey: &mu
     let Some(joint) = JOINTS.iter().find(|joint| joint.kind.name == kind) else { return Ok(()) };
     let geometry = Geometry::read(assembly, entry, joint)?;
     let directions = geometry.triad;
+    survey.sites.extend(geometry.at);
     for (side, member) in geometry.members.iter().enumerate() {
         if let Member::Body(k) = *member {
             let used = if joint.shares[0] == [Feature::Point] && joint.axes[0] == 0 { &[][..] } else { &directions[side][..] };
             survey.needed.extend(used.iter().map(|&u| (k, u)));
-            let arm = crate::model::geometry::subtract(geometry.at[side], assembly.bodies[k].position);
+            let arm = subtract(geometry.at[side], assembly.bodies[k].position);
             survey.needed.push((k, arm));
         }
     }
