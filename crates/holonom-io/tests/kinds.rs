@@ -1,12 +1,12 @@
 //! Every kind of the engine's tables, through a file: its example runs, its required keys are required, its derivatives
 //! and its units of energy are right.
 
-use holonom::model::{Kind, Model, constraints, forces};
+use holonom::model::{Kind, Model, constraints, drives, forces, joints};
 use holonom::simulation::{Choice, Method, Simulation, Status, Verdict};
 use holonom_io::Source;
 
 fn kinds() -> impl Iterator<Item = &'static Kind> {
-    constraints::KINDS.iter().chain(forces::KINDS)
+    constraints::KINDS.iter().chain(forces::KINDS).chain(joints::kinds()).chain(drives::KINDS)
 }
 
 fn model(text: &str) -> Result<Model, String> {

@@ -209,7 +209,8 @@ impl Kkt {
     }
 
     /// Nodes by least fill-in, each row right after the last of its nodes: its pivot is then minus what the row's
-    /// gradient adds to those before it, and never the bare regularisation unless the row is redundant.
+    /// gradient adds to those before it, and never the bare regularisation unless the row is redundant. Nodes without mass,
+    /// as a plate may have across it, come last and count for no row: only rows give them a pivot.
     fn elimination_order(&self, pairs: &Pairs) -> Vec<u32> {
         let mut edges: Vec<(u32, u32)> = pairs.found.keys().copied().filter(|&(a, b)| a < b).collect();
         let free_nodes =
@@ -226,7 +227,8 @@ impl Kkt {
         let mut rows_after: Vec<Vec<usize>> = vec![Vec::new(); self.free];
         let mut first = Vec::new();
         for (row, slots) in self.row_slots.iter().enumerate() {
-            match free_nodes(slots).iter().map(|&node| place[node as usize]).max() {
+            let with_mass = free_nodes(slots).into_iter().filter(|&node| !self.is_massless(node));
+            match with_mass.map(|node| place[node as usize]).max() {
                 Some(last) => rows_after[last].push(row),
                 None => first.push(row),
             }
@@ -234,12 +236,20 @@ impl Kkt {
         let mut order = Vec::with_capacity(self.size());
         let push_row = |order: &mut Vec<u32>, row| (0..self.fields).for_each(|f| order.push(self.multiplier(row, f) as u32));
         first.into_iter().for_each(|row| push_row(&mut order, row));
-        for (k, &node) in nodes.iter().enumerate() {
+        let push_node = |order: &mut Vec<u32>, node: u32| {
             for field in 0..self.fields {
                 (0..self.dim).for_each(|c| order.push(self.coordinate(node as usize, field, c) as u32));
             }
+        };
+        for (k, &node) in nodes.iter().enumerate().filter(|&(_, &node)| !self.is_massless(node)) {
+            push_node(&mut order, node);
             rows_after[k].iter().for_each(|&row| push_row(&mut order, row));
         }
+        nodes.iter().filter(|&&node| self.is_massless(node)).for_each(|&node| push_node(&mut order, node));
         order
+    }
+
+    fn is_massless(&self, node: u32) -> bool {
+        self.pair_mass[self.own_pair[node as usize] as usize] == 0.0
     }
 }

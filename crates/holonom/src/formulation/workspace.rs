@@ -147,7 +147,8 @@ impl Workspace {
         workspace
     }
 
-    /// G M⁻¹ Gᵀ with the mass lumped at the nodes, row by row, at the evaluation of the start. Rows whose gradient
+    /// G M⁻¹ Gᵀ with the mass of each node alone, row by row, at the evaluation of the start; a node without any counts as
+    /// the heaviest. Rows whose gradient
     /// happens to vanish there get a millionth of the largest.
     fn measure_softness(&mut self, system: &System) {
         let dim = system.dim;
@@ -156,9 +157,10 @@ impl Workspace {
             for s in slots.clone() {
                 let node = self.kkt.slot_nodes[s] as usize;
                 if node < system.free {
-                    let lumped: f64 = system.mass.row(node).map(|(_, block)| block.m).sum();
+                    let own = system.mass.diagonal(node);
+                    let mass = if own > 0.0 { own } else { self.heaviest };
                     let square: f64 = self.at_start.gradient[s * dim..s * dim + dim].iter().map(|g| g * g).sum();
-                    self.softness[row] += square / lumped;
+                    self.softness[row] += square / mass;
                 }
             }
         }

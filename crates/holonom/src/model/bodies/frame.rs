@@ -175,7 +175,10 @@ pub fn mass_blocks(frame: &Frame, inertia: &PseudoInertia) -> Vec<(Place, Place,
             blocks.push((a, b, m, s));
         }
     }
-    blocks
+    // Round-off is no mass: the nodes across a plate have none.
+    let largest = blocks.iter().fold(0.0_f64, |largest, &(_, _, m, _)| largest.max(m.abs()));
+    let clean = |value: f64| if value.abs() <= 1e-14 * largest { 0.0 } else { value };
+    blocks.into_iter().map(|(a, b, m, s)| (a, b, clean(m), clean(s))).collect()
 }
 
 /// ∫ conj(α) β dm for α = l₀ + l₁ z, β = r₀ + r₁ z with z = x + i y: its real part and its imaginary one, the turn of b

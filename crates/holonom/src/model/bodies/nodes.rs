@@ -105,7 +105,8 @@ struct Group<'a> {
 }
 
 impl Group<'_> {
-    /// Chooses the nodes: shared points, shared directions, then its own; the first is a point.
+    /// Chooses the nodes: shared points, shared directions, then its own; the first is a point. Those of a plate or a rod
+    /// lie in it, but for directions of its own across it, which then have no mass.
     fn basis(&self, builder: &mut SystemBuilder, places: &mut [Option<Place>]) -> Vec<Basis> {
         let own = |shared: &Shared| {
             shared.sides.iter().find_map(|&(member, at)| matches!(member, Member::Body(k) if self.members.contains(&k)).then_some(at))
@@ -117,35 +118,34 @@ impl Group<'_> {
             found.sort_by_key(|&(k, _)| !matches!(places[k], Some(Place::Fixed(_))));
             found
         };
-        let mut basis: Vec<Basis> = Vec::new();
-        let mut spanned: Vec<Vec3> = Vec::new();
-        let points = candidates(true, places);
-        let size = points.iter().map(|&(_, at)| norm(subtract(at, self.lead.position))).fold(0.0, f64::max);
-        let wanted_edges = self.needed_edges(builder.dimension(), &points, &candidates(false, places));
-        for (k, at) in points {
-            let Some(first) = basis.first() else {
-                basis.push(Basis { place: self.place(builder, &mut places[k], at, true), at, is_point: true });
-                continue;
-            };
-            let edge = subtract(at, first.at);
-            if spanned.len() < wanted_edges && norm(edge) > APART * size && is_independent(&spanned, edge) {
+        let (dim, centre, solid) = (builder.dimension(), self.centre(), self.solid(builder.dimension()));
+        let lies_in = |edge: Vec3| norm(rest(&solid, edge)) <= THIN * norm(edge);
+        let (points, directions) = (candidates(true, places), candidates(false, places));
+        let size = points.iter().map(|&(_, at)| norm(subtract(at, centre))).fold(0.0, f64::max);
+        let edges = self.needed_edges(dim, &solid, &points, &directions);
+        let (mut basis, mut spanned) = (Vec::<Basis>::new(), Vec::<Vec3>::new());
+        for (k, at) in points.into_iter().filter(|&(_, at)| lies_in(subtract(at, centre))) {
+            if let Some(first) = basis.first() {
+                let edge = subtract(at, first.at);
+                if spanned.len() == edges || norm(edge) <= APART * size || !is_independent(&spanned, edge) {
+                    continue;
+                }
                 spanned.push(edge);
-                basis.push(Basis { place: self.place(builder, &mut places[k], at, true), at, is_point: true });
             }
+            basis.push(Basis { place: self.place(builder, &mut places[k], at, true), at, is_point: true });
         }
         if basis.is_empty() {
-            let at = self.lead.position;
-            basis.push(Basis { place: self.place(builder, &mut None, at, true), at, is_point: true });
+            basis.push(Basis { place: self.place(builder, &mut None, centre, true), at: centre, is_point: true });
         }
-        for (k, at) in candidates(false, places) {
-            let at = scale(at, self.wanted.length);
-            if spanned.len() < wanted_edges && is_independent(&spanned, at) {
+        for (k, at) in directions.into_iter().filter(|&(_, at)| lies_in(at)) {
+            if spanned.len() < edges && is_independent(&spanned, at) {
+                let at = scale(at, self.wanted.length);
                 spanned.push(at);
                 basis.push(Basis { place: self.place(builder, &mut places[k], at, false), at, is_point: false });
             }
         }
-        while spanned.len() < wanted_edges {
-            let at = scale(self.own_direction(builder.dimension(), &spanned), self.wanted.length);
+        while spanned.len() < edges {
+            let at = scale(self.own_direction(dim, &solid, &spanned), self.wanted.length);
             spanned.push(at);
             basis.push(Basis { place: self.place(builder, &mut None, at, false), at, is_point: false });
         }
@@ -162,15 +162,20 @@ impl Group<'_> {
         })
     }
 
-    /// A direction that is not yet spanned: as much of one of the principal axes as is new.
-    fn own_direction(&self, dim: usize, spanned: &[Vec3]) -> Vec3 {
+    /// A direction that is not yet spanned: as much of one of the principal axes as is new, those in a plate or along a rod
+    /// first.
+    fn own_direction(&self, dim: usize, solid: &[Vec3], spanned: &[Vec3]) -> Vec3 {
         if dim == 2 {
             return self.lead.direction([1.0, 0.0, 0.0]);
         }
         let (_, axes) = self.principal();
-        let new = axes.map(|axis| rest(spanned, axis));
-        let longest = new.into_iter().max_by(|a, b| norm(*a).total_cmp(&norm(*b))).expect("three axes");
-        scale(longest, 1.0 / norm(longest))
+        let longest = |axes: &[Vec3]| {
+            let new = axes.iter().map(|&axis| rest(spanned, axis));
+            new.max_by(|a, b| norm(*a).total_cmp(&norm(*b))).expect("there are axes")
+        };
+        let inside = longest(solid);
+        let new = if norm(inside) > INDEPENDENT { inside } else { longest(&axes) };
+        scale(new, 1.0 / norm(new))
     }
 
     /// Second moments ∫ x² dm along the principal axes, kg·m², and these axes.
@@ -181,23 +186,24 @@ impl Group<'_> {
         (moments.map(|moment| half - moment), axes)
     }
 
+    /// The principal axes along which the body extends: three, two of a plate, one of a rod.
+    fn solid(&self, dim: usize) -> Vec<Vec3> {
+        let (second, axes) = self.principal();
+        let largest = second.iter().copied().fold(0.0, f64::max);
+        let solid: Vec<Vec3> = (0..3).filter(|&k| second[k] > THIN * largest).map(|k| axes[k]).collect();
+        if dim == 2 || solid.is_empty() { axes.to_vec() } else { solid }
+    }
+
     /// How many edges it takes: three, and of a plate two and of a rod one, where nothing needs more.
-    fn needed_edges(&self, dim: usize, points: &[(usize, Vec3)], directions: &[(usize, Vec3)]) -> usize {
+    fn needed_edges(&self, dim: usize, solid: &[Vec3], points: &[(usize, Vec3)], directions: &[(usize, Vec3)]) -> usize {
         if dim == 2 {
             return 1;
         }
-        let (second, axes) = self.principal();
-        let largest = second.iter().copied().fold(0.0, f64::max);
-        let spanned: Vec<Vec3> = (0..3).filter(|&k| second[k] > THIN * largest).map(|k| axes[k]).collect();
-        if spanned.is_empty() || spanned.len() == 3 {
-            return 3;
-        }
         let centre = self.centre();
-        let own = self.wanted.needed.iter().filter(|(body, _)| self.members.contains(body)).map(|&(_, u)| u);
-        let edges = points.iter().map(|&(_, at)| subtract(at, centre)).chain(directions.iter().map(|&(_, u)| u)).chain(own);
-        let mut held = edges.into_iter().all(|edge| norm(rest(&spanned, edge)) <= THIN * norm(edge).max(f64::MIN_POSITIVE));
-        held &= self.members.len() == 1;
-        if held { spanned.len() } else { 3 }
+        let needed = self.wanted.needed.iter().filter(|(body, _)| self.members.contains(body)).map(|&(_, u)| u);
+        let edges = points.iter().map(|&(_, at)| subtract(at, centre)).chain(directions.iter().map(|&(_, u)| u)).chain(needed);
+        let held = edges.into_iter().all(|edge| norm(rest(solid, edge)) <= THIN * norm(edge));
+        if held { solid.len() } else { 3 }
     }
 
     fn centre(&self) -> Vec3 {
