@@ -358,8 +358,13 @@ impl Assembly<'_> {
 
     /// Refuses a start that contradicts a constraint: `off` from where it should be, seen against `size`, both in m.
     pub fn check_start(&self, entry: &Entry<'_>, off: f64, size: f64, what: impl FnOnce() -> String) -> Read<()> {
+        self.check_start_within(entry, off, size, CONTRADICTION, what)
+    }
+
+    /// The same with another share of the size.
+    pub fn check_start_within(&self, entry: &Entry<'_>, off: f64, size: f64, share: f64, what: impl FnOnce() -> String) -> Read<()> {
         // Written so that a NaN is refused too.
-        if off.abs() <= CONTRADICTION * size.abs() {
+        if off.abs() <= share * size.abs() {
             return Ok(());
         }
         Err(entry.refuse_all(what(), "correct the positions at the start, or what contradicts them here"))

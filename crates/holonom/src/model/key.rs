@@ -54,6 +54,8 @@ pub enum Shape {
     Named,
     /// Three formulas, in a planar model one.
     Torque(&'static [&'static str]),
+    /// A list of points.
+    Curve,
     /// Two names of bodies.
     Members,
     /// A place, the name of one, or two of these.

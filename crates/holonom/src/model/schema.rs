@@ -104,6 +104,7 @@ fn shape(shape: Shape) -> Value {
         Shape::Inertia | Shape::Site | Shape::Direction | Shape::Profile => table([("description", Value::text("see the book: several spellings"))]),
         Shape::Spin | Shape::Torque(_) => table([("anyOf", Value::List(vec![reference("number"), list(reference("number"), 3, 3)]))]),
         Shape::Places => table([("type", Value::text("object")), ("additionalProperties", list(reference("number"), 2, 3))]),
+        Shape::Curve => list(list(reference("number"), 2, 3), 3, usize::MAX),
         Shape::Named => table([("type", Value::text("object")), ("additionalProperties", typed("string"))]),
         Shape::Numbers(least, most) => list(reference("number"), least, most),
         Shape::Rows => list(list(reference("number"), 3, 3), 3, 3),

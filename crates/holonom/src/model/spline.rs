@@ -56,20 +56,49 @@ impl Spline {
 
     /// The value at `s`, with whatever derivatives the number carries.
     pub fn evaluate<N: Number>(&self, s: N) -> N {
-        let (first, last) = (self.knots[0], self.knots[self.knots.len() - 1]);
-        let mut s = s;
-        if self.periodic {
-            s -= ((s.re() - first) / (last - first)).floor() * (last - first);
-        } else if s.re() < first {
-            return self.straight(s, 0, 0);
-        } else if s.re() > last {
-            return self.straight(s, self.knots.len() - 2, self.knots.len() - 1);
-        }
-        let k = self.knots.partition_point(|&knot| knot <= s.re()).clamp(1, self.knots.len() - 1) - 1;
+        let (k, s) = self.interval(s);
+        let Some(k) = k else {
+            let last = self.knots.len() - 1;
+            return if s.re() < self.knots[0] { self.straight(s, 0, 0) } else { self.straight(s, last - 1, last) };
+        };
         let h = self.knots[k + 1] - self.knots[k];
         let (b, a) = ((s - self.knots[k]) / h, (-s + self.knots[k + 1]) / h);
         let cubic = |share: N, bend: f64| (share * share * share - share) * (bend * h * h / 6.0);
         a * self.values[k] + b * self.values[k + 1] + cubic(a, self.bends[k]) + cubic(b, self.bends[k + 1])
+    }
+
+    /// The derivative at `s`, with whatever derivatives the number carries.
+    pub fn slope<N: Number>(&self, s: N) -> N {
+        let (k, s) = self.interval(s);
+        let Some(k) = k else {
+            let outside = self.evaluate(num_dual::Dual64::new(s.re(), 1.0));
+            return N::from(outside.eps);
+        };
+        let h = self.knots[k + 1] - self.knots[k];
+        let (b, a) = ((s - self.knots[k]) / h, (-s + self.knots[k + 1]) / h);
+        let square = |share: N| share * share * 3.0 - 1.0;
+        (square(b) * self.bends[k + 1] - square(a) * self.bends[k]) * (h / 6.0) + (self.values[k + 1] - self.values[k]) / h
+    }
+
+    /// The second derivative at `s`.
+    pub fn bend(&self, s: f64) -> f64 {
+        let (k, s) = self.interval(s);
+        k.map_or(0.0, |k| {
+            let share = (s - self.knots[k]) / (self.knots[k + 1] - self.knots[k]);
+            (1.0 - share) * self.bends[k] + share * self.bends[k + 1]
+        })
+    }
+
+    /// The interval of `s`, none beyond a natural end, and `s` brought into the first period.
+    fn interval<N: Number>(&self, s: N) -> (Option<usize>, N) {
+        let (first, last) = (self.knots[0], self.knots[self.knots.len() - 1]);
+        let mut s = s;
+        if self.periodic {
+            s -= ((s.re() - first) / (last - first)).floor() * (last - first);
+        } else if s.re() < first || s.re() > last {
+            return (None, s);
+        }
+        (Some(self.knots.partition_point(|&knot| knot <= s.re()).clamp(1, self.knots.len() - 1) - 1), s)
     }
 
     /// The tangent at an end: of interval `k` at knot `at`.

@@ -57,6 +57,35 @@ impl Derivatives {
     }
 }
 
+/// A smooth function of some invariants that has several values, of which one is followed: that with a number, such as
+/// the parameter of a curve, near the one it had.
+pub trait FollowedFunction: Send + Sync {
+    /// The number at these invariants, from one nearby.
+    fn locate(&self, value: &[f64], near: f64) -> f64;
+
+    /// Its value, where the number is `at`.
+    fn evaluate<N: Number>(&self, value: &[N], at: f64) -> N;
+}
+
+/// A followed function as an engine sees it.
+pub trait Followed: Send + Sync {
+    /// The number at these invariants, from one nearby.
+    fn locate(&self, value: &[f64], near: f64) -> f64;
+
+    /// Value and derivatives, where the number is `at`.
+    fn derivatives(&self, value: &[f64], at: f64) -> Derivatives;
+}
+
+impl<F: FollowedFunction> Followed for Differentiated<F> {
+    fn locate(&self, value: &[f64], near: f64) -> f64 {
+        self.0.locate(value, near)
+    }
+
+    fn derivatives(&self, value: &[f64], at: f64) -> Derivatives {
+        derive(value, self.0.evaluate(value, at), |point| self.0.evaluate(point, at))
+    }
+}
+
 /// A smooth function as an engine sees it.
 pub trait Smooth: Send + Sync {
     /// Value and derivatives.
@@ -65,22 +94,27 @@ pub trait Smooth: Send + Sync {
 
 impl<F: SmoothFunction> Smooth for Differentiated<F> {
     fn derivatives(&self, value: &[f64]) -> Derivatives {
-        let m = value.len();
-        let mut out = Derivatives { value: self.0.evaluate(value), ..Derivatives::default() };
-        for i in 0..m {
-            for j in 0..=i {
-                let mut point = [HyperDual64::from(0.0); MAX_ARGUMENTS];
-                point.iter_mut().zip(value).for_each(|(point, &value)| *point = HyperDual64::from(value));
-                point[i].eps1 = 1.0;
-                point[j].eps2 = 1.0;
-                let result = self.0.evaluate(&point[..m]);
-                out.gradient[i] = result.eps1;
-                out.hessian[i][j] = result.eps1eps2;
-                out.hessian[j][i] = result.eps1eps2;
-            }
-        }
-        out
+        derive(value, self.0.evaluate(value), |point| self.0.evaluate(point))
     }
+}
+
+/// Derivatives of a function by dual numbers.
+fn derive(value: &[f64], result: f64, evaluate: impl Fn(&[HyperDual64]) -> HyperDual64) -> Derivatives {
+    let m = value.len();
+    let mut out = Derivatives { value: result, ..Derivatives::default() };
+    for i in 0..m {
+        for j in 0..=i {
+            let mut point = [HyperDual64::from(0.0); MAX_ARGUMENTS];
+            point.iter_mut().zip(value).for_each(|(point, &value)| *point = HyperDual64::from(value));
+            point[i].eps1 = 1.0;
+            point[j].eps2 = 1.0;
+            let result = evaluate(&point[..m]);
+            out.gradient[i] = result.eps1;
+            out.hessian[i][j] = result.eps1eps2;
+            out.hessian[j][i] = result.eps1eps2;
+        }
+    }
+    out
 }
 
 /// Change of the arguments, over their size, below which the quotient of the discrete derivative would be round-off; the
@@ -90,13 +124,25 @@ pub(crate) const NO_CHANGE: f64 = 1e-6;
 /// The discrete derivative of a smooth function: D = g'(π̄) + (Δg − g'(π̄)·Δπ)/‖Δπ‖² Δπ, and what it changes by with the
 /// second position.
 pub(super) fn difference(smooth: &dyn Smooth, from: &[f64], to: &[f64]) -> Derivatives {
+    quotient(from, to, |_, value| smooth.derivatives(value))
+}
+
+/// Where between two positions a function is taken.
+#[derive(Clone, Copy)]
+enum Place {
+    Start,
+    Middle,
+    End,
+}
+
+fn quotient(from: &[f64], to: &[f64], derivatives: impl Fn(Place, &[f64]) -> Derivatives) -> Derivatives {
     let m = from.len();
     let (mut middle, mut change) = ([0.0; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS]);
     for i in 0..m {
         middle[i] = 0.5 * (from[i] + to[i]);
         change[i] = to[i] - from[i];
     }
-    let half = smooth.derivatives(&middle[..m]);
+    let half = derivatives(Place::Middle, &middle[..m]);
     let mut out = half;
     out.hessian.iter_mut().flatten().for_each(|h| *h *= 0.5);
     let square = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>();
@@ -104,7 +150,7 @@ pub(super) fn difference(smooth: &dyn Smooth, from: &[f64], to: &[f64]) -> Deriv
     if size <= NO_CHANGE * NO_CHANGE * square(&middle) {
         return out;
     }
-    let (start, end) = (smooth.derivatives(from), smooth.derivatives(to));
+    let (start, end) = (derivatives(Place::Start, from), derivatives(Place::End, to));
     let along: f64 = (0..m).map(|i| half.gradient[i] * change[i]).sum();
     let quotient = (end.value - start.value - along) / size;
     for j in 0..m {
@@ -129,6 +175,8 @@ pub enum Part {
     Angle { cosine: InvariantId, sine: InvariantId },
     /// A smooth function of some invariants.
     Smooth { of: Vec<InvariantId>, function: Arc<dyn Smooth> },
+    /// A function of some invariants with a number that is followed.
+    Followed { of: Vec<InvariantId>, function: Arc<dyn Followed> },
 }
 
 #[derive(Clone)]
@@ -165,6 +213,7 @@ pub(crate) struct Functions {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FunctionValues {
     pub local: Vec<Derivatives>,
+    /// Angles counted over turns, and other numbers that are followed.
     pub angle: Vec<f64>,
 }
 
@@ -176,9 +225,9 @@ impl Functions {
             let of = match part {
                 Part::Invariant(id) => vec![*id],
                 Part::Angle { cosine, sine } => vec![*cosine, *sine],
-                Part::Smooth { of, .. } => of.clone(),
+                Part::Smooth { of, .. } | Part::Followed { of, .. } => of.clone(),
             };
-            self.angles += usize::from(matches!(part, Part::Angle { .. }));
+            self.angles += usize::from(matches!(part, Part::Angle { .. } | Part::Followed { .. }));
             let summand = Summand { part: part.clone(), factor: *factor, first: function.base.len(), arguments: of.len() };
             function.summands.push(summand);
             function.base.extend(of);
@@ -246,6 +295,12 @@ impl Functions {
                         part
                     }
                     Part::Smooth { of, function } => function.derivatives(&pick(of, pi)[..of.len()]),
+                    Part::Followed { of, function } => {
+                        let value = &pick(of, pi)[..of.len()];
+                        out.angle[angle] = function.locate(value, out.angle[angle]);
+                        angle += 1;
+                        function.derivatives(value, out.angle[angle - 1])
+                    }
                 };
                 summand.add(&mut part, local);
             }
@@ -259,10 +314,24 @@ impl Functions {
         }
         for (k, (function, local)) in self.items.iter().zip(&mut out.local).enumerate() {
             *local = Derivatives::default();
+            let mut angle = function.angle;
             for summand in &function.summands {
                 let mut part = match &summand.part {
                     Part::Invariant(_) => identity(0.0),
-                    Part::Angle { cosine, sine } => angle_between(pi.map(|pi| [pi[cosine.0 as usize], pi[sine.0 as usize]])),
+                    Part::Angle { cosine, sine } => {
+                        angle += 1;
+                        angle_between(pi.map(|pi| [pi[cosine.0 as usize], pi[sine.0 as usize]]))
+                    }
+                    Part::Followed { of, function } => {
+                        let ([start, end], m) = (pi.map(|pi| pick(of, pi)), of.len());
+                        let at = [from.angle[angle], to.angle[angle]];
+                        angle += 1;
+                        quotient(&start[..m], &end[..m], |place, value| match place {
+                            Place::Start => function.derivatives(value, at[0]),
+                            Place::End => function.derivatives(value, at[1]),
+                            Place::Middle => function.derivatives(value, function.locate(value, 0.5 * (at[0] + at[1]))),
+                        })
+                    }
                     Part::Smooth { of, function } => {
                         let [from, to] = pi.map(|pi| pick(of, pi));
                         difference(function.as_ref(), &from[..of.len()], &to[..of.len()])

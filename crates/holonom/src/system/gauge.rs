@@ -1,15 +1,19 @@
 //! What is measured beside the equations: coordinates of joints, with their rates.
 
-use super::function::Part;
+use std::sync::Arc;
+
+use super::function::{Followed, Part};
 use super::{FunctionValues, Functions, Invariants, System, SystemBuilder, Term};
 
 /// A joint coordinate, before it is a quantity of a system.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone)]
 pub enum Form {
     /// U·W
     Product([Vec<Term>; 2]),
     /// The angle with these products as cosine and sine.
     Angle { cosine: [Vec<Term>; 2], sine: [Vec<Term>; 2] },
+    /// A function of some products with a number that is followed.
+    Followed { of: Vec<[Vec<Term>; 2]>, function: Arc<dyn Followed> },
 }
 
 impl Form {
@@ -17,6 +21,10 @@ impl Form {
         let mut product = |[u, w]: &[Vec<Term>; 2]| invariants.dot(u, w);
         match self {
             Self::Product(factors) => Part::Invariant(product(factors)),
+            Self::Followed { of, function } => {
+                let of = of.iter().map(&mut product).collect();
+                Part::Followed { of, function: Arc::clone(function) }
+            }
             Self::Angle { cosine, sine } => Part::Angle { cosine: product(cosine), sine: product(sine) },
         }
     }

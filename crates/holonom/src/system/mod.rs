@@ -20,7 +20,7 @@ pub use builder::{NodeId, Place, SystemBuilder, Term};
 pub use custom::{ConstraintFunction, CustomRows, Differentiated, ForceFunction, Number, SIZE};
 pub(crate) use evaluate::gather;
 pub use evaluate::{Between, Evaluation};
-pub use function::{Derivatives, FunctionId, Part, Quantity, Smooth, SmoothFunction};
+pub use function::{Derivatives, Followed, FollowedFunction, FunctionId, Part, Quantity, Smooth, SmoothFunction};
 pub(crate) use gauge::Gauges;
 pub use gauge::{Form, GaugeValues};
 pub(crate) use function::{FunctionValues, Functions, NO_CHANGE};

@@ -1,6 +1,7 @@
 //! `[joint.NAME]`: what ties bodies together. A kind is one file here and its line in the table.
 
 mod coupler;
+mod curve;
 mod geometry;
 mod pair;
 
@@ -15,6 +16,7 @@ mod orientation;
 mod parallel;
 mod perpendicular;
 mod planar;
+mod point_on_curve;
 mod point_on_line;
 mod point_on_plane;
 mod prismatic;
@@ -80,6 +82,7 @@ pub const JOINTS: &[JointKind] = &[
     constant_velocity::JOINT,
     point_on_line::JOINT,
     point_on_plane::JOINT,
+    point_on_curve::JOINT,
     parallel::JOINT,
     perpendicular::JOINT,
     orientation::JOINT,

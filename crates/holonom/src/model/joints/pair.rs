@@ -12,7 +12,7 @@ use crate::record::SceneJoint;
 use crate::system::{Form, InvariantId, Term};
 
 /// A coordinate of a joint, counted from the start.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Coordinate {
     /// `"angle"`, `"displacement"`, …
     pub name: &'static str,
@@ -22,7 +22,7 @@ pub struct Coordinate {
 }
 
 /// A joint of the model.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Joint {
     pub name: String,
     /// What `type` says.
@@ -179,7 +179,8 @@ impl Pair<'_, '_> {
         self.keep(&[(first.clone(), 1.0), (second.clone(), -1.0)]);
     }
 
-    fn keep(&mut self, forms: &[(Form, f64)]) {
+    /// Adds the row Σ factor · form = 0.
+    pub fn keep(&mut self, forms: &[(Form, f64)]) {
         let builder = &mut self.assembly.builder;
         let parts: Vec<_> = forms.iter().map(|(form, factor)| (builder.part(form), *factor)).collect();
         let sum = builder.sum(&parts);
