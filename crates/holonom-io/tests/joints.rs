@@ -14,7 +14,7 @@ use serde_json::Value;
 const AGREES: f64 = 1e-8;
 
 fn cases() -> Vec<Value> {
-    serde_json::from_str(include_str!("/tmp/i4/ref-now.json")).expect("the references are JSON")
+    serde_json::from_str(include_str!("joints/reference.json")).expect("the references are JSON")
 }
 
 fn name(case: &Value) -> &str {

@@ -14,6 +14,7 @@
 use super::iteration::{Convergence, Failure, Multipliers, STALLED, SolveSettings};
 use super::kkt::{ALL, Block, Kkt, OWN_STAGE, TWO_LEVELS};
 use super::level::Level;
+use super::velocity_rows::Source;
 use super::stage::{RowsAt, Sampling, Stage};
 use super::workspace::Workspace;
 use crate::system::System;
@@ -59,8 +60,8 @@ impl Collocation {
         let doubled = settings.doubled;
         let coupling = match (doubled, settings.level == Level::POSITION) {
             (true, _) => TWO_LEVELS,
-            (false, true) => OWN_STAGE,
-            (false, false) => ALL,
+            (false, true) if !system.is_nonholonomic() => OWN_STAGE,
+            (false, _) => ALL,
         };
         let kkt = Kkt::new(system, if doubled { 2 * stages } else { stages }, coupling);
         let (n, rows) = (stages * system.coordinates(), stages * system.constraints());
@@ -202,6 +203,12 @@ impl Collocation {
         self.write(system.dim, i, work);
         let scale = work.level.scale(1.0 / h, h * h);
         work.weigh_levels(system, t, scale);
+        if work.level == Level::POSITION {
+            for &row in &system.velocity_rows {
+                let slots = &work.kkt.row_slots[row as usize];
+                work.phi[row as usize] = h * system.along(slots, &work.kkt.slot_nodes, &work.sampled, &work.vs);
+            }
+        }
         for row in 0..r {
             let give = soft.map_or(0.0, |alpha| scale / alpha * work.lambda[row]);
             self.unknowns[self.kkt.multiplier(row, i)] = give - work.phi[row];
@@ -236,7 +243,7 @@ impl Collocation {
         let (s, h) = (self.stages, timing.step);
         let level = work.level;
         let scale = level.scale(1.0 / h, h * h);
-        if level != Level::POSITION {
+        if level != Level::POSITION || system.is_nonholonomic() {
             work.turn(system, t);
         }
         for j in 0..s {
@@ -249,7 +256,8 @@ impl Collocation {
                 self.add_damping(system, t, h * b, block, work);
             }
             self.kkt.write_sum(block);
-            if i != j && level == Level::POSITION {
+            if level == Level::POSITION {
+                self.position_rows(system, block, b, h, work);
                 continue;
             }
             let gradient = level.position * own + level.velocity * b / h + level.acceleration * c / (h * h);
@@ -262,6 +270,25 @@ impl Collocation {
             }
         }
         self.kkt.add_columns(Block(i, i), &work.sampled.gradient, 1.0);
+    }
+
+    /// Adds the rows of a stage: conditions on its position, and hΨ of those on velocities.
+    fn position_rows(&mut self, system: &System, block: Block, rate: f64, h: f64, work: &mut Workspace) {
+        let is_own = block.0 == block.1;
+        if !system.is_nonholonomic() {
+            if is_own {
+                self.kkt.add_rows(block, &work.sampled.gradient, 1.0);
+            }
+            return;
+        }
+        if is_own {
+            work.part_of_rows(system, Source::Sampled, false);
+            self.kkt.add_rows(block, &work.row_gradient, 1.0);
+            work.part_of_rows(system, Source::Turned, true);
+            self.kkt.add_rows(block, &work.row_gradient, h);
+        }
+        work.part_of_rows(system, Source::Sampled, true);
+        self.kkt.add_rows(block, &work.row_gradient, rate);
     }
 
     fn tangent_of_both(&mut self, system: &System, timing: Timing<'_>, i: usize, t: f64, work: &mut Workspace) {
@@ -289,9 +316,16 @@ impl Collocation {
         let gradient = &work.sampled.gradient;
         self.kkt.add_columns(Block(i, i), gradient, 1.0);
         self.kkt.add_columns(Block(s + i, s + i), gradient, 1.0);
-        self.kkt.add_rows(Block(i, i), gradient, 1.0);
         self.kkt.add_rows(Block(s + i, s + i), gradient, 1.0);
         self.kkt.add_rows(Block(s + i, i), &work.turned_v, h);
+        // Of rows on velocities the multiplier ν stays zero.
+        match system.is_nonholonomic() {
+            false => self.kkt.add_rows(Block(i, i), gradient, 1.0),
+            true => {
+                work.part_of_rows(system, Source::Sampled, false);
+                self.kkt.add_rows(Block(i, i), &work.row_gradient, 1.0);
+            }
+        }
     }
 
     /// Adds the stiffness of rows, laws and loads of stage `i` to a block, and their damping times `rate`.

@@ -18,6 +18,7 @@ mod stabilized;
 mod stage;
 mod table;
 mod terms;
+mod velocity_rows;
 mod workspace;
 
 pub use collocation::{Collocation, Timing};

@@ -225,7 +225,9 @@ impl Stabilized {
         }
         let velocity_gradient = if system.functions.is_empty() { &work.sampled.gradient } else { &self.velocity_gradient };
         kkt.add_columns(Block(1, 1), velocity_gradient, 1.0);
-        kkt.add_rows(Block(0, 0), &work.at_end.gradient, 1.0);
+        work.differentiate_rows(system, stage, true, 1.0);
+        let positions = if system.is_nonholonomic() { &work.row_gradient } else { &work.at_end.gradient };
+        kkt.add_rows(Block(0, 0), positions, 1.0);
         kkt.add_rows(Block(1, 0), &self.turned_u, 1.0);
         kkt.add_rows(Block(1, 1), &work.at_end.gradient, 1.0);
         kkt.regularise(0, &work.delta);

@@ -45,6 +45,7 @@ impl Workspace {
                 self.phi.iter_mut().zip(&self.phi_start).for_each(|(phi, start)| *phi = 0.5 * (*phi + start));
             }
         }
+        self.violate_velocity_rows(system, stage);
     }
 
     /// Leaves the weighted sum of Φ̈, Φ̇ and Φ at the sampled state, with the accelerations `a1`, times `scale` in `phi`.
@@ -191,12 +192,19 @@ impl Workspace {
             self.level_rows(system, stage);
             return;
         }
-        let (gradient, factor) = match stage.rows {
-            RowsAt::End => (&self.at_end.gradient, 1.0),
-            RowsAt::Mean => (&self.at_end.gradient, 0.5),
-            RowsAt::Middle => (&self.sampled.gradient, 0.5),
+        let (at_end, factor) = match stage.rows {
+            RowsAt::End => (true, 1.0),
+            RowsAt::Mean => (true, 0.5),
+            RowsAt::Middle => (false, 0.5),
         };
-        self.kkt.add_rows(Block(0, 0), gradient, factor);
+        self.differentiate_rows(system, stage, at_end, factor);
+        let Self { kkt, row_gradient, at_end: end, sampled, .. } = self;
+        let gradient = match (system.is_nonholonomic(), at_end) {
+            (true, _) => row_gradient,
+            (false, true) => &end.gradient,
+            (false, false) => &sampled.gradient,
+        };
+        kkt.add_rows(Block(0, 0), gradient, factor);
     }
 
     /// Adds the rows of the tangent for conditions on velocity or acceleration. The dependence of H on positions is left

@@ -61,6 +61,8 @@ pub struct Workspace {
     /// H v and H a of all rows' slots, D a slot.
     pub turned_v: Vec<f64>,
     pub turned_a: Vec<f64>,
+    /// Gradients of the rows by the increment, where some hold velocities only (D a slot).
+    pub(super) row_gradient: Vec<f64>,
     /// Estimated local errors of position (n), m, and velocity (n), m/s, where an integrator gives them.
     pub error_q: Vec<f64>,
     pub error_v: Vec<f64>,
@@ -117,6 +119,7 @@ impl Workspace {
             motion: vec![0.0; evaluation.gradient.len()],
             turned_v: vec![0.0; evaluation.gradient.len()],
             turned_a: vec![0.0; evaluation.gradient.len()],
+            row_gradient: vec![0.0; evaluation.gradient.len()],
             error_q: vec![0.0; n],
             error_v: vec![0.0; n],
             allowed: 0.0,

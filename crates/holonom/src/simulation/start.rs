@@ -1,7 +1,7 @@
 //! The start: positions and velocities put on their constraints, accelerations and multipliers found.
 
 use super::Method;
-use crate::formulation::Workspace;
+use crate::formulation::{Level, Multipliers, Workspace};
 use crate::system::System;
 
 /// What was corrected before the start.
@@ -20,6 +20,8 @@ pub enum StartError {
     Position { rows: String },
     #[error("the velocities at the start cannot meet their constraints; worst: {rows}")]
     Velocity { rows: String },
+    #[error("the formulation `{formulation}` holds positions only, and these rows hold velocities: {rows}")]
+    Nonholonomic { formulation: &'static str, rows: String },
     #[error("the accelerations at the start cannot be found: the mass matrix is singular where nothing holds it")]
     Acceleration,
 }
@@ -38,6 +40,11 @@ pub(super) fn prepare(system: &System, method: &Method, work: &mut Workspace) ->
     work.x1.copy_from_slice(&system.start_position);
     work.v1.copy_from_slice(&system.start_velocity);
     system.place_known(0.0, &mut work.x1, &mut work.v1, &mut work.a1);
+    let soft = matches!(method.settings.multipliers, Multipliers::Penalty(_)) && method.settings.level == Level::POSITION;
+    if soft && system.is_nonholonomic() {
+        let rows: Vec<String> = system.velocity_rows.iter().map(|&row| format!("`{}`", system.row_names[row as usize])).collect();
+        return Err(StartError::Nonholonomic { formulation: method.formulation.name, rows: rows.join(", ") });
+    }
     let mut start = Start::default();
     correct_positions(system, work, &mut start)?;
     correct_velocities(system, work, &mut start)?;

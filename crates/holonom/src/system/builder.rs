@@ -262,6 +262,8 @@ impl SystemBuilder {
         }
         let mut is_point = vec![true; self.free + self.motions.len()];
         self.directions.iter().for_each(|&node| is_point[node as usize] = false);
+        let is_pfaffian = |row: &Row| matches!(row.quantity, Quantity::Function(id) if self.functions.is_pfaffian(id));
+        let velocity_rows = (0..self.rows.len() as u32).filter(|&k| is_pfaffian(&self.rows[k as usize])).collect();
         let function_rows = (0..self.rows.len() as u32).filter(|&k| matches!(self.rows[k as usize].quantity, Quantity::Function(_))).collect();
         System {
             weighing,
@@ -271,6 +273,7 @@ impl SystemBuilder {
             mass: Mass::new(self.free + self.motions.len(), self.mass),
             gravity: self.gravity,
             invariants: self.invariants,
+            velocity_rows,
             functions: self.functions,
             gauges: self.gauges,
             function_rows,

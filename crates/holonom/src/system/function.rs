@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use num_dual::HyperDual64;
+use num_dual::{Dual64, HyperDual64};
 
 use super::{Differentiated, InvariantId, Invariants, MAX_ARGUMENTS, Number};
 
@@ -50,10 +50,10 @@ pub struct Derivatives {
 }
 
 impl Derivatives {
-    /// Σ_j ∂²g/∂π_i∂π_j r_j.
+    /// Σ_j ∂g_j/∂π_i r_j with the gradient g_j: how a rate changes with an argument.
     #[inline]
     pub(crate) fn bend(&self, i: usize, rates: &[f64; MAX_ARGUMENTS]) -> f64 {
-        self.hessian[i].iter().zip(rates).map(|(h, rate)| h * rate).sum()
+        self.hessian.iter().zip(rates).map(|(line, rate)| line[i] * rate).sum()
     }
 }
 
@@ -83,6 +83,37 @@ impl<F: FollowedFunction> Followed for Differentiated<F> {
 
     fn derivatives(&self, value: &[f64], at: f64) -> Derivatives {
         derive(value, self.0.evaluate(value, at), |point| self.0.evaluate(point, at))
+    }
+}
+
+/// Coefficients f_i of a condition on velocities Σ f_i(π) π̇_i = 0 that comes of no function of positions, written once
+/// over any number type; [`Differentiated`] takes their derivatives.
+pub trait PfaffianForm: Send + Sync {
+    /// Writes f_i at the values of its invariants.
+    fn evaluate<N: Number>(&self, value: &[N], out: &mut [N]);
+}
+
+/// Such coefficients as an engine sees them.
+pub trait Pfaffian: Send + Sync {
+    /// f_i as the gradient and ∂f_i/∂π_j as the Hessian, which is not symmetric; the value is zero.
+    fn derivatives(&self, value: &[f64]) -> Derivatives;
+}
+
+impl<F: PfaffianForm> Pfaffian for Differentiated<F> {
+    fn derivatives(&self, value: &[f64]) -> Derivatives {
+        let m = value.len();
+        let mut out = Derivatives::default();
+        for j in 0..m {
+            let (mut point, mut result) = ([Dual64::from(0.0); MAX_ARGUMENTS], [Dual64::from(0.0); MAX_ARGUMENTS]);
+            point.iter_mut().zip(value).for_each(|(point, &value)| *point = Dual64::from(value));
+            point[j].eps = 1.0;
+            self.0.evaluate(&point[..m], &mut result[..m]);
+            for i in 0..m {
+                out.gradient[i] = result[i].re;
+                out.hessian[i][j] = result[i].eps;
+            }
+        }
+        out
     }
 }
 
@@ -175,6 +206,8 @@ pub enum Part {
     Angle { cosine: InvariantId, sine: InvariantId },
     /// A smooth function of some invariants.
     Smooth { of: Vec<InvariantId>, function: Arc<dyn Smooth> },
+    /// A condition on the rates of some invariants.
+    Pfaffian { of: Vec<InvariantId>, form: Arc<dyn Pfaffian> },
     /// A function of some invariants with a number that is followed.
     Followed { of: Vec<InvariantId>, function: Arc<dyn Followed> },
 }
@@ -225,7 +258,7 @@ impl Functions {
             let of = match part {
                 Part::Invariant(id) => vec![*id],
                 Part::Angle { cosine, sine } => vec![*cosine, *sine],
-                Part::Smooth { of, .. } | Part::Followed { of, .. } => of.clone(),
+                Part::Smooth { of, .. } | Part::Followed { of, .. } | Part::Pfaffian { of, .. } => of.clone(),
             };
             self.angles += usize::from(matches!(part, Part::Angle { .. } | Part::Followed { .. }));
             let summand = Summand { part: part.clone(), factor: *factor, first: function.base.len(), arguments: of.len() };
@@ -243,6 +276,11 @@ impl Functions {
 
     pub fn len(&self) -> usize {
         self.items.len()
+    }
+
+    /// Whether a function is a condition on velocities alone.
+    pub fn is_pfaffian(&self, id: FunctionId) -> bool {
+        self.items[id.0 as usize].summands.iter().any(|summand| matches!(summand.part, Part::Pfaffian { .. }))
     }
 
     pub fn is_empty(&self) -> bool {
@@ -295,6 +333,7 @@ impl Functions {
                         part
                     }
                     Part::Smooth { of, function } => function.derivatives(&pick(of, pi)[..of.len()]),
+                    Part::Pfaffian { of, form } => form.derivatives(&pick(of, pi)[..of.len()]),
                     Part::Followed { of, function } => {
                         let value = &pick(of, pi)[..of.len()];
                         out.angle[angle] = function.locate(value, out.angle[angle]);
@@ -321,6 +360,16 @@ impl Functions {
                     Part::Angle { cosine, sine } => {
                         angle += 1;
                         angle_between(pi.map(|pi| [pi[cosine.0 as usize], pi[sine.0 as usize]]))
+                    }
+                    // The mean of the ends: momenta and energy need no more, as Σ f_i Δπ_i vanishes.
+                    Part::Pfaffian { of, form } => {
+                        let [start, end] = pi.map(|pi| form.derivatives(&pick(of, pi)[..of.len()]));
+                        let mut mean = Derivatives::default();
+                        for i in 0..of.len() {
+                            mean.gradient[i] = 0.5 * (start.gradient[i] + end.gradient[i]);
+                            mean.hessian[i] = end.hessian[i].map(|h| 0.5 * h);
+                        }
+                        mean
                     }
                     Part::Followed { of, function } => {
                         let ([start, end], m) = (pi.map(|pi| pick(of, pi)), of.len());

@@ -20,7 +20,7 @@ pub use builder::{NodeId, Place, SystemBuilder, Term};
 pub use custom::{ConstraintFunction, CustomRows, Differentiated, ForceFunction, Number, SIZE};
 pub(crate) use evaluate::gather;
 pub use evaluate::{Between, Evaluation};
-pub use function::{Derivatives, Followed, FollowedFunction, FunctionId, Part, Quantity, Smooth, SmoothFunction};
+pub use function::{Derivatives, Followed, FollowedFunction, FunctionId, Part, Pfaffian, PfaffianForm, Quantity, Smooth, SmoothFunction};
 pub(crate) use gauge::Gauges;
 pub use gauge::{Form, GaugeValues};
 pub(crate) use function::{FunctionValues, Functions, NO_CHANGE};
@@ -74,6 +74,8 @@ pub struct System {
     pub(crate) invariants: Invariants,
     pub(crate) functions: Functions,
     pub(crate) gauges: Gauges,
+    /// The rows that hold velocities only: nonholonomic ones.
+    pub(crate) velocity_rows: Vec<u32>,
     /// The rows that are no invariants but functions of them.
     pub(crate) function_rows: Vec<u32>,
     pub(crate) rows: Vec<Row>,
@@ -105,6 +107,11 @@ impl System {
     /// Number of free nodes.
     pub fn free_nodes(&self) -> usize {
         self.free
+    }
+
+    /// Whether some rows hold velocities only.
+    pub fn is_nonholonomic(&self) -> bool {
+        !self.velocity_rows.is_empty()
     }
 
     /// Number of constraint rows r.

@@ -23,6 +23,7 @@ mod prismatic;
 mod pulley;
 mod rack_and_pinion;
 mod revolute;
+mod rolling;
 mod screw;
 mod spherical;
 mod universal;
@@ -88,6 +89,7 @@ pub const JOINTS: &[JointKind] = &[
     orientation::JOINT,
     distance::JOINT,
     generic::JOINT,
+    rolling::JOINT,
 ];
 
 /// Couplers of the coordinates of other joints.

@@ -9,7 +9,7 @@ use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::geometry::{Vec3, unit};
 use crate::record::SceneJoint;
-use crate::system::{Form, InvariantId, Term};
+use crate::system::{Form, InvariantId, Part, Term};
 
 /// A coordinate of a joint, counted from the start.
 #[derive(Clone)]
@@ -181,10 +181,18 @@ impl Pair<'_, '_> {
 
     /// Adds the row Σ factor · form = 0.
     pub fn keep(&mut self, forms: &[(Form, f64)]) {
-        let builder = &mut self.assembly.builder;
-        let parts: Vec<_> = forms.iter().map(|(form, factor)| (builder.part(form), *factor)).collect();
-        let sum = builder.sum(&parts);
-        builder.constant_row(format!("{}[{}]", self.entry.name, self.names), sum, 0.0);
+        let parts: Vec<_> = forms.iter().map(|(form, factor)| (self.assembly.builder.part(form), *factor)).collect();
+        self.hold_sum(&parts);
+    }
+
+    /// Adds the row that a part of a function is zero.
+    pub fn hold(&mut self, part: Part) {
+        self.hold_sum(&[(part, 1.0)]);
+    }
+
+    fn hold_sum(&mut self, parts: &[(Part, f64)]) {
+        let sum = self.assembly.builder.sum(parts);
+        self.assembly.builder.constant_row(format!("{}[{}]", self.entry.name, self.names), sum, 0.0);
         self.names += 1;
     }
 

@@ -1,0 +1,94 @@
+//! Rows that hold velocities only, Ψ = B(q) v = 0: rolling without slip (methods §1.7).
+//!
+//! Where the other rows are conditions on positions, these are what comes of Ψ over the time of the stage, so that they
+//! are of the size of an increment: B Δq between two positions, Ψ over ∂v/∂Δq at a state.
+
+use super::stage::{Sampling, Stage};
+use super::workspace::Workspace;
+use crate::system::{InvariantId, MAX_ARGUMENTS, System};
+
+impl Workspace {
+    /// Puts what the velocity rows stand for into `phi`.
+    pub(super) fn violate_velocity_rows(&mut self, system: &System, stage: &Stage) {
+        if system.velocity_rows.is_empty() {
+            return;
+        }
+        for (way, (x1, x0)) in self.full.iter_mut().zip(self.x1.iter().zip(&self.x0)) {
+            *way = x1 - x0;
+        }
+        for &row in &system.velocity_rows {
+            let slots = &self.kkt.row_slots[row as usize];
+            let along = |at, v| system.along(slots, &self.kkt.slot_nodes, at, v);
+            self.phi[row as usize] = match stage.sampling {
+                Sampling::Between => along(&self.sampled, &self.full),
+                Sampling::Start => 0.5 * (along(&self.at_start, &self.full) + along(&self.at_end, &self.full)),
+                Sampling::End | Sampling::Middle => along(&self.sampled, &self.vs) / stage.rate,
+            };
+        }
+    }
+
+    /// Fills `row_gradient` with the gradients of all rows by the increment, where those of the positions are that at the
+    /// end or the one sampled, times `factor`: the velocity rows' are divided by it. Without velocity rows nothing is
+    /// filled.
+    pub(super) fn differentiate_rows(&mut self, system: &System, stage: &Stage, at_end: bool, factor: f64) {
+        if system.velocity_rows.is_empty() {
+            return;
+        }
+        let Self { row_gradient, turned_v, half, at_start, at_end: end, sampled, xs, vs, x0, x1, full, kkt, .. } = self;
+        row_gradient.copy_from_slice(if at_end { &end.gradient } else { &sampled.gradient });
+        for (way, (x1, x0)) in full.iter_mut().zip(x1.iter().zip(&*x0)) {
+            *way = x1 - x0;
+        }
+        match stage.sampling {
+            Sampling::Between => {
+                let change = |id: InvariantId| end.value[id.0 as usize] - at_start.value[id.0 as usize];
+                system.turn_functions(end, turned_v, |k, base| {
+                    let rise: [f64; MAX_ARGUMENTS] = std::array::from_fn(|i| base.get(i).map_or(0.0, |&id| change(id)));
+                    let (mean, there) = (&sampled.functions.local[k], &end.functions.local[k]);
+                    std::array::from_fn(|i| [0.0, mean.gradient[i] + 0.5 * there.bend(i, &rise)])
+                });
+            }
+            Sampling::Start => system.turn(end, x1, full, stage.end(), half, turned_v),
+            Sampling::End | Sampling::Middle => system.turn(sampled, xs, vs, stage.time(), half, turned_v),
+        }
+        let share = stage.share() / stage.rate;
+        for &row in &system.velocity_rows {
+            for i in kkt.row_slots[row as usize].start * system.dim..kkt.row_slots[row as usize].end * system.dim {
+                row_gradient[i] = match stage.sampling {
+                    Sampling::Between => turned_v[i],
+                    Sampling::Start => 0.5 * (at_start.gradient[i] + end.gradient[i] + turned_v[i]),
+                    Sampling::End | Sampling::Middle => sampled.gradient[i] + share * turned_v[i],
+                } / factor;
+            }
+        }
+    }
+
+    /// Fills `row_gradient` with those of the velocity rows alone, or of all others; zero elsewhere.
+    pub(super) fn part_of_rows(&mut self, system: &System, gradient: Source, velocity: bool) {
+        let Self { row_gradient, sampled, turned_v, kkt, .. } = self;
+        let from = match gradient {
+            Source::Sampled => &sampled.gradient,
+            Source::Turned => turned_v,
+        };
+        if velocity {
+            row_gradient.fill(0.0);
+        } else {
+            row_gradient.copy_from_slice(from);
+        }
+        for &row in &system.velocity_rows {
+            let slots = &kkt.row_slots[row as usize];
+            let own = slots.start * system.dim..slots.end * system.dim;
+            match velocity {
+                true => row_gradient[own.clone()].copy_from_slice(&from[own]),
+                false => row_gradient[own].fill(0.0),
+            }
+        }
+    }
+}
+
+/// Which gradients: those sampled, or their change with the velocity, H v.
+#[derive(Clone, Copy)]
+pub(super) enum Source {
+    Sampled,
+    Turned,
+}

@@ -1,0 +1,108 @@
+use std::sync::Arc;
+
+use super::pair::{Pair, Side, build};
+use super::{AT, AXIS, BETWEEN, JointKind, Site};
+use crate::model::fault::Read;
+use crate::model::geometry::{across, dot, norm, scale};
+use crate::model::key::{Key, Kind, Shape};
+use crate::system::{Differentiated, Number, Part, PfaffianForm, SmoothFunction};
+
+pub(super) const JOINT: JointKind = JointKind {
+    kind: Kind {
+        name: "rolling",
+        doc: "a disc or wheel with a sharp edge that rolls on a plane of the first body without slipping, upright or tilted; its \
+              rows hold velocities along the plane, and no coordinate",
+        equations: "d·N + R s(0) − R s = 0 and t_j·(ḋ − R/s (N·v v̇ + N·w ẇ)) = 0 in the axes of the first body, with v, w in the disc, \
+                    s² = (N·v)² + (N·w)²",
+        keys: &[
+            BETWEEN,
+            AT,
+            AXIS,
+            Key::required("normal", Shape::Vector, "any", "direction away from the plane at the start"),
+            Key::required("radius", Shape::Number, "m", "R; the plane is where the disc touches it at the start"),
+        ],
+        example: r#"
+[body.coin]
+mass = 1
+shape = { cylinder = [0.5, 0.02] }
+position = [0, 0, 0.5]
+orientation = { axis = [1, 0, 0], angle_deg = 90 }
+velocity = [1, 0, 0]
+angular_velocity = [0, 2, 0.3]
+
+[joint.table]
+type = "rolling"
+between = ["ground", "coin"]
+at = [0, 0, 0.5]
+axis = [0, 1, 0]
+normal = [0, 0, 1]
+radius = 0.5
+"#,
+        build,
+    },
+    freedom: [Some(3), None],
+    at: Site::Given,
+    axes: [1, 1],
+    shares: [&[], &[]],
+    rows,
+};
+
+fn rows(pair: &mut Pair<'_, '_>) -> Read<()> {
+    let (normal, radius) = (pair.entry.vector("normal", 3), pair.entry.positive("radius"));
+    let (normal, radius) = (normal?, radius?);
+    let size = norm(normal);
+    if size == 0.0 {
+        return Err(pair.entry.refuse("normal", "a normal of zero length has no direction", "give the direction away from the plane"));
+    }
+    let normal = scale(normal, 1.0 / size);
+    let [_, v, w] = pair.geometry.triad[1];
+    let start = (dot(normal, v).powi(2) + dot(normal, w).powi(2)).sqrt();
+    if start < FLAT {
+        return Err(pair.entry.refuse("axis", "the disc lies flat on the plane and does not roll", "tilt it, or use a planar joint"));
+    }
+    let d = pair.d();
+    let product = |pair: &mut Pair<'_, '_>, moving: &[_], axis| {
+        let axis = pair.fixed_to(Side::A, axis);
+        pair.assembly.builder.dot(moving, &axis)
+    };
+    let (v, w) = (pair.e(Side::B, 1), pair.e(Side::B, 2));
+    let [height, up_v, up_w] = [&d, &v, &w].map(|moving| product(pair, moving, normal));
+    let touching = Differentiated(Touching { radius, start });
+    pair.hold(Part::Smooth { of: vec![height, up_v, up_w], function: Arc::new(touching) });
+    for along in across(normal, 3) {
+        let [way, along_v, along_w] = [&d, &v, &w].map(|moving| product(pair, moving, along));
+        let form = Arc::new(Differentiated(Slip { radius }));
+        pair.hold(Part::Pfaffian { of: vec![way, along_v, along_w, up_v, up_w], form });
+    }
+    Ok(())
+}
+
+/// Sine of the smallest angle between the disc and the plane at the start.
+const FLAT: f64 = 1e-3;
+
+/// d·N + R s(0) − R s of (d·N, N·v, N·w): the lowest point of the disc stays on the plane.
+struct Touching {
+    radius: f64,
+    start: f64,
+}
+
+impl SmoothFunction for Touching {
+    fn evaluate<N: Number>(&self, value: &[N]) -> N {
+        let s = (value[1] * value[1] + value[2] * value[2]).sqrt();
+        value[0] - (s - self.start) * self.radius
+    }
+}
+
+/// Velocity along the plane of what touches it: coefficients of the rates of (d·t, v·t, w·t, N·v, N·w).
+struct Slip {
+    radius: f64,
+}
+
+impl PfaffianForm for Slip {
+    fn evaluate<N: Number>(&self, value: &[N], out: &mut [N]) {
+        let (v, w) = (value[3], value[4]);
+        let s = (v * v + w * w).sqrt();
+        let coefficients = [N::from(1.0), -v / s * self.radius, -w / s * self.radius, N::from(0.0), N::from(0.0)];
+        out.copy_from_slice(&coefficients);
+    }
+}
