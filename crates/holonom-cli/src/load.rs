@@ -43,6 +43,11 @@ pub fn overrides(set: &[String]) -> Overrides {
 }
 
 impl Overrides {
+    /// Sets a key, written as on the command line.
+    pub fn set(&mut self, given: &str) {
+        self.0.push(given.into());
+    }
+
     /// Sets a key to a number or an expression, if one was given.
     pub fn number(&mut self, key: &str, given: Option<&str>) {
         if let Some(given) = given {

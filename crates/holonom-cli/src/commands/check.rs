@@ -2,13 +2,14 @@
 
 use std::process::ExitCode;
 
-use holonom::analysis::{projection_form, rank};
+use holonom::analysis::{Rank, projection_form, rank, undetermined};
+use holonom::model::Model;
 use holonom::projection::Solve;
-use holonom::simulation::{PENALTY, Simulation};
+use holonom::simulation::{Method, PENALTY, Simulation};
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::load;
+use crate::load::{self, Loaded};
 use crate::options::CheckArguments;
 use crate::table::{list, short};
 
@@ -24,8 +25,13 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let name = method.name.clone();
     let step = loaded.step().unwrap_or(1e-3);
     let simulation = Simulation::new(system, method, step).map_err(load::start_failure)?;
-    let found = rank(system, &simulation.state().x, 0.0);
-    let size = found.size(system);
+    // Bodies that share nodes have no rows where they are joined: what holds what is asked of the model without sharing.
+    let mut plain = load::overrides(&arguments.model.set);
+    plain.set("output.reactions=true");
+    let plain = load::load(&arguments.model.model, plain)?;
+    let mut held = Held::new(&plain, load::method(&plain, None)?, step)?;
+    let size = rank(system, &simulation.state().x, 0.0).size(system);
+    let found = &held.rank;
     let (start, audit) = (simulation.start(), simulation.audit());
     let near = found.weakest.as_ref().filter(|(_, independence)| *independence < NEAR_SINGULAR);
     let form = match arguments.projection {
@@ -40,6 +46,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
         let mut value = json!({
             "model": loaded.name, "method": name, "coordinates": size.coordinates, "constraints": size.constraints,
             "rank": size.rank, "redundant": size.redundant, "dof": size.dof, "redundant_rows": found.redundant,
+            "rows_in_redundancies": held.involved, "reactions_not_unique": held.not_unique, "notes": held.notes,
             "near_singular": near, "moved": start.moved, "turned": start.turned,
             "residual": { "position": audit.phi, "velocity": audit.phi_dot, "acceleration": audit.phi_ddot },
             "energy": { "kinetic": audit.kinetic, "potential": audit.potential },
@@ -53,7 +60,15 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
         println!("{}", serde_json::to_string_pretty(&value).expect("a result is plain data"));
         return Ok(ExitCode::SUCCESS);
     }
-    let redundant = if found.redundant.is_empty() { "none".to_string() } else { found.redundant.join(", ") };
+    let redundant = match found.redundant.is_empty() {
+        true => "none".to_string(),
+        false => format!("{}: these follow from the others and may stay", found.redundant.join(", ")),
+    };
+    let reactions = match (found.redundant.is_empty(), held.not_unique.is_empty()) {
+        (true, _) => "all are unique".to_string(),
+        (false, true) => "those of all joints are unique; multipliers of single rows are not".to_string(),
+        (false, false) => format!("not unique: {}; all others are", held.not_unique.join(", ")),
+    };
     let singular = match (near, &found.weakest) {
         (Some((row, independence)), _) => format!("yes: `{row}` adds only {} of itself to the others", short(*independence)),
         (None, Some((row, independence))) => format!("no: the weakest row is `{row}` with {}", short(*independence)),
@@ -63,6 +78,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
         ("size", format!("{} coordinates, {} rows of rank {}", size.coordinates, size.constraints, size.rank)),
         ("freedom", format!("{} degrees of freedom", size.dof)),
         ("redundant", redundant),
+        ("reactions", reactions),
         ("singular", singular),
         ("corrected", format!("positions by {} m, velocities by {} m/s", short(start.moved), short(start.turned))),
         ("residual", format!("position {}, velocity {}, acceleration {}", short(audit.phi), short(audit.phi_dot), short(audit.phi_ddot))),
@@ -71,6 +87,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
         ("method", name),
     ];
     println!("{}\n{}", loaded.title(), list(&items));
+    held.notes.drain(..).for_each(|note| println!("note: {note}"));
     if let Some(form) = form {
         let verdict = if form.dissipative {
             "negative semidefinite: the projection never adds energy (30)"
@@ -86,4 +103,58 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
         println!("\nvelocity projection at the start\n{}", list(&items));
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// What holds a model, row by row.
+struct Held {
+    rank: Rank,
+    /// Rows that take part in a redundancy.
+    involved: Vec<String>,
+    /// Components of forces and moments of joints that redundancies leave undetermined.
+    not_unique: Vec<String>,
+    /// What looks like a slip.
+    notes: Vec<String>,
+}
+
+impl Held {
+    fn new(plain: &Loaded, method: Method, step: f64) -> Result<Self, Failure> {
+        let model = &plain.model;
+        let simulation = Simulation::new(&model.system, method, step).map_err(load::start_failure)?;
+        let x = &simulation.state().x;
+        let rank = rank(&model.system, x, 0.0);
+        let (mut involved, mut not_unique) = (Vec::new(), Vec::new());
+        if let Some(free) = undetermined(&model.system, x, 0.0).filter(|_| !rank.redundant.is_empty()) {
+            involved = free.rows().into_iter().map(|row| model.system.row_names()[row].clone()).collect();
+            for joint in &model.channels.joints {
+                let unique = free.are_unique(&joint.rows, &joint.nodes, joint.place(x, model.dimension));
+                let columns = joint.columns(model.axes);
+                let open: Vec<&str> = columns.iter().filter(|(k, _)| !unique[*k]).map(|(_, column)| column.as_str()).collect();
+                if !open.is_empty() {
+                    not_unique.push(format!("{}.{}", joint.name, open.join(" .")));
+                }
+            }
+        }
+        Ok(Self { rank, involved, not_unique, notes: notes(model) })
+    }
+}
+
+/// Radius of gyration over the distance of what a body holds, beyond which units are probably mixed up.
+const PROBABLE: f64 = 30.0;
+
+/// Bodies whose inertia does not go with their size.
+fn notes(model: &Model) -> Vec<String> {
+    let mut notes = Vec::new();
+    for (body, drawn) in model.bodies.iter().zip(&model.scene.bodies) {
+        let reach = drawn.places.iter().map(|place| place.iter().map(|c| c * c).sum::<f64>().sqrt()).fold(0.0, f64::max);
+        let gyration = (0.5 * body.inertia.trace() / body.mass).sqrt();
+        if reach > 0.0 && !(reach / PROBABLE..=reach * PROBABLE).contains(&gyration) {
+            notes.push(format!(
+                "the radius of gyration of `{}` is {} m, while its joints are within {} m of its centre: check mass, inertia and units",
+                body.name,
+                short(gyration),
+                short(reach)
+            ));
+        }
+    }
+    notes
 }

@@ -3,8 +3,10 @@
 
 mod projection;
 mod rank;
+mod reactions;
 mod stability;
 
 pub use projection::{ProjectionForm, projection_form};
 pub use rank::{Rank, rank};
+pub use reactions::{MOST_ROWS, Undetermined, undetermined};
 pub use stability::{LargestStep, largest_step};

@@ -36,6 +36,10 @@ pub fn projection_form(system: &System, projection: &Projection, alpha: f64, ste
     for node in 0..free {
         for (other, mass) in system.mass().row(node).filter(|&(other, _)| other < free) {
             (0..dim).for_each(|c| m[(node * dim + c) * n + other * dim + c] = mass.m);
+            if mass.s != 0.0 {
+                m[node * dim * n + other * dim + 1] = -mass.s;
+                m[(node * dim + 1) * n + other * dim] = mass.s;
+            }
         }
     }
     let rows = system.constraints();

@@ -32,7 +32,7 @@ pub fn rank(system: &System, x: &[f64], t: f64) -> Rank {
     work.kkt.write_sum(block);
     work.kkt.add_columns(block, &work.at_end.gradient, 1.0);
     work.kkt.add_rows(block, &work.at_end.gradient, 1.0);
-    work.delta.iter_mut().zip(&work.softness).for_each(|(delta, softness)| *delta = 1e-12 * softness);
+    work.delta.iter_mut().zip(&work.softness).for_each(|(delta, softness)| *delta = 1e-15 * softness);
     work.kkt.regularise(0, &work.delta);
     let factored = work.kkt.factor().is_ok();
     let mut pivots = vec![0.0; work.kkt.size()];

@@ -20,3 +20,12 @@ pub fn inverse(size: usize, values: &[f64]) -> Vec<f64> {
 fn matrix(size: usize, values: &[f64]) -> Mat<f64> {
     Mat::from_fn(size, size, |i, j| values[i * size + j])
 }
+
+/// Orthonormal vectors that a symmetric positive semidefinite matrix (size × size, row-major) takes to at most `share` of
+/// its largest eigenvalue.
+pub fn null_space(size: usize, values: &[f64], share: f64) -> Vec<Vec<f64>> {
+    let Ok(eigen) = matrix(size, values).self_adjoint_eigen(Side::Lower) else { return Vec::new() };
+    let largest = (0..size).map(|k| eigen.S()[k].abs()).fold(0.0, f64::max);
+    let vanishing = (0..size).filter(|&k| eigen.S()[k].abs() <= share * largest);
+    vanishing.map(|k| (0..size).map(|i| eigen.U()[(i, k)]).collect()).collect()
+}

@@ -7,7 +7,7 @@ mod eigen;
 mod ordering;
 mod sparse;
 
-pub use eigen::{inverse, relative_eigenvalues};
+pub use eigen::{inverse, null_space, relative_eigenvalues};
 pub use ordering::fill_reducing_order;
 
 use dense::DenseLu;

@@ -66,8 +66,8 @@ pub enum Shape {
     Directions,
     /// Two names of joints or of their coordinates.
     Coordinates,
-    /// A list of tables with a joint and a factor each.
-    Terms,
+    /// A list of tables with their own keys.
+    Tables(&'static [Key]),
     /// Some words.
     Words(&'static [&'static str]),
     /// Names of points.

@@ -2,15 +2,20 @@
 
 use super::key::{Key, Kind, Shape};
 use super::value::{Table, Value};
-use super::{BAR_KEYS, MODEL_KEYS, OUTPUT_KEYS, POINT_KEYS, REPEAT, SIMULATION_KEYS, constraints, forces};
+use super::{
+    BAR_KEYS, BODY_KEYS, MODEL_KEYS, OUTPUT_KEYS, POINT_KEYS, REPEAT, SIMULATION_KEYS, constraints, drives, forces, joints,
+};
 
 /// JSON Schema (draft 2020-12) of the model file.
 pub fn schema() -> Value {
     let mut properties: Table = MODEL_KEYS.iter().map(|key| (key.name, described(key))).collect();
     properties.push("parameters", table([("type", Value::text("object")), ("additionalProperties", shape(Shape::Number))]));
     properties.push("point", entries(object(POINT_KEYS, None)));
+    properties.push("body", entries(object(BODY_KEYS, None)));
     properties.push("bar", entries(object(BAR_KEYS, None)));
+    properties.push("joint", entries(one_of(joints::kinds())));
     properties.push("constraint", entries(one_of(constraints::KINDS)));
+    properties.push("drive", entries(one_of(drives::KINDS)));
     properties.push("force", entries(one_of(forces::KINDS)));
     properties.push("simulation", object(SIMULATION_KEYS, None));
     properties.push("output", object(OUTPUT_KEYS, None));
@@ -41,13 +46,13 @@ fn entries(of: Value) -> Value {
     ])
 }
 
-fn one_of(kinds: &[Kind]) -> Value {
+fn one_of<'a>(kinds: impl IntoIterator<Item = &'a Kind>) -> Value {
     let each = |kind: &Kind| {
         let Value::Table(mut object) = object(kind.keys, Some(kind.name)) else { unreachable!("an object is a table") };
         object.push("description", Value::text(format!("{}: {}", kind.doc, kind.equations)));
         Value::Table(object)
     };
-    table([("oneOf", Value::List(kinds.iter().map(each).collect()))])
+    table([("oneOf", Value::List(kinds.into_iter().map(each).collect()))])
 }
 
 /// A table with these keys and no others; of a kind, also `type` and `repeat`.
@@ -97,20 +102,26 @@ fn shape(shape: Shape) -> Value {
         Value::Table(out)
     };
     let typed = |name: &str| table([("type", Value::text(name))]);
+    let any = |shapes: Vec<Value>| table([("anyOf", Value::List(shapes))]);
+    let rows = || list(list(reference("number"), 3, 3), 3, 3);
+    let direction = || any(vec![typed("string"), list(reference("number"), 2, 3)]);
     match shape {
         Shape::Number | Shape::Formula(_) => reference("number"),
         Shape::Whole => reference("number"),
         Shape::Text | Shape::Point | Shape::Repeat => typed("string"),
-        Shape::Inertia | Shape::Site | Shape::Direction | Shape::Profile => table([("description", Value::text("see the book: several spellings"))]),
-        Shape::Spin | Shape::Torque(_) => table([("anyOf", Value::List(vec![reference("number"), list(reference("number"), 3, 3)]))]),
+        Shape::Inertia => any(vec![reference("number"), list(reference("number"), 3, 6), rows()]),
+        Shape::Site => any(vec![reference("end"), list(reference("end"), 2, 2)]),
+        Shape::Direction => any(vec![direction(), list(direction(), 2, 2)]),
+        Shape::Profile => any(vec![reference("number"), table([("type", Value::text("object")), ("required", texts(&["table"]))])]),
+        Shape::Spin | Shape::Torque(_) => any(vec![reference("number"), list(reference("number"), 3, 3)]),
         Shape::Places => table([("type", Value::text("object")), ("additionalProperties", list(reference("number"), 2, 3))]),
         Shape::Curve => list(list(reference("number"), 2, 3), 3, usize::MAX),
         Shape::Named => table([("type", Value::text("object")), ("additionalProperties", typed("string"))]),
         Shape::Numbers(least, most) => list(reference("number"), least, most),
-        Shape::Rows => list(list(reference("number"), 3, 3), 3, 3),
+        Shape::Rows => rows(),
         Shape::Members | Shape::Coordinates => list(typed("string"), 2, 2),
-        Shape::Directions => list(table([("anyOf", Value::List(vec![typed("string"), list(reference("number"), 2, 3)]))]), 2, 2),
-        Shape::Terms => list(typed("object"), 2, usize::MAX),
+        Shape::Directions => list(direction(), 2, 2),
+        Shape::Tables(keys) => list(object(keys, None), 2, usize::MAX),
         Shape::Flag => typed("boolean"),
         Shape::Choice(words) => table([("enum", texts(words))]),
         Shape::Vector | Shape::Formulas(_) => list(reference("number"), 2, 3),

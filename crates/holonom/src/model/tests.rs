@@ -4,12 +4,19 @@ use std::collections::HashSet;
 
 use super::*;
 
-/// All tables of kinds with the folder they come from.
-const FOLDERS: [(&str, &[Kind], &[&str]); 2] = [("constraints", constraints::KINDS, &[]), ("forces", forces::KINDS, &["laws"])];
+/// All tables of kinds with the folder they come from, and its files that are no kinds.
+fn folders() -> [(&'static str, Vec<&'static Kind>, &'static [&'static str]); 4] {
+    [
+        ("constraints", constraints::KINDS.iter().collect(), &[]),
+        ("joints", joints::kinds(), &["coupler", "curve", "geometry", "pair"]),
+        ("drives", drives::KINDS.iter().collect(), &["coordinate", "profile"]),
+        ("forces", forces::KINDS.iter().collect(), &["body-load", "coordinate-laws", "joint", "laws", "point-load"]),
+    ]
+}
 
 #[test]
 fn kinds_and_keys_have_their_own_names_and_documentation() {
-    for (folder, kinds, _) in FOLDERS {
+    for (folder, kinds, _) in folders() {
         let mut names = HashSet::new();
         for kind in kinds {
             assert!(names.insert(kind.name), "{folder} has two of {}", kind.name);
@@ -18,7 +25,7 @@ fn kinds_and_keys_have_their_own_names_and_documentation() {
         }
     }
     for (name, keys) in
-        [("point", POINT_KEYS), ("bar", BAR_KEYS), ("model", MODEL_KEYS), ("simulation", SIMULATION_KEYS), ("output", OUTPUT_KEYS)]
+        [("point", POINT_KEYS), ("bar", BAR_KEYS), ("body", BODY_KEYS), ("model", MODEL_KEYS), ("simulation", SIMULATION_KEYS), ("output", OUTPUT_KEYS)]
     {
         check_keys(name, keys);
     }
@@ -35,7 +42,7 @@ fn check_keys(owner: &str, keys: &[Key]) {
 
 #[test]
 fn every_file_of_a_folder_is_in_its_table() {
-    for (folder, kinds, shared) in FOLDERS {
+    for (folder, kinds, shared) in folders() {
         let path = format!("{}/src/model/{folder}", env!("CARGO_MANIFEST_DIR"));
         let files = std::fs::read_dir(path).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap());
         let mut found: Vec<String> = files.map(|file| file.trim_end_matches(".rs").replace('_', "-")).collect();
@@ -96,7 +103,7 @@ fn the_schema_knows_every_kind() {
     for name in ["schema", "title", "gravity", "plane", "parameters", "point", "bar", "constraint", "force", "simulation", "output"] {
         assert!(properties.get(name).is_some(), "{name}");
     }
-    for (_, kinds, _) in FOLDERS {
+    for (_, kinds, _) in folders() {
         for kind in kinds {
             assert!(format!("{schema:?}").contains(&format!("{:?}", kind.name)), "{}", kind.name);
         }

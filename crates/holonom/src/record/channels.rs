@@ -41,6 +41,22 @@ pub struct RecordedJoint {
     pub at: Vec<Term>,
 }
 
+impl RecordedJoint {
+    /// Components of force (0 to 2) and moment (3 to 5) that are recorded, with the endings of their columns.
+    pub fn columns(&self, axes: &str) -> Vec<(usize, String)> {
+        let force = axes.chars().enumerate().map(|(k, axis)| (k, format!("f{axis}")));
+        match axes.len() {
+            3 => force.chain(axes.chars().enumerate().map(|(k, axis)| (3 + k, format!("t{axis}")))).collect(),
+            _ => force.chain([(5, "t".to_string())]).collect(),
+        }
+    }
+
+    /// Where it is at the positions `x` of all nodes, m.
+    pub fn place(&self, x: &[f64], dim: usize) -> [f64; 3] {
+        at(&self.at, x, dim)
+    }
+}
+
 /// A drive whose effort is recorded: −λ of its row, times a length where the row is one of half a square.
 #[derive(Clone)]
 pub struct RecordedEffort {
@@ -107,11 +123,7 @@ impl Channels {
             names.extend(self.axes.chars().map(|axis| format!("{}.r{axis}", point.name)));
         }
         for joint in &self.joints {
-            names.extend(self.axes.chars().map(|axis| format!("{}.f{axis}", joint.name)));
-            match self.axes.len() {
-                3 => names.extend(self.axes.chars().map(|axis| format!("{}.t{axis}", joint.name))),
-                _ => names.push(format!("{}.t", joint.name)),
-            }
+            names.extend(joint.columns(&self.axes).iter().map(|(_, column)| format!("{}.{column}", joint.name)));
         }
         names
     }
@@ -144,13 +156,10 @@ impl Channels {
             row.extend_from_slice(&reactions.force[node.index() * dim..(node.index() + 1) * dim]);
         }
         for joint in &self.joints {
-            let about = at(&joint.at, &simulation.state().x, dim);
+            let about = joint.place(&simulation.state().x, dim);
             let (force, moment) = simulation.wrench(joint.rows.clone(), &joint.nodes, about);
-            row.extend(force[..dim].iter().map(|f| joint.sign * f));
-            match dim {
-                3 => row.extend(moment.map(|m| joint.sign * m)),
-                _ => row.push(joint.sign * moment[2]),
-            }
+            let components = [force, moment].concat();
+            row.extend(joint.columns(&self.axes).iter().map(|&(k, _)| joint.sign * components[k]));
         }
     }
 }

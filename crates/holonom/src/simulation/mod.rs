@@ -15,6 +15,7 @@ pub use method::{
     Choice, LEVELS, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, OMEGA, PENALTY, ProjectionChoice, TOLERANCE, XI, combinations,
 };
 pub use reactions::Reactions;
+pub(crate) use reactions::wrench;
 pub use start::{Start, StartError};
 pub use state::State;
 pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, ProjectionSummary, Summary, ViolationSummary, WorkSummary};

@@ -1,7 +1,9 @@
 //! Forces of the constraints, by the index-1 system (3) at the states shown (methods §1.5).
 
 use super::Simulation;
-use crate::formulation::Workspace;
+use std::ops::Range;
+
+use crate::formulation::{Kkt, Workspace};
 use crate::system::NodeId;
 
 /// Forces of the constraints at a state, of the order of its positions and velocities.
@@ -30,26 +32,10 @@ impl Simulation<'_> {
 
     /// Force (3) and moment about a place (3) of some rows on some nodes, points or directions, at the present state, N
     /// and N·m; zero unless forces of the constraints were asked for.
-    pub fn wrench(&self, rows: std::ops::Range<usize>, nodes: &[(NodeId, bool)], about: [f64; 3]) -> ([f64; 3], [f64; 3]) {
-        let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
-        let Some(reactions) = &self.reactions else { return (force, moment) };
-        let (dim, kkt) = (self.system.dim, &self.work.kkt);
-        for row in rows {
-            for s in kkt.row_slots[row].clone() {
-                let Some(&(node, is_point)) = nodes.iter().find(|(node, _)| node.index() == kkt.slot_nodes[s] as usize) else { continue };
-                let (mut push, mut arm) = ([0.0; 3], [0.0; 3]);
-                for c in 0..dim {
-                    push[c] = -reactions.lambda[row] * self.work.at_start.gradient[s * dim + c];
-                    arm[c] = self.state.x[node.index() * dim + c] - if is_point { about[c] } else { 0.0 };
-                }
-                for c in 0..3 {
-                    let (i, j) = ((c + 1) % 3, (c + 2) % 3);
-                    force[c] += if is_point { push[c] } else { 0.0 };
-                    moment[c] += arm[i] * push[j] - arm[j] * push[i];
-                }
-            }
-        }
-        (force, moment)
+    pub fn wrench(&self, rows: Range<usize>, nodes: &[(NodeId, bool)], about: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+        let Some(reactions) = &self.reactions else { return ([0.0; 3], [0.0; 3]) };
+        let gradient = &self.work.at_start.gradient;
+        wrench(self.system.dim, &self.work.kkt, rows, &reactions.lambda, gradient, nodes, about, &self.state.x)
     }
 
     /// Finds the forces of the constraints at the present state, where they are wanted.
@@ -74,4 +60,36 @@ impl Simulation<'_> {
         reactions.a.copy_from_slice(&work.a1);
         work.constraint_forces(system, &mut reactions.force);
     }
+}
+
+/// Force (3) and moment about a place (3) of some rows with the multipliers `lambda` and gradients (D a slot) on some nodes,
+/// points or directions, at the positions `x`.
+#[expect(clippy::too_many_arguments)] // rows, what they pull with, and at what
+pub(crate) fn wrench(
+    dim: usize,
+    kkt: &Kkt,
+    rows: Range<usize>,
+    lambda: &[f64],
+    gradient: &[f64],
+    nodes: &[(NodeId, bool)],
+    about: [f64; 3],
+    x: &[f64],
+) -> ([f64; 3], [f64; 3]) {
+    let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+    for row in rows {
+        for s in kkt.row_slots[row].clone() {
+            let Some(&(node, is_point)) = nodes.iter().find(|(node, _)| node.index() == kkt.slot_nodes[s] as usize) else { continue };
+            let (mut push, mut arm) = ([0.0; 3], [0.0; 3]);
+            for c in 0..dim {
+                push[c] = -lambda[row] * gradient[s * dim + c];
+                arm[c] = x[node.index() * dim + c] - if is_point { about[c] } else { 0.0 };
+            }
+            for c in 0..3 {
+                let (i, j) = ((c + 1) % 3, (c + 2) % 3);
+                force[c] += if is_point { push[c] } else { 0.0 };
+                moment[c] += arm[i] * push[j] - arm[j] * push[i];
+            }
+        }
+    }
+    (force, moment)
 }

@@ -10,7 +10,7 @@ pub(super) const KIND: Kind = Kind {
     name: "linear",
     doc: "a sum of joint coordinates that stays as it is: a differential, a tilting table, any linear coupling",
     equations: "Σ factor_k q_k = 0, angles counted over any number of turns",
-    keys: &[Key::required("terms", Shape::Terms, "", "the summands: { joint = \"JOINT\", factor = 1.0 }")],
+    keys: &[Key::required("terms", Shape::Tables(&TERM), "", "the summands: { joint = \"JOINT\", factor = 1.0 }")],
     example: r#"
 [body.wheel1]
 mass = 1
@@ -44,7 +44,7 @@ terms = [{ joint = "axle1", factor = 1 }, { joint = "axle2", factor = 2 }]
 };
 
 /// Keys of a term.
-const TERM: [Key; 2] = [
+static TERM: [Key; 2] = [
     Key::required("joint", Shape::Text, "", "joint, or coordinate of a joint as \"JOINT.angle\""),
     Key::required("factor", Shape::Number, "", "its factor"),
 ];

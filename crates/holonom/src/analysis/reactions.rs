@@ -1,0 +1,91 @@
+//! Which forces of joints redundant rows leave undetermined.
+
+use std::ops::Range;
+
+use crate::formulation::Workspace;
+use crate::linalg::null_space;
+use crate::system::{NodeId, System};
+
+/// Multipliers λ with Gᵀλ = 0 at a position: what may be added to the multipliers without any effect on the motion.
+pub struct Undetermined {
+    /// One list of multipliers (r) for each redundant row, by the rows scaled to unit gradients.
+    spaces: Vec<Vec<f64>>,
+    work: Workspace,
+    x: Vec<f64>,
+    dim: usize,
+}
+
+/// Eigenvalue of the scaled G Gᵀ, over the largest, below which a combination of rows holds nothing: the square of what
+/// the rank takes for independent.
+const NOTHING: f64 = 1e-14;
+
+/// Most rows for which this dense analysis is made.
+pub const MOST_ROWS: usize = 1500;
+
+/// Finds what redundant rows leave undetermined at the positions `x` of all nodes and time `t`. `None` for more than
+/// [`MOST_ROWS`] rows.
+pub fn undetermined(system: &System, x: &[f64], t: f64) -> Option<Undetermined> {
+    let (rows, n, dim) = (system.constraints(), system.coordinates(), system.dimension());
+    if rows > MOST_ROWS {
+        return None;
+    }
+    let mut work = Workspace::new(system);
+    system.evaluate_again(x, t, &mut work.at_end);
+    let mut scaled = vec![0.0; rows * n];
+    let mut sizes = vec![0.0; rows];
+    for (row, slots) in work.kkt.row_slots.iter().enumerate() {
+        let line = &mut scaled[row * n..(row + 1) * n];
+        for s in slots.clone() {
+            let node = work.kkt.slot_nodes[s] as usize * dim;
+            if node < n {
+                (0..dim).for_each(|c| line[node + c] += work.at_end.gradient[s * dim + c]);
+            }
+        }
+        sizes[row] = line.iter().map(|g| g * g).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+        line.iter_mut().for_each(|g| *g /= sizes[row]);
+    }
+    let product = |k: usize| -> f64 {
+        let (a, b) = (k / rows * n, k % rows * n);
+        (0..n).map(|i| scaled[a + i] * scaled[b + i]).sum()
+    };
+    let gram: Vec<f64> = (0..rows * rows).map(product).collect();
+    let mut spaces = null_space(rows, &gram, NOTHING);
+    spaces.iter_mut().for_each(|space| space.iter_mut().zip(&sizes).for_each(|(lambda, size)| *lambda /= size));
+    Some(Undetermined { spaces, work, x: x.to_vec(), dim })
+}
+
+impl Undetermined {
+    /// Number of independent combinations: the redundant rows.
+    pub fn count(&self) -> usize {
+        self.spaces.len()
+    }
+
+    /// The rows that take part in a redundancy: any one of the combination may be left out.
+    pub fn rows(&self) -> Vec<usize> {
+        let rows = self.work.kkt.row_slots.len();
+        (0..rows).filter(|&row| self.spaces.iter().any(|space| space[row].abs() > SMALL * largest(space))).collect()
+    }
+
+    /// Whether the components of force (3) and moment about a place (3) of some rows on some nodes (points or directions)
+    /// are unique.
+    pub fn are_unique(&self, rows: &Range<usize>, nodes: &[(NodeId, bool)], about: [f64; 3]) -> [bool; 6] {
+        let mut unique = [true; 6];
+        for space in &self.spaces {
+            let at_end = &self.work.at_end.gradient;
+            let (force, moment) = crate::simulation::wrench(self.dim, &self.work.kkt, rows.clone(), space, at_end, nodes, about, &self.x);
+            let scale = SMALL * largest(space);
+            for c in 0..3 {
+                unique[c] &= force[c].abs() <= scale;
+                unique[3 + c] &= moment[c].abs() <= scale * self.work.length;
+            }
+        }
+        unique
+    }
+}
+
+/// Share of a combination that is round-off.
+const SMALL: f64 = 1e-6;
+
+fn largest(space: &[f64]) -> f64 {
+    space.iter().fold(0.0, |m: f64, v| m.max(v.abs()))
+}
