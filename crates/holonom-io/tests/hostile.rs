@@ -1,7 +1,10 @@
 //! Files that nobody should have written, deep or full of faults: they are refused soon, and in short.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
+use holonom::model::{Kind, constraints, drives, forces, joints};
+use holonom::simulation::{Choice, Method, Simulation};
 use holonom_io::{LARGEST_FILE, Source};
 
 /// What is said about a file, and that it is said within a time that nobody waits for.
@@ -58,4 +61,39 @@ fn the_largest_allowed_files_end_too() {
     {
         told(name, piece.repeat(LARGEST_FILE / piece.len()).as_bytes());
     }
+}
+
+/// Values that nobody should write: wrong in kind, in size or in number, not finite, not known.
+const HOSTILE: &[&str] = &[
+    "nan", "inf", "-inf", "0", "-1", "1e308", "-1e308", "1e200", "1e-200", "1e-320", "true", "\"\"", "\" \"", "\".\"", "\"..\"", "\"]\"", "\"a[\"",
+    "\"a[0]\"", "\"ground\"", "\"0/0\"", "\"1/0\"", "\"t\"", "\"q\"", "\"sqrt(t - 1)\"", "\"1e308*t\"", "[]", "[0, 0, 0]", "[0, 0]", "[1e308, 1e308, 1e308]",
+    "[1e-320, 0, 0]", "[nan, 0, 0]", "[[0, 0, 0], [0, 0, 0]]", "[[1, 0, 0], [-1, 0, 0]]", "[[1, 0], [0, 1]]", "[[]]", "[[], [], []]", "[\"\", \"\"]",
+    "[\"ground\", \"ground\"]", "[{}]", "[{}, {}]", "{}", "{ a = 1 }", "{ table = [] }", "{ table = [[0, 0], [1e-300, 1e300]] }", "{ rod = 1 }", "{ sphere = 1e-200 }",
+    "{ box = [1e200, 1, 1] }", "{ mesh = \"\" }", "{ mesh = \"..\" }", "{ quat_wxyz = [1e308, 0, 0, 0] }", "{ axis = [1e308, 0, 0], angle = 1 }",
+];
+
+/// Lines of the examples of all kinds whose value is replaced by each of the hostile ones.
+#[test]
+fn hostile_values_of_any_key_never_panic() {
+    let list: String = std::iter::repeat_n("0, ", 2_000).collect();
+    let long = format!("[{list}0]");
+    let kinds = constraints::KINDS.iter().chain(forces::KINDS).chain(joints::kinds()).chain(drives::KINDS);
+    for kind in kinds {
+        let lines: Vec<&str> = kind.example.lines().collect();
+        for (k, line) in lines.iter().enumerate() {
+            let Some((key, _)) = line.split_once(" = ") else { continue };
+            for value in HOSTILE.iter().copied().chain([&*long]) {
+                let changed = format!("{key} = {value}");
+                let text: String = lines.iter().enumerate().map(|(at, &line)| if at == k { &*changed } else { line }).flat_map(|line| [line, "\n"]).collect();
+                assert!(catch_unwind(AssertUnwindSafe(|| start(kind, &text))).is_ok(), "`{key} = {value:.60}` panics in line {k} of\n{}", kind.example);
+            }
+        }
+    }
+}
+
+/// Reads a model, and starts it where there is nothing wrong with it.
+fn start(kind: &Kind, text: &str) {
+    let Ok(model) = Source::read(kind.name, text.as_bytes()).and_then(|source| source.model()) else { return };
+    let method = Method::resolve(&Choice::default()).expect("the method of choice");
+    let _ = Simulation::new(&model.system, method, 0.01);
 }

@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use holonom::analysis::{Rank, projection_form, rank, undetermined};
 use holonom::model::Model;
+use holonom::record::RecordedJoint;
 use holonom::projection::Solve;
 use holonom::simulation::{Method, PENALTY, Simulation};
 use serde_json::json;
@@ -127,7 +128,7 @@ impl Held {
             involved = free.rows().into_iter().map(|row| model.system.row_names()[row].clone()).collect();
             for joint in &model.channels.joints {
                 let unique = free.are_unique(&joint.rows, &joint.nodes, joint.place(x, model.dimension));
-                let columns = joint.columns(model.axes);
+                let columns = RecordedJoint::columns(model.axes);
                 let open: Vec<&str> = columns.iter().filter(|(k, _)| !unique[*k]).map(|(_, column)| column.as_str()).collect();
                 if !open.is_empty() {
                     not_unique.push(format!("{}.{}", joint.name, open.join(" .")));

@@ -42,13 +42,18 @@ pub struct RecordedJoint {
 }
 
 impl RecordedJoint {
-    /// Components of force (0 to 2) and moment (3 to 5) that are recorded, with the endings of their columns.
-    pub fn columns(&self, axes: &str) -> Vec<(usize, String)> {
-        let force = axes.chars().enumerate().map(|(k, axis)| (k, format!("f{axis}")));
-        match axes.len() {
-            3 => force.chain(axes.chars().enumerate().map(|(k, axis)| (3 + k, format!("t{axis}")))).collect(),
-            _ => force.chain([(5, "t".to_string())]).collect(),
-        }
+    /// Which components of force (0 to 2) and moment (3 to 5) are recorded, in space or in the plane.
+    fn components(dim: usize) -> &'static [usize] {
+        if dim == 2 { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] }
+    }
+
+    /// These components with the endings of their columns.
+    pub fn columns(axes: &str) -> Vec<(usize, String)> {
+        let ending = |k: usize| match (axes.len(), k) {
+            (2, 5) => "t".to_string(),
+            _ => format!("{}{}", if k < 3 { 'f' } else { 't' }, char::from(axes.as_bytes()[k % 3])),
+        };
+        Self::components(axes.len()).iter().map(|&k| (k, ending(k))).collect()
     }
 
     /// Where it is at the positions `x` of all nodes, m.
@@ -123,7 +128,7 @@ impl Channels {
             names.extend(self.axes.chars().map(|axis| format!("{}.r{axis}", point.name)));
         }
         for joint in &self.joints {
-            names.extend(joint.columns(&self.axes).iter().map(|(_, column)| format!("{}.{column}", joint.name)));
+            names.extend(RecordedJoint::columns(&self.axes).iter().map(|(_, column)| format!("{}.{column}", joint.name)));
         }
         names
     }
@@ -158,8 +163,8 @@ impl Channels {
         for joint in &self.joints {
             let about = joint.place(&simulation.state().x, dim);
             let (force, moment) = simulation.wrench(joint.rows.clone(), &joint.nodes, about);
-            let components = [force, moment].concat();
-            row.extend(joint.columns(&self.axes).iter().map(|&(k, _)| joint.sign * components[k]));
+            let components = [force[0], force[1], force[2], moment[0], moment[1], moment[2]];
+            row.extend(RecordedJoint::components(dim).iter().map(|&k| joint.sign * components[k]));
         }
     }
 }

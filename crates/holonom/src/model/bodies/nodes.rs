@@ -258,7 +258,8 @@ fn code(terms: &[Term]) -> EdgeCode {
     let mut nodes = [[u64::MAX; 3]; 2];
     for (code, term) in nodes.iter_mut().zip(terms) {
         *code = match term.place {
-            Place::Node(node) => [0, 0, node.index() as u64],
+            // No finite place has these bits.
+            Place::Node(node) => [u64::MAX, 0, node.index() as u64],
             Place::Fixed(x) => x.map(f64::to_bits),
         };
     }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Quaternion, Rotation3, Unit, UnitQuaternion, Vector3};
 
 use crate::model::entry::{Entry, Spot, all};
-use crate::model::fault::Read;
+use crate::model::fault::{Read, Refused};
 use crate::model::key::{Key, Shape};
 use crate::model::value::Value;
 
@@ -32,10 +32,19 @@ pub fn read(body: &Entry<'_>, dim: usize) -> Read<Matrix3<f64>> {
     }
     let path = format!("{}.orientation", body.path);
     let entry = Entry { name: body.name, path: &path, table: body.table("orientation")?, ..*body };
+    let before = entry.sink.count();
     entry.refuse_unknown_keys("an orientation", &KEYS.iter().collect::<Vec<_>>());
     let given: Vec<&str> = SPELLINGS.into_iter().filter(|key| entry.has(key)).collect();
+    let angles = ["angle", "angle_deg"].into_iter().find(|key| entry.has(key));
+    if given.is_empty() && angles.is_none() && entry.sink.count() > before {
+        // What it says is under a name that is not known.
+        return Err(Refused);
+    }
     if let [_, second, ..] = given[..] {
         return Err(entry.refuse_key(second, format!("`{}` and `{second}` both give the orientation", given[0]), "keep one of the two"));
+    }
+    if let (Some(angle), Some(&key), 3) = (angles, given.first().filter(|key| **key != "axis"), dim) {
+        return Err(entry.refuse_key(angle, format!("`{angle}` goes with an `axis`, and this orientation has `{key}`"), "keep one of the two"));
     }
     if dim == 2 {
         if let Some(key) = given.first() {
@@ -48,10 +57,12 @@ pub fn read(body: &Entry<'_>, dim: usize) -> Read<Matrix3<f64>> {
         Some("axis") => {
             let axis = Vector3::from(entry.vector("axis", 3)?);
             let angle = angle(&entry)?;
-            if axis.norm() == 0.0 {
+            let largest = axis.amax();
+            if largest == 0.0 {
                 return Err(entry.refuse("axis", "an axis of zero length has no direction", "give the axis of the rotation"));
             }
-            Ok(Rotation3::from_axis_angle(&Unit::new_normalize(axis), angle).into_inner())
+            // By its largest number first, as squares could overflow.
+            Ok(Rotation3::from_axis_angle(&Unit::new_normalize(axis.map(|c| c / largest)), angle).into_inner())
         }
         Some(key @ ("rpy" | "rpy_deg")) => {
             let unit = if key == "rpy" { 1.0 } else { std::f64::consts::PI / 180.0 };
@@ -59,7 +70,10 @@ pub fn read(body: &Entry<'_>, dim: usize) -> Read<Matrix3<f64>> {
             Ok(Rotation3::from_euler_angles(roll, pitch, yaw).into_inner())
         }
         Some(_) => matrix(&entry),
-        None => Err(entry.refuse_all("this orientation says nothing", format!("give one of {}", SPELLINGS.join(", ")))),
+        None => match angles {
+            Some(key) => Err(entry.refuse_key(key, "an angle in space needs an axis", format!("write {{ axis = [x, y, z], {key} = … }}"))),
+            None => Err(entry.refuse_all("this orientation says nothing", format!("give one of {}", SPELLINGS.join(", ")))),
+        },
     }
 }
 
@@ -67,6 +81,7 @@ fn angle(entry: &Entry<'_>) -> Read<f64> {
     match (entry.has("angle"), entry.has("angle_deg")) {
         (true, true) => Err(entry.refuse_key("angle_deg", "`angle` and `angle_deg` exclude each other", "keep one of the two")),
         (false, true) => entry.number("angle_deg").map(f64::to_radians),
+        (false, false) => Err(entry.refuse_all("this orientation has no angle", "add angle = … in radians, or angle_deg = … in degrees")),
         _ => entry.number("angle"),
     }
 }
@@ -80,7 +95,11 @@ fn quaternion(entry: &Entry<'_>, key: &str) -> Read<Matrix3<f64>> {
     let quaternion = if key == "quat_wxyz" { Quaternion::new(n[0], n[1], n[2], n[3]) } else { Quaternion::new(n[3], n[0], n[1], n[2]) };
     let size = quaternion.norm();
     if (size - 1.0).abs() > ROUNDED {
-        return Err(entry.refuse(key, format!("the length of this quaternion is {size}"), "a rotation has a quaternion of length 1"));
+        let cure = match size > 0.0 && size.is_finite() {
+            true => format!("a rotation has one of length 1: write [{}]", n.iter().map(|n| (n / size).to_string()).collect::<Vec<_>>().join(", ")),
+            false => "a rotation has one of length 1".into(),
+        };
+        return Err(entry.refuse(key, format!("the length of this quaternion is {size}"), cure));
     }
     Ok(UnitQuaternion::from_quaternion(quaternion).to_rotation_matrix().into_inner())
 }
@@ -99,8 +118,16 @@ fn matrix(entry: &Entry<'_>) -> Read<Matrix3<f64>> {
     }
     let rows = all(rows.iter().enumerate().map(row))?;
     let matrix = Matrix3::from_fn(|i, j| rows[i][j]);
-    if (matrix.transpose() * matrix - Matrix3::identity()).amax() > ROUNDED {
-        return Err(entry.refuse("matrix", "the columns of this matrix are not at right angles or not of length 1", "give a rotation matrix"));
+    let products = matrix.transpose() * matrix;
+    // Written so that what is no number is refused too.
+    if let Some(k) = (0..3).find(|&k| !((products[(k, k)].sqrt() - 1.0).abs() <= ROUNDED)) {
+        let message = format!("column {} of this matrix has the length {}", k + 1, products[(k, k)].sqrt());
+        return Err(entry.refuse("matrix", message, "in a rotation matrix it is 1: give seven digits or more"));
+    }
+    if let Some((i, j)) = [(0, 1), (0, 2), (1, 2)].into_iter().find(|&at| !(products[at].abs() <= ROUNDED)) {
+        let degrees = products[(i, j)].clamp(-1.0, 1.0).acos().to_degrees();
+        let message = format!("columns {} and {} of this matrix are at {degrees:.4}°", i + 1, j + 1);
+        return Err(entry.refuse("matrix", message, "in a rotation matrix they are at right angles: give seven digits or more"));
     }
     if matrix.determinant() < 0.0 {
         return Err(entry.refuse("matrix", "this matrix is a reflection: its axes are left-handed", "turn one of the axes around"));

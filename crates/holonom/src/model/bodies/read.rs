@@ -167,14 +167,33 @@ fn substance(
             return Err(entry.refuse_all(format!("`{}` has no `inertia`", entry.name), cure));
         }
     };
+    if !(mass > 0.0 && mass.is_finite() && inertia.iter().all(|entry| entry.is_finite())) {
+        let message = format!("`{}` has a mass of {mass} kg and moments of up to {} kg·m²", entry.name, inertia.amax());
+        return Err(entry.refuse_all(message, "check the units: lengths are in m, densities in kg/m³"));
+    }
+    let gyration = (inertia.trace() / mass).sqrt();
+    if gyration > 0.0 && !SIZES.contains(&gyration) {
+        let message = format!("mass and inertia of `{}` are those of something of the size {gyration:.1e} m", entry.name);
+        return Err(entry.refuse_all(message, "check the units: masses are in kg, moments of inertia in kg·m²"));
+    }
     Ok((mass, inertia))
 }
+
+/// Radii of gyration of bodies that can be computed with, m: powers of them must be numbers.
+const SIZES: std::ops::Range<f64> = 1e-30..1e30;
 
 /// The inertia tensor at a key, which must be one that a body can have.
 fn tensor(entry: &Entry<'_>, key: &str, dim: usize) -> Read<Matrix3<f64>> {
     if dim == 2 {
+        if let Value::List(_) = entry.value(key)? {
+            return Err(entry.refuse(key, "a planar model has one moment of inertia", format!("write {key} = …, about the normal of the plane")));
+        }
         let polar = entry.positive(key)?;
         return Ok(Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, polar)));
+    }
+    if let Value::Number(_) | Value::Text(_) = entry.value(key)? {
+        let cure = format!("write {key} = [Ixx, Iyy, Izz], or with the products behind them [.., Ixy, Ixz, Iyz]");
+        return Err(entry.refuse(key, "a body in space has three moments of inertia, and this is one", cure));
     }
     let items = entry.list(key)?;
     let number = |(k, item): (usize, &Value)| entry.number_in(Spot { key, item: Some(k) }, item);
@@ -201,7 +220,10 @@ fn tensor(entry: &Entry<'_>, key: &str, dim: usize) -> Read<Matrix3<f64>> {
     };
     match inertia::check(tensor) {
         Ok(()) => Ok(Matrix3::from_fn(|i, j| tensor[i][j])),
-        Err(why) => Err(entry.refuse(key, why, CURE)),
+        Err(why) => {
+            let symmetric = (0..3).all(|i| tensor[i][(i + 1) % 3] == tensor[(i + 1) % 3][i]);
+            Err(entry.refuse(key, why, if symmetric { CURE } else { "a tensor of inertia is symmetric: write the same number at both places" }))
+        }
     }
 }
 

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::shape::Shape as Solid;
 use crate::model::entry::Entry;
-use crate::model::fault::Read;
+use crate::model::fault::{Read, Refused};
 use crate::model::key::{Key, Shape};
+use crate::model::value::Value;
 use crate::record::SceneShape;
 
 /// The keys of a shape; one of them is given.
@@ -26,17 +27,30 @@ pub struct Shaped {
 
 /// Reads the shape of a body.
 pub fn read(body: &Entry<'_>, dim: usize) -> Read<Shaped> {
+    if !matches!(body.value("shape")?, Value::Table(_)) {
+        return Err(body.refuse("shape", "a shape is a table with one key", "write shape = { box = [1, 1, 1] }, { sphere = 1 } and so on"));
+    }
     let path = format!("{}.shape", body.path);
     let entry = Entry { name: body.name, path: &path, table: body.table("shape")?, ..*body };
+    let before = entry.sink.count();
     entry.refuse_unknown_keys("a shape", &KEYS.iter().collect::<Vec<_>>());
     let names: Vec<&str> = KEYS.iter().map(|key| key.name).collect();
     let given: Vec<&str> = names.iter().copied().filter(|name| entry.has(name)).collect();
     let [kind] = given[..] else {
         return match given.len() {
+            // What it says is under a name that is not known.
+            0 if entry.sink.count() > before => Err(Refused),
             0 => Err(entry.refuse_all("this shape says nothing", format!("give one of {}", names.join(", ")))),
             _ => Err(entry.refuse_key(given[1], format!("`{}` and `{}` are two shapes", given[0], given[1]), "keep one of the two")),
         };
     };
+    if let (Value::List(items), Some(key)) = (entry.value(kind)?, KEYS.iter().find(|key| key.name == kind))
+        && let Shape::Numbers(wanted, _) = key.shape
+        && items.len() != wanted
+    {
+        let message = format!("`{kind}` wants {wanted} numbers, and this has {}", items.len());
+        return Err(entry.refuse(kind, message, format!("give {}", key.doc)));
+    }
     let (shape, picture) = match kind {
         "box" => {
             let size = entry.sizes(kind)?;

@@ -16,8 +16,10 @@ pub(super) fn drive(assembly: &mut Assembly<'_>, entry: &Entry<'_>, is_angle: bo
     let coordinate = coordinate(assembly, entry, "joint".into(), text?)?;
     let profile = profile?;
     if coordinate.is_angle != is_angle {
-        let (have, kind) = if is_angle { ("a displacement", "displacement") } else { ("an angle", "angle") };
-        return Err(entry.refuse("joint", format!("this joint coordinate is {have}"), format!("use type = \"{kind}\", or another joint")));
+        let name = entry.text("joint")?;
+        let [is, has] = if is_angle { ["an angle", "a displacement"] } else { ["a displacement", "an angle"] };
+        let kind = if is_angle { "displacement" } else { "angle" };
+        return Err(entry.refuse("joint", format!("this drives {is}, and `{name}` has {has}"), format!("use type = \"{kind}\", or another joint")));
     }
     let start = profile.at(0.0)[0];
     if start.abs() > LARGEST_START {

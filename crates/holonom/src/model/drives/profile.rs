@@ -19,11 +19,17 @@ pub(super) const fn key(unit: &'static str, doc: &'static str) -> Key {
 pub(super) fn read(entry: &Entry<'_>) -> Read<Arc<dyn Signal>> {
     let signal: Arc<dyn Signal> = match entry.value("profile")? {
         Value::Table(_) => Arc::new(table(entry)?),
+        Value::List(_) => {
+            let message = "a profile is a formula of t or a table, and this is a list";
+            return Err(entry.refuse("profile", message, "write profile = { table = [[t, value], …] }, or a formula in quotes"));
+        }
         _ => Arc::new(TimeProgram(entry.formula("profile", &["t"])?)),
     };
     let start = signal.at(0.0);
     if start.iter().any(|value| !value.is_finite()) {
-        return Err(entry.refuse("profile", format!("value, rate and second derivative are {start:?} at t = 0"), "all must be finite"));
+        let [value, rate, second] = start;
+        let message = format!("at t = 0 this profile is {value}, its rate {rate} and its second derivative {second}");
+        return Err(entry.refuse("profile", message, "all three must be finite: let it begin smoothly"));
     }
     Ok(signal)
 }

@@ -12,6 +12,7 @@ use crate::model::expression::Program;
 use crate::model::fault::Read;
 use crate::model::geometry::unit;
 use crate::model::key::{Key, Shape};
+use crate::model::value::Value;
 use crate::system::{Differentiated, ForceFunction, NodeId, Number, Place, SIZE, Term};
 
 /// Time, place, its velocity, and angular velocity of the body.
@@ -33,7 +34,11 @@ pub(super) fn body(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &str) -> Rea
     let name = entry.text(key)?;
     match assembly.member(entry, key.into(), name)? {
         Member::Body(k) => Ok(k),
-        _ => Err(entry.refuse(key, format!("`{name}` is no body"), "name a [body.NAME]")),
+        Member::Point(_) => {
+            let cure = "name a [body.NAME]; a point takes forces of type \"constant\" and \"expression\"";
+            Err(entry.refuse(key, format!("`{name}` is a point, and a body is wanted here"), cure))
+        }
+        Member::Ground => Err(entry.refuse(key, format!("`{name}` is no body"), "name a [body.NAME]")),
     }
 }
 
@@ -179,6 +184,10 @@ pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, given: &Given<
     let dim = assembly.dimension();
     let names = variables(assembly.axes.name);
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    if !matches!(entry.value(given.key), Ok(Value::List(_)) | Err(_)) && !(given.is_torque && dim == 2) {
+        let message = format!("`{}` wants a list of {dim} numbers or formulas", given.key);
+        return Err(entry.refuse(given.key, message, "give one for each axis of the model"));
+    }
     let formulas = match given.is_torque && dim == 2 {
         true => entry.formula(given.key, &names).map(|formula| vec![formula]),
         false => entry.formulas(given.key, dim, &names),

@@ -46,6 +46,9 @@ fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
     let stiffness = numbers(entry, "stiffness", count);
     let damping = entry.optional("damping", |entry, key| numbers(entry, key, count));
     let (members, at, stiffness, damping) = (members?, at?, stiffness?, damping?);
+    if stiffness.iter().chain(damping.iter().flatten()).all(|&number| number == 0.0) {
+        return Err(entry.refuse_all(format!("the bushing `{}` does nothing", entry.name), "give it a stiffness or a damping above 0"));
+    }
     let coordinates = coordinates(assembly, members, at);
     for (k, &q) in coordinates.iter().enumerate() {
         if stiffness[k] > 0.0 {
@@ -81,7 +84,7 @@ fn members(assembly: &Assembly<'_>, entry: &Entry<'_>) -> Read<[Member; 2]> {
 fn numbers(entry: &Entry<'_>, key: &str, count: usize) -> Read<Vec<f64>> {
     let items = entry.list(key)?;
     if items.len() != count {
-        return Err(entry.refuse(key, format!("`{key}` wants {count} numbers, and this has {}", items.len()), format!("give {count} numbers")));
+        return Err(entry.refuse(key, format!("`{key}` wants {count} numbers, and this has {}", items.len()), if count == 3 { "give one for each of x, y and the rotation" } else { "give one for each of x, y, z, rx, ry, rz" }));
     }
     let number = |(k, item)| {
         let spot = Spot { key, item: Some(k) };

@@ -17,6 +17,7 @@ mod torque;
 mod torsion;
 
 use super::assembly::Assembly;
+use super::bodies::nodes::Member;
 use super::entry::Entry;
 use super::geometry::{Vec3, unit};
 use super::key::Kind;
@@ -42,9 +43,11 @@ pub(super) fn needed(assembly: &Assembly<'_>, entry: &Entry<'_>, out: &mut Vec<(
     if !entry.text("type").is_ok_and(|kind| turns.contains(&kind)) {
         return;
     }
-    let named = ["body", "reaction"].into_iter().filter_map(|key| entry.text(key).ok());
-    let names = named.chain(entry.texts("between").into_iter().flatten());
-    for body in names.filter_map(|name| assembly.body_by_name(name)) {
-        out.extend((0..3).map(|k| (body, unit(k))));
+    let named = ["body", "reaction"].into_iter().filter_map(|key| Some((key, entry.text(key).ok()?)));
+    let between = entry.texts("between").into_iter().flatten().map(|name| ("between", name));
+    for (key, name) in named.chain(between) {
+        if let Ok(Member::Body(body)) = assembly.member(entry, key.into(), name) {
+            out.extend((0..3).map(|k| (body, unit(k))));
+        }
     }
 }
