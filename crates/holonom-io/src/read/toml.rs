@@ -60,8 +60,9 @@ fn convert_table(path: &str, table: &DeTable<'_>, places: &mut Places) -> Result
 }
 
 fn convert(path: &str, value: &Spanned<DeValue<'_>>, places: &mut Places) -> Result<Value, SyntaxError> {
-    // The span of a table is its header or its braces; its name is the better place, and is noted with its key.
-    if !matches!(value.get_ref(), DeValue::Table(_)) {
+    // The span of a table is its header or its braces; its name is the better place, and is noted with its key;
+    // one in a list has no name.
+    if !matches!(value.get_ref(), DeValue::Table(_)) || path.ends_with(']') {
         places.add_value(path, value.span());
     }
     let refuse = |message: &str, cure| SyntaxError { message: message.into(), bytes: value.span(), cure };

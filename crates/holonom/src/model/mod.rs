@@ -212,6 +212,10 @@ fn make_bodies(assembly: &mut Assembly<'_>, root: &Entry<'_>, parameters: &HashM
         forces::needed(assembly, entry, &mut survey.needed);
         Ok(())
     });
+    // A named point beside a rod or a plate is held by nodes, too.
+    for (k, body) in assembly.bodies.iter().enumerate() {
+        survey.needed.extend(body.points.iter().map(|&(_, at)| (k, geometry::subtract(at, body.position))));
+    }
     let places: Vec<Option<Place>> =
         assembly.points.iter().zip(specs).map(|(point, spec)| if points::is_driven(spec) { None } else { point.end.place() }).collect();
     let wanted = bodies::nodes::Wanted {

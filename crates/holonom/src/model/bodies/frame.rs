@@ -113,10 +113,13 @@ impl Frame {
 }
 
 fn inverse(basis: &[Basis]) -> Vec<[Factor; 4]> {
-    let s = DMatrix::from_fn(4, basis.len(), |row, column| {
-        let Basis { at, is_point, .. } = basis[column];
-        let relative = if is_point { geometry::subtract(at, basis[0].at) } else { at };
-        if row == 0 { f64::from(u8::from(is_point)) } else { relative[row - 1] }
+    let relative = |node: &Basis| if node.is_point { geometry::subtract(node.at, basis[0].at) } else { node.at };
+    // In units of its size: products of three lengths could vanish or overflow.
+    let size = basis.iter().flat_map(relative).fold(0.0_f64, |size, c| size.max(c.abs()));
+    let unit = if size > 0.0 { size } else { 1.0 };
+    let s = DMatrix::from_fn(4, basis.len(), |row, column| match row {
+        0 => f64::from(u8::from(basis[column].is_point)),
+        _ => relative(&basis[column])[row - 1] / unit,
     });
     // SᵀS is well conditioned, as nodes are chosen to be far from dependent.
     let inverse = match s.is_square() {
@@ -124,7 +127,7 @@ fn inverse(basis: &[Basis]) -> Vec<[Factor; 4]> {
         false => (s.transpose() * &s).try_inverse().map(|inner| inner * s.transpose()),
     };
     let inverse = inverse.expect("the nodes of a body are independent");
-    (0..basis.len()).map(|k| std::array::from_fn(|c| [inverse[(k, c)], 0.0])).collect()
+    (0..basis.len()).map(|k| std::array::from_fn(|c| [inverse[(k, c)] / if c == 0 { 1.0 } else { unit }, 0.0])).collect()
 }
 
 /// With two points a and b: (1 − z) a + z b and z = x/(b − a); with a point and a direction u: z = x/u.

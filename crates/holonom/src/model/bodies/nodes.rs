@@ -14,7 +14,7 @@ use crate::model::geometry::{Vec3, dot, norm, rest, scale, subtract};
 use crate::system::{Place, SystemBuilder, Term};
 
 /// Smallest part of a node's edge that is at right angles to the others, over its length, for it to become a node.
-const INDEPENDENT: f64 = 0.3;
+const INDEPENDENT: f64 = 0.05;
 
 /// Shortest edge between two points, over the size of the body, for both to become nodes.
 const APART: f64 = 0.02;
@@ -56,12 +56,14 @@ pub struct Wanted<'a> {
 /// Makes the nodes of all bodies, their mass and the rows that keep them rigid; a frame for each body.
 pub fn make(builder: &mut SystemBuilder, wanted: &Wanted<'_>) -> Vec<Frame> {
     let groups = groups(wanted);
-    let mut places: Vec<Option<Place>> = wanted.shared.iter().map(|shared| known_place(shared, wanted)).collect();
+    let mut places: Vec<Option<Found>> = wanted.shared.iter().map(|shared| known_place(shared, wanted)).collect();
+    spread(wanted, &groups, &mut places);
     let mut kept = HashSet::new();
     let mut frames: Vec<Option<Frame>> = vec![None; wanted.bodies.len()];
     for (root, members) in groups.iter().enumerate().filter(|(_, members)| !members.is_empty()) {
         let group = Group { members, lead: &wanted.bodies[root], wanted };
         let basis = group.basis(builder, &mut places);
+        spread(wanted, &groups, &mut places);
         let frame = Frame::new(builder.dimension(), basis.clone());
         group.add_mass(builder, &frame, basis[0].at);
         keep_rigid(builder, &group.lead.name, &basis, &mut kept);
@@ -88,15 +90,57 @@ fn groups(wanted: &Wanted<'_>) -> Vec<Vec<usize>> {
     groups
 }
 
+/// The node or place of something shared, and whether a direction goes the same way (1) or the opposite one (−1).
+type Found = (Place, f64);
+
 /// Where a shared point or direction is, if that is known before any body has nodes.
-fn known_place(shared: &Shared, wanted: &Wanted<'_>) -> Option<Place> {
-    shared.sides.iter().find_map(|&(member, at)| match member {
+fn known_place(shared: &Shared, wanted: &Wanted<'_>) -> Option<Found> {
+    let place = shared.sides.iter().find_map(|&(member, at)| match member {
         Member::Ground if shared.is_point => Some(Place::Fixed(at)),
         Member::Ground => Some(Place::Fixed(scale(at, wanted.length))),
         Member::Point(k) => (wanted.points)(k),
         Member::Body(_) => None,
-    })
+    });
+    place.map(|place| (place, 1.0))
 }
+
+/// Gives what is shared at one joint of a body the node of another joint that has the same point or a parallel direction
+/// there, from body to body as far as it goes.
+fn spread(wanted: &Wanted<'_>, groups: &[Vec<usize>], places: &mut [Option<Found>]) {
+    let own: Vec<Vec<(usize, Vec3)>> = groups.iter().map(|members| of_bodies(wanted, members)).collect();
+    let mut changed = true;
+    while std::mem::take(&mut changed) {
+        for of_group in &own {
+            for &(known, at) in of_group {
+                let Some((place, sense)) = places[known] else { continue };
+                for &(other, there) in of_group.iter().filter(|&&(other, _)| other != known) {
+                    if places[other].is_none() && wanted.shared[known].is_point == wanted.shared[other].is_point {
+                        places[other] = alike(wanted.shared[known].is_point, at, there, wanted.length).map(|same| (place, sense * same));
+                        changed |= places[other].is_some();
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What some bodies share with others, with its reference coordinates on them.
+fn of_bodies(wanted: &Wanted<'_>, members: &[usize]) -> Vec<(usize, Vec3)> {
+    let side = |shared: &Shared| shared.sides.iter().find_map(|&(member, at)| matches!(member, Member::Body(k) if members.contains(&k)).then_some(at));
+    wanted.shared.iter().enumerate().filter_map(|(k, shared)| Some((k, side(shared)?))).collect()
+}
+
+/// Whether two points are the same (1), and whether two unit directions go the same way (1) or the opposite one (−1).
+fn alike(are_points: bool, a: Vec3, b: Vec3, length: f64) -> Option<f64> {
+    if are_points {
+        return (norm(subtract(a, b)) <= SAME * length).then_some(1.0);
+    }
+    let sense = dot(a, b).signum();
+    (norm(subtract(a, scale(b, sense))) <= SAME).then_some(sense)
+}
+
+/// Difference of two places, over the size of the mechanism, or of two directions that is round-off.
+const SAME: f64 = 1e-13;
 
 struct Group<'a> {
     members: &'a [usize],
@@ -107,42 +151,35 @@ struct Group<'a> {
 impl Group<'_> {
     /// Chooses the nodes: shared points, shared directions, then its own; the first is a point. Those of a plate or a rod
     /// lie in it, but for directions of its own across it, which then have no mass.
-    fn basis(&self, builder: &mut SystemBuilder, places: &mut [Option<Place>]) -> Vec<Basis> {
-        let own = |shared: &Shared| {
-            shared.sides.iter().find_map(|&(member, at)| matches!(member, Member::Body(k) if self.members.contains(&k)).then_some(at))
-        };
-        // Fixed places first: they are no unknowns.
-        let candidates = |is_point: bool, places: &[Option<Place>]| -> Vec<(usize, Vec3)> {
-            let of_kind = self.wanted.shared.iter().enumerate().filter(|(_, shared)| shared.is_point == is_point);
-            let mut found: Vec<(usize, Vec3)> = of_kind.filter_map(|(k, shared)| Some((k, own(shared)?))).collect();
-            found.sort_by_key(|&(k, _)| !matches!(places[k], Some(Place::Fixed(_))));
-            found
-        };
+    fn basis(&self, builder: &mut SystemBuilder, places: &mut [Option<Found>]) -> Vec<Basis> {
         let (dim, centre, solid) = (builder.dimension(), self.centre(), self.solid(builder.dimension()));
         let lies_in = |edge: Vec3| norm(rest(&solid, edge)) <= THIN * norm(edge);
-        let (points, directions) = (candidates(true, places), candidates(false, places));
-        let size = points.iter().map(|&(_, at)| norm(subtract(at, centre))).fold(0.0, f64::max);
-        let edges = self.needed_edges(dim, &solid, &points, &directions);
+        let mut own = of_bodies(self.wanted, self.members);
+        let is_point = |k: usize| self.wanted.shared[k].is_point;
+        // Fixed places first, as they are no unknowns; then points.
+        own.sort_by_key(|&(k, _)| (!matches!(places[k], Some((Place::Fixed(_), _))), !is_point(k)));
+        let size = own.iter().filter(|&&(k, _)| is_point(k)).map(|&(_, at)| norm(subtract(at, centre))).fold(0.0, f64::max);
+        let edges = self.needed_edges(dim, &solid, &own);
         let (mut basis, mut spanned) = (Vec::<Basis>::new(), Vec::<Vec3>::new());
-        for (k, at) in points.into_iter().filter(|&(_, at)| lies_in(subtract(at, centre))) {
-            if let Some(first) = basis.first() {
-                let edge = subtract(at, first.at);
-                if spanned.len() == edges || norm(edge) <= APART * size || !is_independent(&spanned, edge) {
-                    continue;
-                }
-                spanned.push(edge);
+        // The first node is a point.
+        let first = own.iter().copied().find(|&(k, at)| is_point(k) && lies_in(subtract(at, centre)));
+        let (at, place) = match first {
+            Some((k, at)) => (at, self.place(builder, &mut places[k], at, true)),
+            None => (centre, self.place(builder, &mut None, centre, true)),
+        };
+        basis.push(Basis { place, at, is_point: true });
+        for (k, at) in own {
+            let edge = if is_point(k) { subtract(at, basis[0].at) } else { scale(at, self.wanted.length) };
+            let is_short = is_point(k) && norm(edge) <= APART * size;
+            if spanned.len() == edges || is_short || !lies_in(edge) || !is_independent(&spanned, edge) {
+                continue;
             }
-            basis.push(Basis { place: self.place(builder, &mut places[k], at, true), at, is_point: true });
-        }
-        if basis.is_empty() {
-            basis.push(Basis { place: self.place(builder, &mut None, centre, true), at: centre, is_point: true });
-        }
-        for (k, at) in directions.into_iter().filter(|&(_, at)| lies_in(at)) {
-            if spanned.len() < edges && is_independent(&spanned, at) {
-                let at = scale(at, self.wanted.length);
-                spanned.push(at);
-                basis.push(Basis { place: self.place(builder, &mut places[k], at, false), at, is_point: false });
-            }
+            spanned.push(edge);
+            let node = if is_point(k) { at } else { edge };
+            let place = self.place(builder, &mut places[k], node, is_point(k));
+            // A direction may have the node of its opposite.
+            let sense = places[k].map_or(1.0, |(_, sense)| sense);
+            basis.push(Basis { place, at: scale(node, sense), is_point: is_point(k) });
         }
         while spanned.len() < edges {
             let at = scale(self.own_direction(dim, &solid, &spanned), self.wanted.length);
@@ -153,13 +190,12 @@ impl Group<'_> {
     }
 
     /// The node of a point or direction, made where there is none yet.
-    fn place(&self, builder: &mut SystemBuilder, known: &mut Option<Place>, at: Vec3, is_point: bool) -> Place {
-        *known.get_or_insert_with(|| {
-            Place::Node(match is_point {
-                true => builder.free_node(at, self.lead.velocity_at(at)),
-                false => builder.free_direction(at, self.lead.rate_of(at)),
-            })
-        })
+    fn place(&self, builder: &mut SystemBuilder, known: &mut Option<Found>, at: Vec3, is_point: bool) -> Place {
+        let mut node = || match is_point {
+            true => builder.free_node(at, self.lead.velocity_at(at)),
+            false => builder.free_direction(at, self.lead.rate_of(at)),
+        };
+        known.get_or_insert_with(|| (Place::Node(node()), 1.0)).0
     }
 
     /// A direction that is not yet spanned: as much of one of the principal axes as is new, those in a plate or along a rod
@@ -195,13 +231,14 @@ impl Group<'_> {
     }
 
     /// How many edges it takes: three, and of a plate two and of a rod one, where nothing needs more.
-    fn needed_edges(&self, dim: usize, solid: &[Vec3], points: &[(usize, Vec3)], directions: &[(usize, Vec3)]) -> usize {
+    fn needed_edges(&self, dim: usize, solid: &[Vec3], shared: &[(usize, Vec3)]) -> usize {
         if dim == 2 {
             return 1;
         }
         let centre = self.centre();
         let needed = self.wanted.needed.iter().filter(|(body, _)| self.members.contains(body)).map(|&(_, u)| u);
-        let edges = points.iter().map(|&(_, at)| subtract(at, centre)).chain(directions.iter().map(|&(_, u)| u)).chain(needed);
+        let edge = |&(k, at): &(usize, Vec3)| if self.wanted.shared[k].is_point { subtract(at, centre) } else { at };
+        let edges = shared.iter().map(edge).chain(needed);
         let held = edges.into_iter().all(|edge| norm(rest(solid, edge)) <= THIN * norm(edge));
         if held { solid.len() } else { 3 }
     }

@@ -48,6 +48,10 @@ pub(super) fn two(assembly: &Assembly<'_>, entry: &Entry<'_>, angles: Option<[bo
     }
     let (a, b) = (coordinate(assembly, entry, spot(0), first), coordinate(assembly, entry, spot(1), second));
     let pair = [a?, b?];
+    let joint = |text: &str| text.split('.').next().unwrap_or_default().to_string();
+    if joint(first) == joint(second) && pair[0].name == pair[1].name {
+        return Err(entry.refuse(spot(1), format!("`{first}` is coupled to itself"), "name two different joints"));
+    }
     for (k, wanted) in angles.into_iter().flatten().enumerate() {
         if pair[k].is_angle != wanted {
             let what = if wanted { "an angle" } else { "a displacement" };

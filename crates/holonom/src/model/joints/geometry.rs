@@ -63,8 +63,12 @@ pub fn plan(assembly: &Assembly<'_>, entry: &Entry<'_>, share: bool, survey: &mu
         return Ok(());
     }
     let sides = |of: [Vec3; 2]| [(geometry.members[0], of[0]), (geometry.members[1], of[1])];
+    // What is not in the same place at the start keeps its rows, which the start then meets or refuses.
+    let apart = |[a, b]: [Vec3; 2]| norm(subtract(b, a)) > SAME * norm(a).max(norm(b));
     for feature in joint.shares[usize::from(assembly.dimension() == 2)] {
         match *feature {
+            Feature::Point | Feature::All if apart(geometry.at) => (),
+            Feature::Axis(k) if apart(directions.map(|triad| triad[k])) => (),
             Feature::Point => survey.shared.push(Shared { sides: sides(geometry.at), is_point: true }),
             Feature::Axis(k) => survey.shared.push(Shared { sides: sides(directions.map(|triad| triad[k])), is_point: false }),
             Feature::All => {
@@ -76,6 +80,9 @@ pub fn plan(assembly: &Assembly<'_>, entry: &Entry<'_>, share: bool, survey: &mu
     }
     Ok(())
 }
+
+/// Distance of two places over their coordinates, or of two directions, that is round-off.
+const SAME: f64 = 1e-12;
 
 impl Geometry {
     pub fn read(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &JointKind) -> Read<Self> {
@@ -97,7 +104,16 @@ impl Geometry {
             _ => sites(assembly, entry, false),
         };
         let triad = triad(assembly, entry, joint, dim);
-        Ok(Self { members: members?, at: at?, triad: triad? })
+        let (members, at, triad) = (members?, at?, triad?);
+        for side in 0..2 {
+            let Member::Point(k) = members[side] else { continue };
+            let point = &assembly.points[k];
+            let off = norm(subtract(at[side], point.end.start));
+            assembly.check_start(entry, off, norm(at[side]).max(norm(point.end.start)), || {
+                format!("the joint sits {off:.3e} m beside the point `{}`", point.name)
+            })?;
+        }
+        Ok(Self { members, at, triad })
     }
 }
 
@@ -114,7 +130,7 @@ fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &JointKind) -> Rea
     if members[0] == members[1] {
         return Err(entry.refuse(spot(1), format!("`{}` joins `{first}` to itself", entry.name), "name two different bodies"));
     }
-    let turns = joint.shares[0] != [Feature::Point] || joint.axes[0] > 0;
+    let turns = joint.at != Site::Two && (joint.shares[0] != [Feature::Point] || joint.axes[0] > 0);
     for (k, member) in members.iter().enumerate() {
         if matches!(member, Member::Point(_)) && turns && !(k == 1 && joint.kind.name.starts_with("point-on")) {
             let message = format!("`{}` is a point, and a {} joint needs a body there", names[k], joint.kind.name);

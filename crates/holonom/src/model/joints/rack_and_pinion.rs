@@ -44,5 +44,8 @@ radius = 0.1
 fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
     let (joints, radius) = (two(assembly, entry, Some([true, false])), entry.number("radius"));
     let ([angle, displacement], radius) = (joints?, radius?);
+    if radius == 0.0 {
+        return Err(entry.refuse("radius", "a radius of zero locks the rack and frees the pinion", "give the radius of the pinion"));
+    }
     couple(assembly, entry, &[(displacement, 1.0), (angle, -radius)])
 }
