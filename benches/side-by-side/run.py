@@ -28,6 +28,12 @@ PROBLEMS = [
      ["--problem", "scp", "--model", "coords", "--ignore_dup", "--h", "0.025", "--tend", "100", "--solver", "trap"]),
     ("four-bar N = 40, h = 1e-3", FOUR_BAR_40, ["conserving", "conserving-ggl"],
      ["--problem", "fourbar", "--n", "40", "--solver", "ga", "--linear", "sparse", "--h", "1e-3", "--k", "1"]),
+    ("Andrews, h = 1e-5, 0.05 s", ["example:andrews", "--step", "1e-5", "--end", "0.05"], ["conserving", "conserving-ggl"],
+     ["--problem", "andrews", "--h", "1e-5", "--tend", "0.05", "--solver", "ga"]),
+    ("Bricard, h = 1e-3, 10 s", ["example:bricard", "--step", "1e-3", "--end", "10"], ["conserving", "conserving-ggl"],
+     ["--problem", "bricard", "--model", "full", "--linear", "eigendense", "--ignore", "--solver", "ga", "--h", "1e-3", "--tend", "10"]),
+    ("governor, h = 1e-3, 10 s", ["example:flyball-governor", "--step", "1e-3", "--end", "10"], ["conserving", "conserving-ggl"],
+     ["--problem", "flyball", "--h", "1e-3", "--tend", "10", "--solver", "ga"]),
 ]
 
 

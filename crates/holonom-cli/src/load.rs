@@ -21,6 +21,19 @@ pub const EXAMPLES: &[(&str, &str)] = &[
     ("spring-pendulum", include_str!("../../../examples/spring-pendulum.toml")),
     ("car-axis", include_str!("../../../examples/car-axis.toml")),
     ("chain", include_str!("../../../examples/chain.toml")),
+    ("free-body", include_str!("../../../examples/free-body.toml")),
+    ("heavy-top", include_str!("../../../examples/heavy-top.toml")),
+    ("rolling-disc", include_str!("../../../examples/rolling-disc.toml")),
+    ("slider-crank", include_str!("../../../examples/slider-crank.toml")),
+    ("spatial-four-bar", include_str!("../../../examples/spatial-four-bar.toml")),
+    ("bricard", include_str!("../../../examples/bricard.toml")),
+    ("andrews", include_str!("../../../examples/andrews.toml")),
+    ("jansen-linkage", include_str!("../../../examples/jansen-linkage.toml")),
+    ("flyball-governor", include_str!("../../../examples/flyball-governor.toml")),
+    ("differential", include_str!("../../../examples/differential.toml")),
+    ("suspension", include_str!("../../../examples/suspension.toml")),
+    ("stewart-platform", include_str!("../../../examples/stewart-platform.toml")),
+    ("robot-arm", include_str!("../../../examples/robot-arm.toml")),
 ];
 
 /// Rows of the results where the steps follow from an accuracy and no interval is given.
@@ -203,7 +216,14 @@ pub fn method_failure(error: MethodError) -> Failure {
 
 /// A model that cannot start, with its cure.
 pub fn start_failure(error: StartError) -> Failure {
-    Failure::usage(error.to_string(), "move the points named there, or take away or loosen one of the constraints")
+    let cure = match &error {
+        StartError::Acceleration => {
+            "something that can turn or move has no inertia, such as a rod about itself: give it some, or hold it with a joint"
+        }
+        StartError::Nonholonomic { .. } => "take another formulation, such as the default",
+        _ => "move what is named there, or take away or loosen one of the constraints",
+    };
+    Failure::usage(error.to_string(), cure)
 }
 
 /// A state as it is kept in `checkpoint.json`.

@@ -64,3 +64,29 @@ fn the_work_of_the_road_closes_the_balance() {
         assert!(summary.energy.max_drift < 1e-10 * summary.energy.work_total.abs(), "{}", summary.energy.max_drift);
     }
 }
+
+/// Drives, dampers, friction and engines do work on these; the balance closes to a billionth of what goes through.
+#[test]
+fn driven_and_damped_models_close_their_balance() {
+    for name in ["robot-arm", "stewart-platform", "jansen-linkage", "differential", "flyball-governor", "suspension", "andrews"] {
+        let model = example(name);
+        let (step, end) = (model.settings.step.expect("a step"), model.settings.end.expect("an end").min(1.0));
+        for method in ["conserving", "conserving-ggl"] {
+            let method = Method::resolve(&Choice { method: Some(method.into()), ..Choice::default() }).unwrap();
+            let label = method.name.clone();
+            let mut simulation = Simulation::new(&model.system, method, step).unwrap();
+            // What has gone back and forth between kinetic and potential energy, and what was done from outside.
+            let (mut through, mut before) = (0.0, [simulation.audit().kinetic, simulation.audit().work]);
+            let status = simulation.run(end, &mut |simulation: &Simulation<'_>| {
+                let now = [simulation.audit().kinetic, simulation.audit().work];
+                through += (now[0] - before[0]).abs() + (now[1] - before[1]).abs();
+                before = now;
+                Verdict::GoOn
+            });
+            assert_eq!(status, Status::Completed, "{name}, {label}");
+            let drift = simulation.audit().energy_summary().max_drift;
+            println!("{name:20} {label:16} {drift:8.1e} J of {through:8.1e} J");
+            assert!(drift <= 1e-9 * through, "{name}, {label}: {drift:e} J of {through:e} J");
+        }
+    }
+}

@@ -65,11 +65,57 @@ fn the_largest_allowed_files_end_too() {
 
 /// Values that nobody should write: wrong in kind, in size or in number, not finite, not known.
 const HOSTILE: &[&str] = &[
-    "nan", "inf", "-inf", "0", "-1", "1e308", "-1e308", "1e200", "1e-200", "1e-320", "true", "\"\"", "\" \"", "\".\"", "\"..\"", "\"]\"", "\"a[\"",
-    "\"a[0]\"", "\"ground\"", "\"0/0\"", "\"1/0\"", "\"t\"", "\"q\"", "\"sqrt(t - 1)\"", "\"1e308*t\"", "[]", "[0, 0, 0]", "[0, 0]", "[1e308, 1e308, 1e308]",
-    "[1e-320, 0, 0]", "[nan, 0, 0]", "[[0, 0, 0], [0, 0, 0]]", "[[1, 0, 0], [-1, 0, 0]]", "[[1, 0], [0, 1]]", "[[]]", "[[], [], []]", "[\"\", \"\"]",
-    "[\"ground\", \"ground\"]", "[{}]", "[{}, {}]", "{}", "{ a = 1 }", "{ table = [] }", "{ table = [[0, 0], [1e-300, 1e300]] }", "{ rod = 1 }", "{ sphere = 1e-200 }",
-    "{ box = [1e200, 1, 1] }", "{ mesh = \"\" }", "{ mesh = \"..\" }", "{ quat_wxyz = [1e308, 0, 0, 0] }", "{ axis = [1e308, 0, 0], angle = 1 }",
+    "nan",
+    "inf",
+    "-inf",
+    "0",
+    "-1",
+    "1e308",
+    "-1e308",
+    "1e200",
+    "1e-200",
+    "1e-320",
+    "true",
+    "\"\"",
+    "\" \"",
+    "\".\"",
+    "\"..\"",
+    "\"]\"",
+    "\"a[\"",
+    "\"a[0]\"",
+    "\"ground\"",
+    "\"0/0\"",
+    "\"1/0\"",
+    "\"t\"",
+    "\"q\"",
+    "\"sqrt(t - 1)\"",
+    "\"1e308*t\"",
+    "[]",
+    "[0, 0, 0]",
+    "[0, 0]",
+    "[1e308, 1e308, 1e308]",
+    "[1e-320, 0, 0]",
+    "[nan, 0, 0]",
+    "[[0, 0, 0], [0, 0, 0]]",
+    "[[1, 0, 0], [-1, 0, 0]]",
+    "[[1, 0], [0, 1]]",
+    "[[]]",
+    "[[], [], []]",
+    "[\"\", \"\"]",
+    "[\"ground\", \"ground\"]",
+    "[{}]",
+    "[{}, {}]",
+    "{}",
+    "{ a = 1 }",
+    "{ table = [] }",
+    "{ table = [[0, 0], [1e-300, 1e300]] }",
+    "{ rod = 1 }",
+    "{ sphere = 1e-200 }",
+    "{ box = [1e200, 1, 1] }",
+    "{ mesh = \"\" }",
+    "{ mesh = \"..\" }",
+    "{ quat_wxyz = [1e308, 0, 0, 0] }",
+    "{ axis = [1e308, 0, 0], angle = 1 }",
 ];
 
 /// Lines of the examples of all kinds whose value is replaced by each of the hostile ones.
@@ -84,8 +130,17 @@ fn hostile_values_of_any_key_never_panic() {
             let Some((key, _)) = line.split_once(" = ") else { continue };
             for value in HOSTILE.iter().copied().chain([&*long]) {
                 let changed = format!("{key} = {value}");
-                let text: String = lines.iter().enumerate().map(|(at, &line)| if at == k { &*changed } else { line }).flat_map(|line| [line, "\n"]).collect();
-                assert!(catch_unwind(AssertUnwindSafe(|| start(kind, &text))).is_ok(), "`{key} = {value:.60}` panics in line {k} of\n{}", kind.example);
+                let text: String = lines
+                    .iter()
+                    .enumerate()
+                    .map(|(at, &line)| if at == k { &*changed } else { line })
+                    .flat_map(|line| [line, "\n"])
+                    .collect();
+                assert!(
+                    catch_unwind(AssertUnwindSafe(|| start(kind, &text))).is_ok(),
+                    "`{key} = {value:.60}` panics in line {k} of\n{}",
+                    kind.example
+                );
             }
         }
     }

@@ -239,9 +239,7 @@ fn models_that_cannot_start_name_what_contradicts() {
     let crank = "[body.crank]\nmass = 1\ninertia = [0.1, 0.2, 0.25]\nposition = [0.5, 0, 0]\npoints = { tip = [0.5, 0, 0] }\n\
                  [joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"crank\"]\nat = [0, 0, 0]\naxis = [0, 1, 0]\n";
     let drive = |name: &str, profile: &str| format!("[drive.{name}]\ntype = \"angle\"\njoint = \"hinge\"\nprofile = \"{profile}\"\n");
-    let two_drives = format!("{crank}{}{}", drive("slow", "t"), drive("fast", "2*t"));
-    let driven_and_welded =
-        format!("{crank}{}[joint.weld]\ntype = \"fixed\"\nbetween = [\"ground\", \"crank\"]\n", drive("motor", "t"));
+    let driven_and_welded = format!("{crank}{}[joint.weld]\ntype = \"fixed\"\nbetween = [\"ground\", \"crank\"]\n", drive("motor", "t"));
     // A rod of one metre between the crank's tip and a pin three metres away from it.
     let rod = "[body.rod]\nmass = 1\ninertia = [0.1, 0.2, 0.25]\nposition = [1.5, 0, 0]\npoints = { tip = [0.5, 0, 0] }\n\
                [joint.knee]\ntype = \"spherical\"\nbetween = [\"crank\", \"rod\"]\nat = [1, 0, 0]\n\
@@ -250,12 +248,12 @@ fn models_that_cannot_start_name_what_contradicts() {
     let spinning_rod = "[body.rod]\nmass = 1\nshape = { rod = 1 }\nposition = [0, 0, 0]\n\
                         [joint.axle]\ntype = \"revolute\"\nbetween = [\"ground\", \"rod\"]\nat = [0, 0, 0]\naxis = [1, 0, 0]\n";
     for (name, text, words) in [
-        ("two drives of one joint", &*two_drives, &["the velocities at the start cannot meet", "`slow`", "`fast`"][..]),
-        ("a joint driven and welded", &driven_and_welded, &["the velocities at the start cannot meet", "`motor`", "`weld["]),
+        ("a joint driven and welded", &*driven_and_welded, &["the velocities at the start cannot meet", "`motor`", "`weld["][..]),
         ("a loop that does not close", &open_loop, &["the positions at the start miss", "worst: `", "["]),
         ("a rod turned about itself", spinning_rod, &["the accelerations at the start cannot be found"]),
     ] {
-        let model = Source::read(name, text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{name}: {message}"));
+        let model =
+            Source::read(name, text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{name}: {message}"));
         let method = Method::resolve(&Choice::default()).expect("the method of choice");
         let error = Simulation::new(&model.system, method, 0.01).err().unwrap_or_else(|| panic!("{name} starts")).to_string();
         assert!(words.iter().all(|word| error.contains(word)), "{name}: {error}");

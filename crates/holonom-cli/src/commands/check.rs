@@ -4,8 +4,8 @@ use std::process::ExitCode;
 
 use holonom::analysis::{Rank, projection_form, rank, undetermined};
 use holonom::model::Model;
-use holonom::record::RecordedJoint;
 use holonom::projection::Solve;
+use holonom::record::RecordedJoint;
 use holonom::simulation::{Method, PENALTY, Simulation};
 use serde_json::json;
 

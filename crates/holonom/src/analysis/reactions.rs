@@ -22,11 +22,11 @@ const NOTHING: f64 = 1e-14;
 /// Most rows for which this dense analysis is made.
 pub const MOST_ROWS: usize = 1500;
 
-/// Finds what redundant rows leave undetermined at the positions `x` of all nodes and time `t`. `None` for more than
+/// Finds what redundant rows leave undetermined at the positions `x` of all nodes and time `t`. `None` without rows and for more than
 /// [`MOST_ROWS`] rows.
 pub fn undetermined(system: &System, x: &[f64], t: f64) -> Option<Undetermined> {
     let (rows, n, dim) = (system.constraints(), system.coordinates(), system.dimension());
-    if rows > MOST_ROWS {
+    if rows == 0 || rows > MOST_ROWS {
         return None;
     }
     let mut work = Workspace::new(system);

@@ -14,8 +14,8 @@
 use super::iteration::{Convergence, Failure, Multipliers, STALLED, SolveSettings};
 use super::kkt::{ALL, Block, Kkt, OWN_STAGE, TWO_LEVELS};
 use super::level::Level;
-use super::velocity_rows::Source;
 use super::stage::{RowsAt, Sampling, Stage};
+use super::velocity_rows::Source;
 use super::workspace::Workspace;
 use crate::system::System;
 

@@ -237,7 +237,7 @@ impl Kkt {
         let push_row = |order: &mut Vec<u32>, row| (0..self.fields).for_each(|f| order.push(self.multiplier(row, f) as u32));
         first.into_iter().for_each(|row| push_row(&mut order, row));
         let push_node = |order: &mut Vec<u32>, node: u32| {
-            for field in 0..self.fields {
+            for field in (0..self.fields).rev() {
                 (0..self.dim).for_each(|c| order.push(self.coordinate(node as usize, field, c) as u32));
             }
         };

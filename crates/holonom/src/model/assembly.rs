@@ -103,10 +103,16 @@ pub struct Assembly<'a> {
     /// All bodies, in file order, and where their nodes are made, their frames.
     pub bodies: Vec<Body>,
     pub frames: Vec<Frame>,
+    /// Position of each body in the list, by name.
+    pub body_names: HashMap<String, usize>,
     /// Places of each body that something holds, in its axes, for the picture.
     pub body_places: Vec<Vec<Vec3>>,
     /// All joints that are no couplers, in file order.
     pub joints: Vec<Joint>,
+    /// Position of each joint in the list, by name.
+    pub joint_names: HashMap<String, usize>,
+    /// Coordinates of joints that are driven, as `JOINT.COORDINATE`, with the drive.
+    pub driven: HashMap<String, String>,
     /// Names of joints and couplers that could not be read.
     pub faulty_joints: HashSet<String>,
     pub scene_joints: Vec<SceneJoint>,
@@ -204,7 +210,7 @@ impl Assembly<'_> {
 
     /// Position of a body in the list, by name.
     pub fn body_by_name(&self, name: &str) -> Option<usize> {
-        self.bodies.iter().position(|body| body.name == name)
+        self.body_names.get(name).copied()
     }
 
     /// The frame of a side of a joint.
@@ -219,14 +225,17 @@ impl Assembly<'_> {
     /// A joint by name.
     pub fn joint(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<&Joint> {
         let full = indexed(name, &entry.scope).map_err(|mistake| entry.mistaken(spot, mistake))?;
-        if let Some(joint) = self.joints.iter().find(|joint| joint.name == full) {
-            return Ok(joint);
+        if let Some(&k) = self.joint_names.get(&full) {
+            return Ok(&self.joints[k]);
+        }
+        if self.body_by_name(&full).is_some() {
+            return Err(entry.refuse(spot, format!("`{full}` is a body, and a joint is wanted here"), "name a [joint.NAME]"));
         }
         if self.faulty_joints.contains(full.split('[').next().unwrap_or(&full)) {
             return Err(Refused);
         }
         let cure = suggest(&full, self.joints.iter().map(|joint| joint.name.as_str()));
-        Err(entry.refuse(spot, format!("there is no joint `{full}` before this one"), cure))
+        Err(entry.refuse(spot, format!("there is no joint `{full}`"), cure))
     }
 
     /// Where a place is at the start: `"BODY.POINT"`, the name of a point or a body, or coordinates.
@@ -269,9 +278,9 @@ impl Assembly<'_> {
         };
         let points = &self.bodies[k].points;
         points.iter().find(|(known, _)| known == place).map(|&(_, at)| (k, at)).ok_or_else(|| {
-            let cure = match suggest(place, points.iter().map(|(name, _)| name.as_str())) {
-                none if points.is_empty() => format!("{none}: add [body.{body}.points]"),
-                cure => cure,
+            let cure = match points.is_empty() {
+                true => format!("add [body.{body}.points] with {place} = […] in body axes"),
+                false => suggest(place, points.iter().map(|(name, _)| name.as_str())),
             };
             entry.refuse(spot, format!("the body `{body}` has no point `{place}`"), cure)
         })
@@ -344,7 +353,7 @@ impl Assembly<'_> {
     pub fn draw(&mut self, entry: &Entry<'_>, kind: LineKind, from: &End, to: &End) {
         let anchor = |end: &End| match (end.point, end.body) {
             (Some(k), _) => Anchor::Point(self.points[k].name.clone()),
-            (None, Some(k)) => Anchor::Body { body: self.bodies[k].name.clone(), at: self.bodies[k].local(end.start) },
+            (None, Some(k)) => Anchor::Body { body: self.bodies[k].name.clone(), at: self.axes.in_world(self.bodies[k].local(end.start)) },
             (None, None) => Anchor::Fixed(self.axes.in_world(end.start)),
         };
         let line = Line { name: entry.name.to_string(), kind, from: anchor(from), to: anchor(to) };

@@ -1,9 +1,9 @@
 //! `[bar.NAME]`: uniform rigid rods between two points, the two-node body of natural coordinates (methods §4.1).
 
 use super::assembly::{Assembly, End, difference, from_to};
-use super::geometry::norm;
 use super::entry::Entry;
 use super::fault::{Read, Refused};
+use super::geometry::norm;
 use super::key::{Key, REPEAT, Shape};
 use super::section::Sections;
 use super::value::Table;

@@ -3,8 +3,8 @@
 //! Every reader hands back `Err(Refused)` after recording why, so that a kind first reads all its keys and only then
 //! asks which of them there are: one look at a file finds everything.
 
-use super::expression::{Mistake, Program, Scope};
 use super::bodies::Meshes;
+use super::expression::{Mistake, Program, Scope};
 use super::fault::{Fault, Read, Refused, Sink, suggest};
 use super::key::Key;
 use super::value::{Table, Value, item_path, key_path};

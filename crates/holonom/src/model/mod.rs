@@ -21,15 +21,15 @@ mod points;
 mod repeat;
 mod schema;
 mod section;
-mod spline;
 mod settings;
+mod spline;
 #[cfg(test)]
 mod tests;
 mod value;
 
 pub use assembly::{Axes, GROUND};
-pub use bodies::{Body, BodyInfo, KEYS as BODY_KEYS, Mesh, Meshes, NoMeshes};
 pub use bars::{BarInfo, KEYS as BAR_KEYS};
+pub use bodies::{Body, BodyInfo, KEYS as BODY_KEYS, Mesh, Meshes, NoMeshes};
 pub use fault::{Fault, Faults, nearest};
 pub use key::{Key, Kind, REPEAT, Shape};
 pub use points::KEYS as POINT_KEYS;
@@ -158,9 +158,12 @@ fn read(value: &Value, sink: &Sink, meshes: &dyn Meshes) -> Read<Model> {
         faulty: &faulty | &faulty_bodies,
         lines: Vec::new(),
         body_places: vec![Vec::new(); bodies.len()],
+        body_names: bodies.iter().enumerate().map(|(k, body)| (body.name.clone(), k)).collect(),
         bodies,
         frames: Vec::new(),
         joints: Vec::new(),
+        joint_names: HashMap::new(),
+        driven: HashMap::new(),
         faulty_joints: Default::default(),
         scene_joints: Vec::new(),
         efforts: Vec::new(),
@@ -203,15 +206,21 @@ fn read_bodies(sections: &mut Sections<'_>, root: &Table, axes: Axes) -> (Vec<Bo
 
 /// Looks at the joints for what bodies can share, and makes the nodes. What is wrong with a joint is told when it is built.
 fn make_bodies(assembly: &mut Assembly<'_>, root: &Entry<'_>, parameters: &HashMap<String, expression::Value>, specs: &[points::Spec]) {
-    let share = !root.optional("output", Entry::table).ok().flatten().is_some_and(|output| output.get("reactions") == Some(&Value::Bool(true)));
+    let share =
+        !root.optional("output", Entry::table).ok().flatten().is_some_and(|output| output.get("reactions") == Some(&Value::Bool(true)));
     let unheard = Sink::default();
     let mut survey = joints::Survey::default();
     let mut sections = Sections::new(&unheard, root.meshes, parameters);
     sections.read(root.table, "joint", |_| Ok(()), |entry| joints::plan(assembly, entry, share, &mut survey));
-    sections.read(root.table, "force", |_| Ok(()), |entry| {
-        forces::needed(assembly, entry, &mut survey.needed);
-        Ok(())
-    });
+    sections.read(
+        root.table,
+        "force",
+        |_| Ok(()),
+        |entry| {
+            forces::needed(assembly, entry, &mut survey.needed);
+            Ok(())
+        },
+    );
     // A named point beside a rod or a plate is held by nodes, too.
     for (k, body) in assembly.bodies.iter().enumerate() {
         survey.needed.extend(body.points.iter().map(|&(_, at)| (k, geometry::subtract(at, body.position))));
@@ -239,7 +248,8 @@ fn build_joints(sections: &mut Sections<'_>, root: &Table, assembly: &mut Assemb
         return;
     };
     for couplers in [false, true] {
-        let part: Table = entries.iter().filter(|(_, entry)| is_coupler(entry) == couplers).map(|(name, entry)| (name, entry.clone())).collect();
+        let part: Table =
+            entries.iter().filter(|(_, entry)| is_coupler(entry) == couplers).map(|(name, entry)| (name, entry.clone())).collect();
         let table: Table = [("joint", Value::Table(part))].into_iter().collect();
         let faulty = build_kinds(sections, &table, "joint", &joints::kinds(), assembly);
         assembly.faulty_joints.extend(faulty);
@@ -259,7 +269,7 @@ fn finish(assembly: Assembly<'_>, title: String, settings: Settings, output: Out
         name: body.name.clone(),
         mass: body.mass,
         shape: body.shape.clone(),
-        places: places.into_iter().chain(body.points.iter().map(|&(_, at)| body.local(at))).collect(),
+        places: places.into_iter().chain(body.points.iter().map(|&(_, at)| body.local(at))).map(|at| axes.in_world(at)).collect(),
     });
     let scene = Scene {
         axes: axes.name.to_string(),
@@ -286,7 +296,11 @@ fn finish(assembly: Assembly<'_>, title: String, settings: Settings, output: Out
         scene,
         points,
         bars,
-        channels: Channels { bodies: bodies.iter().map(|body| body.recorded.clone()).collect(), efforts: recorded_efforts(efforts), ..channels },
+        channels: Channels {
+            bodies: bodies.iter().map(|body| body.recorded.clone()).collect(),
+            efforts: recorded_efforts(efforts),
+            ..channels
+        },
         bodies,
         joints,
     }
@@ -318,7 +332,13 @@ fn channels(axes: Axes, points: &[assembly::Point], bodies: &[Body], frames: &[F
             at: frame.point(joint.geometry.at[side]),
         }
     };
-    Channels { axes: axes.name.to_string(), points: own.chain(named).collect(), bodies: Vec::new(), joints: joints.iter().map(joint).collect(), efforts: Vec::new() }
+    Channels {
+        axes: axes.name.to_string(),
+        points: own.chain(named).collect(),
+        bodies: Vec::new(),
+        joints: joints.iter().map(joint).collect(),
+        efforts: Vec::new(),
+    }
 }
 
 fn refuse_unknown(root: &Entry<'_>) {

@@ -17,7 +17,8 @@ pub fn read(table: &Table, sink: &Sink) -> HashMap<String, Known> {
     // What is part of a cycle, or behind one, is there but faulty, so that no second fault comes of it.
     known.extend(circular.iter().map(|name| (name.to_string(), Known::Faulty)));
     for name in order {
-        let entry = Entry { name: "", path: "parameters", table, scope: Scope { parameters: Some(&known), indices: &[] }, sink, meshes: &NoMeshes };
+        let entry =
+            Entry { name: "", path: "parameters", table, scope: Scope { parameters: Some(&known), indices: &[] }, sink, meshes: &NoMeshes };
         let valid = is_valid(&entry, name);
         let number = entry.number(name);
         let value = if valid { number.map_or(Known::Faulty, Known::Known) } else { Known::Faulty };

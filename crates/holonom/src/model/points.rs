@@ -150,7 +150,11 @@ pub fn check_mass(assembly: &Assembly<'_>) {
     for point in &assembly.points {
         // What is wrong with a faulty entry may be its mass.
         let name = point.name.split('[').next().unwrap_or(&point.name);
-        let massless = !assembly.faulty.contains(name) && point.mass == 0.0 && !point.carries_bar && point.end.free && !assembly.builder.has_inertia(&point.end.terms);
+        let massless = !assembly.faulty.contains(name)
+            && point.mass == 0.0
+            && !point.carries_bar
+            && point.end.free
+            && !assembly.builder.has_inertia(&point.end.terms);
         if massless && told.insert(&point.path) {
             let message = format!("the free point `{}` has no mass", point.name);
             let cure = "give it a mass, attach a bar with mass, or tie it with fixed = true";

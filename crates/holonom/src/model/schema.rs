@@ -2,9 +2,7 @@
 
 use super::key::{Key, Kind, Shape};
 use super::value::{Table, Value};
-use super::{
-    BAR_KEYS, BODY_KEYS, MODEL_KEYS, OUTPUT_KEYS, POINT_KEYS, REPEAT, SIMULATION_KEYS, constraints, drives, forces, joints,
-};
+use super::{BAR_KEYS, BODY_KEYS, MODEL_KEYS, OUTPUT_KEYS, POINT_KEYS, REPEAT, SIMULATION_KEYS, constraints, drives, forces, joints};
 
 /// JSON Schema (draft 2020-12) of the model file.
 pub fn schema() -> Value {

@@ -24,9 +24,14 @@ fn kinds_and_keys_have_their_own_names_and_documentation() {
             check_keys(kind.name, kind.keys);
         }
     }
-    for (name, keys) in
-        [("point", POINT_KEYS), ("bar", BAR_KEYS), ("body", BODY_KEYS), ("model", MODEL_KEYS), ("simulation", SIMULATION_KEYS), ("output", OUTPUT_KEYS)]
-    {
+    for (name, keys) in [
+        ("point", POINT_KEYS),
+        ("bar", BAR_KEYS),
+        ("body", BODY_KEYS),
+        ("model", MODEL_KEYS),
+        ("simulation", SIMULATION_KEYS),
+        ("output", OUTPUT_KEYS),
+    ] {
         check_keys(name, keys);
     }
 }

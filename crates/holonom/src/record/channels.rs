@@ -146,7 +146,11 @@ impl Channels {
             if dim == 3 {
                 let (orientation, omega) = body.turned(x, v);
                 // Of the two quaternions of an orientation the one near the last.
-                *last = if orientation.coords.dot(&last.coords) < 0.0 { UnitQuaternion::new_unchecked(-orientation.into_inner()) } else { orientation };
+                *last = if orientation.coords.dot(&last.coords) < 0.0 {
+                    UnitQuaternion::new_unchecked(-orientation.into_inner())
+                } else {
+                    orientation
+                };
                 row.extend([last.w, last.i, last.j, last.k, omega[0], omega[1], omega[2]]);
             }
         }
@@ -216,7 +220,8 @@ impl RecordedBody {
             }
             [e, f] => {
                 let (g, rate) = (e.cross(&f), rates[0].cross(&f) + e.cross(&rates[1]));
-                let matrix = Matrix3::from_columns(&[e, f, g]) * Matrix3::from_columns(&[local[0], local[1], local[0].cross(&local[1])]).transpose();
+                let matrix =
+                    Matrix3::from_columns(&[e, f, g]) * Matrix3::from_columns(&[local[0], local[1], local[0].cross(&local[1])]).transpose();
                 (quaternion(matrix), 0.5 * (e.cross(&rates[0]) + f.cross(&rates[1]) + g.cross(&rate)))
             }
             [e, f, g] => {

@@ -31,7 +31,8 @@ impl<'a> Recorder<'a> {
         let common = COLUMNS.iter().map(|name| name.to_string());
         let gauges = system.gauges().iter().flat_map(|name| [name.clone(), format!("{name}_rate")]);
         let forces = if reactions { channels.reaction_columns(system.row_names()) } else { Vec::new() };
-        let recording = Recording::new(common.chain(channels.motion_columns()).chain(gauges).chain(channels.effort_columns()).chain(forces));
+        let recording =
+            Recording::new(common.chain(channels.motion_columns()).chain(gauges).chain(channels.effort_columns()).chain(forces));
         Self {
             row: Vec::with_capacity(recording.columns().len()),
             orientations: vec![UnitQuaternion::identity(); channels.bodies.len()],

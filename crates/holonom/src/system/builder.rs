@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::function::{FunctionId, Functions, Part, Quantity};
 use super::gauge::{Form, Gauges};
 use super::{
-    Constant, CustomEntry, CustomRows, InvariantId, Invariants, Law, LawEntry, Load, LoadEntry, MAX_ARGUMENTS, Mass, MassBlock, Row, Signal,
-    System,
+    Constant, CustomEntry, CustomRows, InvariantId, Invariants, Law, LawEntry, Load, LoadEntry, MAX_ARGUMENTS, Mass, MassBlock, Row,
+    Signal, System,
 };
 
 /// A node of a [`SystemBuilder`] and of the system it makes.
@@ -264,7 +264,8 @@ impl SystemBuilder {
         self.directions.iter().for_each(|&node| is_point[node as usize] = false);
         let is_pfaffian = |row: &Row| matches!(row.quantity, Quantity::Function(id) if self.functions.is_pfaffian(id));
         let velocity_rows = (0..self.rows.len() as u32).filter(|&k| is_pfaffian(&self.rows[k as usize])).collect();
-        let function_rows = (0..self.rows.len() as u32).filter(|&k| matches!(self.rows[k as usize].quantity, Quantity::Function(_))).collect();
+        let function_rows =
+            (0..self.rows.len() as u32).filter(|&k| matches!(self.rows[k as usize].quantity, Quantity::Function(_))).collect();
         System {
             weighing,
             is_point,

@@ -252,8 +252,7 @@ pub(crate) struct FunctionValues {
 
 impl Functions {
     pub fn add(&mut self, invariants: &Invariants, parts: &[(Part, f64)]) -> FunctionId {
-        let mut function =
-            Function { summands: Vec::new(), base: Vec::new(), slot: self.source.len(), slots: 0, angle: self.angles };
+        let mut function = Function { summands: Vec::new(), base: Vec::new(), slot: self.source.len(), slots: 0, angle: self.angles };
         for (part, factor) in parts {
             let of = match part {
                 Part::Invariant(id) => vec![*id],

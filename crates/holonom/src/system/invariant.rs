@@ -134,7 +134,8 @@ impl Invariants {
     /// With factors f + gJ, J the quarter turn of the plane, a block is f_a f_b + g_a g_b + (f_a g_b − f_b g_a) J.
     pub(crate) fn hessian(&self, id: InvariantId) -> Vec<(u32, u32, HessianBlock)> {
         let item = &self.items[id.0 as usize];
-        let terms = |sum: &Sum| (sum.start as usize..sum.end as usize).map(|s| (self.term_node[s], [self.term_factor[s], self.term_turn[s]]));
+        let terms =
+            |sum: &Sum| (sum.start as usize..sum.end as usize).map(|s| (self.term_node[s], [self.term_factor[s], self.term_turn[s]]));
         let mut blocks = Vec::new();
         let mut push = |a: u32, b: u32, isotropic: f64, skew: f64, e: [f64; 3]| {
             if isotropic != 0.0 {

@@ -21,9 +21,9 @@ pub use custom::{ConstraintFunction, CustomRows, Differentiated, ForceFunction, 
 pub(crate) use evaluate::gather;
 pub use evaluate::{Between, Evaluation};
 pub use function::{Derivatives, Followed, FollowedFunction, FunctionId, Part, Pfaffian, PfaffianForm, Quantity, Smooth, SmoothFunction};
+pub(crate) use function::{FunctionValues, Functions, NO_CHANGE};
 pub(crate) use gauge::Gauges;
 pub use gauge::{Form, GaugeValues};
-pub(crate) use function::{FunctionValues, Functions, NO_CHANGE};
 pub(crate) use invariant::{HessianBlock, skew};
 pub use invariant::{InvariantId, Invariants};
 pub use law::{Law, Load, MAX_ARGUMENTS, Reach, Response};

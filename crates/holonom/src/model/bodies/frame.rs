@@ -149,10 +149,9 @@ pub struct Edge {
 pub fn edges(basis: &[Basis]) -> Vec<Edge> {
     let first = basis[0];
     let edge = |node: &Basis| match node.is_point {
-        true => Edge {
-            terms: vec![(node.place, 1.0).into(), (first.place, -1.0).into()],
-            reference: geometry::subtract(node.at, first.at),
-        },
+        true => {
+            Edge { terms: vec![(node.place, 1.0).into(), (first.place, -1.0).into()], reference: geometry::subtract(node.at, first.at) }
+        }
         false => Edge { terms: vec![(node.place, 1.0).into()], reference: node.at },
     };
     basis[1..].iter().map(edge).collect()

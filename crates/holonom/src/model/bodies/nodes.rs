@@ -126,7 +126,9 @@ fn spread(wanted: &Wanted<'_>, groups: &[Vec<usize>], places: &mut [Option<Found
 
 /// What some bodies share with others, with its reference coordinates on them.
 fn of_bodies(wanted: &Wanted<'_>, members: &[usize]) -> Vec<(usize, Vec3)> {
-    let side = |shared: &Shared| shared.sides.iter().find_map(|&(member, at)| matches!(member, Member::Body(k) if members.contains(&k)).then_some(at));
+    let side = |shared: &Shared| {
+        shared.sides.iter().find_map(|&(member, at)| matches!(member, Member::Body(k) if members.contains(&k)).then_some(at))
+    };
     wanted.shared.iter().enumerate().filter_map(|(k, shared)| Some((k, side(shared)?))).collect()
 }
 

@@ -44,7 +44,11 @@ pub fn read(body: &Entry<'_>, dim: usize) -> Read<Matrix3<f64>> {
         return Err(entry.refuse_key(second, format!("`{}` and `{second}` both give the orientation", given[0]), "keep one of the two"));
     }
     if let (Some(angle), Some(&key), 3) = (angles, given.first().filter(|key| **key != "axis"), dim) {
-        return Err(entry.refuse_key(angle, format!("`{angle}` goes with an `axis`, and this orientation has `{key}`"), "keep one of the two"));
+        return Err(entry.refuse_key(
+            angle,
+            format!("`{angle}` goes with an `axis`, and this orientation has `{key}`"),
+            "keep one of the two",
+        ));
     }
     if dim == 2 {
         if let Some(key) = given.first() {
@@ -96,7 +100,10 @@ fn quaternion(entry: &Entry<'_>, key: &str) -> Read<Matrix3<f64>> {
     let size = quaternion.norm();
     if (size - 1.0).abs() > ROUNDED {
         let cure = match size > 0.0 && size.is_finite() {
-            true => format!("a rotation has one of length 1: write [{}]", n.iter().map(|n| (n / size).to_string()).collect::<Vec<_>>().join(", ")),
+            true => format!(
+                "a rotation has one of length 1: write [{}]",
+                n.iter().map(|n| (n / size).to_string()).collect::<Vec<_>>().join(", ")
+            ),
             false => "a rotation has one of length 1".into(),
         };
         return Err(entry.refuse(key, format!("the length of this quaternion is {size}"), cure));
@@ -120,11 +127,12 @@ fn matrix(entry: &Entry<'_>) -> Read<Matrix3<f64>> {
     let matrix = Matrix3::from_fn(|i, j| rows[i][j]);
     let products = matrix.transpose() * matrix;
     // Written so that what is no number is refused too.
-    if let Some(k) = (0..3).find(|&k| !((products[(k, k)].sqrt() - 1.0).abs() <= ROUNDED)) {
+    let is_off = |deviation: f64| deviation.is_nan() || deviation.abs() > ROUNDED;
+    if let Some(k) = (0..3).find(|&k| is_off(products[(k, k)].sqrt() - 1.0)) {
         let message = format!("column {} of this matrix has the length {}", k + 1, products[(k, k)].sqrt());
         return Err(entry.refuse("matrix", message, "in a rotation matrix it is 1: give seven digits or more"));
     }
-    if let Some((i, j)) = [(0, 1), (0, 2), (1, 2)].into_iter().find(|&at| !(products[at].abs() <= ROUNDED)) {
+    if let Some((i, j)) = [(0, 1), (0, 2), (1, 2)].into_iter().find(|&at| is_off(products[at])) {
         let degrees = products[(i, j)].clamp(-1.0, 1.0).acos().to_degrees();
         let message = format!("columns {} and {} of this matrix are at {degrees:.4}°", i + 1, j + 1);
         return Err(entry.refuse("matrix", message, "in a rotation matrix they are at right angles: give seven digits or more"));

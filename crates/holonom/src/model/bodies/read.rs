@@ -34,13 +34,7 @@ pub const KEYS: &[Key] = &[
     Key::required("position", Shape::Vector, "m", "of the centre of mass, at the start"),
     Key::optional("orientation", Shape::Table(orientation::KEYS), "that of the model's axes", "", "of the body's axes, at the start"),
     Key::optional("velocity", Shape::Vector, "0", "m/s", "of the centre of mass, at the start"),
-    Key::optional(
-        "angular_velocity",
-        Shape::Spin,
-        "0",
-        "rad/s",
-        "in the axes of the model, at the start; one number in a planar model",
-    ),
+    Key::optional("angular_velocity", Shape::Spin, "0", "rad/s", "in the axes of the model, at the start; one number in a planar model"),
     Key::optional("points", Shape::Places, "none", "m", "named places in body axes from the centre of mass, used as \"NAME.POINT\""),
     Key::optional("axes", Shape::Places, "none", "any", "named directions in body axes, used as \"NAME.AXIS\""),
     REPEAT,
@@ -150,7 +144,9 @@ fn substance(
         (Some(_), Some(_), _) => return Err(entry.refuse_key("density", "`mass` and `density` exclude each other", "keep one of the two")),
         (Some(mass), None, _) => mass,
         (None, Some(density), Some(shaped)) => density * shaped.shape.volume(),
-        (None, Some(_), None) => return Err(entry.refuse_key("density", "a density needs a `shape`", "add shape = { box = [1, 1, 1] }, or give mass")),
+        (None, Some(_), None) => {
+            return Err(entry.refuse_key("density", "a density needs a `shape`", "add shape = { box = [1, 1, 1] }, or give mass"));
+        }
         (None, None, _) => {
             return Err(entry.refuse_all(format!("`{}` has no `mass`", entry.name), "add mass = …, or a shape with a density"));
         }
@@ -186,7 +182,11 @@ const SIZES: std::ops::Range<f64> = 1e-30..1e30;
 fn tensor(entry: &Entry<'_>, key: &str, dim: usize) -> Read<Matrix3<f64>> {
     if dim == 2 {
         if let Value::List(_) = entry.value(key)? {
-            return Err(entry.refuse(key, "a planar model has one moment of inertia", format!("write {key} = …, about the normal of the plane")));
+            return Err(entry.refuse(
+                key,
+                "a planar model has one moment of inertia",
+                format!("write {key} = …, about the normal of the plane"),
+            ));
         }
         let polar = entry.positive(key)?;
         return Ok(Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, polar)));
@@ -203,7 +203,11 @@ fn tensor(entry: &Entry<'_>, key: &str, dim: usize) -> Read<Matrix3<f64>> {
                 Value::List(numbers) if numbers.len() == 3 => {
                     all(numbers.iter().map(|number| entry.number_in(Spot { key, item: Some(k) }, number)))
                 }
-                _ => Err(entry.refuse(Spot { key, item: Some(k) }, "a row of the inertia tensor has three numbers", "write three rows of three numbers")),
+                _ => Err(entry.refuse(
+                    Spot { key, item: Some(k) },
+                    "a row of the inertia tensor has three numbers",
+                    "write three rows of three numbers",
+                )),
             };
             let rows = all(items.iter().enumerate().map(row))?;
             [0, 1, 2].map(|i| [0, 1, 2].map(|j| rows[i][j]))
@@ -222,7 +226,11 @@ fn tensor(entry: &Entry<'_>, key: &str, dim: usize) -> Read<Matrix3<f64>> {
         Ok(()) => Ok(Matrix3::from_fn(|i, j| tensor[i][j])),
         Err(why) => {
             let symmetric = (0..3).all(|i| tensor[i][(i + 1) % 3] == tensor[(i + 1) % 3][i]);
-            Err(entry.refuse(key, why, if symmetric { CURE } else { "a tensor of inertia is symmetric: write the same number at both places" }))
+            Err(entry.refuse(
+                key,
+                why,
+                if symmetric { CURE } else { "a tensor of inertia is symmetric: write the same number at both places" },
+            ))
         }
     }
 }

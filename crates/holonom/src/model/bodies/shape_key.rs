@@ -15,7 +15,13 @@ pub const KEYS: &[Key] = &[
     Key::optional("cylinder", Shape::Numbers(2, 2), "none", "m", "radius and length; its axis is z"),
     Key::optional("sphere", Shape::Number, "none", "m", "its radius"),
     Key::optional("rod", Shape::Number, "none", "m", "length of a slender rod along x"),
-    Key::optional("capsule", Shape::Numbers(2, 2), "none", "m", "radius, and length of the cylinder between its half spheres; its axis is z"),
+    Key::optional(
+        "capsule",
+        Shape::Numbers(2, 2),
+        "none",
+        "m",
+        "radius, and length of the cylinder between its half spheres; its axis is z",
+    ),
     Key::optional("mesh", Shape::Text, "none", "", "file with a closed triangle mesh in m, STL or OBJ, beside the model file"),
 ];
 

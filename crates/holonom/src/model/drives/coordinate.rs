@@ -8,7 +8,8 @@ use crate::model::joints::coordinate;
 use crate::model::key::{Key, Shape};
 
 /// The key of the joint.
-pub(super) const JOINT: Key = Key::required("joint", Shape::Text, "", "the joint, or its coordinate as \"JOINT.angle\" or \"JOINT.displacement\"");
+pub(super) const JOINT: Key =
+    Key::required("joint", Shape::Text, "", "the joint, or its coordinate as \"JOINT.angle\" or \"JOINT.displacement\"");
 
 /// Adds the row that keeps a coordinate, which must be an angle or a displacement, as a profile has it.
 pub(super) fn drive(assembly: &mut Assembly<'_>, entry: &Entry<'_>, is_angle: bool) -> Read<()> {
@@ -19,12 +20,21 @@ pub(super) fn drive(assembly: &mut Assembly<'_>, entry: &Entry<'_>, is_angle: bo
         let name = entry.text("joint")?;
         let [is, has] = if is_angle { ["an angle", "a displacement"] } else { ["a displacement", "an angle"] };
         let kind = if is_angle { "displacement" } else { "angle" };
-        return Err(entry.refuse("joint", format!("this drives {is}, and `{name}` has {has}"), format!("use type = \"{kind}\", or another joint")));
+        return Err(entry.refuse(
+            "joint",
+            format!("this drives {is}, and `{name}` has {has}"),
+            format!("use type = \"{kind}\", or another joint"),
+        ));
     }
     let start = profile.at(0.0)[0];
     if start.abs() > LARGEST_START {
         let cure = "coordinates of joints count from the start: subtract the value at t = 0, or move the bodies";
         return Err(entry.refuse("profile", format!("the profile is {start} at t = 0, and the joint is at 0"), cure));
+    }
+    let driven = format!("{}.{}", coordinate.joint, coordinate.name);
+    if let Some(other) = assembly.driven.insert(driven, entry.name.to_string()) {
+        let message = format!("`{}` is driven by `{other}` already", coordinate.joint);
+        return Err(entry.refuse("joint", message, "remove one of the two drives"));
     }
     let part = assembly.builder.part(&coordinate.form);
     let sum = assembly.builder.sum(&[(part, 1.0)]);

@@ -43,7 +43,9 @@ fn table(entry: &Entry<'_>) -> Read<Spline> {
             Value::List(items) if items.len() == 2 => {
                 all(items.iter().map(|item| inner.number_in(Spot { key: "table", item: Some(k) }, item)))
             }
-            _ => Err(inner.refuse(Spot { key: "table", item: Some(k) }, "a row has a time and a value", "write [[t, value], [t, value], …]")),
+            _ => {
+                Err(inner.refuse(Spot { key: "table", item: Some(k) }, "a row has a time and a value", "write [[t, value], [t, value], …]"))
+            }
         };
         if rows.len() < 2 {
             return Err(inner.refuse("table", format!("a table has at least two rows, and this has {}", rows.len()), "add [t, value]"));

@@ -26,8 +26,13 @@ fn variables(axes: &str) -> Vec<String> {
 }
 
 /// The key that says in which axes a force or torque is given.
-pub(super) const AXES: Key =
-    Key::optional("axes", Shape::Choice(&["world", "body"]), "\"world\"", "", "whether it is given in the axes of the model or of the body");
+pub(super) const AXES: Key = Key::optional(
+    "axes",
+    Shape::Choice(&["world", "body"]),
+    "\"world\"",
+    "",
+    "whether it is given in the axes of the model or of the body",
+);
 
 /// A body by its key.
 pub(super) fn body(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &str) -> Read<usize> {
@@ -184,7 +189,8 @@ pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, given: &Given<
     let dim = assembly.dimension();
     let names = variables(assembly.axes.name);
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    if !matches!(entry.value(given.key), Ok(Value::List(_)) | Err(_)) && !(given.is_torque && dim == 2) {
+    let wants_list = !given.is_torque || dim == 3;
+    if wants_list && !matches!(entry.value(given.key), Ok(Value::List(_)) | Err(_)) {
         let message = format!("`{}` wants a list of {dim} numbers or formulas", given.key);
         return Err(entry.refuse(given.key, message, "give one for each axis of the model"));
     }

@@ -19,7 +19,12 @@ pub(super) const KIND: Kind = Kind {
     keys: &[
         Key::required("between", Shape::Members, "", "the two bodies, or \"ground\" and a body"),
         Key::required("at", Shape::End, "m", "where it sits at the start"),
-        Key::required("stiffness", Shape::Numbers(3, 6), "N/m, N·m/rad", "along x, y, z and about x, y, z; in a planar model three: along both axes and about the normal"),
+        Key::required(
+            "stiffness",
+            Shape::Numbers(3, 6),
+            "N/m, N·m/rad",
+            "along x, y, z and about x, y, z; in a planar model three: along both axes and about the normal",
+        ),
         Key::optional("damping", Shape::Numbers(3, 6), "none", "N·s/m, N·m·s/rad", "in the same order; what it takes is booked as work"),
     ],
     example: r#"
@@ -84,7 +89,11 @@ fn members(assembly: &Assembly<'_>, entry: &Entry<'_>) -> Read<[Member; 2]> {
 fn numbers(entry: &Entry<'_>, key: &str, count: usize) -> Read<Vec<f64>> {
     let items = entry.list(key)?;
     if items.len() != count {
-        return Err(entry.refuse(key, format!("`{key}` wants {count} numbers, and this has {}", items.len()), if count == 3 { "give one for each of x, y and the rotation" } else { "give one for each of x, y, z, rx, ry, rz" }));
+        return Err(entry.refuse(
+            key,
+            format!("`{key}` wants {count} numbers, and this has {}", items.len()),
+            if count == 3 { "give one for each of x, y and the rotation" } else { "give one for each of x, y, z, rx, ry, rz" },
+        ));
     }
     let number = |(k, item)| {
         let spot = Spot { key, item: Some(k) };

@@ -16,7 +16,12 @@ pub(super) const KIND: Kind = Kind {
     equations: "effort E(t, q, q̇, …), booked as work",
     keys: &[
         JOINT,
-        Key::required("effort", Shape::Formula(&["t", "q", "q_rate"]), "N·m or N", "E as a formula of t, q and q_rate, and of the names below"),
+        Key::required(
+            "effort",
+            Shape::Formula(&["t", "q", "q_rate"]),
+            "N·m or N",
+            "E as a formula of t, q and q_rate, and of the names below",
+        ),
         Key::optional(
             "coordinates",
             Shape::Named,
@@ -83,7 +88,11 @@ fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
     let effort = entry.formula("effort", &variables)?;
     let at_start: f64 = effort.evaluate(&vec![0.0; variables.len()]);
     if !at_start.is_finite() {
-        return Err(entry.refuse("effort", format!("this formula is {at_start} at the start, where all coordinates are 0"), "it must be finite"));
+        return Err(entry.refuse(
+            "effort",
+            format!("this formula is {at_start} at the start, where all coordinates are 0"),
+            "it must be finite",
+        ));
     }
     let quantities: Vec<_> = coordinates.iter().map(|coordinate| quantity(assembly, coordinate)).collect();
     assembly.builder.law(entry.name, &quantities, Arc::new(coordinate_laws::Effort(effort)));

@@ -15,7 +15,12 @@ pub(super) const KIND: Kind = Kind {
     keys: &[
         JOINT,
         Key::required("effort", Shape::Number, "N·m or N", "F, the size of the friction when the joint moves"),
-        Key::required("speed", Shape::Number, "rad/s or m/s", "v, the speed at which three quarters of it are reached: well below those of the motion"),
+        Key::required(
+            "speed",
+            Shape::Number,
+            "rad/s or m/s",
+            "v, the speed at which three quarters of it are reached: well below those of the motion",
+        ),
         Key::optional("damping", Shape::Number, "0", "N·m·s/rad or N·s/m", "c"),
     ],
     example: r#"

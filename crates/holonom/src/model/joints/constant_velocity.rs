@@ -1,9 +1,9 @@
 use super::pair::{Pair, Side, build};
 use super::{AT, AXES, BETWEEN, Feature, JointKind, Site};
-use crate::model::geometry::dot;
-use crate::system::Form;
 use crate::model::fault::Read;
+use crate::model::geometry::dot;
 use crate::model::key::Kind;
+use crate::system::Form;
 
 pub(super) const JOINT: JointKind = JointKind {
     kind: Kind {
@@ -43,7 +43,11 @@ axes = [[0, 0, 1], [0, 0.5, 0.8660254037844386]]
 fn rows(pair: &mut Pair<'_, '_>) -> Read<()> {
     let [a, b] = pair.geometry.triad.map(|triad| triad[0]);
     if dot(a, b) < -1.0 + 1e-9 {
-        return Err(pair.entry.refuse("axes", "the two shafts point against each other at the start", "let both point along the way of the power"));
+        return Err(pair.entry.refuse(
+            "axes",
+            "the two shafts point against each other at the start",
+            "let both point along the way of the power",
+        ));
     }
     pair.coincide();
     // w_A·v_B and v_A·w_B may differ by a constant only, as both vanish at the start.

@@ -40,7 +40,11 @@ pub fn coordinate(assembly: &Assembly<'_>, entry: &Entry<'_>, spot: Spot<'_>, te
 pub(super) fn two(assembly: &Assembly<'_>, entry: &Entry<'_>, angles: Option<[bool; 2]>) -> Read<[Coordinate; 2]> {
     let texts = entry.texts("joints")?;
     let [first, second] = texts[..] else {
-        return Err(entry.refuse("joints", format!("two joints are wanted, and this names {}", texts.len()), "write joints = [\"A\", \"B\"]"));
+        return Err(entry.refuse(
+            "joints",
+            format!("two joints are wanted, and this names {}", texts.len()),
+            "write joints = [\"A\", \"B\"]",
+        ));
     };
     let spot = |k| Spot { key: "joints", item: Some(k) };
     if first == second {
@@ -48,8 +52,7 @@ pub(super) fn two(assembly: &Assembly<'_>, entry: &Entry<'_>, angles: Option<[bo
     }
     let (a, b) = (coordinate(assembly, entry, spot(0), first), coordinate(assembly, entry, spot(1), second));
     let pair = [a?, b?];
-    let joint = |text: &str| text.split('.').next().unwrap_or_default().to_string();
-    if joint(first) == joint(second) && pair[0].name == pair[1].name {
+    if pair[0].joint == pair[1].joint && pair[0].name == pair[1].name {
         return Err(entry.refuse(spot(1), format!("`{first}` is coupled to itself"), "name two different joints"));
     }
     for (k, wanted) in angles.into_iter().flatten().enumerate() {

@@ -28,7 +28,8 @@ impl Curve {
         for pair in points.windows(2) {
             knots.push(knots[knots.len() - 1] + norm(subtract(pair[1], pair[0])));
         }
-        let spline = |values: Vec<f64>| if closed { Spline::periodic(knots.clone(), values) } else { Spline::natural(knots.clone(), values) };
+        let spline =
+            |values: Vec<f64>| if closed { Spline::periodic(knots.clone(), values) } else { Spline::natural(knots.clone(), values) };
         let place: Vec<Spline> = (0..dim).map(|c| spline(points.iter().map(|point| point[c]).collect())).collect();
         let across = if dim == 2 { Vec::new() } else { (0..3).map(|c| spline(carried_across(&place, &knots, closed, c))).collect() };
         Self { place, across }
@@ -73,7 +74,8 @@ impl Curve {
     /// s with derivatives: the root of (x − C(s))·C'(s) for an `x` that carries some, from the root for its value.
     fn parameter<N: Number>(&self, x: &[N], root: f64) -> N {
         let tangent = self.tangent(root);
-        let arm: Vec3 = std::array::from_fn(|c| x.get(c).map_or(0.0, |x| x.re()) - self.place.get(c).map_or(0.0, |spline| spline.evaluate(root)));
+        let arm: Vec3 =
+            std::array::from_fn(|c| x.get(c).map_or(0.0, |x| x.re()) - self.place.get(c).map_or(0.0, |spline| spline.evaluate(root)));
         let curvature = dot(tangent, tangent) - dot(arm, vector(&self.place, |spline| spline.bend(root)));
         let mut s = N::from(root);
         // Each step adds an order of derivatives.

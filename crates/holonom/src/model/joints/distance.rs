@@ -1,8 +1,9 @@
-use super::pair::{Pair, build};
+use super::pair::{Pair, Side, build};
 use super::{BETWEEN, JointKind, Site};
-use crate::model::geometry::{norm, subtract};
 use crate::model::fault::Read;
+use crate::model::geometry::{norm, subtract};
 use crate::model::key::{Key, Kind, Shape};
+use crate::record::LineKind;
 
 pub(super) const JOINT: JointKind = JointKind {
     kind: Kind {
@@ -41,5 +42,7 @@ fn rows(pair: &mut Pair<'_, '_>) -> Read<()> {
     }
     let half_square = pair.assembly.builder.square(&d);
     pair.row(half_square, 0.5 * length * length, false);
+    let (from, to) = (pair.end(Side::A), pair.end(Side::B));
+    pair.assembly.draw(pair.entry, LineKind::Rod, &from, &to);
     Ok(())
 }

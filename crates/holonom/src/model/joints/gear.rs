@@ -1,6 +1,6 @@
 use super::coupler::{JOINTS, couple, two};
 use crate::model::assembly::Assembly;
-use crate::model::entry::{Entry};
+use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::key::{Key, Kind, Shape};
 
@@ -8,7 +8,15 @@ pub(super) const KIND: Kind = Kind {
     name: "gear",
     doc: "wheels that mesh, or any two coordinates of which one is a multiple of the other",
     equations: "q_1 − ratio q_2 = 0, angles counted over any number of turns",
-    keys: &[JOINTS, Key::required("ratio", Shape::Number, "", "how many times the second coordinate the first is; negative for outside gears about parallel axes")],
+    keys: &[
+        JOINTS,
+        Key::required(
+            "ratio",
+            Shape::Number,
+            "",
+            "how many times the second coordinate the first is; negative for outside gears about parallel axes",
+        ),
+    ],
     example: r#"
 [body.wheel1]
 mass = 1

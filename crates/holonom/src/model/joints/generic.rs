@@ -15,7 +15,13 @@ pub(super) const JOINT: JointKind = JointKind {
             BETWEEN,
             AT,
             Key::required("locks", Shape::Words(&LOCKS), "", "which motions are locked"),
-            Key::optional("axes", Shape::Directions, "those of the model", "any", "the x axis at the start, and a direction towards the y axis"),
+            Key::optional(
+                "axes",
+                Shape::Directions,
+                "those of the model",
+                "any",
+                "the x axis at the start, and a direction towards the y axis",
+            ),
         ],
         example: r#"
 [body.load]
@@ -73,7 +79,9 @@ fn locks(pair: &Pair<'_, '_>) -> Read<[bool; 6]> {
     }
     match locks.contains(&true) {
         true => Ok(locks),
-        false => Err(pair.entry.refuse("locks", "a joint without locks holds nothing", "lock some of x, y, z, rx, ry, rz, or remove the joint")),
+        false => {
+            Err(pair.entry.refuse("locks", "a joint without locks holds nothing", "lock some of x, y, z, rx, ry, rz, or remove the joint"))
+        }
     }
 }
 

@@ -89,7 +89,11 @@ impl Geometry {
         let members = members(assembly, entry, joint);
         let dim = assembly.dimension();
         if joint.freedom[usize::from(dim == 2)].is_none() {
-            return Err(entry.refuse("type", format!("there is no {} joint in a planar model", joint.kind.name), "use one of those in the plane"));
+            return Err(entry.refuse(
+                "type",
+                format!("there is no {} joint in a planar model", joint.kind.name),
+                "use one of those in the plane",
+            ));
         }
         let at = match (joint.at, entry.has("at")) {
             (Site::Any, false) => {
@@ -143,7 +147,11 @@ fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &JointKind) -> Rea
         Member::Body(_) => true,
     };
     if !members.iter().any(moves) {
-        return Err(entry.refuse("between", format!("neither `{first}` nor `{second}` can move"), "at least one must be a body, or a free point"));
+        return Err(entry.refuse(
+            "between",
+            format!("neither `{first}` nor `{second}` can move"),
+            "at least one must be a body, or a free point",
+        ));
     }
     Ok(members)
 }
@@ -224,7 +232,9 @@ pub(super) fn directions(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &str) 
             let (a, b) = (axis(0), axis(1));
             Ok([a?, b?])
         }
-        _ if key == "axes" => Err(entry.refuse(key, "this joint wants two directions, one of each body", "write axes = [[1, 0, 0], [0, 1, 0]]")),
+        _ if key == "axes" => {
+            Err(entry.refuse(key, "this joint wants two directions, one of each body", "write axes = [[1, 0, 0], [0, 1, 0]]"))
+        }
         value => read(key.into(), value).map(|u| [u; 2]),
     }
 }

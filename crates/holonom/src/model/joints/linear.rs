@@ -1,10 +1,10 @@
-use super::coupler::{couple, coordinate};
+use super::coupler::{coordinate, couple};
 use crate::model::assembly::Assembly;
-use crate::model::entry::{Entry};
+use crate::model::entry::Entry;
 use crate::model::entry::all;
-use crate::system::MAX_ARGUMENTS;
 use crate::model::fault::Read;
 use crate::model::key::{Key, Kind, Shape};
+use crate::system::MAX_ARGUMENTS;
 
 pub(super) const KIND: Kind = Kind {
     name: "linear",
@@ -63,7 +63,11 @@ fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
     let terms = all(items.iter().enumerate().map(|(k, table)| entry.inside(&format!("terms[{k}]"), table, term)))?;
     let arguments: usize = terms.iter().map(|(coordinate, _)| if coordinate.is_angle { 2 } else { 1 }).sum();
     if arguments > MAX_ARGUMENTS {
-        return Err(entry.refuse("terms", "a coupling holds three angles, or six displacements", "couple in two steps, through a joint between"));
+        return Err(entry.refuse(
+            "terms",
+            "a coupling holds three angles, or six displacements",
+            "couple in two steps, through a joint between",
+        ));
     }
     couple(assembly, entry, &terms)
 }

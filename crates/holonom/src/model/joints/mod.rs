@@ -28,8 +28,8 @@ mod screw;
 mod spherical;
 mod universal;
 
-pub use geometry::{Geometry, Survey, plan};
 pub use coupler::coordinate;
+pub use geometry::{Geometry, Survey, plan};
 pub use pair::{Coordinate, Joint, Pair};
 
 use super::key::{Key, Kind};
@@ -101,7 +101,8 @@ pub fn kinds() -> Vec<&'static Kind> {
 }
 
 const BETWEEN: Key = Key::required("between", super::key::Shape::Members, "", "the two bodies, or a body and \"ground\"");
-const AT: Key = Key::required("at", super::key::Shape::Site, "m", "where it sits at the start: a place, \"BODY.POINT\", or one for each body");
+const AT: Key =
+    Key::required("at", super::key::Shape::Site, "m", "where it sits at the start: a place, \"BODY.POINT\", or one for each body");
 const AT_ANY: Key = Key::optional(
     "at",
     super::key::Shape::Site,
@@ -109,6 +110,12 @@ const AT_ANY: Key = Key::optional(
     "m",
     "where displacements and moments are measured: a place, \"BODY.POINT\", or one for each body",
 );
-const AXIS: Key =
-    Key::optional("axis", super::key::Shape::Direction, "needed", "any", "its direction at the start: a vector, \"BODY.AXIS\", or one for each body");
-const AXES: Key = Key::required("axes", super::key::Shape::Directions, "any", "a direction of the first body and one of the second, at the start");
+const AXIS: Key = Key::optional(
+    "axis",
+    super::key::Shape::Direction,
+    "needed",
+    "any",
+    "its direction at the start: a vector, \"BODY.AXIS\", or one for each body",
+);
+const AXES: Key =
+    Key::required("axes", super::key::Shape::Directions, "any", "a direction of the first body and one of the second, at the start");

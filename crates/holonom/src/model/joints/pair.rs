@@ -2,7 +2,7 @@
 
 use super::geometry::Geometry;
 use super::{Feature, JOINTS, JointKind};
-use crate::model::assembly::{Assembly, subtract};
+use crate::model::assembly::{Assembly, End, GROUND, fixed, subtract};
 use crate::model::bodies::frame::Frame;
 use crate::model::bodies::nodes::Member;
 use crate::model::entry::Entry;
@@ -14,6 +14,8 @@ use crate::system::{Form, InvariantId, Part, Term};
 /// A coordinate of a joint, counted from the start.
 #[derive(Clone)]
 pub struct Coordinate {
+    /// Name of the joint.
+    pub joint: String,
     /// `"angle"`, `"displacement"`, …
     pub name: &'static str,
     pub form: Form,
@@ -68,6 +70,7 @@ pub(super) fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> 
             assembly.builder.measure(format!("{}.{}", entry.name, coordinate.name), &coordinate.form);
         }
     }
+    assembly.joint_names.insert(entry.name.to_string(), assembly.joints.len());
     assembly.joints.push(Joint { name: entry.name.to_string(), kind: joint.kind.name, geometry, coordinates, rows });
     Ok(())
 }
@@ -83,9 +86,8 @@ fn draw(assembly: &mut Assembly<'_>, entry: &Entry<'_>, kind: &str, geometry: &G
     let (mut at, mut axis) = (geometry.at[side], geometry.triad[side][0]);
     if let Member::Body(k) = geometry.members[side] {
         (at, axis) = (assembly.bodies[k].local(at), assembly.bodies[k].local_direction(axis));
-    } else {
-        (at, axis) = (assembly.axes.in_world(at), assembly.axes.in_world(axis));
     }
+    (at, axis) = (assembly.axes.in_world(at), assembly.axes.in_world(axis));
     let [body, other] = [side, 1 - side].map(|side| name(geometry.members[side]));
     let axis = has_axis.then_some(axis);
     assembly.scene_joints.push(SceneJoint { name: entry.name.to_string(), kind: kind.to_string(), body, other, at, axis });
@@ -100,6 +102,16 @@ fn draw(assembly: &mut Assembly<'_>, entry: &Entry<'_>, kind: &str, geometry: &G
 impl Pair<'_, '_> {
     pub fn is_planar(&self) -> bool {
         self.assembly.dimension() == 2
+    }
+
+    /// The place of the joint on a side.
+    pub fn end(&self, side: Side) -> End {
+        let at = self.geometry.at[side as usize];
+        match self.geometry.members[side as usize] {
+            Member::Ground => fixed(at, GROUND.into()),
+            Member::Point(k) => self.assembly.points[k].end.clone(),
+            Member::Body(k) => self.assembly.body_end(k, at, &self.assembly.bodies[k].name),
+        }
     }
 
     /// d = r_B − r_A between the places of the joint.
@@ -209,7 +221,7 @@ impl Pair<'_, '_> {
     }
 
     pub fn coordinate(&mut self, name: &'static str, form: Form, is_angle: bool) {
-        self.coordinates.push(Coordinate { name, form, is_angle });
+        self.coordinates.push(Coordinate { joint: self.entry.name.to_string(), name, form, is_angle });
     }
 
     /// The angle from e_k(A) to e_k(B), positive from k to l; in the plane from u to its quarter turn.

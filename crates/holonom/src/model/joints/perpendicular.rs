@@ -1,6 +1,6 @@
 use super::pair::{Pair, build};
-use super::{AT_ANY, AXES, BETWEEN, JointKind, Site};
 use super::universal::right_angle;
+use super::{AT_ANY, AXES, BETWEEN, JointKind, Site};
 use crate::model::fault::Read;
 use crate::model::key::Kind;
 

@@ -89,6 +89,10 @@ fn points(entry: &Entry<'_>, dim: usize) -> Read<Vec<Vec3>> {
     if points.len() < 3 {
         return Err(entry.refuse("curve", format!("a curve has at least three points, and this has {}", points.len()), "add points"));
     }
+    if points.first() == points.last() {
+        let cure = "leave the last one out and write closed = true";
+        return Err(entry.refuse(spot(points.len() - 1), "the curve ends where it begins", cure));
+    }
     match (1..points.len()).find(|&k| points[k] == points[k - 1]) {
         Some(k) => Err(entry.refuse(spot(k), "the same point comes twice", "remove one of them; a closed curve has closed = true")),
         None => Ok(points),

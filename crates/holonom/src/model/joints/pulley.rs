@@ -1,6 +1,6 @@
 use super::coupler::{JOINTS, couple, two};
 use crate::model::assembly::Assembly;
-use crate::model::entry::{Entry};
+use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::key::{Key, Kind, Shape};
 
@@ -8,7 +8,11 @@ pub(super) const KIND: Kind = Kind {
     name: "pulley",
     doc: "two wheels with a belt between them",
     equations: "r_1 θ_1 − r_2 θ_2 = 0, crossed r_1 θ_1 + r_2 θ_2 = 0, angles counted over any number of turns",
-    keys: &[JOINTS, Key::required("radii", Shape::Numbers(2, 2), "m", "radii of the two wheels"), Key::optional("crossed", Shape::Flag, "false", "", "whether the belt crosses itself, so that the wheels turn against each other")],
+    keys: &[
+        JOINTS,
+        Key::required("radii", Shape::Numbers(2, 2), "m", "radii of the two wheels"),
+        Key::optional("crossed", Shape::Flag, "false", "", "whether the belt crosses itself, so that the wheels turn against each other"),
+    ],
     example: r#"
 [body.wheel1]
 mass = 1

@@ -1,6 +1,6 @@
 use super::coupler::{JOINTS, couple, two};
 use crate::model::assembly::Assembly;
-use crate::model::entry::{Entry};
+use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::key::{Key, Kind, Shape};
 

@@ -41,7 +41,11 @@ pitch = 0.1
 fn rows(pair: &mut Pair<'_, '_>) -> Read<()> {
     let pitch = pair.entry.number("pitch")?;
     if pitch == 0.0 {
-        return Err(pair.entry.refuse("pitch", "a screw without pitch does not move along its axis", "give a pitch, or use a revolute joint"));
+        return Err(pair.entry.refuse(
+            "pitch",
+            "a screw without pitch does not move along its axis",
+            "give a pitch, or use a revolute joint",
+        ));
     }
     pair.stay(1);
     pair.stay(2);
