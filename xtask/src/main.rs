@@ -1,7 +1,8 @@
 //! Chores of the repository: `cargo xtask ci` runs every check, the same here and elsewhere; `cargo xtask book` draws the
-//! figures of the book.
+//! figures of the book, `cargo xtask gallery` takes its pictures.
 
 mod book;
+mod gallery;
 
 use std::process::{Command, ExitCode};
 
@@ -25,8 +26,9 @@ fn main() -> ExitCode {
         ["ci"] => ci(),
         ["book"] => book::book(false),
         ["book", "--check"] => book::book(true),
+        ["gallery", ..] => gallery::gallery(&arguments[1..]),
         _ => {
-            eprintln!("usage: cargo xtask ci | book | book --check");
+            eprintln!("usage: cargo xtask ci | book | book --check | gallery [NAME ...]");
             ExitCode::from(2)
         }
     }

@@ -1,33 +1,46 @@
-//! The schema, and the chapter of the book on the model file.
+//! The schema, and the chapters of the book on the model file and on joints.
 
 mod common;
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use common::*;
+use holonom::model::joints::{COUPLERS, JOINTS, kinds};
+use holonom::model::{BODY_KEYS, Key, Kind, Model, drives, forces};
+use holonom_io::Source;
 use serde_json::Value;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn chapter(name: &str) -> String {
+    fs::read_to_string(root().join("docs").join(name)).unwrap()
+}
 
 #[test]
 fn the_schema_is_json_and_knows_every_section() {
     let schema = json(&folder(), "schema");
     assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
-    for section in ["title", "gravity", "plane", "parameters", "point", "bar", "constraint", "force", "simulation", "output"] {
+    let sections = ["title", "gravity", "plane", "parameters", "simulation", "output"];
+    let named = ["point", "body", "bar", "joint", "constraint", "drive", "force"];
+    for section in sections.into_iter().chain(named) {
         assert!(schema["properties"][section].is_object(), "{section}");
     }
 }
 
-/// The chapter of the book names every key and kind that the reader knows.
+/// The chapters name every key and kind that the reader knows.
 #[test]
 fn the_model_file_chapter_is_complete() {
-    let chapter = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/model-file.md")).unwrap();
+    let chapters = [chapter("model-file.md"), chapter("joints.md")].concat();
     let schema = json(&folder(), "schema");
     let mut known = BTreeSet::new();
     collect_keys(&schema, &mut known);
     assert!(known.contains("constraint_at") && known.contains("rest_length") && known.contains("point-on-plane"));
-    let missing: Vec<&String> = known.iter().filter(|key| !chapter.contains(&format!("`{key}`"))).collect();
-    assert!(missing.is_empty(), "docs/model-file.md does not name {missing:?}");
+    let missing: Vec<&String> = known.iter().filter(|key| !chapters.contains(&format!("`{key}`"))).collect();
+    assert!(missing.is_empty(), "docs/model-file.md and docs/joints.md do not name {missing:?}");
 }
 
 /// Names of all properties and of all kinds.
@@ -43,17 +56,154 @@ fn collect_keys(schema: &Value, known: &mut BTreeSet<String>) {
     }
 }
 
-/// Every example of the chapter is read, and what is marked as a whole model runs.
+/// The part of a chapter below a heading, up to the next of any level.
+fn section<'a>(chapter: &'a str, heading: &str) -> &'a str {
+    let start = chapter.find(&format!("\n{heading}\n")).unwrap_or_else(|| panic!("there is no section {heading}")) + heading.len() + 2;
+    let end = chapter[start..].find("\n#").map_or(chapter.len(), |end| start + end);
+    &chapter[start..end]
+}
+
+/// A text on one line, without the marks that hold no words.
+fn flat(text: &str) -> String {
+    text.replace(['`', '"', '\\'], "").split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The row of a table that begins with a key, and has one of its defaults and units.
+fn assert_tells(part: &str, of: &str, key: &Key) {
+    let rows = part
+        .lines()
+        .filter(|line| line.starts_with('|') && line.split('|').nth(1).is_some_and(|cell| cell.contains(&format!("`{}`", key.name))));
+    let rows: Vec<&str> = rows.collect();
+    assert!(!rows.is_empty(), "`{of}`: no row of a table is about `{}`", key.name);
+    let tells = |text: &str| rows.iter().any(|row| flat(row).contains(&flat(text)));
+    assert!(tells(key.default), "`{of}`: `{}` has the default {:?}, not in {rows:?}", key.name, key.default);
+    assert!(tells(key.unit), "`{of}`: `{}` has the unit {:?}, not in {rows:?}", key.name, key.unit);
+}
+
 #[test]
-fn the_models_of_the_chapter_are_sound() {
-    let chapter = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/model-file.md")).unwrap();
-    let folder = folder();
-    let models = chapter.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap());
-    let mut count = 0;
-    for (k, model) in models.enumerate() {
-        fs::write(folder.path().join(format!("m{k}.toml")), model).unwrap();
-        prints(&folder, &format!("run m{k}.toml --end 0.02 --step 0.01 --no-report"), 0);
-        count += 1;
+fn the_keys_of_bodies_drives_and_forces_are_as_the_reader_has_them() {
+    let text = chapter("model-file.md");
+    let part = |heading: &str| section(&text, heading);
+    BODY_KEYS.iter().for_each(|key| assert_tells(part("## Bodies: `[body.NAME]`"), "body", key));
+    for kind in drives::KINDS {
+        assert!(part("## Drives: `[drive.NAME]`").contains(&format!("| `{}` |", kind.name)), "{}", kind.name);
+        kind.keys.iter().for_each(|key| assert_tells(part("## Drives: `[drive.NAME]`"), kind.name, key));
     }
-    assert!(count >= 10, "{count}");
+    for kind in forces::KINDS {
+        assert!(part("## Forces: `[force.NAME]`").contains(&format!("| `{}` |", kind.name)), "{}", kind.name);
+        let heading = text.lines().find(|line| line.starts_with("### ") && line.contains(&format!("`{}`", kind.name)));
+        let below = section(&text, heading.unwrap_or_else(|| panic!("there is no section about the force `{}`", kind.name)));
+        // The key of the joint is told once for all that act along a coordinate.
+        for key in kind.keys.iter().filter(|key| key.name != "joint") {
+            assert!(below.contains(&format!("`{}`", key.name)), "the section about the force `{}` does not name `{}`", kind.name, key.name);
+        }
+    }
+}
+
+/// Each joint has a section with what the code says of it.
+#[test]
+fn the_chapter_on_joints_is_as_the_code_has_it() {
+    let text = chapter("joints.md");
+    let common = section(&text, "## What they have in common");
+    for kind in kinds() {
+        let part = section(&text, &format!("### `{}`", kind.name));
+        says(part, kind, "doc", kind.doc);
+        says(part, kind, "equations", kind.equations);
+        for key in kind.keys {
+            assert!(part.contains(&format!("`{}`", key.name)), "`{}` does not name its key `{}`", kind.name, key.name);
+            // Keys of several joints are in one table for all.
+            let place = if flat(part).contains(&flat(key.doc)) { part } else { common };
+            assert!(flat(place).contains(&flat(key.doc)), "`{}`: the meaning of `{}` is {:?}", kind.name, key.name, key.doc);
+            assert_tells(place, kind.name, key);
+        }
+        let picture = format!("figures/joints/{}.png", kind.name);
+        assert!(part.contains(&picture) && root().join("docs").join(&picture).exists(), "{picture}");
+    }
+    let sections = text.matches("\n### ").count();
+    assert_eq!(sections, JOINTS.len() + COUPLERS.len(), "a section is about no joint");
+}
+
+fn says(part: &str, kind: &Kind, what: &str, words: &str) {
+    // Sentences begin with a capital.
+    let (part, words) = (flat(part).to_lowercase(), flat(words).to_lowercase());
+    assert!(part.contains(&words), "docs/joints.md: `{}` has the {what}\n{words}", kind.name);
+}
+
+#[test]
+fn freedom_and_coordinates_of_joints_are_as_the_code_has_them() {
+    let text = chapter("joints.md");
+    for joint in JOINTS {
+        let (name, part) = (joint.kind.name, section(&text, &format!("### `{}`", joint.kind.name)));
+        let row = |first: &str| {
+            part.lines().find(|line| line.starts_with(&format!("| {first} |"))).unwrap_or_else(|| panic!("`{name}`: {first}"))
+        };
+        let [space, plane] = joint.freedom;
+        let plane = plane.map_or("not there in the plane".to_string(), |freedom| format!("{freedom} in the plane"));
+        let freedom = format!("{} in space, {plane} |", space.expect("every joint is in space"));
+        assert!(row("freedom").contains(&freedom), "`{name}`: {freedom}");
+        let model = model(joint.kind.example);
+        let built = model.joints.iter().find(|built| built.kind == name).expect("the example has the joint");
+        let coordinates: Vec<&str> = built.coordinates.iter().map(|coordinate| coordinate.name).collect();
+        let told = row("coordinates");
+        assert!(coordinates.iter().all(|coordinate| told.contains(&format!("`{coordinate}`"))), "`{name}`: {coordinates:?}");
+        assert_eq!(coordinates.is_empty(), told == "| coordinates | none |", "`{name}`: {coordinates:?}");
+    }
+}
+
+fn model(text: &str) -> Model {
+    Source::read("example.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|faults| panic!("{faults:?}"))
+}
+
+/// Every example of the chapters is read and runs.
+#[test]
+fn the_models_of_the_chapters_are_sound() {
+    let folder = folder();
+    let mut count = 0;
+    for name in ["model-file", "joints"] {
+        let chapter = chapter(&format!("{name}.md"));
+        for model in chapter.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()) {
+            let file = format!("{name}-{count}.toml");
+            fs::write(folder.path().join(&file), model).unwrap();
+            prints(&folder, &format!("run {file} --end 0.02 --step 0.01 --no-report"), 0);
+            count += 1;
+        }
+    }
+    assert!(count >= 40, "{count}");
+}
+
+/// The gallery page shows and names every model of the gallery.
+#[test]
+fn the_gallery_page_is_complete() {
+    let page = chapter("gallery.md");
+    for entry in fs::read_dir(root().join("examples")).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            let picture = format!("figures/gallery/{name}.png");
+            assert!(page.contains(&format!("holonom run example:{name}")) && page.contains(&picture), "{name}");
+            assert!(root().join("docs").join(&picture).exists(), "{picture}");
+        }
+    }
+}
+
+/// A joint is a page: prints the lines of code and of words of each file (`--nocapture` shows them).
+#[test]
+fn a_joint_is_one_short_file() {
+    let folder = root().join("crates/holonom/src/model/joints");
+    for kind in kinds() {
+        let file = folder.join(format!("{}.rs", kind.name.replace('-', "_")));
+        let text = fs::read_to_string(&file).unwrap();
+        let (mut code, mut words, mut in_kind) = (0, 0, false);
+        for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
+            in_kind |= line.ends_with("Kind {") && !line.contains("JointKind");
+            if in_kind || line.starts_with("//") {
+                words += 1
+            } else {
+                code += 1
+            }
+            in_kind &= line != "build,";
+        }
+        println!("{:20} {code:3} lines of code, {words:3} of names, words, equations, keys and example", kind.name);
+        assert!(code <= 80, "{} has {code} lines of code", file.display());
+    }
 }

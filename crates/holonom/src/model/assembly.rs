@@ -213,6 +213,12 @@ impl Assembly<'_> {
         self.body_names.get(name).copied()
     }
 
+    /// Whether a text names a place or a direction of a body: `BODY.NAME`.
+    pub fn is_place_of_body(&self, entry: &Entry<'_>, text: &str) -> bool {
+        let body = split_place(text).and_then(|(body, _)| indexed(body, &entry.scope).ok());
+        body.is_some_and(|body| self.body_by_name(&body).is_some())
+    }
+
     /// The frame of a side of a joint.
     pub fn frame(&self, member: Member) -> Frame {
         match member {
@@ -241,7 +247,9 @@ impl Assembly<'_> {
     /// Where a place is at the start: `"BODY.POINT"`, the name of a point or a body, or coordinates.
     pub fn place_at_start(&self, entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<Vec3> {
         match value {
-            Value::Text(name) if self.frames.is_empty() && name.contains('.') => self.named_place(entry, spot, name).map(|(_, at)| at),
+            Value::Text(name) if self.frames.is_empty() && split_place(name).is_some() => {
+                self.named_place(entry, spot, name).map(|(_, at)| at)
+            }
             _ => self.end_in(entry, spot, value).map(|end| end.start),
         }
     }
@@ -252,7 +260,7 @@ impl Assembly<'_> {
         match value {
             Value::List(items) if items.len() == self.dimension() => numbers(entry, spot, items),
             Value::Text(text) => {
-                let (body, axis) = text.split_once('.').ok_or_else(|| entry.refuse(spot, format!("\"{text}\" is no direction"), cure))?;
+                let (body, axis) = split_place(text).ok_or_else(|| entry.refuse(spot, format!("\"{text}\" is no direction"), cure))?;
                 let Member::Body(k) = self.member(entry, spot, body)? else {
                     return Err(entry.refuse(spot, format!("`{body}` is no body and has no axes"), cure));
                 };
@@ -272,7 +280,7 @@ impl Assembly<'_> {
 
     /// A place of a body by its name, `BODY.POINT`, with its position at the start.
     fn named_place(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<(usize, Vec3)> {
-        let (body, place) = name.split_once('.').expect("there is a dot");
+        let (body, place) = split_place(name).expect("there is a dot");
         let Member::Body(k) = self.member(entry, spot, body)? else {
             return Err(entry.refuse(spot, format!("`{body}` is no body and has no named points"), "name a point of a [body.NAME]"));
         };
@@ -315,7 +323,7 @@ impl Assembly<'_> {
             return Ok(self.points[k].end.clone());
         }
         if !self.bodies.is_empty() {
-            if name.contains('.') {
+            if split_place(name).is_some() {
                 return self.named_place(entry, spot, name).map(|(body, at)| self.body_end(body, at, name));
             }
             if let Ok(Some(k)) = indexed(name, &entry.scope).map(|full| self.body_by_name(&full)) {
@@ -409,6 +417,12 @@ pub fn node(id: NodeId, start: [f64; 3], free: bool, point: usize, name: &str) -
 fn numbers(entry: &Entry<'_>, spot: Spot<'_>, items: &[Value]) -> Read<[f64; 3]> {
     let read = all(items.iter().map(|item| entry.number_in(spot, item)))?;
     Ok(std::array::from_fn(|k| read.get(k).copied().unwrap_or(0.0)))
+}
+
+/// `BODY.POINT` in its two parts; a dot in an index is none between them.
+pub fn split_place(text: &str) -> Option<(&str, &str)> {
+    let behind = text.rfind(']').map_or(0, |at| at + 1);
+    text[behind..].find('.').map(|at| (&text[..behind + at], &text[behind + at + 1..]))
 }
 
 /// A reference with its indices worked out: `P[i-1]` becomes `P[2]`.

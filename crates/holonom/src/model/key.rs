@@ -48,8 +48,10 @@ pub enum Shape {
     Numbers(usize, usize),
     /// Three rows of three numbers.
     Rows,
-    /// A formula of t, or a table of times and values.
-    Profile,
+    /// A formula of t, or a table of times and values with its own keys.
+    Profile(&'static [Key]),
+    /// Rows of two numbers.
+    Pairs,
     /// A table of named texts.
     Named,
     /// Three formulas, in a planar model one.

@@ -2,8 +2,8 @@
 
 use crate::system::{Number, Signal};
 
-/// A natural cubic spline, or a periodic one: two continuous derivatives, and beyond a natural end a straight line, so
-/// that they stay continuous there too.
+/// A cubic spline with two continuous derivatives: natural, at rest at its ends, or periodic. Beyond an end that is not
+/// periodic it goes on straight, with a jump of the second derivative unless it is natural.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     /// Where the points are, rising (k).
@@ -24,6 +24,19 @@ impl Spline {
             let (diagonal, side, right) = equations(&knots, &values, 1..last);
             bends[1..last].copy_from_slice(&tridiagonal(&diagonal, &side, right));
         }
+        Self { knots, values, bends, periodic: false }
+    }
+
+    /// The spline through at least two points that is at rest at both ends, and stays there beyond them.
+    pub fn resting(knots: Vec<f64>, values: Vec<f64>) -> Self {
+        let last = knots.len() - 1;
+        let h = |k: usize| knots[k + 1] - knots[k];
+        let slope = |k: usize| (values[k + 1] - values[k]) / h(k);
+        let (inner, _, inner_right) = equations(&knots, &values, 1..last);
+        let diagonal: Vec<f64> = [2.0 * h(0)].into_iter().chain(inner).chain([2.0 * h(last - 1)]).collect();
+        let side: Vec<f64> = (0..last).map(h).collect();
+        let right = [6.0 * slope(0)].into_iter().chain(inner_right).chain([-6.0 * slope(last - 1)]).collect();
+        let bends = tridiagonal(&diagonal, &side, right);
         Self { knots, values, bends, periodic: false }
     }
 
@@ -161,6 +174,17 @@ mod tests {
         }
         assert_eq!(spline.at(-1.0)[2], 0.0);
         assert!((spline.at(9.0)[1] - spline.at(5.0)[1]).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_resting_spline_rests_at_its_ends() {
+        let spline = Spline::resting(vec![0.0, 1.0, 3.0], vec![0.0, 2.0, -1.0]);
+        for (s, value) in [(0.0, 0.0), (3.0, -1.0), (5.0, -1.0), (-2.0, 0.0)] {
+            let [found, rate, _] = spline.at(s);
+            assert!((found - value).abs() < 1e-14 && rate.abs() < 1e-14, "{s}: {found}, {rate}");
+        }
+        let two = Spline::resting(vec![0.0, 1.0], vec![0.0, 1.0]);
+        assert!((two.at(0.5)[0] - 0.5).abs() < 1e-15 && (two.at(0.25)[0] - 0.15625).abs() < 1e-15, "3 s² − 2 s³");
     }
 
     #[test]

@@ -12,8 +12,16 @@ use crate::system::Signal;
 
 /// The key of the profile of a drive, in a unit.
 pub(super) const fn key(unit: &'static str, doc: &'static str) -> Key {
-    Key::required("profile", Shape::Profile, unit, doc)
+    Key::required("profile", Shape::Profile(&TABLE), unit, doc)
 }
+
+/// Keys of a profile that is a table.
+static TABLE: [Key; 2] = [
+    Key::required("table", Shape::Pairs, "s", "times and values"),
+    Key::optional("ends", Shape::Choice(ENDS), "\"natural\"", "", "\"rest\" has it start and end at rest; natural ends go on straight"),
+];
+
+const ENDS: &[&str] = &["natural", "rest"];
 
 /// The signal at `profile`.
 pub(super) fn read(entry: &Entry<'_>) -> Read<Arc<dyn Signal>> {
@@ -37,7 +45,8 @@ pub(super) fn read(entry: &Entry<'_>) -> Read<Arc<dyn Signal>> {
 fn table(entry: &Entry<'_>) -> Read<Spline> {
     let table = entry.table("profile")?;
     entry.inside("profile", table, |inner| {
-        inner.refuse_unknown_keys("a profile", &[&Key::required("table", Shape::Rows, "", "")]);
+        inner.refuse_unknown_keys("a profile", &TABLE.iter().collect::<Vec<_>>());
+        let ends = inner.optional("ends", |inner, key| inner.choice(key, ENDS));
         let rows = inner.list("table")?;
         let row = |(k, row): (usize, &Value)| match row {
             Value::List(items) if items.len() == 2 => {
@@ -55,6 +64,7 @@ fn table(entry: &Entry<'_>) -> Read<Spline> {
             let message = format!("the time {} comes after {}", rows[k][0], rows[k - 1][0]);
             return Err(inner.refuse(Spot { key: "table", item: Some(k) }, message, "let the times rise from row to row"));
         }
-        Ok(Spline::natural(rows.iter().map(|row| row[0]).collect(), rows.iter().map(|row| row[1]).collect()))
+        let (knots, values) = (rows.iter().map(|row| row[0]).collect(), rows.iter().map(|row| row[1]).collect());
+        Ok(if ends? == Some("rest") { Spline::resting(knots, values) } else { Spline::natural(knots, values) })
     })
 }

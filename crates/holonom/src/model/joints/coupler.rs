@@ -1,6 +1,6 @@
 //! What couplers have in common: rows that are sums of coordinates of joints.
 
-use crate::model::assembly::Assembly;
+use crate::model::assembly::{Assembly, split_place};
 use crate::model::entry::{Entry, Spot};
 use crate::model::fault::{Read, suggest};
 use crate::model::key::{Key, Shape};
@@ -13,7 +13,7 @@ pub(super) const JOINTS: Key =
 
 /// The coordinate that a text names: that of a joint with one, or `JOINT.COORDINATE`.
 pub fn coordinate(assembly: &Assembly<'_>, entry: &Entry<'_>, spot: Spot<'_>, text: &str) -> Read<Coordinate> {
-    let (name, wanted) = match text.split_once('.') {
+    let (name, wanted) = match split_place(text) {
         Some((name, wanted)) => (name, Some(wanted)),
         None => (text, None),
     };

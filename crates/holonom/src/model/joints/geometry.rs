@@ -159,7 +159,7 @@ fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &JointKind) -> Rea
 /// The places of the key `at`: one for both sides, or one for each.
 fn sites(assembly: &Assembly<'_>, entry: &Entry<'_>, two: bool) -> Read<[Vec3; 2]> {
     match entry.value("at")? {
-        Value::List(items) if is_one_of_each(assembly, items) => {
+        Value::List(items) if is_one_of_each(assembly, entry, items) => {
             let site = |k: usize| assembly.place_at_start(entry, Spot { key: "at", item: Some(k) }, &items[k]);
             let (a, b) = (site(0), site(1));
             Ok([a?, b?])
@@ -170,10 +170,10 @@ fn sites(assembly: &Assembly<'_>, entry: &Entry<'_>, two: bool) -> Read<[Vec3; 2
 }
 
 /// Whether these are two places or directions and not the numbers of one, which may be texts with expressions.
-fn is_one_of_each(assembly: &Assembly<'_>, items: &[Value]) -> bool {
+fn is_one_of_each(assembly: &Assembly<'_>, entry: &Entry<'_>, items: &[Value]) -> bool {
     let is_place = |item: &Value| match item {
         Value::List(_) => true,
-        Value::Text(text) => text.split_once('.').is_some_and(|(body, _)| assembly.body_by_name(body).is_some()),
+        Value::Text(text) => assembly.is_place_of_body(entry, text),
         _ => false,
     };
     items.len() == 2 && items.iter().any(is_place)
@@ -227,7 +227,7 @@ pub(super) fn directions(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &str) 
         Ok(scale(u, 1.0 / size))
     };
     match value {
-        Value::List(items) if is_one_of_each(assembly, items) => {
+        Value::List(items) if is_one_of_each(assembly, entry, items) => {
             let axis = |k: usize| read(Spot { key, item: Some(k) }, &items[k]);
             let (a, b) = (axis(0), axis(1));
             Ok([a?, b?])
