@@ -64,11 +64,11 @@ pub const GALLERY: &[Shot] = &[
 
 /// The models in the sections of docs/joints.md.
 pub const JOINTS: &[Shot] = &[
-    joint("spherical", 0.3),
+    Shot { closer: 0.9, ..joint("spherical", 0.3) },
     joint("revolute", 0.5),
     joint("prismatic", 0.5),
     floating("cylindrical", 0.5),
-    joint("universal", 0.3),
+    Shot { closer: 0.85, shift: [0.0, 20.0], ..joint("universal", 0.3) },
     floating("planar", 0.4),
     Shot { closer: 0.75, ..floating("fixed", 0.3) },
     joint("screw", 0.4),

@@ -1,6 +1,7 @@
 //! `[bar.NAME]`: uniform rigid rods between two points, the two-node body of natural coordinates (methods §4.1).
 
-use super::assembly::{Assembly, End, difference, from_to};
+use super::assembly::Assembly;
+use super::ends::{End, difference, from_to};
 use super::entry::Entry;
 use super::fault::{Read, Refused};
 use super::geometry::norm;

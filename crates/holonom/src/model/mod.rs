@@ -11,13 +11,16 @@ pub mod joints;
 
 mod assembly;
 mod bars;
+mod ends;
 mod entry;
 mod expression;
 mod fault;
+mod finish;
 mod geometry;
 mod key;
 mod parameters;
 mod points;
+mod references;
 mod repeat;
 mod schema;
 mod section;
@@ -42,14 +45,12 @@ pub use value::{Table, Value, item_path, key_path};
 use std::collections::{HashMap, HashSet};
 
 use assembly::Assembly;
-use bodies::frame::Frame;
-use bodies::nodes::Member;
 use entry::Entry;
 use expression::Scope;
 use fault::{Read, Refused, Sink};
 use section::Sections;
 
-use crate::record::{Channels, PointKind, RecordedEffort, RecordedJoint, RecordedPoint, Scene, SceneBody, ScenePoint};
+use crate::record::{Channels, PointKind, Scene};
 use crate::system::{Place, System, SystemBuilder};
 
 /// The version of the model file that is read.
@@ -186,7 +187,7 @@ fn read(value: &Value, sink: &Sink, meshes: &dyn Meshes) -> Read<Model> {
     if sink.count() > 0 {
         return Err(Refused);
     }
-    Ok(finish(assembly, title, settings, output, bars))
+    Ok(finish::finish(assembly, title, settings, output, bars))
 }
 
 fn read_bodies(sections: &mut Sections<'_>, root: &Table, axes: Axes) -> (Vec<Body>, HashSet<String>) {
@@ -253,91 +254,6 @@ fn build_joints(sections: &mut Sections<'_>, root: &Table, assembly: &mut Assemb
         let table: Table = [("joint", Value::Table(part))].into_iter().collect();
         let faulty = build_kinds(sections, &table, "joint", &joints::kinds(), assembly);
         assembly.faulty_joints.extend(faulty);
-    }
-}
-
-/// Puts together what has been read without a fault.
-fn finish(assembly: Assembly<'_>, title: String, settings: Settings, output: Output, bars: Vec<BarInfo>) -> Model {
-    let Assembly { mut builder, axes, gravity, points, lines, bodies, frames, body_places, joints, scene_joints, efforts, .. } = assembly;
-    let place = |point: &assembly::Point| point.end.place().expect("a point is a node");
-    let kind = |point: &assembly::Point| match (place(point), point.end.free) {
-        (Place::Fixed(_), _) => PointKind::Fixed,
-        (_, true) => PointKind::Free,
-        (_, false) => PointKind::Driven,
-    };
-    let scene_bodies = bodies.iter().zip(body_places).map(|(body, places)| SceneBody {
-        name: body.name.clone(),
-        mass: body.mass,
-        shape: body.shape.clone(),
-        places: places.into_iter().chain(body.points.iter().map(|&(_, at)| body.local(at))).map(|at| axes.in_world(at)).collect(),
-    });
-    let scene = Scene {
-        axes: axes.name.to_string(),
-        gravity: axes.in_world(gravity),
-        points: points.iter().map(|point| ScenePoint { name: point.name.clone(), kind: kind(point), mass: point.mass }).collect(),
-        lines,
-        bodies: scene_bodies.collect(),
-        joints: scene_joints,
-    };
-    let channels = channels(axes, &points, &bodies, &frames, &joints);
-    let bodies: Vec<BodyInfo> = bodies.iter().zip(&frames).map(|(body, frame)| BodyInfo::new(body, frame, axes, &mut builder)).collect();
-    let points = points
-        .into_iter()
-        .map(|point| PointInfo { kind: kind(&point), place: place(&point), name: point.name, mass: point.mass })
-        .collect();
-    Model {
-        title,
-        dimension: axes.dimension(),
-        axes: axes.name,
-        gravity: scene.gravity,
-        system: builder.build(),
-        settings,
-        output,
-        scene,
-        points,
-        bars,
-        channels: Channels {
-            bodies: bodies.iter().map(|body| body.recorded.clone()).collect(),
-            efforts: recorded_efforts(efforts),
-            ..channels
-        },
-        bodies,
-        joints,
-    }
-}
-
-fn recorded_efforts(efforts: Vec<assembly::Effort>) -> Vec<RecordedEffort> {
-    efforts.into_iter().map(|assembly::Effort { name, row, length }| RecordedEffort { name, row, length }).collect()
-}
-
-/// Points, named points of bodies, and the forces of joints.
-fn channels(axes: Axes, points: &[assembly::Point], bodies: &[Body], frames: &[Frame], joints: &[joints::Joint]) -> Channels {
-    let own = points.iter().map(|point| RecordedPoint { name: point.name.clone(), terms: point.end.terms.clone() });
-    let named = bodies.iter().zip(frames).flat_map(|(body, frame)| {
-        body.points.iter().map(move |(name, at)| RecordedPoint { name: format!("{}.{name}", body.name), terms: frame.point(*at) })
-    });
-    let joint = |joint: &joints::Joint| {
-        // The second side, unless only the first has nodes.
-        let side = if matches!(joint.geometry.members[1], Member::Ground) { 0 } else { 1 };
-        let frame = match joint.geometry.members[side] {
-            Member::Ground => Frame::Ground,
-            Member::Point(k) => Frame::Particle(points[k].end.place().expect("a point is a node")),
-            Member::Body(k) => frames[k].clone(),
-        };
-        RecordedJoint {
-            name: joint.name.clone(),
-            rows: joint.rows.clone(),
-            nodes: frame.nodes(),
-            sign: if side == 1 { 1.0 } else { -1.0 },
-            at: frame.point(joint.geometry.at[side]),
-        }
-    };
-    Channels {
-        axes: axes.name.to_string(),
-        points: own.chain(named).collect(),
-        bodies: Vec::new(),
-        joints: joints.iter().map(joint).collect(),
-        efforts: Vec::new(),
     }
 }
 

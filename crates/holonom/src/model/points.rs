@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use super::assembly::{Assembly, Axes, Point, fixed, node};
+use super::assembly::{Assembly, Axes, Point};
+use super::ends::{fixed, node};
 use super::entry::{Entry, Spot};
 use super::expression::{Program, TimeProgram};
 use super::fault::{Fault, Read};
@@ -110,7 +111,7 @@ pub fn add(assembly: &mut Assembly<'_>, specs: &[Spec]) {
     for (k, spec) in specs.iter().enumerate() {
         let end = match spec.motion {
             Motion::Free { velocity } => node(assembly.builder.free_node(spec.start, velocity), spec.start, true, k, &spec.name),
-            _ => super::assembly::End { point: Some(k), ..fixed(spec.start, spec.name.clone()) },
+            _ => super::ends::End { point: Some(k), ..fixed(spec.start, spec.name.clone()) },
         };
         assembly.by_name.insert(spec.name.clone(), k);
         assembly.points.push(Point { name: spec.name.clone(), path: spec.path.clone(), end, mass: spec.mass, carries_bar: false });

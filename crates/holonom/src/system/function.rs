@@ -6,9 +6,9 @@
 
 use std::sync::Arc;
 
-use num_dual::{Dual64, HyperDual64};
-
-use super::{Differentiated, InvariantId, Invariants, MAX_ARGUMENTS, Number};
+use super::angle::{angle_at, angle_between};
+use super::derive::{Place, difference, quotient};
+use super::{Derivatives, Followed, InvariantId, Invariants, MAX_ARGUMENTS, Pfaffian, Smooth};
 
 /// A function of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,169 +31,6 @@ impl From<FunctionId> for Quantity {
     fn from(id: FunctionId) -> Self {
         Self::Function(id)
     }
-}
-
-/// A smooth function of some invariants, written once over any number type; [`Differentiated`] takes its derivatives.
-pub trait SmoothFunction: Send + Sync {
-    /// Its value.
-    fn evaluate<N: Number>(&self, value: &[N]) -> N;
-}
-
-/// Value, gradient and Hessian of a function of m numbers.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Derivatives {
-    pub value: f64,
-    /// ∂g/∂π_i; between two positions its discrete derivative D_i.
-    pub gradient: [f64; MAX_ARGUMENTS],
-    /// ∂²g/∂π_i∂π_j; between two positions ∂D_i/∂π_j with π_j at the second.
-    pub hessian: [[f64; MAX_ARGUMENTS]; MAX_ARGUMENTS],
-}
-
-impl Derivatives {
-    /// Σ_j ∂g_j/∂π_i r_j with the gradient g_j: how a rate changes with an argument.
-    #[inline]
-    pub(crate) fn bend(&self, i: usize, rates: &[f64; MAX_ARGUMENTS]) -> f64 {
-        self.hessian.iter().zip(rates).map(|(line, rate)| line[i] * rate).sum()
-    }
-}
-
-/// A smooth function of some invariants that has several values, of which one is followed: that with a number, such as
-/// the parameter of a curve, near the one it had.
-pub trait FollowedFunction: Send + Sync {
-    /// The number at these invariants, from one nearby.
-    fn locate(&self, value: &[f64], near: f64) -> f64;
-
-    /// Its value, where the number is `at`.
-    fn evaluate<N: Number>(&self, value: &[N], at: f64) -> N;
-}
-
-/// A followed function as an engine sees it.
-pub trait Followed: Send + Sync {
-    /// The number at these invariants, from one nearby.
-    fn locate(&self, value: &[f64], near: f64) -> f64;
-
-    /// Value and derivatives, where the number is `at`.
-    fn derivatives(&self, value: &[f64], at: f64) -> Derivatives;
-}
-
-impl<F: FollowedFunction> Followed for Differentiated<F> {
-    fn locate(&self, value: &[f64], near: f64) -> f64 {
-        self.0.locate(value, near)
-    }
-
-    fn derivatives(&self, value: &[f64], at: f64) -> Derivatives {
-        derive(value, self.0.evaluate(value, at), |point| self.0.evaluate(point, at))
-    }
-}
-
-/// Coefficients f_i of a condition on velocities Σ f_i(π) π̇_i = 0 that comes of no function of positions, written once
-/// over any number type; [`Differentiated`] takes their derivatives.
-pub trait PfaffianForm: Send + Sync {
-    /// Writes f_i at the values of its invariants.
-    fn evaluate<N: Number>(&self, value: &[N], out: &mut [N]);
-}
-
-/// Such coefficients as an engine sees them.
-pub trait Pfaffian: Send + Sync {
-    /// f_i as the gradient and ∂f_i/∂π_j as the Hessian, which is not symmetric; the value is zero.
-    fn derivatives(&self, value: &[f64]) -> Derivatives;
-}
-
-impl<F: PfaffianForm> Pfaffian for Differentiated<F> {
-    fn derivatives(&self, value: &[f64]) -> Derivatives {
-        let m = value.len();
-        let mut out = Derivatives::default();
-        for j in 0..m {
-            let (mut point, mut result) = ([Dual64::from(0.0); MAX_ARGUMENTS], [Dual64::from(0.0); MAX_ARGUMENTS]);
-            point.iter_mut().zip(value).for_each(|(point, &value)| *point = Dual64::from(value));
-            point[j].eps = 1.0;
-            self.0.evaluate(&point[..m], &mut result[..m]);
-            for i in 0..m {
-                out.gradient[i] = result[i].re;
-                out.hessian[i][j] = result[i].eps;
-            }
-        }
-        out
-    }
-}
-
-/// A smooth function as an engine sees it.
-pub trait Smooth: Send + Sync {
-    /// Value and derivatives.
-    fn derivatives(&self, value: &[f64]) -> Derivatives;
-}
-
-impl<F: SmoothFunction> Smooth for Differentiated<F> {
-    fn derivatives(&self, value: &[f64]) -> Derivatives {
-        derive(value, self.0.evaluate(value), |point| self.0.evaluate(point))
-    }
-}
-
-/// Derivatives of a function by dual numbers.
-fn derive(value: &[f64], result: f64, evaluate: impl Fn(&[HyperDual64]) -> HyperDual64) -> Derivatives {
-    let m = value.len();
-    let mut out = Derivatives { value: result, ..Derivatives::default() };
-    for i in 0..m {
-        for j in 0..=i {
-            let mut point = [HyperDual64::from(0.0); MAX_ARGUMENTS];
-            point.iter_mut().zip(value).for_each(|(point, &value)| *point = HyperDual64::from(value));
-            point[i].eps1 = 1.0;
-            point[j].eps2 = 1.0;
-            let result = evaluate(&point[..m]);
-            out.gradient[i] = result.eps1;
-            out.hessian[i][j] = result.eps1eps2;
-            out.hessian[j][i] = result.eps1eps2;
-        }
-    }
-    out
-}
-
-/// Change of the arguments, over their size, below which the quotient of the discrete derivative would be round-off; the
-/// derivative half way is then as exact.
-pub(crate) const NO_CHANGE: f64 = 1e-6;
-
-/// The discrete derivative of a smooth function: D = g'(π̄) + (Δg − g'(π̄)·Δπ)/‖Δπ‖² Δπ, and what it changes by with the
-/// second position.
-pub(super) fn difference(smooth: &dyn Smooth, from: &[f64], to: &[f64]) -> Derivatives {
-    quotient(from, to, |_, value| smooth.derivatives(value))
-}
-
-/// Where between two positions a function is taken.
-#[derive(Clone, Copy)]
-enum Place {
-    Start,
-    Middle,
-    End,
-}
-
-fn quotient(from: &[f64], to: &[f64], derivatives: impl Fn(Place, &[f64]) -> Derivatives) -> Derivatives {
-    let m = from.len();
-    let (mut middle, mut change) = ([0.0; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS]);
-    for i in 0..m {
-        middle[i] = 0.5 * (from[i] + to[i]);
-        change[i] = to[i] - from[i];
-    }
-    let half = derivatives(Place::Middle, &middle[..m]);
-    let mut out = half;
-    out.hessian.iter_mut().flatten().for_each(|h| *h *= 0.5);
-    let square = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>();
-    let size = square(&change);
-    if size <= NO_CHANGE * NO_CHANGE * square(&middle) {
-        return out;
-    }
-    let (start, end) = (derivatives(Place::Start, from), derivatives(Place::End, to));
-    let along: f64 = (0..m).map(|i| half.gradient[i] * change[i]).sum();
-    let quotient = (end.value - start.value - along) / size;
-    for j in 0..m {
-        let bent: f64 = (0..m).map(|k| half.hessian[k][j] * change[k]).sum();
-        let slope = (end.gradient[j] - half.gradient[j] - 0.5 * bent - 2.0 * quotient * change[j]) / size;
-        (0..m).for_each(|i| out.hessian[i][j] += slope * change[i]);
-    }
-    for i in 0..m {
-        out.gradient[i] += quotient * change[i];
-        out.hessian[i][i] += quotient;
-    }
-    out
 }
 
 /// A summand of a function.
@@ -437,44 +274,5 @@ pub(super) fn pick(ids: &[InvariantId], values: &[f64]) -> [f64; MAX_ARGUMENTS] 
 fn identity(value: f64) -> Derivatives {
     let mut out = Derivatives { value, ..Derivatives::default() };
     out.gradient[0] = 1.0;
-    out
-}
-
-/// θ with (c, s) = ρ (cos θ, sin θ), nearest to `near`, and its derivatives by c and s.
-fn angle_at(c: f64, s: f64, near: f64) -> Derivatives {
-    let (sin, cos) = near.sin_cos();
-    let square = c * c + s * s;
-    let mut out = Derivatives { value: near + (s * cos - c * sin).atan2(c * cos + s * sin), ..Derivatives::default() };
-    out.gradient[..2].copy_from_slice(&[-s / square, c / square]);
-    let (twist, bend) = (2.0 * c * s / (square * square), (s * s - c * c) / (square * square));
-    out.hessian[0][..2].copy_from_slice(&[twist, bend]);
-    out.hessian[1][..2].copy_from_slice(&[bend, -twist]);
-    out
-}
-
-/// The discrete derivative κ (−s̄, c̄) of an angle, κ = Δθ/(c₀s₁ − s₀c₁) (methods §2.2), for turns below π.
-fn angle_between([[c0, s0], [c1, s1]]: [[f64; 2]; 2]) -> Derivatives {
-    let (c, s) = (0.5 * (c0 + c1), 0.5 * (s0 + s1));
-    let turn = (c0 * s1 - s0 * c1).atan2(c0 * c1 + s0 * s1);
-    let end = c1 * c1 + s1 * s1;
-    let radius = (end * (c0 * c0 + s0 * s0)).sqrt();
-    // Δ/sin Δ and its derivative.
-    let (ratio, slope) = match turn.abs() < 0.01 {
-        true => {
-            let t2 = turn * turn;
-            (1.0 + t2 / 6.0 + 7.0 * t2 * t2 / 360.0, turn / 3.0 + 7.0 * turn * t2 / 90.0)
-        }
-        false => {
-            let (sin, cos) = turn.sin_cos();
-            (turn / sin, (sin - turn * cos) / (sin * sin))
-        }
-    };
-    let kappa = ratio / radius;
-    let by_c = (-slope * s1 - ratio * c1) / (radius * end);
-    let by_s = (slope * c1 - ratio * s1) / (radius * end);
-    let mut out = Derivatives::default();
-    out.gradient[..2].copy_from_slice(&[-kappa * s, kappa * c]);
-    out.hessian[0][..2].copy_from_slice(&[-s * by_c, -0.5 * kappa - s * by_s]);
-    out.hessian[1][..2].copy_from_slice(&[0.5 * kappa + c * by_c, c * by_s]);
     out
 }

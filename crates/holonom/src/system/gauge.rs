@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::function::{Followed, Part};
+use super::Followed;
+use super::function::Part;
 use super::{FunctionValues, Functions, Invariants, System, SystemBuilder, Term};
 
 /// A joint coordinate, before it is a quantity of a system.

@@ -4,8 +4,10 @@
 //! vector `x = [q | known]` of `D` numbers a node, so that no formula asks which of the two a node is. Fixed places are
 //! folded into the invariants as constants.
 
+mod angle;
 mod builder;
 mod custom;
+mod derive;
 mod evaluate;
 mod function;
 mod gauge;
@@ -18,10 +20,12 @@ mod respond;
 
 pub use builder::{NodeId, Place, SystemBuilder, Term};
 pub use custom::{ConstraintFunction, CustomRows, Differentiated, ForceFunction, Number, SIZE};
+pub(crate) use derive::NO_CHANGE;
+pub use derive::{Derivatives, Followed, FollowedFunction, Pfaffian, PfaffianForm, Smooth, SmoothFunction};
 pub(crate) use evaluate::gather;
 pub use evaluate::{Between, Evaluation};
-pub use function::{Derivatives, Followed, FollowedFunction, FunctionId, Part, Pfaffian, PfaffianForm, Quantity, Smooth, SmoothFunction};
-pub(crate) use function::{FunctionValues, Functions, NO_CHANGE};
+pub use function::{FunctionId, Part, Quantity};
+pub(crate) use function::{FunctionValues, Functions};
 pub(crate) use gauge::Gauges;
 pub use gauge::{Form, GaugeValues};
 pub(crate) use invariant::{HessianBlock, skew};

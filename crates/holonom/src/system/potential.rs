@@ -1,6 +1,6 @@
 //! Potentials of several quantities, written once over any number type.
 
-use super::function::difference;
+use super::derive::difference;
 use super::{Differentiated, Law, Reach, Response, Smooth, SmoothFunction};
 
 /// A smooth function as a potential V(π), J. Its discrete gradient keeps energy and, as its arguments are invariants,

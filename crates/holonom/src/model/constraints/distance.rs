@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
-use crate::model::assembly::{Assembly, End, difference, from_to};
+use crate::model::assembly::Assembly;
+use crate::model::ends::{End, difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::expression::{Program, TimeProgram};
 use crate::model::fault::Read;

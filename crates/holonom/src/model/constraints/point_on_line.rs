@@ -1,4 +1,5 @@
-use crate::model::assembly::{Assembly, End, difference, fixed, from_to};
+use crate::model::assembly::Assembly;
+use crate::model::ends::{End, difference, fixed, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::geometry::{across, cross, dot, norm, unit};

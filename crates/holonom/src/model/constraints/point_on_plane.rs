@@ -1,4 +1,5 @@
-use crate::model::assembly::{Assembly, difference, fixed, from_to};
+use crate::model::assembly::Assembly;
+use crate::model::ends::{difference, fixed, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::geometry::{dot, norm};

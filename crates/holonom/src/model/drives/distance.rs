@@ -1,7 +1,8 @@
 use std::sync::Arc;
 
 use super::profile;
-use crate::model::assembly::{Assembly, Effort, difference, from_to};
+use crate::model::assembly::{Assembly, Effort};
+use crate::model::ends::{difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::geometry::norm;

@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
-use crate::model::assembly::{Assembly, Effort, difference, fixed};
+use crate::model::assembly::{Assembly, Effort};
+use crate::model::ends::{difference, fixed};
 use crate::model::entry::Entry;
 use crate::model::expression::TimeProgram;
 use crate::model::fault::Read;

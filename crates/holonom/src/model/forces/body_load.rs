@@ -5,8 +5,9 @@
 
 use std::sync::Arc;
 
-use crate::model::assembly::{Assembly, End};
+use crate::model::assembly::Assembly;
 use crate::model::bodies::nodes::Member;
+use crate::model::ends::End;
 use crate::model::entry::{Entry, Spot};
 use crate::model::expression::Program;
 use crate::model::fault::Read;

@@ -1,8 +1,9 @@
 use std::sync::Arc;
 
 use super::coordinate_laws::{Resisting, Spring, Viscous};
-use crate::model::assembly::{Assembly, subtract};
+use crate::model::assembly::Assembly;
 use crate::model::bodies::nodes::Member;
+use crate::model::ends::subtract;
 use crate::model::entry::{Entry, Spot, all};
 use crate::model::fault::Read;
 use crate::model::geometry::unit;

@@ -1,6 +1,6 @@
 //! A force on a point that is a sum of nodes.
 
-use crate::model::assembly::End;
+use crate::model::ends::End;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::system::{ForceFunction, NodeId, Number, Place};

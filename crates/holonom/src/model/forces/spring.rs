@@ -1,7 +1,8 @@
 use std::sync::Arc;
 
 use super::laws::{Damper, Energy, FORCE_VARIABLES, Force, LinearSpring, SHORTEST};
-use crate::model::assembly::{Assembly, difference, from_to};
+use crate::model::assembly::Assembly;
+use crate::model::ends::{difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::expression::Program;
 use crate::model::fault::Read;

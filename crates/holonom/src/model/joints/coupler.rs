@@ -1,9 +1,10 @@
 //! What couplers have in common: rows that are sums of coordinates of joints.
 
-use crate::model::assembly::{Assembly, split_place};
+use crate::model::assembly::Assembly;
 use crate::model::entry::{Entry, Spot};
 use crate::model::fault::{Read, suggest};
 use crate::model::key::{Key, Shape};
+use crate::model::references::split_place;
 
 use super::pair::Coordinate;
 

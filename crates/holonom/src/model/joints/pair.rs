@@ -2,9 +2,10 @@
 
 use super::geometry::Geometry;
 use super::{Feature, JOINTS, JointKind};
-use crate::model::assembly::{Assembly, End, GROUND, fixed, subtract};
+use crate::model::assembly::{Assembly, GROUND};
 use crate::model::bodies::frame::Frame;
 use crate::model::bodies::nodes::Member;
+use crate::model::ends::{End, fixed, subtract};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::geometry::{Vec3, unit};

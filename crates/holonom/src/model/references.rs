@@ -1,0 +1,261 @@
+//! What a model refers to by name: points, bodies, places and directions of them, joints.
+
+use super::assembly::{Assembly, GROUND};
+use super::bodies::nodes::Member;
+use super::ends::{End, fixed};
+use super::entry::{Entry, Spot, all};
+use super::expression::{Mistake, Program, Scope};
+use super::fault::{Read, Refused, nearest, suggest};
+use super::geometry::Vec3;
+use super::joints::Joint;
+use super::value::Value;
+
+impl Assembly<'_> {
+    /// The point named at a key.
+    pub fn point(&self, entry: &Entry<'_>, key: &str) -> Read<End> {
+        match entry.text(key)? {
+            GROUND => Err(entry.refuse(key, format!("`{GROUND}` is a place, and a point is wanted here"), "name a [point.NAME]")),
+            name => self.named(entry, key.into(), name),
+        }
+    }
+
+    /// The end at a key.
+    pub fn end(&self, entry: &Entry<'_>, key: &str) -> Read<End> {
+        self.end_in(entry, key.into(), entry.value(key)?)
+    }
+
+    /// At least `least` and at most `most` ends, no two neighbours alike.
+    pub fn ends(&self, entry: &Entry<'_>, key: &str, least: usize, most: usize) -> Read<Vec<End>> {
+        let items = entry.list(key)?;
+        if !(least..=most).contains(&items.len()) {
+            let wanted = if least == most { format!("{least}") } else { format!("at least {least}") };
+            let names = ["\"A\"", "\"B\"", "\"C\""];
+            let cure = format!("write {key} = [{}], with names of points, \"ground\" or fixed places", names[..least.min(3)].join(", "));
+            return Err(entry.refuse(key, format!("`{key}` wants {wanted} points, and this has {}", items.len()), cure));
+        }
+        let ends = all(items.iter().enumerate().map(|(k, item)| self.end_in(entry, Spot { key, item: Some(k) }, item)))?;
+        match (1..ends.len()).find(|&k| ends[k].terms == ends[k - 1].terms) {
+            Some(k) => Err(entry.refuse(Spot { key, item: Some(k) }, "the same point comes twice", "name two different points")),
+            None => Ok(ends),
+        }
+    }
+
+    /// Two different ends.
+    pub fn pair(&self, entry: &Entry<'_>, key: &str) -> Read<[End; 2]> {
+        let ends = self.ends(entry, key, 2, 2)?;
+        Ok(ends.try_into().expect("two ends"))
+    }
+
+    /// Two ends of which at least one can move.
+    pub fn moving_pair(&self, entry: &Entry<'_>, key: &str) -> Read<[End; 2]> {
+        let ends = self.pair(entry, key)?;
+        self.require_free(entry, key, &ends)?;
+        Ok(ends)
+    }
+
+    /// Refuses something that ties only places whose motion is known.
+    pub fn require_free(&self, entry: &Entry<'_>, key: &str, ends: &[End]) -> Read<()> {
+        if ends.iter().any(|end| end.free) {
+            return Ok(());
+        }
+        Err(entry.refuse(key, "none of these can move freely", "at least one must be a point that is neither fixed nor driven"))
+    }
+
+    /// A side of a joint: a body, a point or the ground.
+    pub fn member(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<Member> {
+        if name == GROUND {
+            return Ok(Member::Ground);
+        }
+        let full = indexed(name, &entry.scope).map_err(|mistake| entry.mistaken(spot, mistake))?;
+        if let Some(k) = self.body_by_name(&full) {
+            return Ok(Member::Body(k));
+        }
+        if let Some(&k) = self.by_name.get(&full) {
+            return Ok(Member::Point(k));
+        }
+        let base = full.split('[').next().unwrap_or(&full);
+        if self.faulty.contains(base) {
+            return Err(Refused);
+        }
+        let names = self.bodies.iter().map(|body| body.name.as_str()).chain(self.points.iter().map(|point| point.name.as_str()));
+        let cure = match nearest(&full, names.chain([GROUND])) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("add [body.{base}], or name one that is there"),
+        };
+        Err(entry.refuse(spot, format!("there is no body `{full}`"), cure))
+    }
+
+    /// Whether a text names a place or a direction of a body: `BODY.NAME`.
+    pub fn is_place_of_body(&self, entry: &Entry<'_>, text: &str) -> bool {
+        let body = split_place(text).and_then(|(body, _)| indexed(body, &entry.scope).ok());
+        body.is_some_and(|body| self.body_by_name(&body).is_some())
+    }
+
+    /// A joint by name.
+    pub fn joint(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<&Joint> {
+        let full = indexed(name, &entry.scope).map_err(|mistake| entry.mistaken(spot, mistake))?;
+        if let Some(&k) = self.joint_names.get(&full) {
+            return Ok(&self.joints[k]);
+        }
+        if self.body_by_name(&full).is_some() {
+            return Err(entry.refuse(spot, format!("`{full}` is a body, and a joint is wanted here"), "name a [joint.NAME]"));
+        }
+        if self.faulty_joints.contains(full.split('[').next().unwrap_or(&full)) {
+            return Err(Refused);
+        }
+        let cure = suggest(&full, self.joints.iter().map(|joint| joint.name.as_str()));
+        Err(entry.refuse(spot, format!("there is no joint `{full}`"), cure))
+    }
+
+    /// Where a place is at the start: `"BODY.POINT"`, the name of a point or a body, or coordinates.
+    pub fn place_at_start(&self, entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<Vec3> {
+        match value {
+            Value::Text(name) if self.frames.is_empty() && split_place(name).is_some() => {
+                self.named_place(entry, spot, name).map(|(_, at)| at)
+            }
+            _ => self.end_in(entry, spot, value).map(|end| end.start),
+        }
+    }
+
+    /// A direction at the start: `"BODY.AXIS"`, or components.
+    pub fn direction_at_start(&self, entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<Vec3> {
+        let cure = "write a direction as a list of numbers, or \"BODY.AXIS\"";
+        match value {
+            Value::List(items) if items.len() == self.dimension() => numbers(entry, spot, items),
+            Value::Text(text) => {
+                let (body, axis) = split_place(text).ok_or_else(|| entry.refuse(spot, format!("\"{text}\" is no direction"), cure))?;
+                let Member::Body(k) = self.member(entry, spot, body)? else {
+                    return Err(entry.refuse(spot, format!("`{body}` is no body and has no axes"), cure));
+                };
+                let axes = &self.bodies[k].axes;
+                axes.iter().find(|(name, _)| name == axis).map(|&(_, direction)| direction).ok_or_else(|| {
+                    let known = suggest(axis, axes.iter().map(|(name, _)| name.as_str()));
+                    entry.refuse(spot, format!("the body `{body}` has no axis `{axis}`"), known)
+                })
+            }
+            Value::List(items) => {
+                let message = format!("a direction has {} numbers here, and this has {}", self.dimension(), items.len());
+                Err(entry.refuse(spot, message, "give one for each axis of the model"))
+            }
+            other => Err(entry.refuse(spot, format!("a direction is wanted here, and this is {}", other.type_name()), cure)),
+        }
+    }
+
+    /// A place of a body by its name, `BODY.POINT`, with its position at the start.
+    fn named_place(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<(usize, Vec3)> {
+        let (body, place) = split_place(name).expect("there is a dot");
+        let Member::Body(k) = self.member(entry, spot, body)? else {
+            return Err(entry.refuse(spot, format!("`{body}` is no body and has no named points"), "name a point of a [body.NAME]"));
+        };
+        let points = &self.bodies[k].points;
+        points.iter().find(|(known, _)| known == place).map(|&(_, at)| (k, at)).ok_or_else(|| {
+            let cure = match points.is_empty() {
+                true => format!("add [body.{body}.points] with {place} = […] in body axes"),
+                false => suggest(place, points.iter().map(|(name, _)| name.as_str())),
+            };
+            entry.refuse(spot, format!("the body `{body}` has no point `{place}`"), cure)
+        })
+    }
+
+    /// A place of a body as an end.
+    pub fn body_end(&self, body: usize, at: Vec3, name: &str) -> End {
+        End { terms: self.frames[body].point(at), start: at, free: true, point: None, body: Some(body), name: name.to_string() }
+    }
+
+    fn end_in(&self, entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<End> {
+        match value {
+            Value::Text(name) if name == GROUND => Ok(fixed([0.0; 3], GROUND.into())),
+            Value::Text(name) => self.named(entry, spot, name),
+            Value::List(items) if items.len() == self.dimension() => {
+                let start = numbers(entry, spot, items)?;
+                Ok(fixed(start, value.quoted()))
+            }
+            Value::List(items) => {
+                let message = format!("a fixed place has {} numbers here, and this has {}", self.dimension(), items.len());
+                Err(entry.refuse(spot, message, "give one for each axis of the model"))
+            }
+            other => {
+                let message = format!("the name of a point is wanted here, and this is {}", other.type_name());
+                Err(entry.refuse(spot, message, "write \"NAME\", \"ground\" or a list of coordinates"))
+            }
+        }
+    }
+
+    fn named(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<End> {
+        if let Some(&k) = self.by_name.get(name) {
+            return Ok(self.points[k].end.clone());
+        }
+        if !self.bodies.is_empty() {
+            if split_place(name).is_some() {
+                return self.named_place(entry, spot, name).map(|(body, at)| self.body_end(body, at, name));
+            }
+            if let Ok(Some(k)) = indexed(name, &entry.scope).map(|full| self.body_by_name(&full)) {
+                return Ok(self.body_end(k, self.bodies[k].position, name));
+            }
+        }
+        let full = match indexed(name, &entry.scope) {
+            Ok(full) => full,
+            Err(mistake) => return Err(entry.mistaken(spot, mistake)),
+        };
+        if let Some(&k) = self.by_name.get(&full) {
+            return Ok(self.points[k].end.clone());
+        }
+        let base = full.split('[').next().unwrap_or(&full);
+        if self.faulty.contains(base) {
+            return Err(Refused);
+        }
+        if self.sink.is_full() {
+            return Err(entry.refuse(spot, "", ""));
+        }
+        let begins = format!("{base}[");
+        let mut many = self.points.iter().filter(|point| point.name.starts_with(&begins));
+        if let (Some(first), last) = (many.next(), many.next_back()) {
+            let cure = format!("`{base}` is repeated, from `{}` to `{}`", first.name, last.unwrap_or(first).name);
+            return Err(entry.refuse(spot, format!("there is no point `{full}`"), cure));
+        }
+        let cure = match nearest(&full, self.points.iter().map(|point| point.name.as_str()).chain([GROUND])) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("add [point.{base}], or name one that is there"),
+        };
+        Err(entry.refuse(spot, format!("there is no point `{full}`"), cure))
+    }
+}
+
+/// Numbers of a list that may itself be an item of a list, zeros behind them.
+fn numbers(entry: &Entry<'_>, spot: Spot<'_>, items: &[Value]) -> Read<[f64; 3]> {
+    let read = all(items.iter().map(|item| entry.number_in(spot, item)))?;
+    Ok(std::array::from_fn(|k| read.get(k).copied().unwrap_or(0.0)))
+}
+
+/// `BODY.POINT` in its two parts; a dot in an index is none between them.
+pub fn split_place(text: &str) -> Option<(&str, &str)> {
+    let behind = text.rfind(']').map_or(0, |at| at + 1);
+    text[behind..].find('.').map(|at| (&text[..behind + at], &text[behind + at + 1..]))
+}
+
+/// A reference with its indices worked out: `P[i-1]` becomes `P[2]`.
+fn indexed(name: &str, scope: &Scope<'_>) -> Result<String, Mistake> {
+    let Some((base, mut rest)) = name.split_once('[') else {
+        return Ok(name.to_string());
+    };
+    let mut full = base.to_string();
+    let mut at = base.chars().count() + 1;
+    let wrong = |character: usize, message: String| Mistake { character, message, cure: "write \"NAME[i]\"".into(), known: false };
+    loop {
+        let Some((text, after)) = rest.split_once(']') else {
+            return Err(wrong(at, "a closing ] is missing".into()));
+        };
+        let index = Program::parse(text, &[], scope).map_err(|inner| Mistake { character: at + inner.character, ..inner })?;
+        let value = index.as_constant().expect("no variables");
+        if value.is_nan() || (value - value.round()).abs() > 1e-9 {
+            return Err(wrong(at, format!("the index `{text}` is {value}, which is no whole number")));
+        }
+        full.push_str(&format!("[{}]", value.round()));
+        at += text.chars().count() + 2;
+        match after.strip_prefix('[') {
+            Some(next) => rest = next,
+            None if after.is_empty() => return Ok(full),
+            None => return Err(wrong(at - 1, "nothing may follow an index but another one".into())),
+        }
+    }
+}
