@@ -79,7 +79,7 @@ pub const JOINTS: &[Shot] = &[
     floating("parallel", 0.3),
     floating("perpendicular", 0.3),
     floating("orientation", 0.3),
-    Shot { closer: 0.8, ..joint("distance", 0.3) },
+    joint("distance", 0.3),
     floating("generic", 0.5),
     joint("rolling", 0.8),
     joint("gear", 0.3),
