@@ -15,7 +15,7 @@ The viewer of the HTML report is bundled when holonom-report is built. That need
   Debian, Ubuntu   apt install nodejs npm
   macOS            brew install node
   others           the installer of the Node project
-To build without it (reports then have no picture and no plots): cargo build --no-default-features";
+To build without it (reports then have no picture and no plots): cargo build --no-default-features --features parquet";
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

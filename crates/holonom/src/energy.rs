@@ -59,7 +59,7 @@ pub fn work_between(system: &System, stage: &Stage, work: &Workspace) -> f64 {
     for (row, &lambda) in work.lambda.iter().enumerate() {
         sum += lambda
             * match system.rows.get(row) {
-                Some(row) => row.target.at(stage.start)[0] - row.target.at(stage.end())[0],
+                Some(row) => row.target(stage.start)[0] - row.target(stage.end())[0],
                 None => h * system.explicit_rate(row, &work.sampled, stage.time()),
             };
     }

@@ -44,14 +44,10 @@ impl Workspace {
     }
 
     /// Forces of the rows on all nodes, −Gᵀλ (D × nodes), N, at the evaluation `at_end`.
-    pub fn constraint_forces(&self, system: &System, force: &mut [f64]) {
+    pub fn constraint_forces(&self, force: &mut [f64]) {
         force.fill(0.0);
-        for (slots, &lambda) in self.kkt.row_slots.iter().zip(&self.lambda) {
-            for s in slots.clone() {
-                let node = self.kkt.slot_nodes[s] as usize * system.dim;
-                (0..system.dim).for_each(|c| force[node + c] -= lambda * self.at_end.gradient[s * system.dim + c]);
-            }
-        }
+        self.kkt.add_forces(&self.lambda, &self.at_end.gradient, force);
+        force.iter_mut().for_each(|force| *force = -*force);
     }
 
     /// Accelerations and multipliers at the end position and velocity by the formulation itself, which must be one that

@@ -100,7 +100,7 @@ impl Collocation {
                 None
             }
         };
-        let mut convergence = Convergence::new(settings.tolerance);
+        let mut convergence = Convergence::new(settings, work.shortest);
         for iteration in 1..=settings.max_iterations {
             let keeps = convergence.keeps_factors();
             if !keeps {
@@ -377,7 +377,7 @@ impl Collocation {
     /// Largest increment of a multiplier, in units of mass × length over those of the mechanism.
     fn turned(&self, work: &Workspace) -> f64 {
         let multipliers = &self.unknowns[self.kkt.multiplier(0, 0)..];
-        let of_field = |field| work.scaled_multipliers(multipliers.iter().skip(field).step_by(self.kkt.fields));
+        let of_field = |field| work.scaled_multipliers(multipliers.iter().copied().skip(field).step_by(self.kkt.fields));
         (0..self.kkt.fields).map(of_field).fold(0.0, f64::max)
     }
 

@@ -1,7 +1,7 @@
 //! The nonlinear solve of a stage: exact Newton, and the paper's nested and simultaneous loops (§4).
 
 use super::level::Level;
-use super::stage::Stage;
+use super::stage::{RowsAt, Stage};
 use super::workspace::Workspace;
 use crate::system::System;
 
@@ -46,6 +46,15 @@ pub struct SolveSettings {
     pub tolerance: f64,
     /// Most factorisations in one step.
     pub max_iterations: usize,
+    /// Exactly so many Newton iterations with new factors each, whatever they leave: every step costs the same.
+    pub iterations: Option<usize>,
+}
+
+impl SolveSettings {
+    /// Where Newton starts again: nowhere with a fixed number of iterations.
+    pub(super) fn restarts(&self) -> &'static [f64] {
+        if self.iterations.is_some() { &[] } else { &RESTARTS }
+    }
 }
 
 /// Why a stage was not solved.
@@ -72,7 +81,7 @@ const OUTER_SHARE: f64 = 1e-3;
 
 /// Shares of the free flight h v from which Newton starts again where the prediction led nowhere: with large steps the
 /// acceleration of the last step says little of this one.
-pub(super) const RESTARTS: [f64; 3] = [1.0, 0.5, 0.0];
+const RESTARTS: [f64; 3] = [1.0, 0.5, 0.0];
 
 /// Solves a stage from the increment and multipliers in the workspace; says how many iterations it took.
 pub fn solve(system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<usize, Failure> {
@@ -94,7 +103,7 @@ fn newton_from_predictions(
 ) -> Result<usize, Failure> {
     let mut outcome = newton(system, stage, settings, soft, work);
     let mut spent = 0;
-    for share in RESTARTS {
+    for &share in settings.restarts() {
         if outcome.is_ok() {
             break;
         }
@@ -111,6 +120,7 @@ pub(super) fn restart(share: f64, work: &mut Workspace) {
         *d = share * drift;
     }
     work.lambda.fill(0.0);
+    work.lambda_change.fill(0.0);
 }
 
 /// Newton on coordinates and multipliers together. With `soft` the rows are Φ − λ/α = 0, the penalty formulation.
@@ -118,10 +128,15 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
     let n = system.coordinates();
     match (soft, settings.multipliers) {
         (Some(alpha), _) => work.delta.fill(work.level.scale(stage.rate, stage.inertia) / (stage.inertia * alpha)),
+        // Where violations are held, redundant rows that miss each other would not let their multipliers settle.
+        (None, Multipliers::Augmented(None)) if work.level == Level::POSITION && stage.rows != RowsAt::Mean => {
+            work.proximal_of_redundant();
+            work.expect_multipliers();
+        }
         (None, Multipliers::Augmented(penalty)) => work.proximal(stage.inertia, penalty),
         (None, Multipliers::Penalty(_)) => unreachable!("a penalty is soft"),
     }
-    let mut convergence = Convergence::new(settings.tolerance);
+    let mut convergence = Convergence::new(settings, work.shortest);
     for iteration in 1..=settings.max_iterations {
         work.place(system, stage);
         work.evaluate(system, stage);
@@ -134,13 +149,15 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
             return Ok(iteration - 1);
         }
         if !convergence.keeps_factors() {
+            work.shift_multipliers(1.0);
             work.tangent(system, stage, 1.0);
+            work.shift_multipliers(-1.0);
             work.factor()?;
         }
         work.solve()?;
         let increment = advance(n, work);
         work.lambda.iter_mut().zip(&work.unknowns[n..]).for_each(|(lambda, mu)| *lambda += mu / stage.inertia);
-        let turned = work.scaled_multipliers(&work.unknowns[n..]);
+        let turned = work.turned(stage.inertia, n);
         if convergence.is_reached(increment, turned) {
             return Ok(iteration);
         }
@@ -148,25 +165,39 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
     Err(Failure::NotConverged(settings.max_iterations))
 }
 
-/// What the next increment may leave behind, relative to the mechanism, for the factors to be kept: another iteration
-/// with them is cheaper than new ones.
-const KEPT: f64 = 1e-10;
+/// Iterations with kept factors that are cheaper than new ones.
+const KEPT: i32 = 4;
 
 /// How a Newton iteration goes: sizes of its increments, relative to the mechanism.
 pub(super) struct Convergence {
     tolerance: f64,
+    shortest: f64,
+    /// Iterations that are left where their number is fixed.
+    left: Option<usize>,
     /// Last increment of the coordinates.
     increment: f64,
     /// Last increment of coordinates or multipliers, whichever was larger: what the matrix changes by.
     turn: f64,
     /// What the factors in use are off by.
     stale: f64,
+    /// Share of an increment that the next one with the same factors came to.
+    contraction: f64,
     stalls: bool,
 }
 
 impl Convergence {
-    pub(super) fn new(tolerance: f64) -> Self {
-        Self { tolerance, increment: f64::INFINITY, turn: f64::INFINITY, stale: 0.0, stalls: false }
+    /// `shortest` is the length of the shortest row over that of the mechanism: it turns by so much more.
+    pub(super) fn new(settings: &SolveSettings, shortest: f64) -> Self {
+        Self {
+            shortest,
+            tolerance: settings.tolerance,
+            left: settings.iterations,
+            increment: f64::INFINITY,
+            turn: f64::INFINITY,
+            stale: 0.0,
+            contraction: 0.0,
+            stalls: false,
+        }
     }
 
     /// Whether increments are small but no longer shrink.
@@ -174,12 +205,12 @@ impl Convergence {
         self.stalls
     }
 
-    /// Whether the factors serve the next iteration: they are off by all that has turned since they were made, and what
-    /// they leave is that much smaller than the next increment.
+    /// Whether the factors serve the iterations to come: they are off by all that has turned since they were made, or by
+    /// what increments with them left, and each leaves that much of the one before.
     pub(super) fn keeps_factors(&mut self) -> bool {
-        let stale = self.stale + self.turn;
-        let keeps = self.increment * stale * stale <= KEPT;
-        self.stale = if keeps { stale } else { 0.0 };
+        let stale = (self.stale + self.turn).max(self.contraction);
+        let keeps = self.left.is_none() && self.increment * stale.powi(KEPT) <= self.tolerance;
+        (self.stale, self.contraction) = if keeps { (stale, self.contraction) } else { (0.0, 0.0) };
         keeps
     }
 
@@ -187,10 +218,15 @@ impl Convergence {
     /// remainder is as much smaller as the increment was than the one before, and no less than its product with the
     /// turn, which Newton's linearisation of Gᵀλ leaves out.
     pub(super) fn is_reached(&mut self, increment: f64, multipliers: f64) -> bool {
+        if let Some(left) = &mut self.left {
+            *left -= 1;
+            return *left == 0;
+        }
         let contraction = if self.increment.is_finite() { (increment / self.increment).min(1.0) } else { 1.0 };
         let remaining = increment * contraction.max(multipliers).max(self.stale);
+        self.contraction = if self.stale > 0.0 { self.contraction.max(contraction) } else { 0.0 };
         self.stalls = increment < 1e-6 && increment > 0.1 * self.increment;
-        (self.increment, self.turn) = (increment, increment.max(multipliers));
+        (self.increment, self.turn) = (increment, (increment / self.shortest).max(multipliers));
         remaining <= self.tolerance
     }
 }

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use crate::linalg::{Singular, Solver};
-use crate::system::{MAX_ARGUMENTS, Response};
+use crate::system::{MAX_ARGUMENTS, Response, along, scatter};
 
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -51,7 +51,7 @@ pub(super) struct Hessian {
 pub type Coupling = fn(usize, usize, usize) -> bool;
 
 /// One stage without velocities, or several stages each with all rows.
-pub(super) const ALL: Coupling = |_, _, _| true;
+pub(crate) const ALL: Coupling = |_, _, _| true;
 
 /// Rows of a stage and coordinates of the same stage.
 pub(super) const OWN_STAGE: Coupling = |_, node, row| node == row;
@@ -72,6 +72,8 @@ pub struct Kkt {
     pub row_slots: Vec<Range<usize>>,
     /// Node of each slot.
     pub slot_nodes: Vec<u32>,
+    /// The nodes of each pair.
+    pub(super) pair_nodes: Vec<[u32; 2]>,
     pub(super) pair_mass: Vec<f64>,
     pub(super) pair_sum: Vec<f64>,
     /// Entries of the mass matrix that quarter turns of the plane make, and their factor in the sum at hand.
@@ -81,13 +83,15 @@ pub struct Kkt {
     pub(super) diagonal: Vec<u32>,
     pub(super) full_index: Vec<u32>,
     pub(super) full: Vec<u32>,
-    pub(super) row_hessian: Vec<Hessian>,
+    /// Second derivatives of all rows: row, pair and factor, and row and entry.
+    pub(super) row_isotropic: Vec<(u32, u32, f64)>,
+    pub(super) row_skew: Vec<(u32, SkewEntry)>,
     pub(super) law_hessian: Vec<Vec<Hessian>>,
     pub(super) law_outer: Vec<Vec<OuterTerm>>,
     pub(super) load_pairs: Vec<Vec<u32>>,
     pub(super) custom_pairs: Vec<Vec<u32>>,
-    pub(super) row_positions: Vec<u32>,
-    pub(super) row_first: Vec<u32>,
+    /// For columns and for rows, for each block: number of a slot's component and its place in the matrix.
+    pub(super) row_entries: Vec<Vec<[u32; 2]>>,
     pub(super) row_diagonal: Vec<u32>,
 }
 
@@ -141,15 +145,12 @@ impl Kkt {
     /// Adds `factor` Σ λ_k H_k of the invariant rows to a block; parts that are multiples of the unit matrix go to the
     /// sum over pairs, which [`Kkt::write_sum`] has yet to write.
     pub fn add_row_hessians(&mut self, block: Block, lambda: &[f64], factor: f64) {
-        for (row, &lambda) in (0..self.row_hessian.len()).zip(lambda) {
-            let weight = factor * lambda;
-            for &(pair, c) in &self.row_hessian[row].isotropic {
-                self.pair_sum[pair as usize] += weight * c;
-            }
-            for k in 0..self.row_hessian[row].skew.len() {
-                let entry = self.row_hessian[row].skew[k];
-                self.add_entry(block, entry, weight);
-            }
+        for &(row, pair, c) in &self.row_isotropic {
+            self.pair_sum[pair as usize] += factor * lambda[row as usize] * c;
+        }
+        for k in 0..self.row_skew.len() {
+            let (row, entry) = self.row_skew[k];
+            self.add_entry(block, entry, factor * lambda[row as usize]);
         }
     }
 
@@ -238,14 +239,17 @@ impl Kkt {
                 self.add_entry(Block(i, j), entry, self.mass_factor);
             }
         }
-        let (dim, squared) = (self.dim, self.fields * self.fields);
-        let combination = i * self.fields + j;
+        match self.dim {
+            2 => self.write_sum_in::<2>(i * self.fields + j),
+            _ => self.write_sum_in::<3>(i * self.fields + j),
+        }
+    }
+
+    fn write_sum_in<const D: usize>(&mut self, combination: usize) {
         let values = self.solver.values_mut();
-        for (pair, &sum) in self.pair_sum.iter().enumerate() {
-            let first = (pair * squared + combination) * dim;
-            for &position in &self.diagonal[first..first + dim] {
-                values[position as usize] += sum;
-            }
+        let positions = self.diagonal.as_chunks::<D>().0.iter().skip(combination).step_by(self.fields * self.fields);
+        for (positions, &sum) in positions.zip(&self.pair_sum) {
+            positions.iter().for_each(|&position| values[position as usize] += sum);
         }
     }
 
@@ -260,20 +264,37 @@ impl Kkt {
     }
 
     fn add_gradients(&mut self, Block(i, j): Block, gradient: &[f64], factor: f64, side: usize) {
-        let (dim, squared) = (self.dim, self.fields * self.fields);
-        let combination = i * self.fields + j;
+        let entries = &self.row_entries[(side * self.fields + i) * self.fields + j];
         let values = self.solver.values_mut();
-        for (row, slots) in self.row_slots.iter().enumerate() {
-            for (k, s) in slots.clone().enumerate() {
-                if self.slot_nodes[s] as usize >= self.free {
-                    continue;
-                }
-                let first = ((self.row_first[row] as usize + k) * squared + combination) * dim;
-                for c in 0..dim {
-                    let position = self.row_positions[2 * (first + c) + side];
-                    values[position as usize] += factor * gradient[s * dim + c];
-                }
-            }
+        for &[slot, position] in entries {
+            values[position as usize] += factor * gradient[slot as usize];
+        }
+    }
+
+    /// Adds Σ factor_k g_k of all rows to forces on all nodes.
+    pub fn add_forces(&self, factors: &[f64], gradient: &[f64], force: &mut [f64]) {
+        for (slots, &factor) in self.row_slots.iter().zip(factors) {
+            scatter(self.dim, &self.slot_nodes[slots.clone()], factor, &gradient[slots.start * self.dim..], force);
+        }
+    }
+
+    /// Adds `factor` g_k·x of all rows (r), `x` over all nodes.
+    pub fn add_along(&self, factor: f64, gradient: &[f64], x: &[f64], out: &mut [f64]) {
+        for (slots, out) in self.row_slots.iter().zip(out) {
+            *out += factor * along(self.dim, &self.slot_nodes[slots.clone()], &gradient[slots.start * self.dim..], x);
+        }
+    }
+
+    /// Adds `factor` Σ λ_k H_k x of the invariant rows over the free coordinates.
+    pub fn add_curvature(&self, factor: f64, lambda: &[f64], x: &[f64], out: &mut [f64]) {
+        for &(row, pair, c) in &self.row_isotropic {
+            let [a, b] = self.pair_nodes[pair as usize].map(|node| node as usize * self.dim);
+            (0..self.dim).for_each(|k| out[a + k] += factor * lambda[row as usize] * c * x[b + k]);
+        }
+        for &(row, entry) in &self.row_skew {
+            let [a, b] = self.pair_nodes[entry.pair as usize].map(|node| node as usize * self.dim);
+            let (i, j) = (entry.offset as usize / self.dim, entry.offset as usize % self.dim);
+            out[a + i] += factor * lambda[row as usize] * entry.value * x[b + j];
         }
     }
 

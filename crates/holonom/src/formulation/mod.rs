@@ -16,6 +16,7 @@ mod level;
 mod plan;
 mod stabilized;
 mod stage;
+mod sweep;
 mod table;
 mod terms;
 mod velocity_rows;
@@ -23,6 +24,7 @@ mod workspace;
 
 pub use collocation::{Collocation, Timing};
 pub use iteration::{Failure, ITERATIONS, Iteration, Multipliers, SolveSettings, solve};
+pub(crate) use kkt::ALL;
 pub use kkt::{Block, Kkt, LawFactors};
 pub use level::Level;
 pub use stabilized::Stabilized;

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::kkt::{Coupling, Hessian, Kkt, NONE, OuterTerm, SkewEntry};
 use crate::linalg::{Solver, fill_reducing_order};
-use crate::system::{HessianBlock, InvariantId, NodeId, Quantity, Row, System, skew};
+use crate::system::{HessianBlock, InvariantId, Mass, NodeId, Quantity, Row, System, skew};
 
 /// Pairs of free nodes that share a block of the matrix.
 #[derive(Default)]
@@ -35,6 +35,11 @@ impl Pairs {
 impl Kkt {
     /// Plans the matrix of a system with `fields` fields a node, of which rows and coordinates share blocks by `coupling`.
     pub fn new(system: &System, fields: usize, coupling: Coupling) -> Self {
+        Self::with_mass(system, &system.mass, fields, coupling)
+    }
+
+    /// The same with another mass matrix than the system's.
+    pub fn with_mass(system: &System, mass: &Mass, fields: usize, coupling: Coupling) -> Self {
         let (dim, free) = (system.dim, system.free);
         let slot_nodes: Vec<u32> = system.slot_nodes().map(|node| node as u32).collect();
         let row_slots = system.row_slots();
@@ -42,7 +47,7 @@ impl Kkt {
         let mut pairs = Pairs::default();
         for a in 0..free as u32 {
             pairs.add(a, a, false);
-            system.mass.row(a as usize).filter(|&(b, _)| b < free).for_each(|(b, block)| pairs.add(a, b as u32, block.s != 0.0));
+            mass.row(a as usize).filter(|&(b, _)| b < free).for_each(|(b, block)| pairs.add(a, b as u32, block.s != 0.0));
         }
         let row_invariant = |row: &Row| match row.quantity {
             Quantity::Invariant(id) => Some(id),
@@ -95,7 +100,12 @@ impl Kkt {
             }
             hessian
         };
-        let row_hessian = system.rows.iter().map(|row| row_invariant(row).map_or_else(Hessian::default, hessian)).collect();
+        let (mut row_isotropic, mut row_skew) = (Vec::new(), Vec::new());
+        for (k, id) in (0..).zip(system.rows.iter().map(row_invariant)) {
+            let hessian = id.map_or_else(Hessian::default, hessian);
+            row_isotropic.extend(hessian.isotropic.iter().map(|&(pair, c)| (k, pair, c)));
+            row_skew.extend(hessian.skew.iter().map(|&entry| (k, entry)));
+        }
         let law_hessian = laws.iter().map(|law| law.iter().map(|&id| hessian(id)).collect()).collect();
         let law_outer = laws.iter().map(|law| {
             let slots = law_slots(law);
@@ -112,11 +122,11 @@ impl Kkt {
         let load_pairs = system.loads.iter().map(|load| group_pairs(&load.nodes)).collect();
         let custom_pairs = system.custom.iter().map(|custom| group_pairs(&custom.nodes)).collect();
         let pair_mass =
-            pairs.found.keys().map(|&(a, b)| system.mass.row(a as usize).find(|&(c, _)| c == b as usize).map_or(0.0, |(_, block)| block.m));
+            pairs.found.keys().map(|&(a, b)| mass.row(a as usize).find(|&(c, _)| c == b as usize).map_or(0.0, |(_, block)| block.m));
         let pair_mass: Vec<f64> = pair_mass.collect();
         let mut turned_mass = Vec::new();
         for a in 0..free {
-            for (b, block) in system.mass.row(a).filter(|&(b, block)| b < free && block.s != 0.0) {
+            for (b, block) in mass.row(a).filter(|&(b, block)| b < free && block.s != 0.0) {
                 let entry = |offset, value| SkewEntry { pair: pairs.at(a as u32, b as u32), offset, value };
                 turned_mass.extend([entry(1, -block.s), entry(2, block.s)]);
             }
@@ -128,7 +138,7 @@ impl Kkt {
             fields,
             free,
             coupling,
-            row_first: Vec::new(),
+            pair_nodes: pairs.found.keys().map(|&(a, b)| [a, b]).collect(),
             pair_sum: vec![0.0; pair_mass.len()],
             pair_mass,
             turned_mass,
@@ -137,12 +147,13 @@ impl Kkt {
             diagonal: Vec::new(),
             full_index: Vec::new(),
             full: Vec::new(),
-            row_hessian,
+            row_isotropic,
+            row_skew,
             law_hessian,
             law_outer,
             load_pairs,
             custom_pairs,
-            row_positions: Vec::new(),
+            row_entries: Vec::new(),
             row_diagonal: Vec::new(),
             row_slots,
             slot_nodes,
@@ -189,15 +200,15 @@ impl Kkt {
                 }
             }
         }
+        let mut row_entries = vec![Vec::new(); 2 * fields * fields];
         for row in 0..rows {
-            self.row_first.push((self.row_positions.len() / (2 * fields * fields * dim)) as u32);
-            for s in self.row_slots[row].clone() {
-                for &(i, j) in &combinations {
+            for s in self.row_slots[row].clone().filter(|&s| self.is_free(s)) {
+                for &(i, j) in combinations.iter().filter(|&&(i, j)| self.are_coupled(i, j)) {
                     for c in 0..dim {
-                        let there = self.is_free(s) && self.are_coupled(i, j);
                         let (q, r) = (self.coordinate(self.slot_nodes[s] as usize, i, c), self.multiplier(row, j));
-                        let position = |a, b| if there { self.solver.position(a, b) } else { NONE };
-                        self.row_positions.extend([position(q, r), position(r, q)]);
+                        for (side, position) in [self.solver.position(q, r), self.solver.position(r, q)].into_iter().enumerate() {
+                            row_entries[(side * fields + i) * fields + j].push([(s * dim + c) as u32, position]);
+                        }
                     }
                 }
             }
@@ -206,6 +217,7 @@ impl Kkt {
                 self.row_diagonal.push(self.solver.position(r, r));
             }
         }
+        self.row_entries = row_entries;
     }
 
     /// Nodes by least fill-in, each row right after the last of its nodes: its pivot is then minus what the row's

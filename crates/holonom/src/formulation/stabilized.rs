@@ -7,16 +7,21 @@
 //! M (d − h v_n) + ϖ (DV − f) + Ḡᵀμ + ½ K_Φ(γ') w = 0        M (w − d) + Ḡᵀγ' = 0
 //! Φ(q_{n+1}) = 0                                             G(q_{n+1}) u + ½h Φ_t = 0
 //! ```
+//! Those on the left are solved for d and μ and, with that d, those on the right for u and γ': two matrices of the size of
+//! one level. What γ' does on the left, ½ (H w)ᵀγ', is some (hω)²/4 of the whole when things turn with ω, and met by sweeps
+//! over the two.
 
-use super::iteration::{Convergence, Failure, RESTARTS, STALLED, SolveSettings, restart};
-use super::kkt::{Block, Kkt, TWO_LEVELS};
+use super::iteration::{Convergence, Failure, STALLED, SolveSettings, restart};
+use super::kkt::{ALL, Block, Kkt};
 use super::stage::Stage;
+use super::sweep::Sweeps;
 use super::workspace::Workspace;
 use crate::system::{MAX_ARGUMENTS, NO_CHANGE, System};
 
-/// Scratch of the doubled system.
+/// Scratch of the second level; the first is the workspace's.
 pub struct Stabilized {
-    kkt: Kkt,
+    /// The matrix of u and γ'.
+    pub(super) kkt: Kkt,
     /// ½h v_{n+1} of all nodes (full), m; known nodes in place.
     pub u: Vec<f64>,
     /// Multiplier of the position rows, ϖλ − hγ (r).
@@ -27,23 +32,29 @@ pub struct Stabilized {
     w: Vec<f64>,
     /// H w and H u, D a slot.
     turned_w: Vec<f64>,
-    turned_u: Vec<f64>,
+    pub(super) turned_u: Vec<f64>,
+    /// ∂Φ̇/∂v between the ends of the step (D a slot).
     velocity_gradient: Vec<f64>,
-    /// DΦ − D_vΦ̇ (D a slot).
-    columns: Vec<f64>,
+    /// What γ' pulls with in the first equation, ½ H w + DΦ − D_vΦ̇ (D a slot).
+    pub(super) pull: Vec<f64>,
     /// ½h Φ̇ (r).
     rate: Vec<f64>,
-    unknowns: Vec<f64>,
+    /// Residual and solution for u and γ'.
+    pub(super) unknowns: Vec<f64>,
+    pub(super) sweeps: Sweeps,
+    /// Whether the curvature of the rows under γ' counts beside the mass.
+    pub(super) curves: bool,
+    /// Forces on all nodes (full).
+    pub(super) force: Vec<f64>,
 }
 
 impl Stabilized {
     /// Allocates everything for a system.
     pub fn new(system: &System) -> Self {
         let (r, all) = (system.constraints(), system.nodes() * system.dim);
-        let kkt = Kkt::new(system, 2, TWO_LEVELS);
-        let slots = kkt.slot_nodes.len() * system.dim;
+        let kkt = Kkt::new(system, 1, ALL);
+        let (slots, size) = (kkt.slot_nodes.len() * system.dim, kkt.size());
         Self {
-            unknowns: vec![0.0; kkt.size()],
             kkt,
             u: vec![0.0; all],
             mu: vec![0.0; r],
@@ -52,8 +63,12 @@ impl Stabilized {
             turned_w: vec![0.0; slots],
             turned_u: vec![0.0; slots],
             velocity_gradient: vec![0.0; slots],
-            columns: vec![0.0; slots],
+            pull: vec![0.0; slots],
             rate: vec![0.0; r],
+            unknowns: vec![0.0; size],
+            sweeps: Sweeps::new(size),
+            curves: false,
+            force: vec![0.0; all],
         }
     }
 
@@ -62,7 +77,7 @@ impl Stabilized {
     pub fn solve(&mut self, system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<usize, Failure> {
         let mut outcome = self.newton(system, stage, settings, work);
         let mut spent = 0;
-        for share in RESTARTS {
+        for &share in settings.restarts() {
             if outcome.is_ok() {
                 break;
             }
@@ -79,8 +94,9 @@ impl Stabilized {
     }
 
     fn newton(&mut self, system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<usize, Failure> {
-        work.proximal(stage.inertia, None);
-        let mut convergence = Convergence::new(settings.tolerance);
+        work.proximal_of_redundant();
+        work.expect_multipliers();
+        let mut convergence = Convergence::new(settings, work.shortest);
         for iteration in 1..=settings.max_iterations {
             work.lambda.iter_mut().zip(&self.mu).for_each(|(lambda, mu)| *lambda = mu / stage.inertia);
             work.place(system, stage);
@@ -92,18 +108,17 @@ impl Stabilized {
             }
             if !convergence.keeps_factors() {
                 self.tangent(system, stage, work);
-                work.factorizations += 1;
+                work.factor()?;
                 self.kkt.factor().map_err(|_| Failure::NotFinite)?;
             }
-            self.kkt.solver.solve(&mut self.unknowns);
+            let left = self.sweep(system, settings, iteration == 1, work)?;
             let increment = self.advance(system, work);
             if !increment.is_finite() {
                 return Err(Failure::NotFinite);
             }
-            let multipliers = &self.unknowns[self.kkt.multiplier(0, 0)..];
-            let of_level = |level| work.scaled_multipliers(multipliers.iter().skip(level).step_by(2));
-            let turned = of_level(0).max(of_level(1));
-            if convergence.is_reached(increment, turned) {
+            let n = system.coordinates();
+            let turned = work.turned(stage.inertia, n).max(work.scaled_multipliers(self.unknowns[n..].iter().copied()));
+            if convergence.is_reached(increment, turned.max(left)) {
                 return Ok(iteration);
             }
         }
@@ -117,7 +132,14 @@ impl Stabilized {
         }
         system.turn(&work.sampled, &work.xs, &self.w, stage.time(), &mut work.half, &mut self.turned_w);
         system.turn(&work.at_end, &work.x1, &self.u, stage.end(), &mut work.half, &mut self.turned_u);
+        self.velocity_gradient.copy_from_slice(&work.sampled.gradient);
         self.turn_functions(system, stage.step, work);
+        self.pull.iter_mut().zip(&self.turned_w).for_each(|(pull, turned)| *pull = 0.5 * turned);
+        if !system.functions.is_empty() {
+            for ((pull, position), velocity) in self.pull.iter_mut().zip(&work.sampled.gradient).zip(&self.velocity_gradient) {
+                *pull += position - velocity;
+            }
+        }
     }
 
     /// Where rows are functions g of invariants, the rates Φ̇ = Σ g_i π̇_i have the discrete derivatives
@@ -135,7 +157,6 @@ impl Stabilized {
             let (a, b) = (&from.functions.local[k], &to.functions.local[k]);
             std::array::from_fn(|i| 0.5 * (a.gradient[i] + b.gradient[i]))
         };
-        self.velocity_gradient.copy_from_slice(&work.sampled.gradient);
         system.turn_functions(&work.sampled, &mut self.velocity_gradient, |k, _| mean(k).map(|factor| [factor, 0.0]));
         let (v0, u) = (&work.v0, &self.u);
         system.turn_functions(&work.sampled, &mut self.turned_w, |k, base| {
@@ -154,109 +175,73 @@ impl Stabilized {
             let mean = mean(k);
             std::array::from_fn(|i| [mean[i], along(i) + factor * change[i]])
         });
-        for ((columns, position), velocity) in self.columns.iter_mut().zip(&work.sampled.gradient).zip(&self.velocity_gradient) {
-            *columns = position - velocity;
-        }
-    }
-
-    /// ∂Φ̇/∂v between the ends of the step, D a slot.
-    fn velocity_gradient<'a>(&'a self, system: &System, work: &'a Workspace) -> &'a [f64] {
-        if system.functions.is_empty() { &work.sampled.gradient } else { &self.velocity_gradient }
     }
 
     fn residual(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
         let (n, dim) = (system.coordinates(), system.dim);
         work.residual(system, stage);
+        self.force.fill(0.0);
+        self.kkt.add_forces(&self.gamma, &self.pull, &mut self.force);
+        work.unknowns.iter_mut().zip(&self.force[..n]).for_each(|(unknown, force)| *unknown -= force);
         // The second equation takes the same path through the mass matrix, over all nodes.
         for i in 0..work.full.len() {
             let increment = if i < n { work.d[i] } else { work.x1[i] - work.x0[i] };
             work.full[i] = self.w[i] - increment;
         }
         system.mass.times(dim, &work.full, &mut work.inertial);
-        for node in 0..system.free {
-            for c in 0..dim {
-                let (from, to) = (node * dim + c, self.kkt.coordinate(node, 0, c));
-                self.unknowns[to] = work.unknowns[from];
-                self.unknowns[to + dim] = -work.inertial[from];
-            }
+        self.force.fill(0.0);
+        self.kkt.add_forces(&self.gamma, &self.velocity_gradient, &mut self.force);
+        for (i, unknown) in self.unknowns[..n].iter_mut().enumerate() {
+            *unknown = -work.inertial[i] - self.force[i];
         }
-        let plan = &self.kkt.row_slots;
         for row in 0..self.rate.len() {
-            let explicit = 0.5 * stage.step * system.explicit_rate(row, &work.at_end, stage.end());
-            self.rate[row] = system.along(&plan[row], &self.kkt.slot_nodes, &work.at_end, &self.u) + explicit;
-            let first = self.kkt.multiplier(row, 0);
-            self.unknowns[first] = -work.phi[row];
-            self.unknowns[first + 1] = -self.rate[row];
-            let gamma = self.gamma[row];
-            for s in plan[row].clone().filter(|&s| (self.kkt.slot_nodes[s] as usize) < system.free) {
-                let to = self.kkt.coordinate(self.kkt.slot_nodes[s] as usize, 0, 0);
-                for c in 0..dim {
-                    self.unknowns[to + c] -= gamma * (0.5 * self.turned_w[s * dim + c] + self.columns[s * dim + c]);
-                    let gradient = if system.functions.is_empty() { &work.sampled.gradient } else { &self.velocity_gradient };
-                    self.unknowns[to + dim + c] -= gamma * gradient[s * dim + c];
-                }
-            }
+            self.rate[row] = 0.5 * stage.step * system.explicit_rate(row, &work.at_end, stage.end());
         }
+        self.kkt.add_along(1.0, &work.at_end.gradient, &self.u, &mut self.rate);
+        self.unknowns[n..].iter_mut().zip(&self.rate).for_each(|(unknown, rate)| *unknown = -rate);
     }
 
     fn tangent(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
-        let kkt = &mut self.kkt;
-        kkt.clear();
-        // Velocities by positions and positions by velocities: curvature of the velocity rows.
-        kkt.start_with_mass(0.0);
-        kkt.add_row_hessians(Block(0, 1), &self.gamma, 0.5);
-        kkt.write_sum(Block(0, 1));
-        kkt.start_with_mass(-1.0);
-        kkt.add_row_hessians(Block(1, 0), &self.gamma, 0.5);
-        kkt.write_sum(Block(1, 0));
-        kkt.start_with_mass(1.0);
-        kkt.write_sum(Block(1, 1));
-        kkt.add_row_hessians(Block(0, 0), &self.mu, 0.5);
-        std::mem::swap(&mut work.kkt, kkt);
-        work.add_laws(system, stage, Block(0, 0));
-        work.add_function_rows(system, stage, Block(0, 0));
-        work.add_loads(system, stage, Block(0, 0));
-        std::mem::swap(&mut work.kkt, kkt);
-        kkt.write_sum(Block(0, 0));
-        kkt.add_columns(Block(0, 0), &work.sampled.gradient, 1.0);
-        kkt.add_columns(Block(0, 1), &self.turned_w, 0.5);
-        if !system.functions.is_empty() {
-            kkt.add_columns(Block(0, 1), &self.columns, 1.0);
-        }
-        let velocity_gradient = if system.functions.is_empty() { &work.sampled.gradient } else { &self.velocity_gradient };
-        kkt.add_columns(Block(1, 1), velocity_gradient, 1.0);
+        let block = Block(0, 0);
+        work.kkt.clear();
+        work.kkt.start_with_mass(1.0);
+        work.shift_multipliers(1.0);
+        work.kkt.add_row_hessians(block, &work.lambda, 0.5 * stage.inertia);
+        work.add_function_rows(system, stage, block);
+        work.shift_multipliers(-1.0);
+        work.add_laws(system, stage, block);
+        work.add_loads(system, stage, block);
+        work.kkt.write_sum(block);
+        work.kkt.add_columns(block, &work.sampled.gradient, 1.0);
         work.differentiate_rows(system, stage, true, 1.0);
         let positions = if system.is_nonholonomic() { &work.row_gradient } else { &work.at_end.gradient };
-        kkt.add_rows(Block(0, 0), positions, 1.0);
-        kkt.add_rows(Block(1, 0), &self.turned_u, 1.0);
-        kkt.add_rows(Block(1, 1), &work.at_end.gradient, 1.0);
-        kkt.regularise(0, &work.delta);
-        kkt.regularise(1, &work.delta);
+        work.kkt.add_rows(block, positions, 1.0);
+        self.kkt.clear();
+        self.kkt.start_with_mass(1.0);
+        self.kkt.write_sum(block);
+        self.kkt.add_columns(block, &self.velocity_gradient, 1.0);
+        self.kkt.add_rows(block, &work.at_end.gradient, 1.0);
+        self.kkt.regularise(0, &work.delta);
     }
 
     /// Adds the solution to the unknowns; the largest increment over the size of the mechanism.
     fn advance(&mut self, system: &System, work: &mut Workspace) -> f64 {
-        let dim = system.dim;
+        let n = system.coordinates();
         let mut largest = 0.0_f64;
-        for node in 0..system.free {
-            let from = self.kkt.coordinate(node, 0, 0);
-            for c in 0..dim {
-                let (step, turn) = (self.unknowns[from + c], self.unknowns[from + dim + c]);
-                work.d[node * dim + c] += step;
-                self.u[node * dim + c] += turn;
-                largest = if step.is_finite() && turn.is_finite() { largest.max(step.abs()).max(turn.abs()) } else { f64::NAN };
-            }
+        for i in 0..n {
+            let (step, turn) = (work.unknowns[i], self.unknowns[i]);
+            work.d[i] += step;
+            self.u[i] += turn;
+            largest = if step.is_finite() && turn.is_finite() { largest.max(step.abs()).max(turn.abs()) } else { f64::NAN };
         }
-        for row in 0..self.mu.len() {
-            let from = self.kkt.multiplier(row, 0);
-            self.mu[row] += self.unknowns[from];
-            self.gamma[row] += self.unknowns[from + 1];
-        }
+        self.mu.iter_mut().zip(&work.unknowns[n..]).for_each(|(mu, step)| *mu += step);
+        self.gamma.iter_mut().zip(&self.unknowns[n..]).for_each(|(gamma, step)| *gamma += step);
         largest / work.length
     }
 
     fn is_met(&self, system: &System, work: &Workspace) -> bool {
-        let momentum = self.unknowns[..2 * system.coordinates()].iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+        let n = system.coordinates();
+        let momentum = work.unknowns[..n].iter().chain(&self.unknowns[..n]).fold(0.0, |m: f64, u| m.max(u.abs()));
         let scaled = self.rate.iter().zip(&work.softness).map(|(rate, softness)| rate.abs() / (softness * work.heaviest).sqrt());
         let rate = scaled.fold(0.0, f64::max) / work.length;
         momentum <= STALLED * work.heaviest * work.length && work.scaled_violation() <= STALLED && rate <= STALLED
@@ -286,7 +271,7 @@ impl Stabilized {
             for s in slots.clone().filter(|&s| self.kkt.slot_nodes[s] as usize >= system.free) {
                 let node = self.kkt.slot_nodes[s] as usize * dim;
                 for c in 0..dim {
-                    let (g, turned) = (self.velocity_gradient(system, work)[s * dim + c], self.turned_w[s * dim + c] / h);
+                    let (g, turned) = (self.velocity_gradient[s * dim + c], self.turned_w[s * dim + c] / h);
                     along += g * (work.v1[node + c] - work.v0[node + c]) + turned * (work.x1[node + c] - work.x0[node + c]);
                 }
             }

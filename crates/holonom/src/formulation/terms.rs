@@ -4,7 +4,7 @@ use super::kkt::{Block, LawFactors};
 use super::level::Level;
 use super::stage::{RowsAt, Sampling, Stage};
 use super::workspace::Workspace;
-use crate::system::{Between, LoadEntry, MAX_ARGUMENTS, Quantity, Reach, Response, SIZE, System, gather};
+use crate::system::{Between, LoadEntry, MAX_ARGUMENTS, Quantity, Reach, Response, SIZE, System, gather, scatter};
 
 impl Workspace {
     /// Evaluates rows, laws and loads of a stage; leaves Φ in `phi` and the sum of forces in `force`.
@@ -80,12 +80,9 @@ impl Workspace {
         self.respond(system, stage);
         for (law, response) in system.laws.iter().zip(&self.responses) {
             for (k, &id) in law.invariants.iter().enumerate() {
-                for s in system.invariants.slots_of(id) {
-                    let node = self.kkt.slot_nodes[s] as usize * dim;
-                    for c in 0..dim {
-                        self.force[node + c] += response.force[k] * self.sampled.gradient[s * dim + c];
-                    }
-                }
+                let slots = system.invariants.slots_of(id);
+                let gradient = &self.sampled.gradient[slots.start * dim..slots.end * dim];
+                scatter(dim, &self.kkt.slot_nodes[slots], response.force[k], gradient, &mut self.force);
             }
         }
         let mut first = 0;
@@ -100,17 +97,10 @@ impl Workspace {
             }
             first += width;
         }
-        for (slots, &lambda) in self.kkt.row_slots.iter().zip(&self.lambda) {
-            for s in slots.clone() {
-                let node = self.kkt.slot_nodes[s] as usize * dim;
-                for c in 0..dim {
-                    self.force[node + c] += lambda * self.sampled.gradient[s * dim + c];
-                }
-            }
-        }
+        self.kkt.add_forces(&self.lambda, &self.sampled.gradient, &mut self.force);
     }
 
-    /// Responses of all laws, and of the rows that are functions of invariants, at the sampled state.
+    /// Responses of all laws at the sampled state.
     fn respond(&mut self, system: &System, stage: &Stage) {
         let between = stage.sampling == Sampling::Between;
         if self.dissipative && !between {
@@ -135,14 +125,6 @@ impl Workspace {
             }
             let end = if between { &self.at_end } else { &self.sampled };
             *response = system.by_invariants(law, own, &self.sampled, end, &self.vs);
-        }
-        for (&row, response) in system.function_rows.iter().zip(&mut self.responses[system.laws.len()..]) {
-            let Quantity::Function(id) = system.rows[row as usize].quantity else { unreachable!("a row of a function") };
-            let (local, lambda) = (&self.sampled.functions.local[id.0 as usize], self.lambda[row as usize]);
-            *response = Response { force: local.gradient.map(|g| lambda * g), ..Response::default() };
-            for (out, line) in response.by_value.iter_mut().zip(&local.hessian) {
-                *out = line.map(|h| lambda * h);
-            }
         }
     }
 
@@ -244,6 +226,14 @@ impl Workspace {
         let between = stage.sampling == Sampling::Between;
         let share = stage.inertia * stage.share();
         let factors = LawFactors { force: share, value: if between { stage.inertia } else { share }, rate: 0.0, motion: 0.0 };
+        for (&row, response) in system.function_rows.iter().zip(&mut self.responses[system.laws.len()..]) {
+            let Quantity::Function(id) = system.rows[row as usize].quantity else { unreachable!("a row of a function") };
+            let (local, lambda) = (&self.sampled.functions.local[id.0 as usize], self.lambda[row as usize]);
+            *response = Response { force: local.gradient.map(|g| lambda * g), ..Response::default() };
+            for (out, line) in response.by_value.iter_mut().zip(&local.hessian) {
+                *out = line.map(|h| lambda * h);
+            }
+        }
         let right = if between { &self.at_end.gradient } else { &self.sampled.gradient };
         for k in system.laws.len()..self.responses.len() {
             self.kkt.add_law(block, k, &self.responses[k], factors, &self.sampled.gradient, right, &self.motion);

@@ -6,8 +6,19 @@ use super::level::Level;
 use super::stage::Stage;
 use crate::system::{Evaluation, Response, SIZE, System};
 
-/// Share of the rows' own stiffness that the proximal term may soften: δ = (G M⁻¹ Gᵀ)/ρ (methods §1.2, §11).
+/// Share of the rows' own stiffness that the proximal term may soften: δ = (G M⁻¹ Gᵀ)/ρ (methods §1.2, §11). With redundant
+/// rows round-off grows with ρ to multipliers that mean nothing.
 pub const RHO: f64 = 1e10;
+
+/// The same of rows that are not redundant. What they miss in an iteration falls with ρ; it comes to N²/ρ in a chain of N
+/// links.
+const RHO_REGULAR: f64 = 1e16;
+
+/// Pivots of rows that are smaller over the rows' own stiffness belong to redundant ones.
+const REDUNDANT: f64 = 1e-9;
+
+/// Rows shorter than this share of the mechanism are in a singular position rather than short.
+const SHORT: f64 = 1e-6;
 
 /// Scratch of a stage. Full vectors hold D numbers a node, free nodes first.
 pub struct Workspace {
@@ -29,6 +40,9 @@ pub struct Workspace {
     pub a1: Vec<f64>,
     /// Predicted change of the accelerations over the step (full), m/s².
     pub a_change: Vec<f64>,
+    /// Expected change of the multipliers (r). The first tangent of a step has it; the iteration starts without it, as what
+    /// redundant rows leave undetermined of the multipliers would run away.
+    pub lambda_change: Vec<f64>,
     /// Part of the increment that needs no acceleration (n), m.
     pub drift: Vec<f64>,
     /// Part of the sampled velocity that does not depend on the increment (n), m/s.
@@ -77,6 +91,10 @@ pub struct Workspace {
     pub(super) dense: Vec<f64>,
     /// Largest distance between nodes at the start, m: the unit of increments.
     pub length: f64,
+    /// Rows whose pivot in the last factorisation was no redundant one's.
+    regular: Vec<bool>,
+    /// Length of the shortest row, the gradient of an invariant, over `length`, at most 1.
+    pub shortest: f64,
     /// Largest diagonal entry of the mass matrix, kg: the unit of momentum residuals.
     pub heaviest: f64,
     /// Factorisations so far.
@@ -111,6 +129,7 @@ impl Workspace {
             v1: vec![0.0; all],
             a1: vec![0.0; all],
             a_change: vec![0.0; all],
+            lambda_change: vec![0.0; r],
             drift: vec![0.0; n],
             offset: vec![0.0; n],
             xs: vec![0.0; all],
@@ -140,6 +159,8 @@ impl Workspace {
             rows: vec![0.0; r],
             dense: vec![0.0; 2 * SIZE * SIZE],
             length: extent(system),
+            regular: vec![false; r],
+            shortest: 1.0,
             heaviest: (0..system.free).map(|a| system.mass.diagonal(a)).fold(0.0, f64::max),
             factorizations: 0,
             dissipative: system.laws.iter().any(|law| !law.law.conservative()),
@@ -151,8 +172,7 @@ impl Workspace {
     }
 
     /// G M⁻¹ Gᵀ with the mass of each node alone, row by row, at the evaluation of the start; a node without any counts as
-    /// the heaviest. Rows whose gradient
-    /// happens to vanish there get a millionth of the largest.
+    /// the heaviest. Rows whose gradient happens to vanish there get a millionth of the largest.
     fn measure_softness(&mut self, system: &System) {
         let dim = system.dim;
         for (row, slots) in self.kkt.row_slots.iter().enumerate() {
@@ -167,6 +187,13 @@ impl Workspace {
                 }
             }
         }
+        for slots in self.kkt.row_slots[..system.rows.len()].iter().filter(|slots| slots.end <= system.invariants.slots()) {
+            let gradient = &self.at_start.gradient[slots.start * dim..slots.end * dim];
+            let size = gradient.iter().fold(0.0, |m: f64, g| m.max(g.abs()));
+            if size > SHORT * self.length {
+                self.shortest = self.shortest.min(size / self.length);
+            }
+        }
         let largest = self.softness.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         self.softness.iter_mut().for_each(|s| *s = s.max(1e-6 * largest));
     }
@@ -179,6 +206,13 @@ impl Workspace {
                 None => softness / RHO,
                 Some(alpha) => (1.0 / (inertia * alpha)).clamp(softness / 1e12, softness / 1e8),
             };
+        }
+    }
+
+    /// The same for iterations that begin without multipliers: hardly any δ for rows that were regular when last factored.
+    pub fn proximal_of_redundant(&mut self) {
+        for ((delta, &softness), &regular) in self.delta.iter_mut().zip(&self.softness).zip(&self.regular) {
+            *delta = softness / if regular { RHO_REGULAR } else { RHO };
         }
     }
 
@@ -219,7 +253,12 @@ impl Workspace {
     pub fn factor(&mut self) -> Result<(), Failure> {
         self.kkt.regularise(0, &self.delta);
         self.factorizations += 1;
-        self.kkt.factor().map_err(|_| Failure::NotFinite)
+        self.kkt.factor().map_err(|_| Failure::NotFinite)?;
+        for (row, regular) in self.regular.iter_mut().enumerate() {
+            let pivot = self.kkt.solver.pivot(self.kkt.multiplier(row, 0));
+            *regular = pivot - self.delta[row] > REDUNDANT * self.softness[row];
+        }
+        Ok(())
     }
 
     /// Replaces the residual in `unknowns` by the solution.
@@ -229,9 +268,31 @@ impl Workspace {
     }
 
     /// Largest multiplier in units of mass × length: each times its row's own gradient.
-    pub fn scaled_multipliers<'a>(&self, multipliers: impl IntoIterator<Item = &'a f64>) -> f64 {
+    pub fn scaled_multipliers(&self, multipliers: impl IntoIterator<Item = f64>) -> f64 {
         let scaled = multipliers.into_iter().zip(&self.softness).map(|(mu, softness)| mu.abs() * (softness * self.heaviest).sqrt());
         scaled.fold(0.0, f64::max) / (self.heaviest * self.length)
+    }
+
+    /// What the tangent's multipliers are off by after a step of them by `mu` (r), in the same units; from here on they are
+    /// those of the iteration.
+    pub(super) fn turned(&mut self, inertia: f64, first: usize) -> f64 {
+        let steps = self.unknowns[first..].iter().zip(&self.lambda_change).map(|(mu, change)| mu - inertia * change);
+        let turned = self.scaled_multipliers(steps);
+        self.lambda_change.fill(0.0);
+        turned
+    }
+
+    /// Has the multipliers at hand, as they are expected to change, for the first tangent only, and starts from none: what
+    /// redundant rows leave undetermined of them would add up from step to step.
+    pub(super) fn expect_multipliers(&mut self) {
+        for (lambda, change) in self.lambda.iter_mut().zip(&mut self.lambda_change) {
+            *change += std::mem::take(lambda);
+        }
+    }
+
+    /// Adds `sign` times the expected change to the multipliers.
+    pub(super) fn shift_multipliers(&mut self, sign: f64) {
+        self.lambda.iter_mut().zip(&self.lambda_change).for_each(|(lambda, change)| *lambda += sign * change);
     }
 
     /// Largest |Φ_k| in units of length: each row over its own gradient.

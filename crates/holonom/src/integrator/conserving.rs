@@ -39,10 +39,11 @@ pub(super) fn midpoint_kinematics(system: &System, start: f64, h: f64, sampling:
     stage
 }
 
-/// Velocity at the end and mean acceleration from the increment.
+/// Velocity at the end and mean acceleration from the increment. Of the rounded 2/h only the change has a part, as an error
+/// of the whole velocity would be the same in each step and the energy drift with it.
 pub(super) fn finish(system: &System, h: f64, work: &mut Workspace) {
     for i in 0..system.coordinates() {
-        work.v1[i] = 2.0 / h * work.d[i] - work.v0[i];
+        work.v1[i] = work.v0[i] + 2.0 / h * (work.d[i] - work.drift[i]);
         work.a1[i] = (work.v1[i] - work.v0[i]) / h;
     }
 }

@@ -34,23 +34,27 @@ impl Integrator for ConservingGgl {
         let carried = if self.last_step == h { 1.0 } else { 0.0 };
         for row in 0..both.mu.len() {
             both.gamma[row] *= carried;
-            both.mu[row] = stage.inertia * work.lambda[row] - both.gamma[row];
+            both.mu[row] = 0.0;
+            work.lambda[row] -= both.gamma[row] / stage.inertia;
         }
         self.last_step = 0.0;
         let iterations = both.solve(system, &stage, settings, work)?;
         self.last_step = h;
         for i in 0..work.x1.len() {
             if i < n {
-                work.v1[i] = 2.0 / h * both.u[i];
+                work.v1[i] = work.v0[i] + 2.0 / h * (both.u[i] - 0.5 * work.drift[i]);
             }
             work.a1[i] = (work.v1[i] - work.v0[i]) / h;
         }
         for row in 0..both.mu.len() {
             work.lambda[row] = (both.mu[row] + both.gamma[row]) / stage.inertia;
         }
-        work.settle(system, &stage);
-        both.turn(system, &stage, work);
-        let extra_work = both.work(system, &stage, work);
+        let mut extra_work = 0.0;
+        if work.is_worked_on() {
+            work.settle(system, &stage);
+            both.turn(system, &stage, work);
+            extra_work = both.work(system, &stage, work);
+        }
         Ok(Step { iterations, stage, work: Work::Between(extra_work), estimate: None })
     }
 }

@@ -47,6 +47,13 @@ pub struct Entry {
     pub make: fn(&System, &SolveSettings, Parameters) -> Box<dyn Integrator>,
 }
 
+impl Entry {
+    /// Whether a step needs accelerations only and solves no equations.
+    pub fn is_explicit(&self) -> bool {
+        self.formulations == ACCELERATIONS
+    }
+}
+
 /// The integrator's order in everything.
 fn full(parameters: &Parameters, _: &Formulation, _: bool) -> [u8; 3] {
     [parameters.order; 3]

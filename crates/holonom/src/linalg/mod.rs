@@ -1,29 +1,23 @@
-//! Linear systems with a fixed pattern: dense for small ones, sparse with a static order for the others.
+//! Linear systems with a fixed pattern, factored by dense fronts in a static order.
 //!
 //! The only folder that names the linear algebra library.
 
-mod dense;
 mod eigen;
+mod fronts;
+mod multifrontal;
 mod ordering;
-mod sparse;
 
 pub use eigen::{inverse, null_space, relative_eigenvalues};
 pub use ordering::fill_reducing_order;
 
-use dense::DenseLu;
-use sparse::SparseLu;
+use multifrontal::Multifrontal;
 
 /// A square matrix of fixed pattern with its factorisation L U in place.
 ///
 /// Write the values through [`Solver::values_mut`] at the positions [`Solver::position`] gave, then
 /// [`Solver::factor`], then [`Solver::solve`] as often as needed. Only the construction allocates.
 pub struct Solver {
-    form: Form,
-}
-
-enum Form {
-    Dense(DenseLu),
-    Sparse(SparseLu),
+    lu: Multifrontal,
 }
 
 /// A pivot that is zero or not a number: the matrix cannot be factored as it is.
@@ -33,67 +27,41 @@ pub struct Singular {
     pub pivot: usize,
 }
 
-/// Largest matrix that is treated as dense. Below it partial pivoting costs nothing; above it the sparse
-/// form is faster (measured in `benches`).
-pub const DENSE_LIMIT: usize = 24;
-
 impl Solver {
     /// Plans a matrix of `size` rows with the structurally symmetric pattern `entries` (row, column), eliminated in
-    /// the order `order` when it is sparse.
+    /// the order `order`, but for unknowns that do not know of each other.
     pub fn new(size: usize, entries: &[(u32, u32)], order: &[u32]) -> Self {
-        let form = match size <= DENSE_LIMIT {
-            true => Form::Dense(DenseLu::new(size)),
-            false => Form::Sparse(SparseLu::new(size, entries, order)),
-        };
-        Self { form }
+        Self { lu: Multifrontal::new(size, entries, order) }
     }
 
     /// Where the entry (row, column) of the pattern is among the values.
     pub fn position(&self, row: usize, column: usize) -> u32 {
-        match &self.form {
-            Form::Dense(lu) => lu.position(row, column),
-            Form::Sparse(lu) => lu.position(row, column),
-        }
+        self.lu.plan.find(row, column).expect("the entry is in the pattern") as u32
     }
 
     /// The value of an entry, zero outside the pattern.
     pub fn entry(&self, row: usize, column: usize) -> f64 {
-        match &self.form {
-            Form::Dense(lu) => lu.values[lu.position(row, column) as usize],
-            Form::Sparse(lu) => lu.find(row, column).map_or(0.0, |at| lu.values[at as usize]),
-        }
+        self.lu.plan.find(row, column).map_or(0.0, |at| self.lu.values()[at])
     }
 
     /// The values; after [`Solver::factor`] they are overwritten by the factors.
     pub fn values_mut(&mut self) -> &mut [f64] {
-        match &mut self.form {
-            Form::Dense(lu) => &mut lu.values,
-            Form::Sparse(lu) => &mut lu.values,
-        }
+        self.lu.values_mut()
     }
 
     /// Factors the matrix in place.
     pub fn factor(&mut self) -> Result<(), Singular> {
-        match &mut self.form {
-            Form::Dense(lu) => lu.factor(),
-            Form::Sparse(lu) => lu.factor(),
-        }
+        self.lu.factor()
     }
 
     /// Replaces `b` by the solution.
     pub fn solve(&mut self, b: &mut [f64]) {
-        match &mut self.form {
-            Form::Dense(lu) => lu.solve(b),
-            Form::Sparse(lu) => lu.solve(b),
-        }
+        self.lu.solve(b);
     }
 
-    /// Size of the pivot met at each row of the matrix (size).
-    pub fn pivots(&self, out: &mut [f64]) {
-        match &self.form {
-            Form::Dense(lu) => lu.pivots(out),
-            Form::Sparse(lu) => lu.pivots(out),
-        }
+    /// Size of the pivot met at a row of the matrix.
+    pub fn pivot(&self, row: usize) -> f64 {
+        self.lu.pivot(row)
     }
 }
 
@@ -137,8 +105,8 @@ mod tests {
     }
 
     #[test]
-    fn both_forms_solve() {
-        for size in [8, DENSE_LIMIT, DENSE_LIMIT + 2, 200] {
+    fn chains_are_solved() {
+        for size in [2, 8, 24, 26, 200] {
             assert!(residual(size) < 1e-10, "size {size}: {}", residual(size));
         }
     }

@@ -36,6 +36,8 @@ pub struct Settings {
     pub constraint_at: Option<String>,
     pub tolerance: Option<f64>,
     pub max_iterations: Option<u32>,
+    /// Newton iterations of every step, no more and no fewer.
+    pub iterations: Option<u32>,
     pub subdivide: Option<bool>,
     pub projection: Option<ProjectionSettings>,
 }
@@ -109,6 +111,7 @@ pub const SIMULATION: &[Key] = &[
     ),
     Key::optional("tolerance", Shape::Number, "that of the iteration", "", "when the iteration stops"),
     Key::optional("max_iterations", Shape::Whole, "that of the iteration", "", "most iterations in a step"),
+    Key::optional("iterations", Shape::Whole, "as many as it takes", "", "real time: exactly so many Newton iterations in every step"),
     Key::optional("subdivide", Shape::Flag, "true", "", "whether a step that fails is retried in halves"),
     Key::optional("projection", Shape::Table(PROJECTION), "that of the method", "", "projections after each step"),
 ];
@@ -151,6 +154,7 @@ pub fn read(root: &Entry<'_>, assembly: &Assembly<'_>) -> Read<Settings> {
             .unwrap_or(None),
         tolerance: positive("tolerance").unwrap_or(None),
         max_iterations: entry.optional("max_iterations", |entry, key| entry.whole(key, 1)).unwrap_or(None),
+        iterations: entry.optional("iterations", |entry, key| entry.whole(key, 1)).unwrap_or(None),
         subdivide: entry.optional("subdivide", Entry::flag).unwrap_or(None),
         projection: projection(&entry, assembly).unwrap_or(None),
     };

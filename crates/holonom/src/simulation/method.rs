@@ -1,6 +1,6 @@
 //! A method is a formulation, an integrator and projections; the names people choose, and what may go together.
 
-use super::words::{accuracy, name, names, order, partners, pick, positive, spell, together, within};
+use super::words::{accuracy, iterations, name, names, order, partners, pick, positive, spell, together, within};
 use super::{MethodError, MethodSummary, ProjectionSummary};
 use crate::formulation::{FORMULATIONS, Formulation, ITERATIONS, Iteration, Multipliers, RowsAt, SolveSettings};
 use crate::integrator::{Entry, INTEGRATORS, Parameters};
@@ -34,6 +34,8 @@ pub struct Choice {
     pub constraint_at: Option<String>,
     pub tolerance: Option<f64>,
     pub max_iterations: Option<usize>,
+    /// Newton iterations of every step, no more and no fewer.
+    pub iterations: Option<usize>,
     pub subdivide: Option<bool>,
     pub projection: Option<ProjectionChoice>,
 }
@@ -191,6 +193,7 @@ impl Method {
         }
         let bare = integrator.needs_projection && formulation.is_at_position() && !levels.iter().any(|level| level == "velocity");
         let accuracy = accuracy(choice, integrator, order, bare)?;
+        let iterations = iterations(choice, integrator, iteration.0)?;
         let loops = iteration.1 != Iteration::Newton;
         let (omega, xi) = (positive("omega", choice.omega, OMEGA)?, positive("xi", choice.xi, XI)?);
         Ok(Self {
@@ -207,7 +210,8 @@ impl Method {
                 },
                 iteration: iteration.1,
                 tolerance: positive("tolerance", choice.tolerance, if loops { LOOP_TOLERANCE } else { TOLERANCE })?,
-                max_iterations: choice.max_iterations.unwrap_or(MAX_ITERATIONS).max(1),
+                max_iterations: iterations.or(choice.max_iterations).unwrap_or(MAX_ITERATIONS).max(1),
+                iterations,
             },
             parameters: Parameters {
                 beta: positive("beta", choice.beta, 0.25)?,
@@ -225,7 +229,7 @@ impl Method {
                 adapts: accuracy.is_some(),
             },
             projection: projection(choice.projection.as_ref(), &levels)?,
-            subdivide: choice.subdivide.unwrap_or(true),
+            subdivide: iterations.is_none() && choice.subdivide.unwrap_or(true),
             accuracy,
         })
     }

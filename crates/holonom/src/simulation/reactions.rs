@@ -58,7 +58,7 @@ impl Simulation<'_> {
         }
         reactions.lambda.copy_from_slice(&work.lambda);
         reactions.a.copy_from_slice(&work.a1);
-        work.constraint_forces(system, &mut reactions.force);
+        work.constraint_forces(&mut reactions.force);
     }
 }
 

@@ -16,10 +16,13 @@ pub struct State {
     pub a: Vec<f64>,
     /// Multipliers λ (r), in N over the unit of the row's gradient.
     pub lambda: Vec<f64>,
-    /// Change of the accelerations in the last step (D × nodes), m/s², from which the next is predicted; zero where the
-    /// step before was of another length. Multipliers are not extrapolated: what redundant rows leave undetermined of
-    /// them would run away.
+    /// Predicted change of the accelerations in the next step (D × nodes), m/s²; zero where the last two steps were of
+    /// different lengths. Multipliers are not extrapolated: what redundant rows leave undetermined of them would run away.
     pub a_change: Vec<f64>,
+    /// Backward differences of the accelerations up to the last step (ORDERS × D × nodes), m/s², zero in the same cases.
+    pub a_differences: Vec<f64>,
+    /// Predicted change of the multipliers in the next step (r).
+    pub lambda_change: Vec<f64>,
     /// Length of the last step, s.
     pub last_step: f64,
     /// What the integrator keeps from step to step.
@@ -27,6 +30,9 @@ pub struct State {
     /// Angles of joints and couplings, counted over all turns, rad.
     pub angle: Vec<f64>,
 }
+
+/// Backward differences of accelerations that are kept.
+const ORDERS: usize = 4;
 
 impl State {
     /// The start that a workspace was put at.
@@ -38,6 +44,8 @@ impl State {
             a: work.a1.clone(),
             lambda: work.lambda.clone(),
             a_change: vec![0.0; work.a1.len()],
+            a_differences: vec![0.0; ORDERS * work.a1.len()],
+            lambda_change: vec![0.0; work.lambda.len()],
             last_step: 0.0,
             memory: work.memory.clone(),
             angle: work.at_start.functions.angle.clone(),
@@ -47,9 +55,16 @@ impl State {
     /// Takes over another state of the same run, without allocating.
     pub(super) fn copy_from(&mut self, other: &Self) {
         (self.t, self.last_step) = (other.t, other.last_step);
-        let own = [&mut self.x, &mut self.v, &mut self.a, &mut self.lambda, &mut self.a_change, &mut self.memory, &mut self.angle];
-        let others = [&other.x, &other.v, &other.a, &other.lambda, &other.a_change, &other.memory, &other.angle];
-        own.into_iter().zip(others).for_each(|(own, other)| own.copy_from_slice(other));
+        let accelerations =
+            [(&mut self.a, &other.a), (&mut self.a_change, &other.a_change), (&mut self.a_differences, &other.a_differences)];
+        let rest = [
+            (&mut self.lambda, &other.lambda),
+            (&mut self.lambda_change, &other.lambda_change),
+            (&mut self.memory, &other.memory),
+            (&mut self.angle, &other.angle),
+        ];
+        let places = [(&mut self.x, &other.x), (&mut self.v, &other.v)];
+        places.into_iter().chain(accelerations).chain(rest).for_each(|(own, other)| own.copy_from_slice(other));
     }
 
     /// Copies the start of a step into a workspace.
@@ -61,15 +76,32 @@ impl State {
         work.a1.copy_from_slice(&self.a);
         work.lambda.copy_from_slice(&self.lambda);
         work.a_change.copy_from_slice(&self.a_change);
+        work.lambda_change.copy_from_slice(&self.lambda_change);
         work.memory.copy_from_slice(&self.memory);
         work.at_start.functions.angle.copy_from_slice(&self.angle);
     }
 
-    /// Remembers how the accelerations changed in a step, for the prediction of the next.
+    /// Remembers how the accelerations changed in a step, and predicts how they change in the next: by the polynomial through
+    /// the last of them that would have come nearest to this step.
     pub(super) fn remember(&mut self, step: f64, work: &Workspace) {
-        // Two steps of the same length tell of a third; round-off of the times is no other length.
+        // Steps of the same length tell of another; round-off of the times is no other length.
         let same = if (step - self.last_step).abs() <= 1e-9 * step { 1.0 } else { 0.0 };
-        for (change, (new, old)) in self.a_change.iter_mut().zip(work.a1.iter().zip(&self.a)) {
+        let all = self.a.len();
+        let mut sizes = [0.0; ORDERS];
+        for k in 0..all {
+            let mut difference = same * (work.a1[k] - self.a[k]);
+            for (order, size) in sizes.iter_mut().enumerate() {
+                let next = difference - same * self.a_differences[order * all + k];
+                self.a_differences[order * all + k] = difference;
+                *size += difference * difference;
+                difference = next;
+            }
+        }
+        let order = (1..ORDERS).min_by(|&i, &j| sizes[i].total_cmp(&sizes[j])).unwrap_or(1);
+        for (k, change) in self.a_change.iter_mut().enumerate() {
+            *change = (0..order).map(|i| self.a_differences[i * all + k]).sum();
+        }
+        for ((change, new), old) in self.lambda_change.iter_mut().zip(&work.lambda).zip(&self.lambda) {
             *change = same * (new - old);
         }
         self.last_step = step;

@@ -114,6 +114,28 @@ pub(super) fn accuracy(choice: &Choice, integrator: &Entry, order: u8, bare: boo
     positive("accuracy", Some(accuracy), 0.0).map(Some)
 }
 
+/// The fixed number of Newton iterations in a step, if one is asked for and can be kept.
+pub(super) fn iterations(choice: &Choice, integrator: &Entry, iteration: &str) -> Result<Option<usize>, MethodError> {
+    let Some(count) = choice.iterations else { return Ok(None) };
+    let refuse = |with: &'static str, given: &str, partners: String| {
+        Err(MethodError::Pair { kind: "number of iterations", name: count.to_string(), with, given: given.into(), partners })
+    };
+    if count == 0 {
+        return Err(MethodError::Value { key: "iterations", given: "0".into(), allowed: "1, 2, 3 …".into() });
+    }
+    if let Some(accuracy) = choice.accuracy {
+        return refuse("accuracy", &accuracy.to_string(), "equal steps".into());
+    }
+    if integrator.is_explicit() {
+        let implicit = INTEGRATORS.iter().filter(|entry| !entry.is_explicit());
+        return refuse("integrator", integrator.name, names(implicit.map(|entry| entry.name.into())));
+    }
+    if iteration != "newton" {
+        return refuse("iteration", iteration, "newton".into());
+    }
+    Ok(Some(count))
+}
+
 /// The name of a method: one that people know, or its parts joined by strokes.
 pub(super) fn name(formulation: &Formulation, integrator: &Entry, order: u8, levels: &[String]) -> String {
     let (full, is_usual) = (formulation.full_name(), order == integrator.orders[0]);

@@ -209,7 +209,7 @@ impl SystemBuilder {
 
     /// Adds the row Φ = π − c(t).
     pub fn row(&mut self, name: impl Into<String>, quantity: impl Into<Quantity>, target: Arc<dyn Signal>) {
-        self.rows.push(Row { name: name.into(), quantity: quantity.into(), target });
+        self.rows.push(Row::new(name.into(), quantity.into(), target));
     }
 
     /// Adds the row Φ = π − c with a constant c.

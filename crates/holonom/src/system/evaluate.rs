@@ -1,6 +1,6 @@
 //! Values and gradients of all invariants and constraint rows, *at* one position and *between* two.
 
-use super::{CustomEntry, FunctionValues, InvariantId, MAX_ARGUMENTS, NodeId, Quantity, System};
+use super::{CustomEntry, FunctionValues, InvariantId, MAX_ARGUMENTS, NodeId, Quantity, System, along};
 
 /// Values and gradients at one position, or between two.
 ///
@@ -158,7 +158,7 @@ impl System {
     /// Φ (r) from an evaluation and the time it belongs to.
     pub fn constraint_values(&self, at: &Evaluation, t: f64, phi: &mut [f64]) {
         for (phi, row) in phi.iter_mut().zip(&self.rows) {
-            *phi = at.value[self.value_index(row.quantity)] - row.target.at(t)[0];
+            *phi = at.value[self.value_index(row.quantity)] - row.target(t)[0];
         }
         phi[self.rows.len()..].copy_from_slice(&at.value[self.invariants.len() + self.functions.len()..]);
     }
@@ -173,7 +173,7 @@ impl System {
     /// ∂Φ_k/∂t with all nodes held.
     pub(crate) fn explicit_rate(&self, row: usize, at: &Evaluation, t: f64) -> f64 {
         match self.rows.get(row) {
-            Some(row) => -row.target.at(t)[1],
+            Some(row) => -row.target(t)[1],
             None => at.by_time[row - self.rows.len()],
         }
     }
@@ -181,14 +181,7 @@ impl System {
     /// Gradient of a row along a direction over all nodes.
     #[inline]
     pub(crate) fn along(&self, slots: &std::ops::Range<usize>, nodes: &[u32], at: &Evaluation, v: &[f64]) -> f64 {
-        let mut sum = 0.0;
-        for s in slots.clone() {
-            let node = nodes[s] as usize * self.dim;
-            for c in 0..self.dim {
-                sum += at.gradient[s * self.dim + c] * v[node + c];
-            }
-        }
-        sum
+        along(self.dim, &nodes[slots.clone()], &at.gradient[slots.start * self.dim..slots.end * self.dim], v)
     }
 
     /// Rates ∇π_i·v of some invariants at an evaluation.
@@ -224,7 +217,10 @@ impl System {
                     inner.sum::<f64>() + (0..base.len()).map(|i| rates[i] * local.bend(i, &rates)).sum::<f64>()
                 }
             };
-            *out = curvature - row.target.at(t)[2];
+            *out = curvature - row.target(t)[2];
+        }
+        if self.custom.is_empty() {
+            return;
         }
         let mut first = self.rows.len();
         let (mut position, mut velocity) = ([0.0; super::SIZE], [0.0; super::SIZE]);
@@ -246,6 +242,9 @@ impl System {
             let local = &at.functions.local[k];
             std::array::from_fn(|i| [local.gradient[i], local.bend(i, &rates)])
         });
+        if self.custom.is_empty() {
+            return;
+        }
         let mut slot = (self.invariants.slots() + self.functions.slots()) * self.dim;
         let (mut hessian, mut position, mut direction) = ([0.0; super::SIZE * super::SIZE], [0.0; super::SIZE], [0.0; super::SIZE]);
         for entry in &self.custom {
@@ -280,6 +279,9 @@ impl System {
 
     /// Calls `f` for every custom entry with its part of an evaluation.
     fn each_custom(&self, out: &mut Evaluation, mut f: impl FnMut(&CustomEntry, &mut [f64; super::SIZE], CustomPart<'_>)) {
+        if self.custom.is_empty() {
+            return;
+        }
         let (mut row, mut slot) = (0, (self.invariants.slots() + self.functions.slots()) * self.dim);
         let values = self.invariants.len() + self.functions.len();
         let mut local = [0.0; super::SIZE];

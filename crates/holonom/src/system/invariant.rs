@@ -40,9 +40,8 @@ pub struct Invariants {
     dim: usize,
     items: Vec<Invariant>,
     term_node: Vec<u32>,
-    term_factor: Vec<f64>,
-    /// Factors of the quarter turns of the nodes, in the plane.
-    term_turn: Vec<f64>,
+    /// Factors of the nodes and, in the plane, of their quarter turns.
+    term_factors: Vec<[f64; 2]>,
 }
 
 /// The normal of the plane of a planar model.
@@ -59,7 +58,7 @@ pub(crate) enum HessianBlock {
 
 impl Invariants {
     pub(crate) fn new(dim: usize) -> Self {
-        Self { dim, items: Vec::new(), term_node: Vec::new(), term_factor: Vec::new(), term_turn: Vec::new() }
+        Self { dim, items: Vec::new(), term_node: Vec::new(), term_factors: Vec::new() }
     }
 
     pub(crate) fn square(&mut self, u: &[Term]) -> InvariantId {
@@ -88,8 +87,7 @@ impl Invariants {
             match place {
                 Place::Node(node) => {
                     self.term_node.push(node.0);
-                    self.term_factor.push(factor);
-                    self.term_turn.push(turn);
+                    self.term_factors.push([factor, turn]);
                 }
                 Place::Fixed(x) => {
                     for c in 0..self.dim {
@@ -134,8 +132,7 @@ impl Invariants {
     /// With factors f + gJ, J the quarter turn of the plane, a block is f_a f_b + g_a g_b + (f_a g_b − f_b g_a) J.
     pub(crate) fn hessian(&self, id: InvariantId) -> Vec<(u32, u32, HessianBlock)> {
         let item = &self.items[id.0 as usize];
-        let terms =
-            |sum: &Sum| (sum.start as usize..sum.end as usize).map(|s| (self.term_node[s], [self.term_factor[s], self.term_turn[s]]));
+        let terms = |sum: &Sum| (sum.start as usize..sum.end as usize).map(|s| (self.term_node[s], self.term_factors[s]));
         let mut blocks = Vec::new();
         let mut push = |a: u32, b: u32, isotropic: f64, skew: f64, e: [f64; 3]| {
             if isotropic != 0.0 {
@@ -170,24 +167,26 @@ impl Invariants {
 
     pub(crate) fn value_of(&self, id: InvariantId, x: &[f64]) -> f64 {
         match self.dim {
-            2 => self.items[id.0 as usize].value(&self.sums::<2>(id.0 as usize, x)),
-            _ => self.items[id.0 as usize].value(&self.sums::<3>(id.0 as usize, x)),
+            2 => self.value_in::<2>(id, x),
+            _ => self.value_in::<3>(id, x),
+        }
+    }
+
+    fn value_in<const D: usize>(&self, id: InvariantId, x: &[f64]) -> f64 {
+        let (item, x) = (&self.items[id.0 as usize], x.as_chunks().0);
+        let (u, w): ([f64; D], _) = (self.sum_at(&item.u, 1.0, x), self.sum_at(&item.w, 1.0, x));
+        match item.product {
+            Product::Square => 0.5 * dot(&u, &u),
+            Product::Dot => dot(&u, &w),
+            Product::Cross(e) => dot(&u, &cross(&w, &e)),
         }
     }
 
     /// Values (one an invariant) and gradients (D a slot) at the positions `x`.
     pub(crate) fn evaluate(&self, x: &[f64], value: &mut [f64], gradient: &mut [f64]) {
         match self.dim {
-            2 => self.evaluate_in::<2>(x, value, gradient),
-            _ => self.evaluate_in::<3>(x, value, gradient),
-        }
-    }
-
-    fn evaluate_in<const D: usize>(&self, x: &[f64], value: &mut [f64], gradient: &mut [f64]) {
-        for (k, item) in self.items.iter().enumerate() {
-            let sums = self.sums::<D>(k, x);
-            value[k] = item.value(&sums);
-            self.gradient_of(item, &sums, gradient);
+            2 => self.evaluate_in::<2>(1.0, x, value, gradient),
+            _ => self.evaluate_in::<3>(1.0, x, value, gradient),
         }
     }
 
@@ -195,82 +194,64 @@ impl Invariants {
     /// homogeneous in the nodes, at `v` in place of positions.
     pub(crate) fn curvature(&self, v: &[f64], half: &mut [f64], product: &mut [f64]) {
         match self.dim {
-            2 => self.curvature_in::<2>(v, half, product),
-            _ => self.curvature_in::<3>(v, half, product),
+            2 => self.evaluate_in::<2>(0.0, v, half, product),
+            _ => self.evaluate_in::<3>(0.0, v, half, product),
         }
     }
 
-    fn curvature_in<const D: usize>(&self, v: &[f64], half: &mut [f64], product: &mut [f64]) {
-        for (k, item) in self.items.iter().enumerate() {
-            let sums = self.rates::<D>(k, v);
-            half[k] = item.value(&sums);
-            self.gradient_of(item, &sums, product);
-        }
-    }
-
-    #[inline]
-    fn sums<const D: usize>(&self, k: usize, x: &[f64]) -> [[f64; D]; 2] {
-        let item = &self.items[k];
-        let mut sums = self.rates(k, x);
-        for c in 0..D {
-            sums[0][c] += item.u.constant[c];
-            sums[1][c] += item.w.constant[c];
-        }
-        sums
-    }
-
-    #[inline]
-    fn rates<const D: usize>(&self, k: usize, v: &[f64]) -> [[f64; D]; 2] {
-        let item = &self.items[k];
-        let mut sums = [[0.0; D]; 2];
-        for (sum, range) in sums.iter_mut().zip([&item.u, &item.w]) {
-            for s in range.start as usize..range.end as usize {
-                let (node, factor) = (self.term_node[s] as usize * D, self.term_factor[s]);
-                let x = &v[node..node + D];
-                for c in 0..D {
-                    sum[c] += factor * x[c];
+    /// Values and gradients with `constants` times the constants of the sums.
+    fn evaluate_in<const D: usize>(&self, constants: f64, x: &[f64], value: &mut [f64], gradient: &mut [f64]) {
+        let (x, gradient) = (x.as_chunks::<D>().0, gradient.as_chunks_mut::<D>().0);
+        for (item, value) in self.items.iter().zip(value) {
+            let u = self.sum_at(&item.u, constants, x);
+            match item.product {
+                Product::Square => {
+                    *value = 0.5 * dot(&u, &u);
+                    self.spread(&item.u, &u, gradient);
                 }
-                if D == 2 {
-                    let turn = self.term_turn[s];
-                    sum[0] -= turn * x[1];
-                    sum[1] += turn * x[0];
+                Product::Dot => {
+                    let w = self.sum_at(&item.w, constants, x);
+                    *value = dot(&u, &w);
+                    self.spread(&item.u, &w, gradient);
+                    self.spread(&item.w, &u, gradient);
                 }
-            }
-        }
-        sums
-    }
-
-    #[inline]
-    fn gradient_of<const D: usize>(&self, item: &Invariant, [u, w]: &[[f64; D]; 2], gradient: &mut [f64]) {
-        let (by_u, by_w) = match item.product {
-            Product::Square => (*u, *u),
-            Product::Dot => (*w, *u),
-            Product::Cross(e) => (cross(w, &e), cross_left(&e, u)),
-        };
-        for (sum, direction) in [(&item.u, by_u), (&item.w, by_w)] {
-            for s in sum.start as usize..sum.end as usize {
-                let factor = self.term_factor[s];
-                let slot = &mut gradient[s * D..s * D + D];
-                for c in 0..D {
-                    slot[c] = factor * direction[c];
-                }
-                if D == 2 {
-                    let turn = self.term_turn[s];
-                    slot[0] += turn * direction[1];
-                    slot[1] -= turn * direction[0];
+                Product::Cross(e) => {
+                    let w = self.sum_at(&item.w, constants, x);
+                    let right = cross(&w, &e);
+                    *value = dot(&u, &right);
+                    self.spread(&item.u, &right, gradient);
+                    self.spread(&item.w, &cross(&u, &e).map(|c| -c), gradient);
                 }
             }
         }
     }
-}
 
-impl Invariant {
+    /// One of the sums of an invariant, with `constants` times its constant.
     #[inline]
-    fn value<const D: usize>(&self, [u, w]: &[[f64; D]; 2]) -> f64 {
-        match self.product {
-            Product::Square => 0.5 * dot(u, u),
-            Product::Dot => dot(u, w),
-            Product::Cross(e) => dot(u, &cross(w, &e)),
+    fn sum_at<const D: usize>(&self, sum: &Sum, constants: f64, x: &[[f64; D]]) -> [f64; D] {
+        let slots = sum.start as usize..sum.end as usize;
+        let mut out = std::array::from_fn(|c| constants * sum.constant[c]);
+        for (&node, &[factor, turn]) in self.term_node[slots.clone()].iter().zip(&self.term_factors[slots]) {
+            let x = &x[node as usize];
+            (0..D).for_each(|c| out[c] += factor * x[c]);
+            if D == 2 {
+                out[0] -= turn * x[1];
+                out[1] += turn * x[0];
+            }
+        }
+        out
+    }
+
+    /// The gradients of a product by the nodes of one of its sums, from that by the sum.
+    #[inline]
+    fn spread<const D: usize>(&self, sum: &Sum, by_sum: &[f64; D], gradient: &mut [[f64; D]]) {
+        let slots = sum.start as usize..sum.end as usize;
+        for (slot, &[factor, turn]) in gradient[slots.clone()].iter_mut().zip(&self.term_factors[slots]) {
+            *slot = by_sum.map(|c| factor * c);
+            if D == 2 {
+                slot[0] += turn * by_sum[1];
+                slot[1] -= turn * by_sum[0];
+            }
         }
     }
 }
@@ -283,15 +264,10 @@ fn dot<const D: usize>(u: &[f64; D], w: &[f64; D]) -> f64 {
 /// w × e; in the plane e is the normal.
 #[inline]
 fn cross<const D: usize>(w: &[f64; D], e: &[f64; 3]) -> [f64; D] {
-    let w = [w[0], w[1], if D == 3 { w[2] } else { 0.0 }];
-    let full = [w[1] * e[2] - w[2] * e[1], w[2] * e[0] - w[0] * e[2], w[0] * e[1] - w[1] * e[0]];
-    std::array::from_fn(|c| full[c])
-}
-
-/// e × u
-#[inline]
-fn cross_left<const D: usize>(e: &[f64; 3], u: &[f64; D]) -> [f64; D] {
-    cross(u, e).map(|c| -c)
+    std::array::from_fn(|c| match D {
+        2 => [w[1], -w[0]][c],
+        _ => w[(c + 1) % D] * e[(c + 2) % 3] - w[(c + 2) % D] * e[(c + 1) % 3],
+    })
 }
 
 /// The matrix E with U·E·W = e·(U × W).

@@ -54,6 +54,14 @@ impl Mass {
         mass
     }
 
+    /// The same matrix with the mass `heaviest` (kg) on nodes that have none.
+    pub(crate) fn filled(&self, heaviest: f64) -> Self {
+        let entries = (0..self.nodes()).flat_map(|a| self.row(a).map(move |(b, block)| (a as u32, b as u32, block)));
+        let massless = (0..self.nodes()).filter(|&a| self.diagonal(a) == 0.0);
+        let filling = massless.map(|a| (a as u32, a as u32, MassBlock { m: heaviest, s: 0.0 }));
+        Self::new(self.nodes(), entries.chain(filling).collect())
+    }
+
     /// Number of nodes.
     pub fn nodes(&self) -> usize {
         self.start.len() - 1

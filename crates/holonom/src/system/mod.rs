@@ -17,6 +17,7 @@ mod mass;
 mod motion;
 mod potential;
 mod respond;
+mod slots;
 
 pub use builder::{NodeId, Place, SystemBuilder, Term};
 pub use custom::{ConstraintFunction, CustomRows, Differentiated, ForceFunction, Number, SIZE};
@@ -33,6 +34,7 @@ pub use invariant::{InvariantId, Invariants};
 pub use law::{Law, Load, MAX_ARGUMENTS, Reach, Response};
 pub use mass::{Mass, MassBlock};
 pub use motion::{Constant, Signal};
+pub(crate) use slots::{along, scatter};
 
 use std::sync::Arc;
 
@@ -40,7 +42,29 @@ use std::sync::Arc;
 pub(crate) struct Row {
     pub name: String,
     pub quantity: Quantity,
-    pub target: Arc<dyn Signal>,
+    target: Arc<dyn Signal>,
+    /// The value of a target that never changes.
+    constant: Option<f64>,
+}
+
+impl Row {
+    pub fn new(name: String, quantity: Quantity, target: Arc<dyn Signal>) -> Self {
+        let constant = target.is_constant().then(|| target.at(0.0)[0]);
+        Self { name, quantity, target, constant }
+    }
+
+    /// c, ċ and c̈ at a time.
+    #[inline]
+    pub fn target(&self, t: f64) -> [f64; 3] {
+        match self.constant {
+            Some(value) => [value, 0.0, 0.0],
+            None => self.target.at(t),
+        }
+    }
+
+    pub fn is_constant(&self) -> bool {
+        self.constant.is_some()
+    }
 }
 
 /// A law acting on the quantities `arguments`, which depend on `invariants`, one after the other.
@@ -132,7 +156,7 @@ impl System {
     /// that depend on time.
     pub(crate) fn is_worked_on(&self) -> bool {
         let dissipates = self.laws.iter().any(|law| !law.law.conservative());
-        let drives = self.rows.iter().any(|row| !row.target.is_constant());
+        let drives = self.rows.iter().any(|row| !row.is_constant());
         dissipates || drives || !(self.motions.is_empty() && self.loads.is_empty() && self.custom.is_empty())
     }
 

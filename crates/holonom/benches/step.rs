@@ -1,0 +1,101 @@
+//! What a step costs and what of it is which part, by the number of bodies: `cargo bench -p holonom --bench step`.
+//!
+//! Throughput is in bodies per second: where it stays the same from size to size, time is linear in the number of bodies.
+
+mod models;
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use holonom::formulation::{RowsAt, Sampling, Stage, Workspace};
+use holonom::simulation::{Simulation, Verdict};
+use holonom::system::System;
+use models::{Case, STEP, cases, method};
+
+fn main() {
+    divan::main();
+}
+
+/// The stage of the conserving scheme.
+const STAGE: Stage =
+    Stage { sampling: Sampling::Between, rows: RowsAt::End, start: 0.0, step: STEP, inertia: 0.5 * STEP * STEP, rate: 1.0 / STEP };
+
+/// A workspace at the start, with the increment of free flight.
+fn workspace(system: &System) -> Workspace {
+    let mut work = Workspace::new(system);
+    for (d, v) in work.d.iter_mut().zip(&work.v0) {
+        *d = STEP * v;
+    }
+    work.drift.copy_from_slice(&work.d);
+    work.proximal(STAGE.inertia, None);
+    work.place(system, &STAGE);
+    work.evaluate(system, &STAGE);
+    work.tangent(system, &STAGE, 1.0);
+    work.residual(system, &STAGE);
+    work
+}
+
+/// Positions, rows, forces and residual of an iteration.
+#[divan::bench(args = cases(), max_time = 0.5)]
+fn evaluate(bencher: Bencher<'_, '_>, case: &Case) {
+    let system = case.model().system;
+    let mut work = workspace(&system);
+    bencher.counter(ItemsCount::new(case.bodies())).bench_local(|| {
+        work.place(&system, &STAGE);
+        work.evaluate(&system, &STAGE);
+        work.residual(&system, &STAGE);
+    });
+}
+
+/// The tangent of an iteration.
+#[divan::bench(args = cases(), max_time = 0.5)]
+fn assemble(bencher: Bencher<'_, '_>, case: &Case) {
+    let system = case.model().system;
+    let mut work = workspace(&system);
+    bencher.counter(ItemsCount::new(case.bodies())).bench_local(|| work.tangent(&system, &STAGE, 1.0));
+}
+
+/// Its factors, with the copy of the matrix that they overwrite.
+#[divan::bench(args = cases(), max_time = 0.5)]
+fn factor(bencher: Bencher<'_, '_>, case: &Case) {
+    let system = case.model().system;
+    let mut work = workspace(&system);
+    let matrix = work.kkt.solver.values_mut().to_vec();
+    bencher.counter(ItemsCount::new(case.bodies())).bench_local(|| {
+        work.kkt.solver.values_mut().copy_from_slice(&matrix);
+        work.factor().expect("the matrix is regular");
+    });
+}
+
+/// A solution with them, with the copy of the right side.
+#[divan::bench(args = cases(), max_time = 0.5)]
+fn solve(bencher: Bencher<'_, '_>, case: &Case) {
+    let system = case.model().system;
+    let mut work = workspace(&system);
+    work.factor().expect("the matrix is regular");
+    let right_side = work.unknowns.clone();
+    bencher.counter(ItemsCount::new(case.bodies())).bench_local(|| {
+        work.unknowns.copy_from_slice(&right_side);
+        work.solve().expect("the solution is finite");
+    });
+}
+
+#[divan::bench(args = cases(), sample_count = 10, sample_size = 10)]
+fn step_conserving(bencher: Bencher<'_, '_>, case: &Case) {
+    steps(bencher, case, "conserving");
+}
+
+#[divan::bench(args = cases(), sample_count = 10, sample_size = 10)]
+fn step_conserving_ggl(bencher: Bencher<'_, '_>, case: &Case) {
+    steps(bencher, case, "conserving-ggl");
+}
+
+/// One step after the other, from the start on.
+fn steps(bencher: Bencher<'_, '_>, case: &Case, name: &str) {
+    let system = case.model().system;
+    let mut simulation = Simulation::new(&system, method(name), STEP).expect("the model starts");
+    let mut go_on = |_: &Simulation<'_>| Verdict::GoOn;
+    bencher.counter(ItemsCount::new(case.bodies())).bench_local(|| {
+        let end = simulation.state().t + STEP;
+        simulation.run(end, &mut go_on)
+    });
+}

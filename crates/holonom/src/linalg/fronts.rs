@@ -1,0 +1,217 @@
+//! Which unknowns are eliminated together: the fronts of the elimination tree, and where everything goes in them.
+
+/// An order of elimination grouped into fronts, with every place worked out.
+pub(super) struct Fronts {
+    /// Place of each row of the matrix in a vector over the blocks of all fronts, and the row at each place.
+    pub place: Vec<u32>,
+    pub row: Vec<u32>,
+    /// Children before their parents.
+    pub fronts: Vec<Front>,
+    /// Places of the rows below the pivots, ascending, one front after the other.
+    pub below: Vec<u32>,
+    /// For each of them, where it is in a column of the parent's front.
+    pub in_parent: Vec<u32>,
+    /// Front of each block.
+    front_of: Vec<u32>,
+    /// Tiles of all fronts together.
+    pub tiles: usize,
+}
+
+/// Side of a tile.
+pub(super) const LANES: usize = 4;
+
+/// Numbers of a tile.
+pub(super) const TILE: usize = LANES * LANES;
+
+/// A dense square of the elimination: its pivots, and the rows below that they fill, each filled up to whole blocks of
+/// [`LANES`]. It is stored in tiles, by columns of tiles and in each by columns. Pivots that only fill up are 1, and
+/// everything else that fills up is 0.
+#[derive(Clone, Copy)]
+pub(super) struct Front {
+    pub pivots: usize,
+    /// Rows below the pivots.
+    pub rows: usize,
+    /// Blocks of pivots.
+    pub head: usize,
+    /// Blocks of a side.
+    pub size: usize,
+    /// First of its blocks among those of all fronts.
+    pub block: usize,
+    /// First of the rows below among those of all fronts.
+    pub below: usize,
+    /// First of its tiles.
+    pub tile: usize,
+    /// The front that takes what the pivots add to the rows below; a root has none.
+    pub parent: Option<usize>,
+}
+
+impl Fronts {
+    /// Groups the unknowns of a structurally symmetric pattern that are eliminated in the order `order`, which is kept
+    /// but for unknowns that do not know of each other.
+    pub fn new(size: usize, entries: &[(u32, u32)], order: &[u32]) -> Self {
+        let mut place = vec![0; size];
+        order.iter().enumerate().for_each(|(k, &row)| place[row as usize] = k as u32);
+        let columns = fill_in(size, entries, &place);
+        let groups = Groups::new(&columns);
+        let mut fronts = Self {
+            place: vec![0; size],
+            row: Vec::new(),
+            fronts: Vec::new(),
+            below: Vec::new(),
+            in_parent: Vec::new(),
+            front_of: Vec::new(),
+            tiles: 0,
+        };
+        let tops = groups.children_first();
+        for &top in &tops {
+            let (block, members) = (fronts.front_of.len(), &groups.members[top as usize]);
+            for (k, &column) in members.iter().enumerate() {
+                fronts.place[order[column as usize] as usize] = (block * LANES + k) as u32;
+            }
+            let (pivots, rows) = (members.len(), columns[top as usize].len());
+            let head = pivots.div_ceil(LANES);
+            let size = head + rows.div_ceil(LANES);
+            fronts.front_of.extend(std::iter::repeat_n(fronts.fronts.len() as u32, head));
+            fronts.fronts.push(Front { pivots, rows, head, size, block, below: 0, tile: fronts.tiles, parent: None });
+            fronts.tiles += size * size;
+        }
+        fronts.row = vec![0; fronts.front_of.len() * LANES];
+        fronts.place.iter().enumerate().for_each(|(row, &place)| fronts.row[place as usize] = row as u32);
+        for (k, &top) in tops.iter().enumerate() {
+            let first = fronts.below.len();
+            fronts.below.extend(columns[top as usize].iter().map(|&column| fronts.place[order[column as usize] as usize]));
+            fronts.below[first..].sort_unstable();
+            fronts.fronts[k].below = first;
+            fronts.fronts[k].parent = fronts.below.get(first).map(|&place| fronts.front_of[place as usize / LANES] as usize);
+        }
+        fronts.in_parent = fronts.fronts.iter().flat_map(|front| fronts.rows_in_parent(front)).collect();
+        fronts
+    }
+
+    /// Blocks of all fronts together.
+    pub fn blocks(&self) -> usize {
+        self.front_of.len()
+    }
+
+    fn rows_in_parent(&self, front: &Front) -> Vec<u32> {
+        let Some(parent) = front.parent else { return Vec::new() };
+        let parent = &self.fronts[parent];
+        let row = |&place| in_column(self.row_in(parent, place).expect("a parent has the rows of its children")) as u32;
+        self.below[front.range()].iter().map(row).collect()
+    }
+
+    /// Which row of a front is at a place.
+    fn row_in(&self, front: &Front, place: u32) -> Option<usize> {
+        match (place as usize).checked_sub(front.block * LANES) {
+            Some(row) if row < front.pivots => Some(row),
+            _ => self.below[front.range()].binary_search(&place).ok().map(|row| front.head * LANES + row),
+        }
+    }
+
+    /// Where an entry of the matrix is among the numbers of all tiles; none outside the filled pattern.
+    pub fn find(&self, row: usize, column: usize) -> Option<usize> {
+        let (row, column) = (self.place[row], self.place[column]);
+        let front = &self.fronts[self.front_of[row.min(column) as usize / LANES] as usize];
+        let (row, column) = (self.row_in(front, row)?, self.row_in(front, column)?);
+        Some(front.tile * TILE + column / LANES * front.size * TILE + column % LANES * LANES + in_column(row))
+    }
+}
+
+/// Where a row is in a column of tiles.
+fn in_column(row: usize) -> usize {
+    row / LANES * TILE + row % LANES
+}
+
+impl Front {
+    /// The rows below the pivots, among those of all fronts.
+    pub fn range(&self) -> std::ops::Range<usize> {
+        self.below..self.below + self.rows
+    }
+}
+
+/// What a front costs beside its arithmetic, in products of two tiles (measured with `cargo bench`).
+const FRONT_COST: f64 = 12.0;
+
+/// What eliminating the pivots of a front and a few solutions cost, and handing what is left to its parent.
+fn cost(pivots: usize, rows: usize) -> f64 {
+    let (head, tail) = (pivots.div_ceil(LANES), rows.div_ceil(LANES));
+    // For each block of pivots the products, and what its diagonal and the solutions cost beside them.
+    let blocks = (tail..head + tail).map(|left| ((left + 2) * (left + 2) + 4) as f64);
+    FRONT_COST + blocks.sum::<f64>() + (rows * rows) as f64 / 8.0
+}
+
+/// Columns that share a front, under the number of the last of them.
+struct Groups {
+    members: Vec<Vec<u32>>,
+    /// The groups whose parent in the elimination tree is one of the members.
+    children: Vec<Vec<u32>>,
+    /// Groups without a parent.
+    roots: Vec<u32>,
+}
+
+impl Groups {
+    /// Every column begins as a group, and takes in its children where that costs less than fronts of their own.
+    fn new(columns: &[Vec<u32>]) -> Self {
+        let size = columns.len();
+        let mut groups = Self { members: (0..size as u32).map(|k| vec![k]).collect(), children: vec![Vec::new(); size], roots: Vec::new() };
+        for (k, column) in columns.iter().enumerate() {
+            let mut candidates = std::mem::take(&mut groups.children[k]);
+            candidates.sort_by_key(|&child| columns[child as usize].len());
+            while let Some(child) = candidates.pop() {
+                groups.take_in(k, child, columns);
+            }
+            groups.members[k].sort_unstable();
+            match column.first() {
+                Some(&parent) => groups.children[parent as usize].push(k as u32),
+                None => groups.roots.push(k as u32),
+            }
+        }
+        groups
+    }
+
+    fn take_in(&mut self, k: usize, child: u32, columns: &[Vec<u32>]) {
+        let (below, below_child) = (columns[k].len(), columns[child as usize].len());
+        let (own, other) = (self.members[k].len(), self.members[child as usize].len());
+        if cost(own + other, below) <= cost(own, below) + cost(other, below_child) {
+            let (joined, grandchildren) =
+                (std::mem::take(&mut self.members[child as usize]), std::mem::take(&mut self.children[child as usize]));
+            self.members[k].extend(joined);
+            self.children[k].extend(grandchildren);
+        } else {
+            self.children[k].push(child);
+        }
+    }
+
+    /// Groups in an order with each right after the groups below it.
+    fn children_first(&self) -> Vec<u32> {
+        let (mut found, mut open) = (Vec::new(), self.roots.clone());
+        while let Some(group) = open.pop() {
+            found.push(group);
+            open.extend(&self.children[group as usize]);
+        }
+        found.reverse();
+        found
+    }
+}
+
+/// Rows below the diagonal of each column of L (ascending places): each column hands its rows to its parent in the
+/// elimination tree, the first of them.
+fn fill_in(size: usize, entries: &[(u32, u32)], place: &[u32]) -> Vec<Vec<u32>> {
+    let mut columns: Vec<Vec<u32>> = vec![Vec::new(); size];
+    for &(i, j) in entries {
+        let (i, j) = (place[i as usize], place[j as usize]);
+        if i != j {
+            columns[i.min(j) as usize].push(i.max(j));
+        }
+    }
+    for k in 0..size {
+        let mut column = std::mem::take(&mut columns[k]);
+        column.sort_unstable();
+        column.dedup();
+        if let Some((&parent, rest)) = column.split_first() {
+            columns[parent as usize].extend_from_slice(rest);
+        }
+        columns[k] = column;
+    }
+    columns
+}
