@@ -48,6 +48,7 @@ pub struct Loaded {
 }
 
 /// Keys of the model file that the command line sets.
+#[derive(Clone)]
 pub struct Overrides(Vec<String>);
 
 /// The overrides of `--set`.
@@ -66,6 +67,16 @@ impl Overrides {
         if let Some(given) = given {
             self.0.push(format!("{key}={given}"));
         }
+    }
+
+    /// The overrides as they are written, in their order.
+    pub fn given(&self) -> &[String] {
+        &self.0
+    }
+
+    /// Whether a key is set.
+    pub fn has(&self, key: &str) -> bool {
+        self.0.iter().any(|given| given.split('=').next().is_some_and(|set| set.trim() == key))
     }
 }
 
@@ -86,6 +97,13 @@ fn read_at_most(path: &Path) -> std::io::Result<Vec<u8>> {
 
 /// Reads a model file, or an example, with the overrides of the command line.
 pub fn load(argument: &str, overrides: Overrides) -> Result<Loaded, Failure> {
+    let (source, name) = open(argument, &overrides)?;
+    let model = source.model().map_err(Failure::Model)?;
+    Ok(Loaded { model, name, text: source.text().to_string() })
+}
+
+/// Reads a model file, or an example, as a description with the overrides of the command line; and its name.
+pub fn open(argument: &str, overrides: &Overrides) -> Result<(Source, String), Failure> {
     let (name, shown, bytes) = match argument.strip_prefix("example:") {
         Some(name) => (name.to_string(), format!("{name}.toml"), example(name)?.as_bytes().to_vec()),
         None => {
@@ -99,26 +117,39 @@ pub fn load(argument: &str, overrides: Overrides) -> Result<Loaded, Failure> {
         source = source.beside(Path::new(argument).parent().unwrap_or(Path::new(".")));
     }
     for given in &overrides.0 {
-        let Some((key, value)) = given.split_once('=') else {
-            return Err(Failure::usage(format!("`--set {given}` has no `=`"), "write --set KEY=VALUE, such as --set parameters.N=40"));
-        };
-        source.set(key.trim(), value.trim()).map_err(Failure::Model)?;
+        let (key, value) = split(given)?;
+        source.set(key, value).map_err(Failure::Model)?;
     }
-    let model = source.model().map_err(Failure::Model)?;
-    Ok(Loaded { model, name, text: source.text().to_string() })
+    Ok((source, name))
+}
+
+/// Key and value of an override.
+fn split(given: &str) -> Result<(&str, &str), Failure> {
+    let parts = given.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
+    parts.ok_or_else(|| Failure::usage(format!("`--set {given}` has no `=`"), "write --set KEY=VALUE, such as --set parameters.N=40"))
+}
+
+/// Nominal step of a model, s: with an accuracy, the interval of the results.
+pub fn step(model: &Model) -> Result<f64, Failure> {
+    let settings = &model.settings;
+    let shown = settings.accuracy.and(settings.end).map(|end| end / ROWS_BY_ACCURACY);
+    settings.step.or(shown).ok_or_else(|| missing("step", "--step 0.01"))
+}
+
+/// End of a model's run, s.
+pub fn end(model: &Model) -> Result<f64, Failure> {
+    model.settings.end.ok_or_else(|| missing("end", "--end 10"))
 }
 
 impl Loaded {
     /// Nominal step, s: with an accuracy, the interval of the results.
     pub fn step(&self) -> Result<f64, Failure> {
-        let settings = &self.model.settings;
-        let shown = settings.accuracy.and(settings.end).map(|end| end / ROWS_BY_ACCURACY);
-        settings.step.or(shown).ok_or_else(|| missing("step", "--step 0.01"))
+        step(&self.model)
     }
 
     /// End of the run, s.
     pub fn end(&self) -> Result<f64, Failure> {
-        self.model.settings.end.ok_or_else(|| missing("end", "--end 10"))
+        end(&self.model)
     }
 
     /// Recorded share of the steps.
@@ -145,8 +176,8 @@ fn missing(key: &str, option: &str) -> Failure {
 
 /// What a model, and a name on the command line, say of the method. A name replaces what the model says of formulation,
 /// integrator and projection levels, and keeps the numbers.
-pub fn choice(loaded: &Loaded, name: Option<&str>) -> Result<Choice, Failure> {
-    let settings = &loaded.model.settings;
+pub fn choice(model: &Model, name: Option<&str>) -> Result<Choice, Failure> {
+    let settings = &model.settings;
     let own = name.is_none();
     let part = |text: &Option<String>| text.clone().filter(|_| own);
     Ok(Choice {
@@ -167,13 +198,14 @@ pub fn choice(loaded: &Loaded, name: Option<&str>) -> Result<Choice, Failure> {
         constraint_at: settings.constraint_at.clone(),
         tolerance: settings.tolerance,
         max_iterations: settings.max_iterations.map(|most| most as usize),
+        iterations: settings.iterations.map(|count| count as usize),
         subdivide: settings.subdivide,
-        projection: settings.projection.as_ref().map(|projection| projection_choice(loaded, projection, own)).transpose()?,
+        projection: settings.projection.as_ref().map(|projection| projection_choice(model, projection, own)).transpose()?,
     })
 }
 
-fn projection_choice(loaded: &Loaded, settings: &ProjectionSettings, own: bool) -> Result<ProjectionChoice, Failure> {
-    let weights = settings.weights.as_ref().map(|weights| free_weights(&loaded.model, weights)).transpose()?;
+fn projection_choice(model: &Model, settings: &ProjectionSettings, own: bool) -> Result<ProjectionChoice, Failure> {
+    let weights = settings.weights.as_ref().map(|weights| free_weights(model, weights)).transpose()?;
     Ok(ProjectionChoice {
         levels: settings.levels.clone().filter(|_| own),
         matrix: settings.matrix.clone(),
@@ -205,8 +237,8 @@ fn free_weights(model: &Model, weights: &[(String, f64)]) -> Result<Vec<f64>, Fa
 }
 
 /// The method of a model, or the one named on the command line.
-pub fn method(loaded: &Loaded, name: Option<&str>) -> Result<Method, Failure> {
-    Method::resolve(&choice(loaded, name)?).map_err(method_failure)
+pub fn method(model: &Model, name: Option<&str>) -> Result<Method, Failure> {
+    Method::resolve(&choice(model, name)?).map_err(method_failure)
 }
 
 /// A method that cannot be, with its cure.
@@ -228,7 +260,7 @@ pub fn start_failure(error: StartError) -> Failure {
 
 /// A state as it is kept in `checkpoint.json`.
 pub fn checkpoint_value(state: &State) -> Value {
-    json!({ "t": state.t, "x": state.x, "v": state.v, "a": state.a, "lambda": state.lambda, "a_change": state.a_change, "last_step": state.last_step, "memory": state.memory, "angle": state.angle })
+    json!({ "t": state.t, "x": state.x, "v": state.v, "a": state.a, "lambda": state.lambda, "a_change": state.a_change, "a_differences": state.a_differences, "lambda_change": state.lambda_change, "last_step": state.last_step, "memory": state.memory, "angle": state.angle })
 }
 
 /// Reads a `checkpoint.json`.
@@ -245,6 +277,8 @@ pub fn checkpoint(path: &Path) -> Result<State, Failure> {
             a: numbers(&value, "a")?,
             lambda: numbers(&value, "lambda")?,
             a_change: numbers(&value, "a_change")?,
+            a_differences: numbers(&value, "a_differences")?,
+            lambda_change: numbers(&value, "lambda_change")?,
             last_step: value["last_step"].as_f64()?,
             memory: numbers(&value, "memory")?,
             angle: numbers(&value, "angle")?,

@@ -1,11 +1,13 @@
 //! The command `holonom`.
 
+mod clock;
 mod commands;
 mod failure;
 mod load;
 mod options;
 mod output;
 mod progress;
+mod sweep;
 mod table;
 
 use std::process::ExitCode;
@@ -19,6 +21,7 @@ fn main() -> ExitCode {
     let outcome = match &cli.command {
         Command::Run(arguments) => commands::run::run(arguments),
         Command::Compare(arguments) => commands::compare::compare(arguments),
+        Command::Sweep(arguments) => commands::sweep::sweep(arguments),
         Command::Stability(arguments) => commands::stability::stability(arguments),
         Command::Check(arguments) => commands::check::check(arguments),
         Command::Methods(arguments) => commands::methods::methods(arguments),

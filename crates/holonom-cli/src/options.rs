@@ -18,6 +18,8 @@ pub enum Command {
     Run(RunArguments),
     /// Several methods or steps in one report, curves overlaid
     Compare(CompareArguments),
+    /// Many runs of a model whose keys take several values, on all cores, in one table
+    Sweep(SweepArguments),
     /// The largest step with which each method completes, by bisection
     Stability(StabilityArguments),
     /// Validate a model: degrees of freedom, rank, redundant rows, what is near singular
@@ -45,7 +47,7 @@ pub struct ModelArguments {
 /// Where results go, and what is said of them.
 #[derive(Debug, Args)]
 pub struct Destination {
-    /// Folder for the results [default: results/<model>-<method>, -compare or -stability]
+    /// Folder for the results [default: results/<model>-<method>, -compare, -sweep or -stability]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print the result as JSON on standard output, nothing else there
@@ -54,9 +56,6 @@ pub struct Destination {
     /// Print nothing on standard output but errors
     #[arg(long)]
     pub quiet: bool,
-    /// Write no report
-    #[arg(long)]
-    pub no_report: bool,
 }
 
 impl Destination {
@@ -71,6 +70,9 @@ impl Destination {
 pub struct OutputArguments {
     #[command(flatten)]
     pub to: Destination,
+    /// Write no report
+    #[arg(long)]
+    pub no_report: bool,
     /// Format of the trajectory; may be given several times
     #[arg(long = "format", value_name = "FORMAT", default_value = "csv")]
     pub formats: Vec<String>,
@@ -129,6 +131,44 @@ pub struct StabilityArguments {
     /// First step to try, s [default: the model's]
     #[arg(long, value_name = "S")]
     pub step: Option<String>,
+    #[command(flatten)]
+    pub to: Destination,
+    /// Write no report
+    #[arg(long)]
+    pub no_report: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct SweepArguments {
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// A key of the model file and its values: lo..hi:N, lo..hi:Nlog for even ratios, or a,b,c; give several for a grid
+    #[arg(long, value_name = "KEY=VALUES", required = true)]
+    pub vary: Vec<String>,
+    /// Draw N random samples in place of the grid: evenly from lo..hi (lo..hi:log in ratio), one of a,b,c
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub samples: Option<u64>,
+    /// Seed of the samples; the same seed gives the same samples everywhere
+    #[arg(long, value_name = "S", default_value_t = 0, requires = "samples")]
+    pub seed: u64,
+    /// Method by name; see `holonom methods`
+    #[arg(long, value_name = "NAME")]
+    pub method: Option<String>,
+    /// Step, s
+    #[arg(long, value_name = "S")]
+    pub step: Option<String>,
+    /// End of the runs, s
+    #[arg(long, value_name = "S")]
+    pub end: Option<String>,
+    /// Columns of the trajectory whose last values are kept [default: energy, and all of points, bodies, joints and drives]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub columns: Vec<String>,
+    /// Runs at a time [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Write the table in another format, too; may be given several times
+    #[arg(long = "format", value_name = "FORMAT")]
+    pub formats: Vec<String>,
     #[command(flatten)]
     pub to: Destination,
 }

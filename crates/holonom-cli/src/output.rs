@@ -11,10 +11,11 @@ use holonom::analysis;
 use holonom::model::Model;
 use holonom::record::{COLUMNS, Recorder, Recording};
 use holonom::simulation::{Method, Simulation, State, Status};
-use holonom_io::Writer;
+use holonom_io::{WriteTable, Writer};
 use holonom_report::{Report, Run};
 use serde_json::{Value, json};
 
+use crate::clock::Clock;
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
 use crate::progress::Watched;
@@ -66,7 +67,13 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
     let recorder = Recorder::new(&model.channels, &model.system, every, reactions);
     let mut watched = Watched::new(recorder, end, quiet, interrupted.clone());
     let (wall, cpu) = (std::time::Instant::now(), ProcessTime::now());
-    let status = simulation.run(end, &mut watched);
+    let (status, step_us) = match simulation.method().settings.iterations {
+        None => (simulation.run(end, &mut watched), Value::Null),
+        Some(_) => {
+            let mut clock = Clock::new(&mut watched, (end / step) as usize + 1);
+            (simulation.run(end, &mut clock), clock.summary())
+        }
+    };
     let (wall, cpu) = (wall.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64());
     let summary = simulation.summary(&loaded.name, end, &status, rank.size(&model.system));
     let mut value = serde_json::to_value(&summary).expect("a summary is plain data");
@@ -75,6 +82,9 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
         "us_per_step": 1e6 * cpu / simulation.steps().max(1) as f64,
         "realtime_factor": simulation.state().t / wall.max(1e-9),
     });
+    if !step_us.is_null() {
+        value["time"]["step_us"] = step_us;
+    }
     Ok(Finished {
         method: name,
         recording: watched.finish(),
@@ -106,8 +116,36 @@ pub fn writers(formats: &[String]) -> Result<Vec<&'static Writer>, Failure> {
     formats.iter().map(find).collect()
 }
 
+/// The first writer, which a table always has, and those of the formats asked for.
+pub fn table_writers(formats: &[String]) -> Result<Vec<(&'static Writer, WriteTable)>, Failure> {
+    let with_words = || holonom_io::WRITERS.iter().filter_map(|writer| writer.write_table.map(|write| (writer, write)));
+    if let Some(unknown) = formats.iter().find(|format| with_words().all(|(writer, _)| writer.name != format.as_str())) {
+        let known: Vec<&str> = with_words().map(|(writer, _)| writer.name).collect();
+        return Err(Failure::usage(
+            format!("there is no format `{unknown}` for tables with words"),
+            format!("take one of: {}", known.join(", ")),
+        ));
+    }
+    let is_asked = |k: usize, writer: &Writer| k == 0 || formats.iter().any(|format| format == writer.name);
+    Ok(with_words().enumerate().filter(|(k, (writer, _))| is_asked(*k, writer)).map(|(_, writer)| writer).collect())
+}
+
 /// A recording without the points and bodies that are not among `points`, which come in this order.
 fn only(recording: &Recording, points: &[String], model: &Model) -> Recording {
+    let names = columns(recording, points, model);
+    let columns: Vec<&[f64]> = names.iter().filter_map(|name| recording.column(name)).collect();
+    let mut kept = Recording::new(names);
+    let mut row = Vec::new();
+    for k in 0..recording.rows() {
+        row.clear();
+        row.extend(columns.iter().map(|column| column[k]));
+        kept.push(&row);
+    }
+    kept
+}
+
+/// Names of the columns without the points and bodies that are not among `points`, which come in this order.
+pub fn columns(recording: &Recording, points: &[String], model: &Model) -> Vec<String> {
     let all = || recording.columns().iter().map(|column| column.name.as_str());
     let of = |name: &'_ str, owner: &str| name.rsplit_once('.').is_some_and(|(known, _)| known == owner);
     let has_owner = |name: &&str| {
@@ -119,16 +157,7 @@ fn only(recording: &Recording, points: &[String], model: &Model) -> Recording {
     let motion = points.iter().flat_map(|point| all().filter(move |name| of(name, point) && !is_force(name)));
     let others = all().skip(COLUMNS.len()).filter(|name| !has_owner(name) || (is_force(name) && kept(name)));
     let names = COLUMNS.into_iter().chain(motion).chain(others).map(str::to_string);
-    let names: Vec<String> = names.filter(|name| recording.column(name).is_some()).collect();
-    let columns: Vec<&[f64]> = names.iter().filter_map(|name| recording.column(name)).collect();
-    let mut kept = Recording::new(names);
-    let mut row = Vec::new();
-    for k in 0..recording.rows() {
-        row.clear();
-        row.extend(columns.iter().map(|column| column[k]));
-        kept.push(&row);
-    }
-    kept
+    names.filter(|name| recording.column(name).is_some()).collect()
 }
 
 /// Makes a folder and writes into it through a closure for each file.
@@ -152,6 +181,14 @@ impl Folder {
             out.flush()
         });
         file.map_err(|source| Failure::File { doing: "write", path, source })
+    }
+
+    /// Writes one file in full before it takes the place of an older one.
+    pub fn replace(&self, name: &str, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<(), Failure> {
+        let new = format!("{name}.new");
+        self.write(&new, write)?;
+        let path = self.path.join(name);
+        std::fs::rename(self.path.join(new), &path).map_err(|source| Failure::File { doing: "write", path, source })
     }
 
     /// Writes the table of a run with each writer: the points that `[output]` asks for, in its order.

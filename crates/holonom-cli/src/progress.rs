@@ -23,12 +23,7 @@ pub struct Watched<'a> {
 impl<'a> Watched<'a> {
     /// Watches a run to `end` (s).
     pub fn new(recorder: Recorder<'a>, end: f64, quiet: bool, interrupted: Arc<AtomicBool>) -> Self {
-        let bar = ProgressBar::new(1000);
-        if quiet || !std::io::stderr().is_terminal() {
-            bar.set_draw_target(ProgressDrawTarget::hidden());
-        }
-        let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {eta} left  {msg}").expect("the template is valid");
-        bar.set_style(style);
+        let bar = bar(1000, "{bar:30} {percent:>3} %  {eta} left  {msg}", quiet);
         Self { recorder, bar, end, seen: 0, interrupted }
     }
 
@@ -59,6 +54,22 @@ impl Observer for Watched<'_> {
         }
         Verdict::GoOn
     }
+}
+
+/// A bar that counts runs, of which some are done already.
+pub fn runs_bar(runs: u64, done: u64, quiet: bool) -> ProgressBar {
+    let bar = bar(runs, "{bar:30} {pos} of {len} runs  {eta} left", quiet).with_position(done);
+    bar.reset_eta();
+    bar
+}
+
+/// A bar on standard error, where that is a terminal.
+fn bar(length: u64, template: &str, quiet: bool) -> ProgressBar {
+    let bar = ProgressBar::new(length);
+    if quiet || !std::io::stderr().is_terminal() {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    bar.with_style(ProgressStyle::with_template(template).expect("the template is valid"))
 }
 
 /// A flag that an interrupt from the keyboard sets; the second interrupt ends the program.

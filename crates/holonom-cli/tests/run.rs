@@ -66,6 +66,11 @@ fn formats_rows_and_report_are_chosen() {
     prints(&folder, &format!("run {PAPER} --end 0.1 --out b --format npz --no-report"), 0);
     assert_eq!(files(folder.path().join("b")), names(&["checkpoint.json", "summary.json", "trajectory.npz"]));
 
+    if cfg!(feature = "parquet") {
+        prints(&folder, &format!("run {PAPER} --end 0.1 --out b --format parquet --no-report"), 0);
+        assert!(fs::read(folder.path().join("b/trajectory.parquet")).unwrap().starts_with(b"PAR1"));
+    }
+
     let message = fails(&folder, &format!("run {PAPER} --end 0.1 --out c --format xls"), 2);
     assert!(message.contains("xls") && message.contains("csv") && message.contains("npz"), "{message}");
     assert!(!folder.path().join("c").exists(), "nothing is begun for a format that is not there");

@@ -5,5 +5,5 @@ mod read;
 mod write;
 
 pub use json::to_json;
-pub use read::{DEEPEST, LARGEST_FILE, LARGEST_MESH, MOST_TRIANGLES, MeshError, Source, read_mesh};
-pub use write::{WRITERS, Writer, write_json};
+pub use read::{DEEPEST, LARGEST_FILE, LARGEST_MESH, MOST_TRIANGLES, MeshError, Source, read_mesh, read_value};
+pub use write::{Cells, Table, WRITERS, WriteTable, Writer, csv_cells, csv_line, write_json};

@@ -21,7 +21,7 @@ const NEAR_SINGULAR: f64 = 1e-4;
 pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let loaded = load::load(&arguments.model.model, load::overrides(&arguments.model.set))?;
     let system = &loaded.model.system;
-    let method = load::method(&loaded, None)?;
+    let method = load::method(&loaded.model, None)?;
     let projection = method.projection.clone();
     let name = method.name.clone();
     let step = loaded.step().unwrap_or(1e-3);
@@ -30,7 +30,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let mut plain = load::overrides(&arguments.model.set);
     plain.set("output.reactions=true");
     let plain = load::load(&arguments.model.model, plain)?;
-    let mut held = Held::new(&plain, load::method(&plain, None)?, step)?;
+    let mut held = Held::new(&plain, load::method(&plain.model, None)?, step)?;
     let size = rank(system, &simulation.state().x, 0.0).size(system);
     let found = &held.rank;
     let (start, audit) = (simulation.start(), simulation.audit());

@@ -39,7 +39,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
         name(&mut run.summary, &label, &models[model]);
         finished.push((label, run));
     }
-    write(&folder, loaded, &finished, &writers, output.to.no_report)?;
+    write(&folder, loaded, &finished, &writers, output.no_report)?;
     let summaries: Vec<&Value> = finished.iter().map(|(_, run)| &run.summary).collect();
     if output.to.json {
         println!("{}", serde_json::to_string_pretty(&summaries).expect("a summary is plain data"));
@@ -73,7 +73,7 @@ fn plan(arguments: &CompareArguments, models: &[Loaded]) -> Result<Vec<Planned>,
     for (model, loaded) in models.iter().enumerate() {
         for name in &methods {
             let order = Order {
-                method: load::method(loaded, Some(name))?,
+                method: load::method(&loaded.model, Some(name))?,
                 step: loaded.step()?,
                 end: loaded.end()?,
                 every: arguments.output.every.unwrap_or(loaded.every()),

@@ -7,4 +7,5 @@ pub mod methods;
 pub mod run;
 pub mod schema;
 pub mod stability;
+pub mod sweep;
 pub mod view;

@@ -22,7 +22,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let output = &arguments.output;
     let writers = writers(&output.formats)?;
     let order = Order {
-        method: load::method(&loaded, arguments.method.as_deref())?,
+        method: load::method(&loaded.model, arguments.method.as_deref())?,
         step: loaded.step()?,
         end: loaded.end()?,
         every: output.every.unwrap_or(loaded.every()),
@@ -46,7 +46,7 @@ fn write(folder: &Folder, loaded: &Loaded, finished: &Finished, writers: &[&Writ
     folder.write("summary.json", |out| holonom_io::write_json(&finished.summary, out))?;
     folder.write("checkpoint.json", |out| holonom_io::write_json(&load::checkpoint_value(&finished.state), out))?;
     folder.write_trajectory("trajectory", writers, loaded, &finished.recording)?;
-    if !output.to.no_report {
+    if !output.no_report {
         let runs =
             [Run { label: &finished.method, recording: &finished.recording, scene: &loaded.model.scene, summary: &finished.summary }];
         folder.write_report(loaded, &runs)?;
@@ -61,7 +61,7 @@ fn describe(loaded: &Loaded, summary: &Value) -> String {
         None => "completed".to_string(),
         Some(at) => format!("stopped at {} s: {}", short(at), summary["reason"].as_str().unwrap_or("")),
     };
-    let items = [
+    let mut items = vec![
         ("method", summary["method"]["name"].as_str().unwrap_or("").to_string()),
         ("status", status),
         (
@@ -111,5 +111,11 @@ fn describe(loaded: &Loaded, summary: &Value) -> String {
         ("momentum", format!("linear drift {}, angular drift {}", number("momentum", "linear_drift"), number("momentum", "angular_drift"))),
         ("time", format!("{} µs a step, {} times real time", number("time", "us_per_step"), number("time", "realtime_factor"))),
     ];
+    if let Value::Object(step) = &summary["time"]["step_us"] {
+        let time = |key: &str| short(step[key].as_f64().unwrap_or(f64::NAN));
+        let text =
+            format!("median {} µs, 90 % within {}, 99 % within {}, longest {}", time("median"), time("p90"), time("p99"), time("max"));
+        items.push(("one step", text));
+    }
     format!("{}\n{}", loaded.title(), list(&items))
 }

@@ -43,7 +43,7 @@ pub fn stability(arguments: &StabilityArguments) -> Result<ExitCode, Failure> {
     let found: Vec<(String, LargestStep)> = choices.into_iter().map(|(name, choice)| (name, search(&loaded, &choice, &bounds))).collect();
     let results = results(&loaded, &bounds, &found);
     folder.write("stability.json", |out| holonom_io::write_json(&results, out))?;
-    if !arguments.to.no_report {
+    if !arguments.no_report {
         write_report(&folder, &loaded, &bounds, &found)?;
     }
     if arguments.to.json {
@@ -61,7 +61,7 @@ fn choices(arguments: &StabilityArguments, loaded: &Loaded) -> Result<Vec<(Strin
         false => arguments.methods.iter().map(String::as_str).collect(),
     };
     let choice = |name: &str| {
-        let mut choice = load::choice(loaded, Some(name))?;
+        let mut choice = load::choice(&loaded.model, Some(name))?;
         choice.subdivide = Some(false);
         Method::resolve(&choice).map_err(load::method_failure)?;
         Ok((name.to_string(), choice))

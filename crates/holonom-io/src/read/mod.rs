@@ -5,10 +5,11 @@ mod places;
 mod render;
 mod toml;
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
-use holonom::model::{Faults, Mesh, Meshes, Model, NoMeshes, Table, Value};
+use holonom::model::{Fault, Faults, Mesh, Meshes, Model, NoMeshes, Table, Value};
 
 pub use mesh::{LARGEST_MESH, MOST_TRIANGLES, MeshError, read_mesh};
 use places::Places;
@@ -26,8 +27,8 @@ pub struct Source {
     /// The description; [`Source::set`] changes it.
     value: Value,
     places: Places,
-    /// Where files that the model names are.
-    folder: Option<PathBuf>,
+    /// The files that the model names, where they can be read.
+    meshes: Option<MeshFiles>,
 }
 
 impl Source {
@@ -39,12 +40,12 @@ impl Source {
         let text = decode(name, bytes)?;
         let mut places = Places::default();
         let value = toml::parse(&text, &mut places).map_err(|error| render::syntax(name, &text, &error))?;
-        Ok(Self { name: name.into(), text, value, places, folder: None })
+        Ok(Self { name: name.into(), text, value, places, meshes: None })
     }
 
     /// Says in which folder the files are that the model names.
     pub fn beside(mut self, folder: &Path) -> Self {
-        self.folder = Some(folder.into());
+        self.meshes = Some(MeshFiles { folder: folder.into(), read: Mutex::default() });
         self
     }
 
@@ -54,28 +55,21 @@ impl Source {
     /// # Errors
     /// When a part of the key before the last is no table.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
-        let mut parts: Vec<&str> = key.split('.').collect();
-        let last = parts.pop().unwrap_or("");
-        let mut table = match &mut self.value {
-            Value::Table(table) => table,
-            _ => unreachable!("a file is a table"),
-        };
-        for part in parts {
-            if table.get(part).is_none() {
-                table.push(part, Value::Table(Table::default()));
-            }
-            table = match table.get_mut(part) {
-                Some(Value::Table(table)) => table,
-                _ => {
-                    return Err(format!(
-                        "error: `{key}` cannot be set: `{part}` is not a table\n  = cure: name a key of the model file, such as simulation.step"
-                    ));
-                }
-            };
-        }
-        table.set(last, toml::value(value).unwrap_or_else(|| Value::text(value)));
+        put(&mut self.value, key, read_value(value)).map_err(|part| {
+            format!(
+                "error: `{key}` cannot be set: `{part}` is not a table\n  = cure: name a key of the model file, such as simulation.step"
+            )
+        })?;
         self.places.forget(key);
         Ok(())
+    }
+
+    /// What stands at a key such as `simulation.step`.
+    pub fn get(&self, key: &str) -> Option<&Value> {
+        key.split('.').try_fold(&self.value, |value, part| match value {
+            Value::Table(table) => table.get(part),
+            _ => None,
+        })
     }
 
     /// Reads the description as a model.
@@ -83,11 +77,27 @@ impl Source {
     /// # Errors
     /// Every fault of it, ready to be shown.
     pub fn model(&self) -> Result<Model, String> {
-        let model = match &self.folder {
-            Some(folder) => Model::from_value(&self.value, &MeshFiles(folder)),
-            None => Model::from_value(&self.value, &NoMeshes),
-        };
-        model.map_err(|faults| self.render(&faults))
+        self.compile(&self.value).map_err(|faults| self.render(&faults))
+    }
+
+    /// Reads the description with some keys set to other values as a model, and stays as it is.
+    ///
+    /// # Errors
+    /// Every fault of it.
+    pub fn model_with(&self, changes: &[(&str, Value)]) -> Result<Model, Faults> {
+        let mut value = self.value.clone();
+        for (key, change) in changes {
+            put(&mut value, key, change.clone())
+                .map_err(|part| Faults(vec![Fault::new(*key, "", format!("`{part}` is not a table"), "name a key of the model file")]))?;
+        }
+        self.compile(&value)
+    }
+
+    fn compile(&self, value: &Value) -> Result<Model, Faults> {
+        match &self.meshes {
+            Some(meshes) => Model::from_value(value, meshes),
+            None => Model::from_value(value, &NoMeshes),
+        }
     }
 
     /// Faults with their places in the file.
@@ -106,12 +116,52 @@ impl Source {
     }
 }
 
-/// Meshes in files of a folder.
-struct MeshFiles<'a>(&'a Path);
+/// A value as `--set` takes it: written as in a file, and a text where it is no TOML value.
+pub fn read_value(text: &str) -> Value {
+    toml::value(text).unwrap_or_else(|| Value::text(text))
+}
 
-impl Meshes for MeshFiles<'_> {
+/// Puts a value at a key of a description, with the tables around it; or says which part of the key is no table.
+fn put<'a>(description: &mut Value, key: &'a str, value: Value) -> Result<(), &'a str> {
+    let (tables, last) = key.rsplit_once('.').map_or(("", key), |(tables, last)| (tables, last));
+    let mut table = match description {
+        Value::Table(table) => table,
+        _ => unreachable!("a file is a table"),
+    };
+    for part in tables.split('.').filter(|_| !tables.is_empty()) {
+        if table.get(part).is_none() {
+            table.push(part, Value::Table(Table::default()));
+        }
+        table = match table.get_mut(part) {
+            Some(Value::Table(table)) => table,
+            _ => return Err(part),
+        };
+    }
+    table.set(last, value);
+    Ok(())
+}
+
+/// Meshes in files of a folder, each read once.
+struct MeshFiles {
+    folder: PathBuf,
+    read: Mutex<HashMap<String, Arc<Mesh>>>,
+}
+
+impl Meshes for MeshFiles {
     fn mesh(&self, name: &str) -> Result<Arc<Mesh>, String> {
-        let path = self.0.join(name);
+        let mut read = self.read.lock().expect("no reader panics");
+        if let Some(mesh) = read.get(name) {
+            return Ok(mesh.clone());
+        }
+        let mesh = self.load(name)?;
+        read.insert(name.into(), mesh.clone());
+        Ok(mesh)
+    }
+}
+
+impl MeshFiles {
+    fn load(&self, name: &str) -> Result<Arc<Mesh>, String> {
+        let path = self.folder.join(name);
         let size = std::fs::metadata(&path).map_err(|error| format!("{} cannot be read: {error}", path.display()))?.len();
         if size > LARGEST_MESH as u64 {
             return Err(format!("{} is larger than {} MB", path.display(), LARGEST_MESH / 1_000_000));

@@ -4,6 +4,8 @@ use std::io::{self, Write};
 
 use holonom::record::Recording;
 
+use super::Table;
+
 /// Writes a header and one line a row. Numbers are the shortest that read back to the same bits.
 pub(super) fn write(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
@@ -12,6 +14,39 @@ pub(super) fn write(recording: &Recording, out: &mut dyn Write) -> io::Result<()
         table.write_record(recording.columns().iter().map(|column| column.values[row].to_string()))?;
     }
     table.flush()
+}
+
+/// Writes a header and one line a row of a table with words; empty cells where there is nothing.
+pub(super) fn write_table(table: &Table, out: &mut dyn Write) -> io::Result<()> {
+    let names: Vec<&str> = table.columns.iter().map(|(name, _)| name.as_str()).collect();
+    out.write_all(csv_line(&names).as_bytes())?;
+    for row in 0..table.rows() {
+        let cells: Vec<String> = table.columns.iter().map(|(_, cells)| cells.text(row)).collect();
+        out.write_all(csv_line(&cells).as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Cells as one line of CSV, with its end.
+pub fn csv_line(cells: &[impl AsRef<[u8]>]) -> String {
+    let mut line = csv::Writer::from_writer(Vec::new());
+    line.write_record(cells).expect("memory takes everything");
+    String::from_utf8_lossy(&line.into_inner().expect("memory takes everything")).into_owned()
+}
+
+/// The cells of one line of CSV, none of which has a line break in it.
+pub fn csv_cells(line: &str) -> Vec<String> {
+    let mut cells = vec![String::new()];
+    let (mut is_quoted, mut rest) = (false, line.trim_end_matches(['\r', '\n']).chars().peekable());
+    while let Some(c) = rest.next() {
+        match c {
+            '"' if is_quoted && rest.next_if_eq(&'"').is_some() => cells.last_mut().expect("there is a cell").push(c),
+            '"' => is_quoted = !is_quoted,
+            ',' if !is_quoted => cells.push(String::new()),
+            c => cells.last_mut().expect("there is a cell").push(c),
+        }
+    }
+    cells
 }
 
 #[cfg(test)]
@@ -31,5 +66,13 @@ mod tests {
         assert_eq!(reader.headers().unwrap().iter().collect::<Vec<_>>(), ["t", "a,b"]);
         let read: Vec<f64> = reader.records().map(|record| record.unwrap()[1].parse().unwrap()).collect();
         assert!(read.iter().zip(&values).all(|(a, b)| a.to_bits() == b.to_bits()));
+    }
+
+    #[test]
+    fn a_line_reads_back_whatever_is_in_its_cells() {
+        let cells = ["1", "", "a, \"b\"", "0.1"];
+        let line = csv_line(&cells);
+        assert!(line.ends_with('\n') && line.lines().count() == 1, "{line}");
+        assert_eq!(csv_cells(&line), cells);
     }
 }

@@ -3,25 +3,48 @@
 mod csv;
 mod json;
 mod npz;
+#[cfg(feature = "parquet")]
+mod parquet;
+mod table;
 
 use std::io::{self, Write};
 
 use holonom::record::Recording;
 
+pub use csv::{csv_cells, csv_line};
 pub use json::write_json;
+pub use table::{Cells, Table};
 
-/// A format for recordings.
+/// How a table with words is written.
+pub type WriteTable = fn(&Table, &mut dyn Write) -> io::Result<()>;
+
+/// A format for recordings, and where it can hold them for tables with words.
 pub struct Writer {
     pub name: &'static str,
     pub extension: &'static str,
     pub doc: &'static str,
     pub write: fn(&Recording, &mut dyn Write) -> io::Result<()>,
+    pub write_table: Option<WriteTable>,
 }
 
 /// All formats; the first is the default.
 pub const WRITERS: &[Writer] = &[
-    Writer { name: "csv", extension: "csv", doc: "one row a step; numbers read back to the same bits", write: csv::write },
-    Writer { name: "npz", extension: "npz", doc: "one array a column, for numpy.load", write: npz::write },
+    Writer {
+        name: "csv",
+        extension: "csv",
+        doc: "one row a step; numbers read back to the same bits",
+        write: csv::write,
+        write_table: Some(csv::write_table),
+    },
+    Writer { name: "npz", extension: "npz", doc: "one array a column, for numpy.load", write: npz::write, write_table: None },
+    #[cfg(feature = "parquet")]
+    Writer {
+        name: "parquet",
+        extension: "parquet",
+        doc: "columns of doubles, for data frames",
+        write: parquet::write,
+        write_table: Some(parquet::write_table),
+    },
 ];
 
 #[cfg(test)]

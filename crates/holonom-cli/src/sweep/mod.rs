@@ -1,0 +1,14 @@
+//! Independent runs of one model that differ in some of its keys.
+
+mod check;
+mod journal;
+mod plan;
+mod run;
+mod sheet;
+mod vary;
+
+pub use check::check;
+pub use journal::Journal;
+pub use plan::Plan;
+pub use run::{Ending, Runner};
+pub use sheet::Sheet;

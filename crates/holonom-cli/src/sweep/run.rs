@@ -1,0 +1,160 @@
+//! One run of a sweep: the model with the values of the run, from its start to its end.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use holonom::model::{Model, Value};
+use holonom::record::{Recorder, Recording};
+use holonom::simulation::{Method, Observer, Simulation, Status, Verdict};
+use holonom_io::Source;
+
+use super::plan::Plan;
+use super::vary::Setting;
+use crate::failure::Failure;
+use crate::load;
+
+/// Steps between looks at the interrupt.
+const LOOK: u64 = 64;
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    Completed,
+    /// Before its end.
+    Stopped,
+    /// Before its start: the model or the method cannot have these values.
+    Refused,
+}
+
+impl Ending {
+    pub const ALL: [Self; 3] = [Self::Completed, Self::Stopped, Self::Refused];
+
+    /// The word for it in tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Completed => "completed",
+            Self::Stopped => "stopped",
+            Self::Refused => "refused",
+        }
+    }
+}
+
+/// What became of a run.
+pub struct Outcome {
+    pub ending: Ending,
+    /// Time reached by a run that stopped, s.
+    pub stopped_at: Option<f64>,
+    /// Why it did not complete; empty where it did.
+    pub reason: String,
+    /// Nothing where the run was refused.
+    pub figures: Option<Figures>,
+}
+
+/// What a run is judged by.
+pub struct Figures {
+    /// Nominal steps.
+    pub steps: u64,
+    /// max |E(t) − E(0) − work done on the system|, J.
+    pub drift: f64,
+    /// Largest ‖Φ‖ and ‖Φ̇‖.
+    pub position: f64,
+    pub velocity: f64,
+    pub iterations_per_step: f64,
+    pub rejected_steps: u64,
+    /// Last values of the columns asked for; `None` for those that this run's model does not have.
+    pub last: Vec<Option<f64>>,
+}
+
+/// Runs the runs of a plan.
+pub struct Runner<'a> {
+    pub source: &'a Source,
+    pub plan: &'a Plan,
+    /// Name of the method, where the command line gives one.
+    pub method: Option<&'a str>,
+    /// Columns of the trajectory whose last values are kept.
+    pub columns: &'a [String],
+    pub interrupted: Arc<AtomicBool>,
+}
+
+impl Runner<'_> {
+    /// The run with some values; nothing where it was interrupted.
+    pub fn run(&self, settings: &[Setting]) -> Option<Outcome> {
+        if self.interrupted.load(Ordering::Relaxed) {
+            return None;
+        }
+        let changes: Vec<(&str, Value)> =
+            self.plan.varied.iter().zip(settings).map(|(vary, setting)| (vary.path.as_str(), setting.value.clone())).collect();
+        let model = match self.source.model_with(&changes) {
+            Ok(model) => model,
+            Err(faults) => return Some(refused(faults.to_string())),
+        };
+        match self.simulate(&model) {
+            Ok(outcome) => outcome,
+            Err(Failure::Usage { message, .. }) => Some(refused(message)),
+            Err(failure) => Some(refused(failure.to_string())),
+        }
+    }
+
+    fn simulate(&self, model: &Model) -> Result<Option<Outcome>, Failure> {
+        let Task { method, step, end } = Task::new(model, self.method)?;
+        let mut simulation = Simulation::new(&model.system, method, step).map_err(load::start_failure)?;
+        if model.output.reactions.unwrap_or(false) || !model.channels.efforts.is_empty() {
+            simulation.find_reactions();
+        }
+        let mut looks = 0_u64;
+        let status = simulation.run(end, &mut |_: &Simulation<'_>| {
+            looks += 1;
+            match looks.is_multiple_of(LOOK) && self.interrupted.load(Ordering::Relaxed) {
+                true => Verdict::Stop,
+                false => Verdict::GoOn,
+            }
+        });
+        if self.interrupted.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        let figures = Some(self.figures(model, &simulation));
+        Ok(Some(match status {
+            Status::Completed => Outcome { ending: Ending::Completed, stopped_at: None, reason: String::new(), figures },
+            Status::Stopped { at, reason } => Outcome { ending: Ending::Stopped, stopped_at: Some(at), reason, figures },
+        }))
+    }
+
+    fn figures(&self, model: &Model, simulation: &Simulation<'_>) -> Figures {
+        let (audit, last) = (simulation.audit(), present(model, simulation));
+        let (violation, work) = (audit.violation_summary(), audit.work_summary(simulation.steps()));
+        Figures {
+            steps: simulation.steps(),
+            drift: audit.energy_summary().max_drift,
+            position: violation.position,
+            velocity: violation.velocity,
+            iterations_per_step: work.iterations_per_step,
+            rejected_steps: work.rejected_steps,
+            last: self.columns.iter().map(|name| last.column(name).and_then(|values| values.first().copied())).collect(),
+        }
+    }
+}
+
+/// How a model is to be run.
+pub struct Task {
+    method: Method,
+    step: f64,
+    end: f64,
+}
+
+impl Task {
+    /// What the model, and the name of a method on the command line, say of it.
+    pub fn new(model: &Model, method: Option<&str>) -> Result<Self, Failure> {
+        Ok(Self { method: load::method(model, method)?, step: load::step(model)?, end: load::end(model)? })
+    }
+}
+
+/// One row of the trajectory: the present state.
+fn present(model: &Model, simulation: &Simulation<'_>) -> Recording {
+    let mut recorder = Recorder::new(&model.channels, &model.system, 1, model.output.reactions.unwrap_or(false));
+    recorder.after_step(simulation);
+    recorder.finish()
+}
+
+fn refused(reason: String) -> Outcome {
+    Outcome { ending: Ending::Refused, stopped_at: None, reason, figures: None }
+}

@@ -1,0 +1,91 @@
+//! The table of a sweep: which columns it has, and a line for each run.
+
+use holonom_io::{Cells, Table, csv_cells, csv_line};
+
+use super::plan::Plan;
+use super::run::{Ending, Outcome};
+use super::vary::Setting;
+
+/// Columns between the varied keys and the last values of the motion.
+const FIGURES: [&str; 6] = ["steps", "energy_drift", "position_violation", "velocity_violation", "iterations_per_step", "rejected_steps"];
+
+/// What the columns of a sweep are called.
+pub struct Sheet {
+    /// Varied keys, and whether all their values are numbers.
+    varied: Vec<(String, bool)>,
+    /// Columns of the trajectory whose last values are kept.
+    shown: Vec<String>,
+}
+
+impl Sheet {
+    /// The table of a plan with the last values of some columns of the trajectory.
+    pub fn new(plan: &Plan, shown: &[String]) -> Self {
+        Self { varied: plan.varied.iter().map(|vary| (vary.path.clone(), vary.is_numeric())).collect(), shown: shown.to_vec() }
+    }
+
+    /// A run as a line of CSV.
+    pub fn line(&self, run: u64, settings: &[Setting], outcome: &Outcome) -> String {
+        let mut cells = vec![run.to_string()];
+        cells.extend(settings.iter().map(|setting| one_line(&setting.text)));
+        let optional = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+        cells.extend([outcome.ending.word().into(), optional(outcome.stopped_at), one_line(&outcome.reason)]);
+        match &outcome.figures {
+            None => cells.resize(self.width(), String::new()),
+            Some(figures) => {
+                cells.push(figures.steps.to_string());
+                cells.extend(
+                    [figures.drift, figures.position, figures.velocity, figures.iterations_per_step].map(|value| value.to_string()),
+                );
+                cells.push(figures.rejected_steps.to_string());
+                cells.extend(figures.last.iter().map(|value| optional(*value)));
+            }
+        }
+        csv_line(&cells)
+    }
+
+    /// The number of the run that a line is of, if it is a line of this table.
+    pub fn run(&self, line: &str) -> Option<u64> {
+        let cells = csv_cells(line);
+        let run = cells.first()?.parse().ok()?;
+        (cells.len() == self.width() && Ending::ALL.iter().any(|ending| ending.word() == cells[1 + self.varied.len()])).then_some(run)
+    }
+
+    /// The table of some lines, in their order.
+    pub fn table<'a>(&self, lines: impl Iterator<Item = &'a String>) -> Table {
+        let mut table = self.empty();
+        for line in lines {
+            for ((_, column), cell) in table.columns.iter_mut().zip(csv_cells(line)) {
+                column.push_text(&cell);
+            }
+        }
+        table
+    }
+
+    /// How many runs of a table ended in a way.
+    pub fn count(&self, table: &Table, ending: Ending) -> usize {
+        match &table.columns[1 + self.varied.len()].1 {
+            Cells::Words(cells) => cells.iter().filter(|cell| cell.as_deref() == Some(ending.word())).count(),
+            _ => unreachable!("a status is a word"),
+        }
+    }
+
+    fn width(&self) -> usize {
+        1 + self.varied.len() + 3 + FIGURES.len() + self.shown.len()
+    }
+
+    /// The table without rows.
+    fn empty(&self) -> Table {
+        let (whole, number, word) = (|| Cells::Whole(Vec::new()), || Cells::Numbers(Vec::new()), || Cells::Words(Vec::new()));
+        let mut columns = vec![("run".to_string(), whole())];
+        columns.extend(self.varied.iter().map(|(path, is_numeric)| (path.clone(), if *is_numeric { number() } else { word() })));
+        columns.extend([("status".into(), word()), ("stopped_at".into(), number()), ("reason".into(), word())]);
+        columns.extend(FIGURES.map(|name| (name.to_string(), if name.ends_with("steps") { whole() } else { number() })));
+        columns.extend(self.shown.iter().map(|name| (name.clone(), number())));
+        Table { columns }
+    }
+}
+
+/// A text without line breaks and other things that are not to be seen.
+fn one_line(text: &str) -> String {
+    text.replace('\n', "; ").chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}

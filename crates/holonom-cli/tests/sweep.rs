@@ -1,0 +1,250 @@
+//! `holonom sweep`: its table, whatever the threads and the interruptions, and what it refuses.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command as Process};
+use std::time::{Duration, Instant};
+
+use common::*;
+use serde_json::Value;
+
+/// A grid with runs of every kind: some complete, some stop, some are refused.
+const GRID: &str = "sweep example:spherical-compound-pendulum --vary point.m1.mass=-1,1,2.5 --vary simulation.step=0.01..0.05:3 \
+                    --vary simulation.iteration=newton,simultaneous --method trapezoidal --end 6 --set simulation.penalty=1e7 \
+                    --set simulation.tolerance=1e-9 --set simulation.subdivide=false --quiet";
+
+fn table(folder: &tempfile::TempDir, name: &str) -> String {
+    fs::read_to_string(folder.path().join(name).join("sweep.csv")).unwrap()
+}
+
+/// Cells of the rows of a table, and the index of each column.
+fn cells(text: &str) -> (Vec<String>, Vec<Vec<String>>) {
+    let mut lines = text.lines().map(holonom_io::csv_cells);
+    (lines.next().unwrap(), lines.collect())
+}
+
+fn column<'a>(header: &[String], rows: &'a [Vec<String>], name: &str) -> Vec<&'a str> {
+    let k = header.iter().position(|column| column == name).unwrap_or_else(|| panic!("{name} in {header:?}"));
+    rows.iter().map(|row| row[k].as_str()).collect()
+}
+
+#[test]
+fn a_row_holds_what_the_run_alone_gives() {
+    let folder = folder();
+    let out = prints(&folder, &format!("sweep {PAPER} --vary point.m2.mass=1,3 --vary simulation.step=0.02,0.05 --end 1"), 0);
+    assert!(out.contains("4 completed, 0 stopped, 0 refused"), "{out}");
+    let results = folder.path().join("results/spherical-compound-pendulum-sweep");
+    assert_eq!(files(&results), names(&["sweep.csv", "sweep.journal"]));
+    let (header, rows) = cells(&fs::read_to_string(results.join("sweep.csv")).unwrap());
+    assert_eq!(column(&header, &rows, "run"), ["1", "2", "3", "4"]);
+    assert_eq!(column(&header, &rows, "point.m2.mass"), ["1", "1", "3", "3"]);
+    assert_eq!(column(&header, &rows, "simulation.step"), ["0.02", "0.05", "0.02", "0.05"]);
+
+    let words = format!("run {PAPER} --end 1 --step 0.05 --set point.m2.mass=3 --json --no-report --out alone");
+    let summary = json(&folder, &words);
+    let number = |name: &str| column(&header, &rows, name)[3].parse::<f64>().unwrap();
+    for (name, path) in [
+        ("steps", "/steps"),
+        ("energy_drift", "/energy/max_drift"),
+        ("position_violation", "/violation/position"),
+        ("velocity_violation", "/violation/velocity"),
+        ("iterations_per_step", "/work/iterations_per_step"),
+        ("rejected_steps", "/work/rejected_steps"),
+    ] {
+        assert_eq!(number(name), summary.pointer(path).and_then(Value::as_f64).unwrap(), "{name}");
+    }
+    let (names, trajectory) = csv(folder.path().join("alone/trajectory.csv"));
+    for (name, value) in names.split(',').zip(trajectory.last().unwrap()).filter(|(name, _)| name.starts_with('m') || *name == "energy") {
+        assert_eq!(number(name).to_bits(), value.to_bits(), "{name}");
+    }
+}
+
+#[test]
+fn runs_that_stop_or_are_refused_are_rows_with_a_reason() {
+    let folder = folder();
+    let summary = json(&folder, &format!("{} --json --out a", GRID.replace("--quiet", "")));
+    let (header, rows) = cells(&table(&folder, "a"));
+    assert_eq!((rows.len(), &summary["runs"], &summary["refused"]), (18, &18.into(), &6.into()));
+    let status = column(&header, &rows, "status");
+    assert!(status[..6].iter().all(|status| *status == "refused"), "a mass of −1: {status:?}");
+    let count = |word: &str| status.iter().filter(|status| **status == word).count();
+    assert_eq!((&summary["completed"], &summary["stopped"]), (&count("completed").into(), &count("stopped").into()));
+    assert!(count("stopped") > 0 && count("completed") > 0, "{status:?}");
+    let (reasons, reached) = (column(&header, &rows, "reason"), column(&header, &rows, "stopped_at"));
+    for k in 0..rows.len() {
+        assert_eq!(reasons[k].is_empty(), status[k] == "completed", "{:?}", rows[k]);
+        assert_eq!(!reached[k].is_empty(), status[k] == "stopped", "{:?}", rows[k]);
+        assert_eq!(column(&header, &rows, "m1.x")[k].is_empty(), status[k] == "refused", "{:?}", rows[k]);
+    }
+    assert!(reasons[0].contains("point.m1.mass") && reasons[0].contains("-1"), "{}", reasons[0]);
+}
+
+#[test]
+fn the_table_is_the_same_for_any_threads_and_after_a_kill() {
+    let folder = folder();
+    prints(&folder, &format!("{GRID} --threads 1 --out one"), 0);
+    prints(&folder, &format!("{GRID} --threads 2 --out two"), 0);
+    let whole = table(&folder, "one");
+    assert_eq!(whole, table(&folder, "two"));
+
+    // As a kill leaves it: some lines, the last one torn, no table.
+    let journal = fs::read_to_string(folder.path().join("two/sweep.journal")).unwrap();
+    let lines: Vec<&str> = journal.split_inclusive('\n').collect();
+    for torn in [String::new(), lines[0][..40].into(), lines[0].into(), lines[..8].concat() + &lines[8][..9]] {
+        fs::remove_file(folder.path().join("two/sweep.csv")).unwrap();
+        fs::write(folder.path().join("two/sweep.journal"), &torn).unwrap();
+        prints(&folder, &format!("{GRID} --threads 2 --out two"), 0);
+        assert_eq!(whole, table(&folder, "two"), "{torn}");
+        let again = fs::read_to_string(folder.path().join("two/sweep.journal")).unwrap();
+        assert_eq!(again.lines().count(), 19);
+        assert!(torn.lines().count() < 2 || again.starts_with(&lines[..8].concat()), "finished runs are not run again");
+    }
+}
+
+const LONG: &str = "sweep example:spherical-compound-pendulum --vary point.m1.mass=1..2:150 --end 20 --threads 2 --quiet";
+
+/// Lines of a journal.
+fn lines(folder: &Path) -> usize {
+    fs::read(folder.join("sweep.journal")).map_or(0, |bytes| bytes.iter().filter(|&&byte| byte == b'\n').count())
+}
+
+/// A long sweep at work, with some more than `already` lines in its journal.
+fn at_work(folder: &Path, already: usize) -> Child {
+    let mut command = Process::new(assert_cmd::cargo::cargo_bin("holonom"));
+    let child = command.current_dir(folder.parent().unwrap()).args(LONG.split_whitespace()).arg("--out").arg(folder).spawn().unwrap();
+    let begun = Instant::now();
+    while lines(folder) < already + 10 && begun.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child
+}
+
+#[test]
+fn a_sweep_that_was_interrupted_and_killed_goes_on() {
+    let folder = folder();
+    let out = folder.path().join("broken");
+    let mut child = at_work(&out, 0);
+    Process::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(3), "an interrupt ends it as it does a run");
+    let interrupted = lines(&out);
+    let mut child = at_work(&out, interrupted);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let killed = lines(&out);
+    assert!(10 <= interrupted && interrupted < killed && killed < 151 && !out.join("sweep.csv").exists(), "{interrupted} {killed}");
+    prints(&folder, &format!("{LONG} --out broken"), 0);
+    prints(&folder, &format!("{LONG} --out whole"), 0);
+    assert_eq!(table(&folder, "broken"), table(&folder, "whole"));
+}
+
+#[test]
+fn nothing_of_another_sweep_is_lost() {
+    let folder = folder();
+    let words = format!("sweep {PAPER} --end 0.5 --quiet --out a");
+    prints(&folder, &format!("{words} --vary point.m1.mass=1,2"), 0);
+    let before = table(&folder, "a");
+    for other in ["--vary point.m1.mass=1,3", "--vary point.m1.mass=1,2 --step 0.01", "--vary point.m1.mass=1,2 --columns energy"] {
+        let message = fails(&folder, &format!("{words} {other}"), 2);
+        assert!(message.contains("another sweep") && message.contains("--out"), "{message}");
+    }
+    assert_eq!(before, table(&folder, "a"));
+    // The same sweep again runs nothing, and may ask for another format.
+    let summary = json(&folder, &format!("{words} --vary point.m1.mass=1,2 --json --threads 1"));
+    assert_eq!((&summary["completed"], &summary["time"]["steps"], &summary["time"]["us_per_step"]), (&2.into(), &0.into(), &Value::Null));
+    if cfg!(feature = "parquet") {
+        prints(&folder, &format!("{words} --vary point.m1.mass=1,2 --format parquet"), 0);
+        assert!(fs::read(folder.path().join("a/sweep.parquet")).unwrap().starts_with(b"PAR1"));
+    }
+    assert_eq!(before, table(&folder, "a"));
+    // A table without its journal could be anybody's.
+    fs::remove_file(folder.path().join("a/sweep.journal")).unwrap();
+    assert!(fails(&folder, &format!("{words} --vary point.m1.mass=1,2"), 2).contains("sweep.csv"));
+}
+
+#[test]
+fn samples_follow_from_their_seed_alone() {
+    let folder = folder();
+    let words = format!("sweep {PAPER} --vary point.m1.mass=1..3 --vary simulation.method=conserving,radau --end 0.1 --quiet");
+    for (name, options) in [
+        ("a", "--samples 30 --seed 7 --threads 1"),
+        ("b", "--samples 30 --seed 7 --threads 2"),
+        ("c", "--samples 12 --seed 7"),
+        ("d", "--samples 12 --seed 8"),
+    ] {
+        prints(&folder, &format!("{words} {options} --out {name}"), 0);
+    }
+    let a = table(&folder, "a");
+    assert_eq!(a, table(&folder, "b"));
+    assert!(a.starts_with(&table(&folder, "c")), "more samples only add to fewer");
+    let (header, rows) = cells(&a);
+    let mass: Vec<f64> = column(&header, &rows, "point.m1.mass").iter().map(|mass| mass.parse().unwrap()).collect();
+    assert!(mass.iter().all(|mass| (1.0..3.0).contains(mass)) && mass.windows(2).all(|pair| pair[0] != pair[1]), "{mass:?}");
+    let methods = column(&header, &rows, "simulation.method");
+    assert!(methods.contains(&"conserving") && methods.contains(&"radau"), "{methods:?}");
+    let (_, other) = cells(&table(&folder, "d"));
+    assert_ne!(rows[0][1], other[0][1]);
+}
+
+#[test]
+fn columns_are_chosen_and_joints_have_theirs() {
+    let folder = folder();
+    prints(&folder, "sweep example:slider-crank --vary simulation.step=0.001,0.002 --end 0.01 --quiet --out a", 0);
+    let (header, _) = cells(&table(&folder, "a"));
+    assert!(header.iter().any(|name| name.ends_with("_rate")) && !header.contains(&"phi_dot".to_string()), "{header:?}");
+    prints(&folder, &format!("sweep {PAPER} --vary point.m1.mass=1,2 --end 0.1 --columns m2.x,phi --quiet --out b"), 0);
+    let (header, rows) = cells(&table(&folder, "b"));
+    assert_eq!(header[10..], ["rejected_steps", "m2.x", "phi"].map(String::from)[..], "{header:?}");
+    assert_eq!(rows.len(), 2);
+    prints(&folder, &format!("sweep {PAPER} --vary point.m1.mass=1,2 --end 0.1 --set output.points=[\"m2\"] --quiet --out c"), 0);
+    let (header, _) = cells(&table(&folder, "c"));
+    assert_eq!(header[11..].join(","), "energy,m2.x,m2.y,m2.z,m2.vx,m2.vy,m2.vz");
+}
+
+#[test]
+fn a_parameter_may_change_what_the_mechanism_is_made_of() {
+    let folder = folder();
+    prints(&folder, "sweep example:four-bar --vary parameters.N=2,4 --end 0.1 --quiet --out a", 0);
+    let (header, rows) = cells(&table(&folder, "a"));
+    assert_eq!(column(&header, &rows, "status"), ["completed", "completed"]);
+    assert!(rows.iter().all(|row| row.len() == header.len()));
+}
+
+#[test]
+fn what_cannot_be_swept_is_refused_before_anything_runs() {
+    let folder = folder();
+    fs::write(folder.path().join("short.toml"), "[point.a]\nmass = 1\nposition = [1, 0, 0]\n").unwrap();
+    fs::write(folder.path().join("wrong.toml"), "[point.a]\nmas = 1\nposition = [1, 0, 0]\n").unwrap();
+    for (words, told) in [
+        (PAPER.to_string(), "--vary"),
+        (format!("{PAPER} --vary point.m1.mss=1,2"), "did you mean `mass`"),
+        (format!("{PAPER} --vary point.m9.mass=1,2"), "`m9`"),
+        (format!("{PAPER} --vary paramters.k=1,2"), "paramters"),
+        ("example:four-bar --vary parameters.n=1,2".into(), "did you mean `N`"),
+        (format!("{PAPER} --vary point.m1=1,2"), "point.m1.mass"),
+        (format!("{PAPER} --vary title.x=1,2"), "not a table"),
+        (format!("{PAPER} --vary point.m1.mass"), "no `=`"),
+        (format!("{PAPER} --vary point.m1.mass=1..2"), "--samples"),
+        (format!("{PAPER} --vary point.m1.mass=1..2:1"), "at least 2"),
+        (format!("{PAPER} --vary point.m1.mass=1..2:5 --samples 9"), "--samples"),
+        (format!("{PAPER} --vary point.m1.mass=1,2 --vary point.m1.mass=3,4"), "twice"),
+        (format!("{PAPER} --vary point.m1.mass=1,2 --set point.m1.mass=3"), "set and varied"),
+        (format!("{PAPER} --vary simulation.step=1,2 --step 0.1"), "set and varied"),
+        (format!("{PAPER} --vary simulation.method=radau,bdf --method bdf"), "--method"),
+        (format!("{PAPER} --vary point.m1.mass=1..2:9999 --vary point.m2.mass=1..2:9999"), "runs"),
+        (format!("{PAPER} --vary point.m1.mass=1,2 --columns m1.z,m3.x"), "m3.x"),
+        (format!("{PAPER} --vary point.m1.mass=1,2 --format npz"), "csv"),
+        (format!("{PAPER} --vary point.m1.mass=1,2 --seed 3"), "--samples"),
+        (format!("{PAPER} --vary point.m1.mass=1,2 --set simulation.method=fast"), "conserving-ggl"),
+        ("short.toml --vary point.a.mass=1,2 --end 1".into(), "--step"),
+        ("wrong.toml --vary point.a.mass=1,2 --end 1 --step 0.1".into(), "wrong.toml:2"),
+    ] {
+        let message = fails(&folder, &format!("sweep {words}"), 2);
+        assert!(message.contains(told), "{words}\n{message}");
+    }
+    assert!(!folder.path().join("results").exists());
+    // What only the runs have is enough.
+    prints(&folder, "sweep short.toml --vary simulation.step=0.1,0.2 --end 1 --quiet --out a", 0);
+    assert!(Path::new(&folder.path().join("a/sweep.csv")).exists());
+}
