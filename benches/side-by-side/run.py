@@ -1,86 +1,94 @@
 #!/usr/bin/env python3
-"""Times holonom and Exudyn on the same problems in one run, interleaved, one thread each.
+"""Times holonom and its peers on the same problems, interleaved, one thread each: cost at equal steps, work against precision.
 
     cargo build --release
     python3 benches/side-by-side/run.py --peers FOLDER
 
-FOLDER holds peer_exudyn.py and a virtual environment `venv` with exudyn and numpy; every script prints one JSON line.
-Nothing here is part of the product or of its tests. Times are CPU microseconds a step, the minimum of all rounds;
-energy drift and both violations stand beside each.
+FOLDER holds the peers' scripts (peer_exudyn.py, …), their references (refs.json) and a virtual environment `venv`; every
+script prints one JSON line. Nothing here is part of the product or of its tests. Times are CPU time of the solution alone,
+the least of all rounds. `cargo xtask performance --peers FOLDER` runs this and writes the chapter from its results.
 """
 
 import argparse
+import csv
 import json
 import os
 import pathlib
-import subprocess
-import tempfile
+import platform
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-HOLONOM = ROOT / "target" / "release" / "holonom"
+import cost
+import precision
+import problems
+from programs import ROOT, Peers, Progress, holonom_binary
 
-PENDULUM = ["example:spherical-compound-pendulum", "--end", "100"]
-FOUR_BAR_40 = ["example:four-bar", "--set", "parameters.N=40", "--step", "1e-3"]
-
-# Problem, holonom's model and methods, the peer's options.
-PROBLEMS = [
-    ("pendulum, h = 0.025, 100 s", PENDULUM, ["conserving", "conserving-ggl"],
-     ["--problem", "scp", "--model", "coords", "--ignore_dup", "--h", "0.025", "--tend", "100", "--solver", "trap"]),
-    ("four-bar N = 40, h = 1e-3", FOUR_BAR_40, ["conserving", "conserving-ggl"],
-     ["--problem", "fourbar", "--n", "40", "--solver", "ga", "--linear", "sparse", "--h", "1e-3", "--k", "1"]),
-    ("Andrews, h = 1e-5, 0.05 s", ["example:andrews", "--step", "1e-5", "--end", "0.05"], ["conserving", "conserving-ggl"],
-     ["--problem", "andrews", "--h", "1e-5", "--tend", "0.05", "--solver", "ga"]),
-    ("Bricard, h = 1e-3, 10 s", ["example:bricard", "--step", "1e-3", "--end", "10"], ["conserving", "conserving-ggl"],
-     ["--problem", "bricard", "--model", "full", "--linear", "eigendense", "--ignore", "--solver", "ga", "--h", "1e-3", "--tend", "10"]),
-    ("governor, h = 1e-3, 10 s", ["example:flyball-governor", "--step", "1e-3", "--end", "10"], ["conserving", "conserving-ggl"],
-     ["--problem", "flyball", "--h", "1e-3", "--tend", "10", "--solver", "ga"]),
-]
+RESULTS = ROOT / "benches" / "side-by-side" / "results.json"
+TABLES = ROOT / "target" / "side-by-side"
 
 
-def holonom(model, method):
-    with tempfile.TemporaryDirectory() as folder:
-        command = [HOLONOM, "run", *model, "--method", method, "--json", "--no-report", "--every", "1000000", "--out", folder]
-        summary = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
-    return {
-        "us": summary["time"]["us_per_step"],
-        "drift": summary["energy"]["max_drift"],
-        "position": summary["violation"]["position"],
-        "velocity": summary["violation"]["velocity"],
-    }
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--peers", type=pathlib.Path, required=True, help="folder with the peers' scripts, refs.json and venv")
+    parser.add_argument("--rounds", type=int, default=5, help="runs of which the fastest counts (default 5)")
+    parser.add_argument("--precision-rounds", type=int, default=3, help="the same, for work against precision (default 3)")
+    parser.add_argument("--only", action="append", default=[], metavar="NAME", help="only problems of this name; may be given several times")
+    parser.add_argument("--table", choices=["cost", "precision"], help="only one of the tables")
+    parser.add_argument("--limit", type=float, default=180.0, help="a run that takes longer has failed, s (default 180)")
+    parser.add_argument("--out", type=pathlib.Path, default=RESULTS, help="results, as JSON; both tables go to target/side-by-side as CSV")
+    return parser.parse_args()
 
 
-def exudyn(folder, options):
-    environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
-    command = [folder / "venv" / "bin" / "python", folder / "peer_exudyn.py", *options]
-    out = subprocess.run(command, check=True, capture_output=True, text=True, cwd=folder, env=environment).stdout
-    result = json.loads([line for line in out.splitlines() if line.startswith("{")][-1])
-    return {
-        "us": 1e6 * result["cpu_s"] / result["steps"],
-        "drift": result.get("edrift_abs", float("nan")),
-        "position": result.get("pos_viol", float("nan")),
-        "velocity": result.get("vel_viol", float("nan")),
-    }
+def processor():
+    try:
+        lines = pathlib.Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return platform.processor() or platform.machine()
+    return next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), platform.machine())
+
+
+def chosen(found, names):
+    return [problem for problem in found if not names or problem.name in names]
+
+
+def write_csv(path, time, entries):
+    names = ["title", "program", "setting", "step", time, "error", "drift", "position", "velocity", "failed"]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, names, extrasaction="ignore")
+        writer.writeheader()
+        writer.writerows(entries)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--peers", type=pathlib.Path, required=True, help="folder with peer_exudyn.py and venv")
-    parser.add_argument("--rounds", type=int, default=5)
-    arguments = parser.parse_args()
-    folder = arguments.peers.resolve()
-    print(f"{'problem':28} {'program':24} {'µs/step':>9} {'ratio':>6} {'drift J':>9} {'‖Φ‖':>8} {'‖Φ̇‖':>8}")
-    for problem, model, methods, options in PROBLEMS:
-        best = {}
-        for _ in range(arguments.rounds):
-            runs = {f"holonom {method}": lambda method=method: holonom(model, method) for method in methods}
-            for name, run in {"exudyn": lambda: exudyn(folder, options), **runs}.items():
-                result = run()
-                if name not in best or result["us"] < best[name]["us"]:
-                    best[name] = result
-        reference = best["exudyn"]["us"]
-        for name, result in best.items():
-            print(f"{problem:28} {name:24} {result['us']:9.2f} {result['us'] / reference:6.2f} "
-                  f"{result['drift']:9.1e} {result['position']:8.1e} {result['velocity']:8.1e}")
+    given = arguments()
+    known = {problem.name for problem in [*problems.of_costs(), *problems.of_precision()]}
+    unknown = [name for name in given.only if name not in known]
+    if unknown:
+        raise SystemExit(f"there is no problem {', '.join(unknown)}; there are: {', '.join(sorted(known))}")
+    if not holonom_binary().exists():
+        raise SystemExit(f"{holonom_binary()} is not there: cargo build --release")
+    peers, progress = Peers(given.peers), Progress()
+    results = json.loads(given.out.read_text()) if given.out.exists() else {"cost": [], "precision": []}
+    results["machine"] = {"processor": processor(), "cores": os.cpu_count(), "load": round(os.getloadavg()[0], 1)}
+    results["goals"] = precision.GOALS
+    tables = {"cost": (cost, problems.of_costs, given.rounds), "precision": (precision, problems.of_precision, given.precision_rounds)}
+    for name, (table, found, rounds) in tables.items():
+        if given.table in (None, name):
+            results.setdefault("rounds", {})[name] = rounds
+            for problem in chosen(found(), given.only):
+                entries = table.measure([problem], rounds, given.limit, peers, progress.say)
+                results[name] = merged(results[name], entries, [problem.title for problem in found()])
+                results.setdefault("versions", {}).update(peers.versions)
+                given.out.write_text(json.dumps(results, indent=1, ensure_ascii=False) + "\n")
+    write_csv(TABLES / "cost.csv", "us", results["cost"])
+    points = [{**entry, **point} for entry in results["precision"] for point in entry["points"]]
+    write_csv(TABLES / "precision.csv", "cpu", points)
+
+
+def merged(old, new, order):
+    """New entries in place of the old ones of the same problems, in the order of the tables."""
+    titles = {entry["title"] for entry in new}
+    kept = [entry for entry in old if entry["title"] not in titles and entry["title"] in order]
+    return sorted([*kept, *new], key=lambda entry: order.index(entry["title"]))
 
 
 if __name__ == "__main__":

@@ -1,14 +1,14 @@
 //! `cargo xtask book`: the chapter "Which method?", whose figures and numbers come from runs of `holonom compare`.
 //! With `--check` the runs are repeated, every claim is measured again, and nothing is written.
 
-mod chapter;
-mod draw;
-mod figure;
+pub mod chapter;
+pub mod draw;
+pub mod figure;
 mod figures;
 mod measure;
 mod results;
 mod runs;
-mod table;
+pub mod table;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -18,18 +18,22 @@ use figure::{Figure, Measurement};
 use figures::FIGURES;
 use results::Results;
 
+use crate::performance;
+
 /// Draws the figures and fills in the chapter's tables, or checks that both still hold.
 pub fn book(check: bool) -> ExitCode {
     match if check { repeat() } else { make() } {
         Ok(()) => ExitCode::SUCCESS,
         Err(fault) => {
-            eprintln!("{fault}");
+            eprintln!("{fault}\n`cargo xtask book` writes and draws anew");
             ExitCode::FAILURE
         }
     }
 }
 
-fn root() -> PathBuf {
+const CHAPTER: &str = "which-method.md";
+
+pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask is a folder of the repository").to_path_buf()
 }
 
@@ -41,7 +45,7 @@ fn make() -> Result<(), String> {
         let path = folder.join(format!("{}.svg", figure.name));
         std::fs::write(&path, draw::svg(figure, &results)?).map_err(|error| format!("{}: {error}", path.display()))?;
     }
-    let mut chapter = Chapter::read(&root())?;
+    let mut chapter = Chapter::read(&root(), CHAPTER)?;
     for (name, table) in tables(&results)? {
         chapter.fill(&name, &table)?;
     }
@@ -51,8 +55,9 @@ fn make() -> Result<(), String> {
 
 fn repeat() -> Result<(), String> {
     let results = Results::of(&root(), "target/book-check")?;
-    let chapter = Chapter::read(&root())?;
+    let chapter = Chapter::read(&root(), CHAPTER)?;
     let mut faults = report(&results);
+    faults.extend(performance::faults(&root())?);
     faults.extend(FIGURES.iter().filter_map(|figure| chapter.shows(figure.name).err()));
     faults.extend(tables(&results)?.iter().filter_map(|(name, table)| chapter.agrees(name, table).err()));
     all_hold(faults)

@@ -1,8 +1,9 @@
 //! Chores of the repository: `cargo xtask ci` runs every check, the same here and elsewhere; `cargo xtask book` draws the
-//! figures of the book, `cargo xtask gallery` takes its pictures.
+//! figures of the book, `cargo xtask gallery` takes its pictures, `cargo xtask performance` writes its chapter on time.
 
 mod book;
 mod gallery;
+mod performance;
 
 use std::process::{Command, ExitCode};
 
@@ -27,8 +28,9 @@ fn main() -> ExitCode {
         ["book"] => book::book(false),
         ["book", "--check"] => book::book(true),
         ["gallery", ..] => gallery::gallery(&arguments[1..]),
+        ["performance", ..] => performance::performance(&arguments[1..]),
         _ => {
-            eprintln!("usage: cargo xtask ci | book | book --check | gallery [NAME ...]");
+            eprintln!("usage: cargo xtask ci | book | book --check | gallery [NAME ...] | performance [--peers FOLDER ...]");
             ExitCode::from(2)
         }
     }

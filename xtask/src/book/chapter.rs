@@ -16,8 +16,9 @@ pub struct Chapter {
 }
 
 impl Chapter {
-    pub fn read(root: &Path) -> Result<Self, String> {
-        let path = root.join("docs/which-method.md");
+    /// Reads a chapter by its file name.
+    pub fn read(root: &Path, file: &str) -> Result<Self, String> {
+        let path = root.join("docs").join(file);
         let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
         Ok(Self { path, text })
     }
@@ -34,7 +35,7 @@ impl Chapter {
         }
         match self.path.with_file_name(&file).is_file() {
             true => Ok(()),
-            false => Err(format!("docs/{file} is not there: `cargo xtask book` draws it")),
+            false => Err(format!("docs/{file} is not there")),
         }
     }
 
@@ -51,8 +52,8 @@ impl Chapter {
         let [written, measured] = [&self.text[start..end], table].map(cells);
         let differing = written.iter().zip(&measured).find(|(old, new)| !agree(old, new));
         match differing {
-            Some((old, new)) => Err(format!("table `{name}` says {old}, measured now: {new}; `cargo xtask book` writes it anew")),
-            None if written.len() != measured.len() => Err(format!("table `{name}` is out of date: `cargo xtask book` writes it anew")),
+            Some((old, new)) => Err(format!("table `{name}` says {old}, measured now: {new}")),
+            None if written.len() != measured.len() => Err(format!("table `{name}` is out of date")),
             None => Ok(()),
         }
     }

@@ -8,8 +8,23 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::figure::{Axis, Figure, Scale};
+use super::figure::{Axis, Curve, Figure, Scale};
 use super::results::Results;
+
+/// What is drawn: axes and curves with labels. Curves of single runs have their points marked.
+pub struct Picture<'a> {
+    pub title: &'a str,
+    pub x: &'a Axis,
+    pub y: &'a Axis,
+    pub curves: Vec<Line<'a>>,
+    pub marked: bool,
+}
+
+/// A curve in the axes' units.
+pub struct Line<'a> {
+    pub label: &'a str,
+    pub points: Vec<(f64, f64)>,
+}
 
 /// Okabe and Ito's palette without its yellow, which is too light for lines.
 const PALETTE: [RGBColor; 7] = [
@@ -42,38 +57,47 @@ const FEW_DECADES: f64 = 300.0;
 const MOST_POINTS: usize = 420;
 
 /// A curve's label: where its curve ends, in units, and its colour.
-struct Label {
-    text: &'static str,
+struct Label<'a> {
+    text: &'a str,
     end: (i32, i32),
     colour: RGBColor,
 }
 
 /// The figure's picture.
 pub fn svg(figure: &Figure, results: &Results) -> Result<String, String> {
-    let mut text = String::new();
-    draw(figure, results, &mut text).map_err(|fault| format!("figure `{}`: {fault}", figure.name))?;
-    let [width, height] = [WIDTH, HEIGHT].map(|size| size * UNITS);
-    Ok(text.replacen(&format!("width=\"{width}\" height=\"{height}\""), &format!("width=\"{WIDTH}\" height=\"{HEIGHT}\""), 1))
+    let line = |curve: &Curve| Line { label: curve.label, points: (figure.points)(results, curve) };
+    let curves = figure.curves.iter().map(line).collect();
+    let picture = Picture { title: figure.title, x: &figure.x, y: &figure.y, curves, marked: false };
+    picture.svg().map_err(|fault| format!("figure `{}`: {fault}", figure.name))
 }
 
-fn draw(figure: &Figure, results: &Results, text: &mut String) -> Result<(), String> {
+impl Picture<'_> {
+    pub fn svg(&self) -> Result<String, String> {
+        let mut text = String::new();
+        draw(self, &mut text)?;
+        let [width, height] = [WIDTH, HEIGHT].map(|size| size * UNITS);
+        Ok(text.replacen(&format!("width=\"{width}\" height=\"{height}\""), &format!("width=\"{WIDTH}\" height=\"{HEIGHT}\""), 1))
+    }
+}
+
+fn draw(picture: &Picture<'_>, text: &mut String) -> Result<(), String> {
     let size = ((WIDTH * UNITS) as u32, (HEIGHT * UNITS) as u32);
     let area = SVGBackend::with_string(text, size).into_drawing_area();
     area.fill(&WHITE).map_err(fault)?;
     let mut chart = ChartBuilder::on(&area)
-        .caption(figure.title, ("sans-serif", (FONT + 3) * UNITS))
+        .caption(picture.title, ("sans-serif", (FONT + 3) * UNITS))
         .margin(10 * UNITS)
         .margin_right(LABELS * UNITS)
         .x_label_area_size(48 * UNITS)
         .y_label_area_size(72 * UNITS)
-        .build_cartesian_2d(range(&figure.x), range(&figure.y))
+        .build_cartesian_2d(range(picture.x), range(picture.y))
         .map_err(fault)?;
     chart
         .configure_mesh()
-        .x_desc(figure.x.label)
-        .y_desc(figure.y.label)
-        .x_label_formatter(&|value| number(*value, &figure.x))
-        .y_label_formatter(&|value| number(*value, &figure.y))
+        .x_desc(picture.x.label)
+        .y_desc(picture.y.label)
+        .x_label_formatter(&|value| number(*value, picture.x))
+        .y_label_formatter(&|value| number(*value, picture.y))
         .label_style(("sans-serif", FONT * UNITS))
         .axis_style(BLACK.stroke_width(UNITS as u32))
         .bold_line_style(RGBColor(225, 225, 225).stroke_width(UNITS as u32))
@@ -82,10 +106,14 @@ fn draw(figure: &Figure, results: &Results, text: &mut String) -> Result<(), Str
         .draw()
         .map_err(fault)?;
     let mut labels = Vec::new();
-    for (curve, colour) in figure.curves.iter().zip(PALETTE) {
-        let points = inside(&(figure.points)(results, curve), &figure.x, &figure.y)?;
+    for (curve, colour) in picture.curves.iter().zip(PALETTE) {
+        let points = inside(&curve.points, picture.x, picture.y)?;
         let Some(end) = points.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
         labels.push(Label { text: curve.label, end: chart.backend_coord(end), colour });
+        if picture.marked {
+            let marks = points.iter().map(|&point| Circle::new(point, 4 * UNITS, colour.filled()));
+            chart.draw_series(marks).map_err(fault)?;
+        }
         chart.draw_series(LineSeries::new(points, colour.stroke_width(2 * UNITS as u32))).map_err(fault)?;
     }
     write_labels(&area, labels)?;
@@ -97,7 +125,7 @@ fn fault(error: impl Display) -> String {
 }
 
 /// Labels beside the ends of their curves, in their order and without overlaps, each tied to its end by a line.
-fn write_labels(area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>, mut labels: Vec<Label>) -> Result<(), String> {
+fn write_labels(area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>, mut labels: Vec<Label<'_>>) -> Result<(), String> {
     labels.sort_by_key(|label| label.end.1);
     let heights = apart(&labels.iter().map(|label| label.end.1).collect::<Vec<_>>());
     let left = (WIDTH - LABELS) * UNITS;
