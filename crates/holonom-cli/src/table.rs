@@ -33,3 +33,9 @@ pub fn short(value: f64) -> String {
         _ => format!("{value:.2e}"),
     }
 }
+
+/// A measured number: three figures, or all of those before the point.
+pub fn measured(value: f64) -> String {
+    let decimals = 2 - value.abs().max(1e-3).log10().floor() as i32;
+    format!("{value:.*}", decimals.max(0) as usize)
+}

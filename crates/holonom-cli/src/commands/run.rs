@@ -11,7 +11,7 @@ use crate::load::{self, Loaded};
 use crate::options::{OutputArguments, RunArguments};
 use crate::output::{Finished, Folder, Order, simulate, writers};
 use crate::progress::interrupt_flag;
-use crate::table::{list, short};
+use crate::table::{list, measured, short};
 
 /// Simulates one model by one method and leaves everything in a folder.
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
@@ -61,6 +61,7 @@ fn describe(loaded: &Loaded, summary: &Value) -> String {
         None => "completed".to_string(),
         Some(at) => format!("stopped at {} s: {}", short(at), summary["reason"].as_str().unwrap_or("")),
     };
+    let time = |key: &str| summary["time"][key].as_f64().map_or("–".into(), measured);
     let mut items = vec![
         ("method", summary["method"]["name"].as_str().unwrap_or("").to_string()),
         ("status", status),
@@ -109,10 +110,10 @@ fn describe(loaded: &Loaded, summary: &Value) -> String {
             ),
         ),
         ("momentum", format!("linear drift {}, angular drift {}", number("momentum", "linear_drift"), number("momentum", "angular_drift"))),
-        ("time", format!("{} µs a step, {} times real time", number("time", "us_per_step"), number("time", "realtime_factor"))),
+        ("time", format!("{} µs a step, {} times real time", time("us_per_step"), time("realtime_factor"))),
     ];
     if let Value::Object(step) = &summary["time"]["step_us"] {
-        let time = |key: &str| short(step[key].as_f64().unwrap_or(f64::NAN));
+        let time = |key: &str| measured(step[key].as_f64().unwrap_or(f64::NAN));
         let text =
             format!("median {} µs, 90 % within {}, 99 % within {}, longest {}", time("median"), time("p90"), time("p99"), time("max"));
         items.push(("one step", text));

@@ -15,7 +15,7 @@ use crate::options::SweepArguments;
 use crate::output::{Folder, table_writers};
 use crate::progress::{interrupt_flag, runs_bar};
 use crate::sweep::{Ending, Journal, Plan, Runner, Sheet, check};
-use crate::table::{list, short};
+use crate::table::{list, measured};
 
 /// The file in the folder that holds finished runs.
 const JOURNAL: &str = "sweep.journal";
@@ -116,7 +116,7 @@ fn tell(arguments: &SweepArguments, folder: &Folder, summary: &Value, is_whole: 
 
 /// The summary as people read it.
 fn describe(summary: &Value) -> String {
-    let time = |key: &str| summary["time"][key].as_f64().map_or("–".to_string(), short);
+    let time = |key: &str| summary["time"][key].as_f64().map_or("–".to_string(), measured);
     let items = [
         ("runs", format!("{} on {} threads", summary["runs"], summary["threads"])),
         ("status", format!("{} completed, {} stopped, {} refused", summary["completed"], summary["stopped"], summary["refused"])),
