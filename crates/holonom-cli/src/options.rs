@@ -81,19 +81,26 @@ pub struct OutputArguments {
     pub every: Option<u64>,
 }
 
+/// How a model runs.
 #[derive(Debug, Args)]
-pub struct RunArguments {
-    #[command(flatten)]
-    pub model: ModelArguments,
+pub struct MethodArguments {
     /// Method by name; see `holonom methods`
-    #[arg(long, value_name = "NAME")]
-    pub method: Option<String>,
+    #[arg(long = "method", value_name = "NAME")]
+    pub name: Option<String>,
     /// Step, s
     #[arg(long, value_name = "S")]
     pub step: Option<String>,
     /// End of the run, s
     #[arg(long, value_name = "S")]
     pub end: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub struct RunArguments {
+    #[command(flatten)]
+    pub model: ModelArguments,
+    #[command(flatten)]
+    pub method: MethodArguments,
     /// Go on from the checkpoint.json of an earlier run
     #[arg(long, value_name = "CHECKPOINT")]
     pub resume: Option<PathBuf>,
@@ -151,15 +158,8 @@ pub struct SweepArguments {
     /// Seed of the samples; the same seed gives the same samples everywhere
     #[arg(long, value_name = "S", default_value_t = 0, requires = "samples")]
     pub seed: u64,
-    /// Method by name; see `holonom methods`
-    #[arg(long, value_name = "NAME")]
-    pub method: Option<String>,
-    /// Step, s
-    #[arg(long, value_name = "S")]
-    pub step: Option<String>,
-    /// End of the runs, s
-    #[arg(long, value_name = "S")]
-    pub end: Option<String>,
+    #[command(flatten)]
+    pub method: MethodArguments,
     /// Columns of the trajectory whose last values are kept [default: energy, and all of points, bodies, joints and drives]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub columns: Vec<String>,

@@ -16,13 +16,13 @@ use crate::table::{list, measured, short};
 /// Simulates one model by one method and leaves everything in a folder.
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let mut overrides = load::overrides(&arguments.model.set);
-    overrides.number("simulation.step", arguments.step.as_deref());
-    overrides.number("simulation.end", arguments.end.as_deref());
+    overrides.number("simulation.step", arguments.method.step.as_deref());
+    overrides.number("simulation.end", arguments.method.end.as_deref());
     let loaded = load::load(&arguments.model.model, overrides)?;
     let output = &arguments.output;
     let writers = writers(&output.formats)?;
     let order = Order {
-        method: load::method(&loaded.model, arguments.method.as_deref())?,
+        method: load::method(&loaded.model, arguments.method.name.as_deref())?,
         step: loaded.step()?,
         end: loaded.end()?,
         every: output.every.unwrap_or(loaded.every()),

@@ -25,8 +25,8 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
     let writers = table_writers(&arguments.formats)?;
     let plan = Plan::new(arguments)?;
     let mut overrides = load::overrides(&arguments.model.set);
-    overrides.number("simulation.step", arguments.step.as_deref());
-    overrides.number("simulation.end", arguments.end.as_deref());
+    overrides.number("simulation.step", arguments.method.step.as_deref());
+    overrides.number("simulation.end", arguments.method.end.as_deref());
     let (source, name) = load::open(&arguments.model.model, &overrides)?;
     let columns = check(arguments, &overrides, &source, &plan)?;
     let sheet = Sheet::new(&plan, &columns);
@@ -34,7 +34,7 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
     let identity = identity(arguments, overrides.given(), source.text());
     let mut journal = open(&folder, &identity, &plan, &sheet)?;
     let runner =
-        Runner { source: &source, plan: &plan, method: arguments.method.as_deref(), columns: &columns, interrupted: interrupt_flag() };
+        Runner { source: &source, plan: &plan, method: arguments.method.name.as_deref(), columns: &columns, interrupted: interrupt_flag() };
     let spent = run(&runner, &sheet, &mut journal, arguments)?;
     let table = sheet.table(journal.lines.iter().flatten());
     let is_whole = journal.missing().is_empty();
@@ -49,7 +49,7 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
 fn identity(arguments: &SweepArguments, set: &[String], text: &str) -> Value {
     json!({
         "version": env!("CARGO_PKG_VERSION"), "vary": arguments.vary, "samples": arguments.samples,
-        "seed": arguments.samples.map(|_| arguments.seed), "set": set, "method": arguments.method, "columns": arguments.columns,
+        "seed": arguments.samples.map(|_| arguments.seed), "set": set, "method": arguments.method.name, "columns": arguments.columns,
         "model": text,
     })
 }

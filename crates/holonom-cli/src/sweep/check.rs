@@ -28,7 +28,7 @@ pub fn check(arguments: &SweepArguments, overrides: &Overrides, source: &Source,
     let mut with_first = overrides.clone();
     plan.varied.iter().zip(plan.settings(1)).for_each(|(vary, setting)| with_first.number(&vary.path, Some(&setting.text)));
     let (first, _) = load::open(&arguments.model.model, &with_first)?;
-    let method = arguments.method.as_deref();
+    let method = arguments.method.name.as_deref();
     // A value may be missing in the file and given by each run, or the values of the first run may not be possible.
     let model = match first.model_with(&[]) {
         Err(faults) => {
@@ -58,7 +58,7 @@ fn check_key(vary: &Vary, arguments: &SweepArguments, overrides: &Overrides, sou
     if overrides.has(path) {
         return Err(Failure::usage(format!("`{path}` is set and varied"), "leave out one of them"));
     }
-    if arguments.method.is_some() && OF_METHOD.contains(&path) {
+    if arguments.method.name.is_some() && OF_METHOD.contains(&path) {
         return Err(Failure::usage(format!("`{path}` is varied, and --method replaces it"), "leave out --method"));
     }
     if let Some(Value::Table(table)) = source.get(path) {

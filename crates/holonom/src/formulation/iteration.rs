@@ -149,9 +149,7 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
             return Ok(iteration - 1);
         }
         if !convergence.keeps_factors() {
-            work.shift_multipliers(1.0);
-            work.tangent(system, stage, 1.0);
-            work.shift_multipliers(-1.0);
+            work.expected_tangent(system, stage);
             work.factor()?;
         }
         work.solve()?;

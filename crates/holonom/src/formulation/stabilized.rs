@@ -203,19 +203,7 @@ impl Stabilized {
 
     fn tangent(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
         let block = Block(0, 0);
-        work.kkt.clear();
-        work.kkt.start_with_mass(1.0);
-        work.shift_multipliers(1.0);
-        work.kkt.add_row_hessians(block, &work.lambda, 0.5 * stage.inertia);
-        work.add_function_rows(system, stage, block);
-        work.shift_multipliers(-1.0);
-        work.add_laws(system, stage, block);
-        work.add_loads(system, stage, block);
-        work.kkt.write_sum(block);
-        work.kkt.add_columns(block, &work.sampled.gradient, 1.0);
-        work.differentiate_rows(system, stage, true, 1.0);
-        let positions = if system.is_nonholonomic() { &work.row_gradient } else { &work.at_end.gradient };
-        work.kkt.add_rows(block, positions, 1.0);
+        work.expected_tangent(system, stage);
         self.kkt.clear();
         self.kkt.start_with_mass(1.0);
         self.kkt.write_sum(block);

@@ -290,8 +290,14 @@ impl Workspace {
         }
     }
 
-    /// Adds `sign` times the expected change to the multipliers.
-    pub(super) fn shift_multipliers(&mut self, sign: f64) {
+    /// The tangent at the multipliers that are expected.
+    pub(super) fn expected_tangent(&mut self, system: &System, stage: &Stage) {
+        self.shift_multipliers(1.0);
+        self.tangent(system, stage, 1.0);
+        self.shift_multipliers(-1.0);
+    }
+
+    fn shift_multipliers(&mut self, sign: f64) {
         self.lambda.iter_mut().zip(&self.lambda_change).for_each(|(lambda, change)| *lambda += sign * change);
     }
 

@@ -34,6 +34,7 @@ impl Integrator for ConservingGgl {
         let carried = if self.last_step == h { 1.0 } else { 0.0 };
         for row in 0..both.mu.len() {
             both.gamma[row] *= carried;
+            // μ = ϖλ − γ' begins at zero; what it is expected to be is for the first tangent.
             both.mu[row] = 0.0;
             work.lambda[row] -= both.gamma[row] / stage.inertia;
         }

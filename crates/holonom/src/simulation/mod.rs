@@ -107,13 +107,8 @@ impl<'a> Simulation<'a> {
 
     /// Goes on from a state of an earlier run of the same system. `None` when the state is of another size.
     pub fn resume(system: &'a System, method: Method, step: f64, state: State) -> Option<Self> {
-        let all = system.nodes() * system.dim;
         let integrator = (method.integrator.make)(system, &method.settings, method.parameters);
-        let fits = [&state.x, &state.v, &state.a, &state.a_change].iter().all(|values| values.len() == all)
-            && state.lambda.len() == system.constraints()
-            && state.memory.len() == integrator.memory(system)
-            && state.angle.len() == system.evaluation().functions.angle.len();
-        if !fits {
+        if !state.fits(system) || state.memory.len() != integrator.memory(system) {
             return None;
         }
         let mut work = Workspace::new(system);

@@ -17,11 +17,12 @@ pub struct State {
     /// Multipliers λ (r), in N over the unit of the row's gradient.
     pub lambda: Vec<f64>,
     /// Predicted change of the accelerations in the next step (D × nodes), m/s²; zero where the last two steps were of
-    /// different lengths. Multipliers are not extrapolated: what redundant rows leave undetermined of them would run away.
+    /// different lengths.
     pub a_change: Vec<f64>,
     /// Backward differences of the accelerations up to the last step (ORDERS × D × nodes), m/s², zero in the same cases.
     pub a_differences: Vec<f64>,
-    /// Predicted change of the multipliers in the next step (r).
+    /// Change of the multipliers in the last step (r), zero in the same cases. Only a tangent is built with it: what redundant
+    /// rows leave undetermined of the multipliers would run away.
     pub lambda_change: Vec<f64>,
     /// Length of the last step, s.
     pub last_step: f64,
@@ -32,7 +33,7 @@ pub struct State {
 }
 
 /// Backward differences of accelerations that are kept.
-const ORDERS: usize = 4;
+const ORDERS: usize = 3;
 
 impl State {
     /// The start that a workspace was put at.
@@ -50,6 +51,15 @@ impl State {
             memory: work.memory.clone(),
             angle: work.at_start.functions.angle.clone(),
         }
+    }
+
+    /// Whether it is one of `system`, but for what the integrator keeps.
+    pub(super) fn fits(&self, system: &System) -> bool {
+        let all = system.nodes() * system.dim;
+        [&self.x, &self.v, &self.a, &self.a_change].iter().all(|values| values.len() == all)
+            && self.a_differences.len() == ORDERS * all
+            && [&self.lambda, &self.lambda_change].iter().all(|values| values.len() == system.constraints())
+            && self.angle.len() == system.evaluation().functions.angle.len()
     }
 
     /// Takes over another state of the same run, without allocating.
@@ -87,17 +97,17 @@ impl State {
         // Steps of the same length tell of another; round-off of the times is no other length.
         let same = if (step - self.last_step).abs() <= 1e-9 * step { 1.0 } else { 0.0 };
         let all = self.a.len();
-        let mut sizes = [0.0; ORDERS];
+        let mut sizes = [0.0; ORDERS + 1];
         for k in 0..all {
             let mut difference = same * (work.a1[k] - self.a[k]);
-            for (order, size) in sizes.iter_mut().enumerate() {
-                let next = difference - same * self.a_differences[order * all + k];
-                self.a_differences[order * all + k] = difference;
-                *size += difference * difference;
-                difference = next;
+            for order in 0..ORDERS {
+                sizes[order] += difference * difference;
+                let last = std::mem::replace(&mut self.a_differences[order * all + k], difference);
+                difference -= same * last;
             }
+            sizes[ORDERS] += difference * difference;
         }
-        let order = (1..ORDERS).min_by(|&i, &j| sizes[i].total_cmp(&sizes[j])).unwrap_or(1);
+        let order = (1..=ORDERS).min_by(|&i, &j| sizes[i].total_cmp(&sizes[j])).unwrap_or(1);
         for (k, change) in self.a_change.iter_mut().enumerate() {
             *change = (0..order).map(|i| self.a_differences[i * all + k]).sum();
         }
