@@ -50,6 +50,7 @@ impl Matrix {
         vec![1.0; self.size]
     }
 
+    #[allow(dead_code)] // each bench uses its share
     pub fn triplets(&self) -> Vec<Triplet<usize, usize, f64>> {
         self.entries.iter().map(|&(i, j, value)| Triplet::new(i, j, value)).collect()
     }

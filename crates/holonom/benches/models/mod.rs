@@ -42,6 +42,14 @@ const FAMILIES: &[Family] = &[
         bodies: |windows| 2 * windows + 1,
     },
     Family {
+        name: "random",
+        text: include_str!("../../../../benches/models/graph.toml"),
+        parameter: "n",
+        sizes: &[1, 3, 10, 32, 100],
+        // Its joints; some rods more close loops.
+        bodies: |joints| joints * joints,
+    },
+    Family {
         name: "grid",
         text: include_str!("../../../../benches/models/grid.toml"),
         parameter: "n",
@@ -78,6 +86,10 @@ pub fn cases() -> impl Iterator<Item = Case> {
 }
 
 impl Case {
+    pub fn family(&self) -> &'static str {
+        self.family.name
+    }
+
     pub fn bodies(&self) -> usize {
         (self.family.bodies)(self.size)
     }

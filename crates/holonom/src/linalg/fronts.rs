@@ -64,7 +64,7 @@ impl Fronts {
         };
         let tops = groups.children_first();
         for &top in &tops {
-            let (block, members) = (fronts.front_of.len(), &groups.members[top as usize]);
+            let (block, members) = (fronts.front_of.len(), &groups.best[top as usize].members);
             for (k, &column) in members.iter().enumerate() {
                 fronts.place[order[column as usize] as usize] = (block * LANES + k) as u32;
             }
@@ -91,6 +91,12 @@ impl Fronts {
     /// Blocks of all fronts together.
     pub fn blocks(&self) -> usize {
         self.front_of.len()
+    }
+
+    /// The tile on the diagonal of a block, among all tiles.
+    pub fn diagonal(&self, block: usize) -> usize {
+        let front = &self.fronts[self.front_of[block] as usize];
+        front.tile + (block - front.block) * (front.size + 1)
     }
 
     fn rows_in_parent(&self, front: &Front) -> Vec<u32> {
@@ -129,6 +135,9 @@ impl Front {
     }
 }
 
+/// A matrix of so many blocks at most is one front.
+pub(super) const ONE_FRONT: usize = 4;
+
 /// What a front costs beside its arithmetic, in products of two tiles (measured with `cargo bench`).
 const FRONT_COST: f64 = 12.0;
 
@@ -140,54 +149,88 @@ fn cost(pivots: usize, rows: usize) -> f64 {
     FRONT_COST + blocks.sum::<f64>() + (rows * rows) as f64 / 8.0
 }
 
-/// Columns that share a front, under the number of the last of them.
+/// Most columns that a front is made of one by one.
+const NEAR: usize = 24;
+
+/// For each column the best front that ends with it, with the best fronts below that one.
 struct Groups {
-    members: Vec<Vec<u32>>,
-    /// The groups whose parent in the elimination tree is one of the members.
-    children: Vec<Vec<u32>>,
-    /// Groups without a parent.
+    best: Vec<Group>,
+    /// Columns without a parent in the elimination tree.
     roots: Vec<u32>,
 }
 
+#[derive(Clone, Default)]
+struct Group {
+    members: Vec<u32>,
+    /// Columns whose parent is one of the members: the last ones of the fronts below.
+    children: Vec<u32>,
+    /// Cost of the front and of all below it.
+    cost: f64,
+}
+
 impl Groups {
-    /// Every column begins as a group, and takes in its children where that costs less than fronts of their own.
+    /// From the first column to the last. Columns join the ones before them singly, as long as those are few, or in whole fronts.
     fn new(columns: &[Vec<u32>]) -> Self {
-        let size = columns.len();
-        let mut groups = Self { members: (0..size as u32).map(|k| vec![k]).collect(), children: vec![Vec::new(); size], roots: Vec::new() };
+        let mut children = vec![Vec::new(); columns.len()];
+        let mut groups = Self { best: Vec::with_capacity(columns.len()), roots: Vec::new() };
         for (k, column) in columns.iter().enumerate() {
-            let mut candidates = std::mem::take(&mut groups.children[k]);
-            candidates.sort_by_key(|&child| columns[child as usize].len());
-            while let Some(child) = candidates.pop() {
-                groups.take_in(k, child, columns);
-            }
-            groups.members[k].sort_unstable();
             match column.first() {
-                Some(&parent) => groups.children[parent as usize].push(k as u32),
+                Some(&parent) => children[parent as usize].push(k as u32),
                 None => groups.roots.push(k as u32),
             }
         }
+        let rows = |k: u32| columns[k as usize].len();
+        children.iter_mut().for_each(|children| children.sort_by_key(|&child| rows(child)));
+        for k in 0..columns.len() {
+            let alone = Group { members: vec![k as u32], children: children[k].clone(), cost: 0.0 };
+            let mut best = groups.priced(alone, rows(k as u32));
+            let (mut singly, mut whole) = (best.clone(), best.clone());
+            for _ in 0..NEAR {
+                let Some(next) = (0..singly.children.len()).max_by_key(|&i| rows(singly.children[i])) else { break };
+                let child = singly.children.swap_remove(next);
+                singly.members.push(child);
+                singly.children.extend(&children[child as usize]);
+                singly = groups.priced(singly, rows(k as u32));
+                if singly.cost < best.cost {
+                    best = singly.clone();
+                }
+            }
+            for &child in children[k].iter().rev() {
+                let joined = groups.priced(groups.joined(&whole, child), rows(k as u32));
+                if joined.cost < whole.cost || columns.len() <= ONE_FRONT * LANES {
+                    whole = joined;
+                }
+            }
+            let is_better = whole.cost < best.cost || columns.len() <= ONE_FRONT * LANES;
+            groups.best.push(if is_better { whole } else { best });
+        }
+        groups.best.iter_mut().for_each(|group| group.members.sort_unstable());
         groups
     }
 
-    fn take_in(&mut self, k: usize, child: u32, columns: &[Vec<u32>]) {
-        let (below, below_child) = (columns[k].len(), columns[child as usize].len());
-        let (own, other) = (self.members[k].len(), self.members[child as usize].len());
-        if cost(own + other, below) <= cost(own, below) + cost(other, below_child) {
-            let (joined, grandchildren) =
-                (std::mem::take(&mut self.members[child as usize]), std::mem::take(&mut self.children[child as usize]));
-            self.members[k].extend(joined);
-            self.children[k].extend(grandchildren);
-        } else {
-            self.children[k].push(child);
+    /// A group with its cost, where its last column has `rows` below.
+    fn priced(&self, group: Group, rows: usize) -> Group {
+        let below: f64 = group.children.iter().map(|&child| self.best[child as usize].cost).sum();
+        Group { cost: cost(group.members.len(), rows) + below, ..group }
+    }
+
+    /// A group with the best front of one of its children.
+    fn joined(&self, group: &Group, child: u32) -> Group {
+        let Group { members, children, .. } = &self.best[child as usize];
+        let others = group.children.iter().filter(|&&other| other != child);
+        Group {
+            members: group.members.iter().chain(members).copied().collect(),
+            children: others.chain(children).copied().collect(),
+            cost: 0.0,
         }
     }
 
-    /// Groups in an order with each right after the groups below it.
+    /// The last columns of all fronts, each after those of the fronts below.
     fn children_first(&self) -> Vec<u32> {
         let (mut found, mut open) = (Vec::new(), self.roots.clone());
         while let Some(group) = open.pop() {
             found.push(group);
-            open.extend(&self.children[group as usize]);
+            open.extend(&self.best[group as usize].children);
         }
         found.reverse();
         found

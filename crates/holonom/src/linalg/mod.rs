@@ -65,6 +65,17 @@ impl Solver {
     }
 }
 
+/// Size of the largest of some numbers. What is no number has none.
+pub fn largest(values: &[f64]) -> f64 {
+    let larger = |m: f64, x: f64| if x.abs() > m { x.abs() } else { m };
+    let (blocks, rest) = values.as_chunks::<4>();
+    let mut sizes = [0.0; 4];
+    for block in blocks {
+        sizes = std::array::from_fn(|k| larger(sizes[k], block[k]));
+    }
+    sizes.iter().chain(rest).fold(0.0, |m, &x| larger(m, x))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

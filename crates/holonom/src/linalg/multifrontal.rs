@@ -3,10 +3,12 @@
 //! Everything but the arithmetic is worked out beforehand, and the arithmetic is products of tiles. Pivots are taken in the
 //! given order; within a front rows change places where a pivot is far below what stands under it.
 
+use std::cmp::Ordering;
+
 use pulp::{Arch, Simd, WithSimd};
 
 use super::Singular;
-use super::fronts::{Front, Fronts, LANES, TILE};
+use super::fronts::{Front, Fronts, LANES, ONE_FRONT, TILE};
 
 /// A square of numbers, by columns.
 type Tile = [f64; TILE];
@@ -15,7 +17,7 @@ type Block = [f64; LANES];
 
 pub(super) struct Multifrontal {
     pub(super) plan: Fronts,
-    /// The tiles of all fronts; after the factorisation L (below the diagonal, which is 1) and U.
+    /// The tiles of all fronts; after the factorisation L (below the diagonal, which is 1) and U, on the diagonal their inverses.
     tiles: Vec<Tile>,
     numbers: Numbers,
     arch: Arch,
@@ -25,8 +27,6 @@ struct Numbers {
     /// Row of its front that came to each pivot, and whether any of a front did.
     exchange: Vec<u32>,
     exchanged: Vec<bool>,
-    /// The inverses of the tiles of L and U on the diagonal.
-    inverse: Vec<[Tile; 2]>,
     /// A right side in the blocks of all fronts, and in the rows below one front.
     y: Vec<Block>,
     local: Vec<Block>,
@@ -43,7 +43,6 @@ impl Multifrontal {
         let numbers = Numbers {
             exchange: vec![0; blocks * LANES],
             exchanged: vec![false; plan.fronts.len()],
-            inverse: vec![[[0.0; TILE]; 2]; blocks],
             y: vec![[0.0; LANES]; blocks],
             local: vec![[0.0; LANES]; most],
             rows: vec![[0.0; LANES]; pivots],
@@ -70,7 +69,7 @@ impl Multifrontal {
     /// Size of the pivot met at a row of the matrix.
     pub(super) fn pivot(&self, row: usize) -> f64 {
         let place = self.plan.place[row] as usize;
-        1.0 / self.numbers.inverse[place / LANES][1][place % LANES * (LANES + 1)].abs()
+        1.0 / self.tiles[self.plan.diagonal(place / LANES)][place % LANES * (LANES + 1)].abs()
     }
 }
 
@@ -85,11 +84,20 @@ impl WithSimd for Factor<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let Numbers { exchange, exchanged, inverse, rows, .. } = self.numbers;
+        if let [front] = self.plan.fronts[..] {
+            match front.head {
+                1 => return self.one::<S, 1>(simd),
+                2 => return self.one::<S, 2>(simd),
+                3 => return self.one::<S, 3>(simd),
+                ONE_FRONT => return self.one::<S, ONE_FRONT>(simd),
+                _ => {}
+            }
+        }
+        let Numbers { exchange, exchanged, rows, .. } = self.numbers;
         for (front, exchanged) in self.plan.fronts.iter().zip(exchanged) {
             let (own, later) = self.tiles[front.tile..].split_at_mut(front.size * front.size);
             let exchange = &mut exchange[front.block * LANES..front.block * LANES + front.pivots];
-            *exchanged = eliminate(simd, front, own, exchange, &mut inverse[front.block..front.block + front.head], rows)
+            *exchanged = eliminate(simd, front, own, exchange, rows)
                 .map_err(|pivot| Singular { pivot: self.plan.row[front.block * LANES + pivot] as usize })?;
             if let Some(parent) = front.parent {
                 let parent = &self.plan.fronts[parent];
@@ -102,27 +110,42 @@ impl WithSimd for Factor<'_> {
     }
 }
 
+impl Factor<'_> {
+    /// Factors a single front of `B` blocks, and leaves the inverse of L in its place.
+    #[inline(always)]
+    fn one<S: Simd, const B: usize>(self, simd: S) -> Result<(), Singular> {
+        let front = Front { head: B, size: B, ..self.plan.fronts[0] };
+        let (Numbers { exchange, exchanged, rows, .. }, tiles) = (self.numbers, &mut self.tiles[..B * B]);
+        exchanged[0] = eliminate(simd, &front, tiles, &mut exchange[..front.pivots], rows)
+            .map_err(|pivot| Singular { pivot: self.plan.row[pivot] as usize })?;
+        let inverse: [Tile; B] = std::array::from_fn(|k| lower(&tiles[k * (B + 1)]));
+        for k in 0..B {
+            for i in k + 1..B {
+                let mut sum = product(simd, &tiles[k * B + i], &inverse[k]);
+                for j in k + 1..i {
+                    add_product(simd, &mut sum, &tiles[j * B + i], &tiles[k * B + j], 1.0);
+                }
+                tiles[k * B + i] = product(simd, &inverse[i], &sum).map(|x| -x);
+            }
+        }
+        Ok(())
+    }
+}
+
 /// A pivot this far below the largest number under it is exchanged.
 const SMALL: f64 = 1e-3;
 
 /// Eliminates the pivots of a front, a block at a time; whether rows changed places, or the pivot that cannot be one.
 #[inline(always)]
-fn eliminate<S: Simd>(
-    simd: S,
-    front: &Front,
-    tiles: &mut [Tile],
-    exchange: &mut [u32],
-    inverse: &mut [[Tile; 2]],
-    rows: &mut [Block],
-) -> Result<bool, usize> {
+fn eliminate<S: Simd>(simd: S, front: &Front, tiles: &mut [Tile], exchange: &mut [u32], rows: &mut [Block]) -> Result<bool, usize> {
     let size = front.size;
     for k in front.pivots..front.head * LANES {
         tiles[k / LANES * (size + 1)][k % LANES * (LANES + 1)] = 1.0;
     }
     let mut exchanged = false;
-    for (block, inverse) in inverse.iter_mut().enumerate() {
+    for block in 0..front.head {
         let pivots = block * (size + 1)..block * size + front.head;
-        *inverse = match in_order(simd, &tiles[pivots.clone()]) {
+        let inverse = match in_order(simd, &tiles[pivots.clone()]) {
             Some(inverse) => inverse,
             None => {
                 if !exchanged {
@@ -133,6 +156,7 @@ fn eliminate<S: Simd>(
                 in_order(simd, &tiles[pivots]).ok_or(block * LANES)?
             }
         };
+        tiles[block * (size + 1)] = packed(&inverse);
         let (done, rest) = tiles.split_at_mut((block + 1) * size);
         let panel = &mut done[block * (size + 1) + 1..];
         for l in panel.iter_mut() {
@@ -142,7 +166,7 @@ fn eliminate<S: Simd>(
             let (head, tail) = column[block..].split_first_mut().expect("a column has all rows");
             *head = above_tiny(product(simd, &inverse[0], head));
             for (l, target) in panel.iter().zip(tail) {
-                subtract_product(simd, target, l, head);
+                add_product(simd, target, l, head, -1.0);
             }
         }
     }
@@ -241,6 +265,28 @@ fn inverses(tile: &Tile) -> [Tile; 2] {
     [lower, upper]
 }
 
+/// Both inverses in one tile: what is below the diagonal of the first, and the second.
+#[inline(always)]
+fn packed([lower, upper]: &[Tile; 2]) -> Tile {
+    std::array::from_fn(|k| if k % LANES > k / LANES { lower[k] } else { upper[k] })
+}
+
+/// The first of two packed inverses.
+#[inline(always)]
+fn lower(tile: &Tile) -> Tile {
+    std::array::from_fn(|k| match (k % LANES).cmp(&(k / LANES)) {
+        Ordering::Greater => tile[k],
+        Ordering::Equal => 1.0,
+        Ordering::Less => 0.0,
+    })
+}
+
+/// The second of two packed inverses.
+#[inline(always)]
+fn upper(tile: &Tile) -> Tile {
+    std::array::from_fn(|k| if k % LANES > k / LANES { 0.0 } else { tile[k] })
+}
+
 /// Column `k` of a tile.
 #[inline(always)]
 fn column(tile: &Tile, k: usize) -> &Block {
@@ -259,6 +305,22 @@ fn add_times<S: Simd>(simd: S, target: &Block, tile: &Tile, x: &Block, sign: f64
         }
     }
     out
+}
+
+/// target + tile x in two sums, for where the next operation waits for it.
+#[inline(always)]
+fn shortly_times<S: Simd>(simd: S, target: &Block, tile: &Tile, x: &Block) -> Block {
+    let [mut out, mut other] = [*target, [0.0; LANES]];
+    let sums = [S::as_mut_simd_f64s(&mut out).0, S::as_mut_simd_f64s(&mut other).0];
+    for (half, sum) in sums.into_iter().enumerate() {
+        for k in 2 * half..2 * half + 2 {
+            let (column, x) = (S::as_simd_f64s(column(tile, k)).0, simd.splat_f64s(x[k]));
+            for (sum, &entry) in sum.iter_mut().zip(column) {
+                *sum = simd.mul_add_f64s(entry, x, *sum);
+            }
+        }
+    }
+    std::array::from_fn(|k| out[k] + other[k])
 }
 
 /// tile x
@@ -290,11 +352,11 @@ fn product<S: Simd>(simd: S, a: &Tile, b: &Tile) -> Tile {
     out
 }
 
-/// target −= a b
+/// target + sign · a b
 #[inline(always)]
-fn subtract_product<S: Simd>(simd: S, target: &mut Tile, a: &Tile, b: &Tile) {
+fn add_product<S: Simd>(simd: S, target: &mut Tile, a: &Tile, b: &Tile, sign: f64) {
     for (target, b) in target.as_chunks_mut().0.iter_mut().zip(b.as_chunks().0) {
-        subtract_times(simd, target, a, b);
+        *target = add_times(simd, target, a, b, sign);
     }
 }
 
@@ -324,7 +386,16 @@ impl WithSimd for Solve<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Numbers { exchange, exchanged, inverse, y, local, .. } = self.numbers;
+        if let [front] = self.plan.fronts[..] {
+            match front.head {
+                1 => return self.one::<S, 1>(simd),
+                2 => return self.one::<S, 2>(simd),
+                3 => return self.one::<S, 3>(simd),
+                ONE_FRONT => return self.one::<S, ONE_FRONT>(simd),
+                _ => {}
+            }
+        }
+        let Numbers { exchange, exchanged, y, local, .. } = self.numbers;
         y.fill([0.0; LANES]);
         for (&place, &b) in self.plan.place.iter().zip(&*self.b) {
             y.as_flattened_mut()[place as usize] = b;
@@ -332,13 +403,13 @@ impl WithSimd for Solve<'_> {
         for (front, &exchanged) in self.plan.fronts.iter().zip(&*exchanged) {
             let (tiles, local) = (&self.tiles[front.tile..], &mut local[..front.size - front.head]);
             let blocks = front.block..front.block + front.head;
-            let own = &mut y[blocks.clone()];
+            let own = &mut y[blocks];
             if exchanged {
                 let rows = &exchange[front.block * LANES..front.block * LANES + front.pivots];
                 rows.iter().enumerate().for_each(|(k, &row)| own.as_flattened_mut().swap(k, row as usize));
             }
             local.fill([0.0; LANES]);
-            solve_lower(simd, front, tiles, &inverse[blocks], own, local);
+            solve_lower(simd, front, tiles, own, local);
             for (&place, value) in self.plan.below[front.range()].iter().zip(local.as_flattened()) {
                 y.as_flattened_mut()[place as usize] += value;
             }
@@ -350,7 +421,40 @@ impl WithSimd for Solve<'_> {
             for (&place, value) in self.plan.below[front.range()].iter().zip(local.as_flattened_mut()) {
                 *value = y.as_flattened()[place as usize];
             }
-            solve_upper(simd, front, tiles, &inverse[blocks.clone()], &mut y[blocks], local);
+            solve_upper(simd, front, tiles, &mut y[blocks], local);
+        }
+        for (&place, b) in self.plan.place.iter().zip(self.b) {
+            *b = y.as_flattened()[place as usize];
+        }
+    }
+}
+
+impl Solve<'_> {
+    /// Solves with the inverse of L and with U of a single front of `B` blocks.
+    #[inline(always)]
+    fn one<S: Simd, const B: usize>(self, simd: S) {
+        let (Numbers { exchange, exchanged, .. }, tiles) = (self.numbers, &self.tiles[..B * B]);
+        let mut b = [[0.0; LANES]; B];
+        for (&place, &value) in self.plan.place.iter().zip(&*self.b) {
+            b.as_flattened_mut()[place as usize] = value;
+        }
+        if exchanged[0] {
+            let rows = &exchange[..self.plan.fronts[0].pivots];
+            rows.iter().enumerate().for_each(|(k, &row)| b.as_flattened_mut().swap(k, row as usize));
+        }
+        let mut y = [[0.0; LANES]; B];
+        for i in 0..B {
+            y[i] = shortly_times(simd, &[0.0; LANES], &lower(&tiles[i * (B + 1)]), &b[i]);
+            for j in 0..i {
+                y[i] = shortly_times(simd, &y[i], &tiles[j * B + i], &b[j]);
+            }
+        }
+        for k in (0..B).rev() {
+            y[k] = shortly_times(simd, &[0.0; LANES], &upper(&tiles[k * (B + 1)]), &y[k]);
+            let x = y[k].map(|x| -x);
+            for i in 0..k {
+                y[i] = shortly_times(simd, &y[i], &tiles[k * B + i], &x);
+            }
         }
         for (&place, b) in self.plan.place.iter().zip(self.b) {
             *b = y.as_flattened()[place as usize];
@@ -360,11 +464,11 @@ impl WithSimd for Solve<'_> {
 
 /// Solves with the pivots' columns of L; leaves in `below` what they take off the rows below.
 #[inline(always)]
-fn solve_lower<S: Simd>(simd: S, front: &Front, tiles: &[Tile], inverse: &[[Tile; 2]], own: &mut [Block], below: &mut [Block]) {
-    for (block, (inverse, column)) in inverse.iter().zip(tiles.chunks_exact(front.size)).enumerate() {
+fn solve_lower<S: Simd>(simd: S, front: &Front, tiles: &[Tile], own: &mut [Block], below: &mut [Block]) {
+    for (block, column) in tiles.chunks_exact(front.size).take(front.head).enumerate() {
         let (head, tail) = own[block..].split_first_mut().expect("a block for each tile on the diagonal");
-        *head = above_tiny(times(simd, &inverse[0], head));
         let (pivots, rows) = column.split_at(front.head);
+        *head = above_tiny(times(simd, &lower(&pivots[block]), head));
         for (target, tile) in tail.iter_mut().zip(&pivots[block + 1..]) {
             subtract_times(simd, target, tile, head);
         }
@@ -376,17 +480,17 @@ fn solve_lower<S: Simd>(simd: S, front: &Front, tiles: &[Tile], inverse: &[[Tile
 
 /// Solves with the pivots' rows of U, where the rows below are known.
 #[inline(always)]
-fn solve_upper<S: Simd>(simd: S, front: &Front, tiles: &[Tile], inverse: &[[Tile; 2]], own: &mut [Block], below: &[Block]) {
+fn solve_upper<S: Simd>(simd: S, front: &Front, tiles: &[Tile], own: &mut [Block], below: &[Block]) {
     let (pivots, rows) = tiles.split_at(front.head * front.size);
     for (column, x) in rows.chunks_exact(front.size).zip(below) {
         for (target, tile) in own.iter_mut().zip(column) {
             subtract_times(simd, target, tile, x);
         }
     }
-    for (block, inverse) in inverse.iter().enumerate().rev() {
-        let column = &pivots[block * front.size..block * front.size + block];
+    for block in (0..front.head).rev() {
+        let (column, diagonal) = pivots[block * front.size..][..=block].split_at(block);
         let (above, last) = own[..=block].split_at_mut(block);
-        last[0] = above_tiny(times(simd, &inverse[1], &last[0]));
+        last[0] = above_tiny(times(simd, &upper(&diagonal[0]), &last[0]));
         for (target, tile) in above.iter_mut().zip(column) {
             subtract_times(simd, target, tile, &last[0]);
         }
