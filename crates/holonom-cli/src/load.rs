@@ -277,7 +277,7 @@ pub fn checkpoint(path: &Path) -> Result<State, Failure> {
             a: numbers(&value, "a")?,
             lambda: numbers(&value, "lambda")?,
             a_change: numbers(&value, "a_change")?,
-            a_differences: numbers(&value, "a_differences")?,
+            a_differences: serde_json::from_value(value["a_differences"].clone()).ok()?,
             lambda_change: numbers(&value, "lambda_change")?,
             last_step: value["last_step"].as_f64()?,
             memory: numbers(&value, "memory")?,

@@ -24,7 +24,7 @@ fn noise(k: usize) -> f64 {
 
 /// The stage's residual (coordinates, then rows) at the increment in the workspace.
 fn residual(model: &Model, stage: &Stage, work: &mut Workspace) -> Vec<f64> {
-    work.place(&model.system, stage);
+    work.place(stage);
     work.evaluate(&model.system, stage);
     work.residual(&model.system, stage);
     work.unknowns.iter().map(|unknown| -unknown).collect()

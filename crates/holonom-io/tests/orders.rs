@@ -63,9 +63,14 @@ const OMEGA: f64 = 2.0;
 const MOST: u32 = 8192;
 
 /// How far a measured order may lie from the documented one. Of order 8 double precision shows two or three halvings; all
-/// but the reactions of the stabilised penalty on the four-bar (7.4) are within 0.2 all the same.
+/// but the reactions of the stabilised penalty on the four-bar (7.4) are within 0.2 all the same. Order 0 is an error that
+/// changes sign from step to step and that nothing damps: round-off, which is its size at thousands of steps, adds to it.
 fn tolerance(order: u8) -> f64 {
-    if order > 6 { 0.65 } else { 0.2 }
+    match order {
+        0 => 0.5,
+        1..=6 => 0.2,
+        _ => 0.65,
+    }
 }
 
 const QUANTITIES: [&str; 3] = ["positions", "velocities", "reactions"];
@@ -150,10 +155,11 @@ fn measure(problem: &Problem, model: &Model, mut choice: Choice, short: &mut Vec
             return None;
         }
         let found = slope(&errors, floor[c], c, f64::from(documented[c]));
-        if found.is_none_or(|found| found < f64::from(documented[c]) - tolerance(of)) {
+        let allowed = tolerance(if documented[c] == 0 { 0 } else { of });
+        if found.is_none_or(|found| found < f64::from(documented[c]) - allowed) {
             short.push(format!("{}: {name}: {} of order {}, measured {found:.2?}", problem.model, QUANTITIES[c], documented[c]));
         }
-        found.map(|found| found <= f64::from(documented[c]) + tolerance(of))
+        found.map(|found| found <= f64::from(documented[c]) + allowed)
     });
     (name, met)
 }

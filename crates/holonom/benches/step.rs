@@ -27,7 +27,7 @@ fn workspace(system: &System) -> Workspace {
     }
     work.drift.copy_from_slice(&work.d);
     work.proximal(STAGE.inertia, None);
-    work.place(system, &STAGE);
+    work.place(&STAGE);
     work.evaluate(system, &STAGE);
     work.tangent(system, &STAGE, 1.0);
     work.residual(system, &STAGE);
@@ -40,7 +40,7 @@ fn evaluate(bencher: Bencher<'_, '_>, case: &Case) {
     let system = case.model().system;
     let mut work = workspace(&system);
     bencher.counter(ItemsCount::new(case.bodies())).bench_local(|| {
-        work.place(&system, &STAGE);
+        work.place(&STAGE);
         work.evaluate(&system, &STAGE);
         work.residual(&system, &STAGE);
     });

@@ -273,7 +273,7 @@ pub const FIGURES: &[Figure] = &[
                 "iterations of `ggl/conserving-ggl-6` at 0.1 s over those of `conserving-ggl` at 0.01 s",
                 |results| iterations(results, "ggl/conserving-ggl-6", "0.1") / iterations(results, "conserving-ggl", "0.01"),
                 0.3,
-                1.5,
+                2.0,
             ),
             within(
                 "error of `conserving-ggl` at 0.01 s over that of `ggl/conserving-ggl-6` at 0.1 s",

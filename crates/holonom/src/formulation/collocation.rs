@@ -17,6 +17,7 @@ use super::level::Level;
 use super::stage::{RowsAt, Sampling, Stage};
 use super::velocity_rows::Source;
 use super::workspace::Workspace;
+use crate::linalg::largest;
 use crate::system::System;
 
 /// When the stages are: t_i = start + c_i step.
@@ -227,7 +228,7 @@ impl Collocation {
         system.mass.times(dim, &work.full, &mut work.inertial);
         self.write(dim, i, work);
         system.constraint_values(&work.sampled, t, &mut work.phi);
-        system.constraint_rates(&work.kkt.row_slots, &work.kkt.slot_nodes, &work.sampled, &work.vs, t, &mut work.rows);
+        system.constraint_rates(&work.kkt.slots, &work.sampled, &work.vs, t, &mut work.rows);
         for row in 0..r {
             self.unknowns[self.kkt.multiplier(row, i)] = -work.phi[row];
             self.unknowns[self.kkt.multiplier(row, s + i)] = -h * work.rows[row];
@@ -299,7 +300,7 @@ impl Collocation {
             let b = self.rate[i * s + j];
             self.kkt.start_with_mass(b);
             if i == j {
-                self.kkt.add_row_hessians(Block(i, i), &self.nu[i * r..(i + 1) * r], 1.0);
+                self.kkt.add_row_hessians(&self.nu[i * r..(i + 1) * r], 1.0);
             }
             self.kkt.write_sum(Block(i, j));
             self.kkt.start_with_mass(b);
@@ -332,7 +333,7 @@ impl Collocation {
     #[expect(clippy::too_many_arguments)] // what a stage is, and where it goes
     fn add_forces(&mut self, system: &System, t: f64, h: f64, rate: f64, block: Block, i: usize, work: &mut Workspace) {
         let r = work.lambda.len();
-        self.kkt.add_row_hessians(block, &self.lambda[i * r..(i + 1) * r], 1.0);
+        self.kkt.add_row_hessians(&self.lambda[i * r..(i + 1) * r], 1.0);
         let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start: t - h, step: h, inertia: h * h, rate };
         std::mem::swap(&mut work.kkt, &mut self.kkt);
         work.add_laws(system, &stage, block);
@@ -384,9 +385,9 @@ impl Collocation {
     /// Whether everything is met although increments go on: the residual in `unknowns`.
     fn is_met(&self, system: &System, work: &Workspace) -> bool {
         let (coordinates, rows) = self.unknowns.split_at(self.kkt.fields * system.coordinates());
-        let momentum = coordinates.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
-        let softness = work.softness.iter().flat_map(|softness| std::iter::repeat_n(softness, self.kkt.fields));
-        let violation = rows.iter().zip(softness).map(|(row, softness)| row.abs() / (softness * work.heaviest).sqrt()).fold(0.0, f64::max);
+        let momentum = largest(coordinates);
+        let scales = work.row_scale.iter().flat_map(|scale| std::iter::repeat_n(scale, self.kkt.fields));
+        let violation = rows.iter().zip(scales).map(|(row, scale)| row.abs() / scale).fold(0.0, f64::max);
         momentum <= STALLED * work.heaviest * work.length && violation <= STALLED * work.length
     }
 }

@@ -3,6 +3,7 @@
 use super::level::Level;
 use super::stage::{RowsAt, Stage};
 use super::workspace::Workspace;
+use crate::linalg::largest;
 use crate::system::System;
 
 /// Where multipliers come from.
@@ -138,7 +139,7 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
     }
     let mut convergence = Convergence::new(settings, work.shortest);
     for iteration in 1..=settings.max_iterations {
-        work.place(system, stage);
+        work.place(stage);
         work.evaluate(system, stage);
         if let Some(alpha) = soft {
             let softness = work.level.scale(stage.rate, stage.inertia) / alpha;
@@ -231,18 +232,13 @@ impl Convergence {
 
 /// Adds the solution to the increment; its largest entry over the size of the mechanism.
 fn advance(n: usize, work: &mut Workspace) -> f64 {
-    let mut largest = 0.0_f64;
-    for (d, step) in work.d.iter_mut().zip(&work.unknowns[..n]) {
-        *d += step;
-        largest = largest.max(step.abs());
-    }
-    largest / work.length
+    work.d.iter_mut().zip(&work.unknowns).for_each(|(d, step)| *d += step);
+    largest(&work.unknowns[..n]) / work.length
 }
 
 /// Whether rows and momentum are met although increments go on.
 fn is_met(n: usize, work: &Workspace) -> bool {
-    let momentum = work.unknowns[..n].iter().fold(0.0, |m: f64, u| m.max(u.abs()));
-    momentum <= STALLED * work.heaviest * work.length && work.scaled_violation() <= STALLED
+    largest(&work.unknowns[..n]) <= STALLED * work.heaviest * work.length && work.scaled_violation() <= STALLED
 }
 
 /// Sets δ to what a penalty stands for, and says how λ changes with Φ: α for each row.
@@ -255,7 +251,7 @@ fn penalties(stage: &Stage, penalty: Option<f64>, work: &mut Workspace) {
 
 /// One increment of the coordinates at the multipliers λ + αΦ; its 2-norm, m.
 fn increment(system: &System, stage: &Stage, work: &mut Workspace) -> Result<f64, Failure> {
-    work.place(system, stage);
+    work.place(stage);
     work.evaluate(system, stage);
     work.residual(system, stage);
     work.tangent(system, stage, 0.0);
@@ -268,7 +264,7 @@ fn increment(system: &System, stage: &Stage, work: &mut Workspace) -> Result<f64
 
 /// λ ← λ + αΦ at the present position; the 2-norm of Φ.
 fn update_multipliers(system: &System, stage: &Stage, work: &mut Workspace) -> f64 {
-    work.place(system, stage);
+    work.place(stage);
     work.evaluate(system, stage);
     for ((lambda, phi), delta) in work.lambda.iter_mut().zip(&work.phi).zip(&work.delta) {
         *lambda += phi / (delta * stage.inertia);

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use crate::linalg::{Singular, Solver};
-use crate::system::{MAX_ARGUMENTS, Response, along, scatter};
+use crate::system::{MAX_ARGUMENTS, Response, RowSlot, add_along_rows, cross, scatter_rows, skew};
 
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -31,19 +31,25 @@ pub(super) struct OuterTerm {
     pub pair: u32,
 }
 
-/// An entry of a skew block of second derivatives: which of the block's D × D, row by row.
+/// A skew block of second derivatives, w ↦ w × e: which of the pairs with full blocks, and e (in the plane its normal's part).
 #[derive(Clone, Copy)]
-pub(super) struct SkewEntry {
-    pub pair: u32,
-    pub offset: u32,
-    pub value: f64,
+pub(super) struct Turn {
+    pub full: u32,
+    pub axis: [f64; 3],
+}
+
+impl Turn {
+    fn add(&self, factor: f64, sums: &mut [[f64; 3]]) {
+        let sum = &mut sums[self.full as usize];
+        (0..3).for_each(|c| sum[c] += factor * self.axis[c]);
+    }
 }
 
 /// Constant second derivatives of an invariant, free nodes only.
 #[derive(Default)]
 pub(super) struct Hessian {
     pub isotropic: Vec<(u32, f64)>,
-    pub skew: Vec<SkewEntry>,
+    pub skew: Vec<Turn>,
 }
 
 /// Which fields of coordinates (second argument) and of rows (third) share a block of the matrix; first comes the number
@@ -68,24 +74,26 @@ pub struct Kkt {
     pub(super) fields: usize,
     pub(super) free: usize,
     pub(super) coupling: Coupling,
-    /// Slots of each row.
+    /// Slots of each row, and of all rows one after the other.
     pub row_slots: Vec<Range<usize>>,
+    pub slots: Vec<RowSlot>,
     /// Node of each slot.
     pub slot_nodes: Vec<u32>,
     /// The nodes of each pair.
     pub(super) pair_nodes: Vec<[u32; 2]>,
     pub(super) pair_mass: Vec<f64>,
     pub(super) pair_sum: Vec<f64>,
-    /// Entries of the mass matrix that quarter turns of the plane make, and their factor in the sum at hand.
-    pub(super) turned_mass: Vec<SkewEntry>,
-    pub(super) mass_factor: f64,
+    /// The pairs with full blocks; the e of the mass matrix, which quarter turns of the plane make, and of the sum at hand.
+    pub(super) full_pairs: Vec<u32>,
+    pub(super) full_mass: Vec<[f64; 3]>,
+    pub(super) full_sum: Vec<[f64; 3]>,
     pub(super) own_pair: Vec<u32>,
     pub(super) diagonal: Vec<u32>,
     pub(super) full_index: Vec<u32>,
     pub(super) full: Vec<u32>,
-    /// Second derivatives of all rows: row, pair and factor, and row and entry.
+    /// Second derivatives of all rows: row, pair and factor, and row and skew block.
     pub(super) row_isotropic: Vec<(u32, u32, f64)>,
-    pub(super) row_skew: Vec<(u32, SkewEntry)>,
+    pub(super) row_skew: Vec<(u32, Turn)>,
     pub(super) law_hessian: Vec<Vec<Hessian>>,
     pub(super) law_outer: Vec<Vec<OuterTerm>>,
     pub(super) load_pairs: Vec<Vec<u32>>,
@@ -127,39 +135,31 @@ impl Kkt {
 
     /// Starts the sum over pairs of nodes with `factor` times the mass matrix.
     pub fn start_with_mass(&mut self, factor: f64) {
-        self.mass_factor = factor;
         for (sum, &mass) in self.pair_sum.iter_mut().zip(&self.pair_mass) {
             *sum = factor * mass;
+        }
+        for (sum, mass) in self.full_sum.iter_mut().zip(&self.full_mass) {
+            *sum = mass.map(|e| factor * e);
         }
     }
 
     /// Starts the sum over pairs of nodes with a weight for each free node.
     pub fn start_with_weights<'a>(&mut self, weights: impl IntoIterator<Item = &'a f64>) {
         self.pair_sum.fill(0.0);
-        self.mass_factor = 0.0;
+        self.full_sum.fill([0.0; 3]);
         for (&pair, &weight) in self.own_pair.iter().zip(weights) {
             self.pair_sum[pair as usize] = weight;
         }
     }
 
-    /// Adds `factor` Σ λ_k H_k of the invariant rows to a block; parts that are multiples of the unit matrix go to the
-    /// sum over pairs, which [`Kkt::write_sum`] has yet to write.
-    pub fn add_row_hessians(&mut self, block: Block, lambda: &[f64], factor: f64) {
+    /// Adds `factor` Σ λ_k H_k of the invariant rows to the sum over pairs, which [`Kkt::write_sum`] has yet to write.
+    pub fn add_row_hessians(&mut self, lambda: &[f64], factor: f64) {
         for &(row, pair, c) in &self.row_isotropic {
             self.pair_sum[pair as usize] += factor * lambda[row as usize] * c;
         }
-        for k in 0..self.row_skew.len() {
-            let (row, entry) = self.row_skew[k];
-            self.add_entry(block, entry, factor * lambda[row as usize]);
+        for &(row, turn) in &self.row_skew {
+            turn.add(factor * lambda[row as usize], &mut self.full_sum);
         }
-    }
-
-    #[inline]
-    fn add_entry(&mut self, Block(i, j): Block, entry: SkewEntry, weight: f64) {
-        let combination = i * self.fields + j;
-        let first = (self.full_index[entry.pair as usize] as usize * self.fields * self.fields + combination) * self.dim * self.dim;
-        let position = self.full[first + entry.offset as usize];
-        self.solver.values_mut()[position as usize] += weight * entry.value;
     }
 
     #[inline]
@@ -194,9 +194,8 @@ impl Kkt {
             for &(pair, c) in &self.law_hessian[law][argument].isotropic {
                 self.pair_sum[pair as usize] += weight * c;
             }
-            for k in 0..self.law_hessian[law][argument].skew.len() {
-                let entry = self.law_hessian[law][argument].skew[k];
-                self.add_entry(block, entry, weight);
+            for turn in &self.law_hessian[law][argument].skew {
+                turn.add(weight, &mut self.full_sum);
             }
         }
         for k in 0..self.law_outer[law].len() {
@@ -231,14 +230,8 @@ impl Kkt {
         }
     }
 
-    /// Adds the sum over pairs to the diagonals of a block.
+    /// Adds the sum over pairs to a block.
     pub fn write_sum(&mut self, Block(i, j): Block) {
-        if self.mass_factor != 0.0 {
-            for k in 0..self.turned_mass.len() {
-                let entry = self.turned_mass[k];
-                self.add_entry(Block(i, j), entry, self.mass_factor);
-            }
-        }
         match self.dim {
             2 => self.write_sum_in::<2>(i * self.fields + j),
             _ => self.write_sum_in::<3>(i * self.fields + j),
@@ -246,10 +239,37 @@ impl Kkt {
     }
 
     fn write_sum_in<const D: usize>(&mut self, combination: usize) {
-        let values = self.solver.values_mut();
-        let positions = self.diagonal.as_chunks::<D>().0.iter().skip(combination).step_by(self.fields * self.fields);
+        let (values, blocks) = (self.solver.values_mut(), self.fields * self.fields);
+        let positions = self.diagonal.as_chunks::<D>().0.iter().skip(combination).step_by(blocks);
         for (positions, &sum) in positions.zip(&self.pair_sum) {
             positions.iter().for_each(|&position| values[position as usize] += sum);
+        }
+        let positions = self.full.chunks_exact(D * D).skip(combination).step_by(blocks);
+        for (positions, axis) in positions.zip(&self.full_sum).filter(|(_, axis)| **axis != [0.0; 3]) {
+            for (c, line) in skew(axis).iter().take(D).enumerate() {
+                (0..D).for_each(|d| values[positions[c * D + d] as usize] += line[d]);
+            }
+        }
+    }
+
+    /// Adds `factor` times the sum over pairs times `x` (free coordinates) to `out`.
+    pub fn add_sum_times(&self, factor: f64, x: &[f64], out: &mut [f64]) {
+        match self.dim {
+            2 => self.add_sum_times_in::<2>(factor, x, out),
+            _ => self.add_sum_times_in::<3>(factor, x, out),
+        }
+    }
+
+    fn add_sum_times_in<const D: usize>(&self, factor: f64, x: &[f64], out: &mut [f64]) {
+        let (x, out) = (x.as_chunks::<D>().0, out.as_chunks_mut::<D>().0);
+        for (&[a, b], &sum) in self.pair_nodes.iter().zip(&self.pair_sum) {
+            let (x, out) = (&x[b as usize], &mut out[a as usize]);
+            (0..D).for_each(|c| out[c] += factor * sum * x[c]);
+        }
+        for (&pair, axis) in self.full_pairs.iter().zip(&self.full_sum) {
+            let [a, b] = self.pair_nodes[pair as usize];
+            let (turned, out) = (cross(&x[b as usize], axis), &mut out[a as usize]);
+            (0..D).for_each(|c| out[c] += factor * turned[c]);
         }
     }
 
@@ -273,29 +293,12 @@ impl Kkt {
 
     /// Adds Σ factor_k g_k of all rows to forces on all nodes.
     pub fn add_forces(&self, factors: &[f64], gradient: &[f64], force: &mut [f64]) {
-        for (slots, &factor) in self.row_slots.iter().zip(factors) {
-            scatter(self.dim, &self.slot_nodes[slots.clone()], factor, &gradient[slots.start * self.dim..], force);
-        }
+        scatter_rows(self.dim, &self.slots, factors, gradient, force);
     }
 
     /// Adds `factor` g_k·x of all rows (r), `x` over all nodes.
     pub fn add_along(&self, factor: f64, gradient: &[f64], x: &[f64], out: &mut [f64]) {
-        for (slots, out) in self.row_slots.iter().zip(out) {
-            *out += factor * along(self.dim, &self.slot_nodes[slots.clone()], &gradient[slots.start * self.dim..], x);
-        }
-    }
-
-    /// Adds `factor` Σ λ_k H_k x of the invariant rows over the free coordinates.
-    pub fn add_curvature(&self, factor: f64, lambda: &[f64], x: &[f64], out: &mut [f64]) {
-        for &(row, pair, c) in &self.row_isotropic {
-            let [a, b] = self.pair_nodes[pair as usize].map(|node| node as usize * self.dim);
-            (0..self.dim).for_each(|k| out[a + k] += factor * lambda[row as usize] * c * x[b + k]);
-        }
-        for &(row, entry) in &self.row_skew {
-            let [a, b] = self.pair_nodes[entry.pair as usize].map(|node| node as usize * self.dim);
-            let (i, j) = (entry.offset as usize / self.dim, entry.offset as usize % self.dim);
-            out[a + i] += factor * lambda[row as usize] * entry.value * x[b + j];
-        }
+        add_along_rows(self.dim, &self.slots, factor, gradient, x, out);
     }
 
     /// Subtracts δ (r) from the diagonal of the rows of a field.

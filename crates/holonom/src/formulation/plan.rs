@@ -3,32 +3,46 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::kkt::{Coupling, Hessian, Kkt, NONE, OuterTerm, SkewEntry};
+use super::kkt::{Coupling, Hessian, Kkt, NONE, OuterTerm, Turn};
 use crate::linalg::{Solver, fill_reducing_order};
-use crate::system::{HessianBlock, InvariantId, Mass, NodeId, Quantity, Row, System, skew};
+use crate::system::{HessianBlock, InvariantId, Mass, NodeId, Quantity, Row, RowSlot, System};
 
 /// Pairs of free nodes that share a block of the matrix.
 #[derive(Default)]
 pub(super) struct Pairs {
-    found: BTreeMap<(u32, u32), (u32, bool)>,
+    found: BTreeMap<(u32, u32), Pair>,
+}
+
+/// Its number, and that among the pairs with full blocks.
+#[derive(Default)]
+struct Pair {
+    number: u32,
+    full: Option<u32>,
 }
 
 impl Pairs {
     fn add(&mut self, a: u32, b: u32, full: bool) {
         for key in [(a, b), (b, a)] {
-            let entry = self.found.entry(key).or_default();
-            entry.1 |= full;
+            let pair = self.found.entry(key).or_default();
+            pair.full = pair.full.or(full.then_some(0));
         }
     }
 
     fn number(&mut self) {
-        for (k, entry) in self.found.values_mut().enumerate() {
-            entry.0 = k as u32;
+        for (k, pair) in self.found.values_mut().enumerate() {
+            pair.number = k as u32;
+        }
+        for (k, full) in self.found.values_mut().filter_map(|pair| pair.full.as_mut()).enumerate() {
+            *full = k as u32;
         }
     }
 
     fn at(&self, a: u32, b: u32) -> u32 {
-        self.found[&(a, b)].0
+        self.found[&(a, b)].number
+    }
+
+    fn full_at(&self, a: u32, b: u32) -> u32 {
+        self.found[&(a, b)].full.expect("the pair was added with a full block")
     }
 }
 
@@ -91,10 +105,11 @@ impl Kkt {
                 match block {
                     HessianBlock::Isotropic(c) => hessian.isotropic.push((pairs.at(a, b), c)),
                     HessianBlock::Skew(c, e) => {
-                        let matrix = skew(&e);
-                        let entries = (0..dim * dim).map(|k| (k, matrix[k / dim][k % dim])).filter(|&(_, value)| value != 0.0);
-                        let entry = |(k, value)| SkewEntry { pair: pairs.at(a, b), offset: k as u32, value: c * value };
-                        hessian.skew.extend(entries.map(entry));
+                        let axis = e.map(|e| c * e);
+                        match hessian.skew.iter_mut().find(|turn| turn.full == pairs.full_at(a, b)) {
+                            Some(turn) => (0..3).for_each(|c| turn.axis[c] += axis[c]),
+                            None => hessian.skew.push(Turn { full: pairs.full_at(a, b), axis }),
+                        }
                     }
                 }
             }
@@ -104,7 +119,7 @@ impl Kkt {
         for (k, id) in (0..).zip(system.rows.iter().map(row_invariant)) {
             let hessian = id.map_or_else(Hessian::default, hessian);
             row_isotropic.extend(hessian.isotropic.iter().map(|&(pair, c)| (k, pair, c)));
-            row_skew.extend(hessian.skew.iter().map(|&entry| (k, entry)));
+            row_skew.extend(hessian.skew.iter().map(|&turn| (k, turn)));
         }
         let law_hessian = laws.iter().map(|law| law.iter().map(|&id| hessian(id)).collect()).collect();
         let law_outer = laws.iter().map(|law| {
@@ -124,14 +139,15 @@ impl Kkt {
         let pair_mass =
             pairs.found.keys().map(|&(a, b)| mass.row(a as usize).find(|&(c, _)| c == b as usize).map_or(0.0, |(_, block)| block.m));
         let pair_mass: Vec<f64> = pair_mass.collect();
-        let mut turned_mass = Vec::new();
+        let full_pairs: Vec<u32> = pairs.found.values().filter(|pair| pair.full.is_some()).map(|pair| pair.number).collect();
+        let mut full_mass = vec![[0.0; 3]; full_pairs.len()];
         for a in 0..free {
             for (b, block) in mass.row(a).filter(|&(b, block)| b < free && block.s != 0.0) {
-                let entry = |offset, value| SkewEntry { pair: pairs.at(a as u32, b as u32), offset, value };
-                turned_mass.extend([entry(1, -block.s), entry(2, block.s)]);
+                full_mass[pairs.full_at(a as u32, b as u32) as usize][2] = -block.s;
             }
         }
 
+        let row_slot = |(row, slot): (u32, usize)| RowSlot { row, slot: slot as u32, node: slot_nodes[slot] };
         let mut kkt = Self {
             solver: Solver::new(0, &[], &[]),
             dim,
@@ -141,8 +157,9 @@ impl Kkt {
             pair_nodes: pairs.found.keys().map(|&(a, b)| [a, b]).collect(),
             pair_sum: vec![0.0; pair_mass.len()],
             pair_mass,
-            turned_mass,
-            mass_factor: 0.0,
+            full_sum: vec![[0.0; 3]; full_pairs.len()],
+            full_pairs,
+            full_mass,
             own_pair: (0..free as u32).map(|a| pairs.at(a, a)).collect(),
             diagonal: Vec::new(),
             full_index: Vec::new(),
@@ -155,6 +172,7 @@ impl Kkt {
             custom_pairs,
             row_entries: Vec::new(),
             row_diagonal: Vec::new(),
+            slots: row_slots.iter().zip(0..).flat_map(|(slots, row)| slots.clone().map(move |slot| (row, slot))).map(row_slot).collect(),
             row_slots,
             slot_nodes,
         };
@@ -166,10 +184,10 @@ impl Kkt {
         let (dim, fields, rows) = (self.dim, self.fields, self.row_slots.len());
         let combinations: Vec<(usize, usize)> = (0..fields).flat_map(|i| (0..fields).map(move |j| (i, j))).collect();
         let mut entries = Vec::new();
-        for (&(a, b), &(_, full)) in &pairs.found {
+        for (&(a, b), pair) in &pairs.found {
             for &(i, j) in &combinations {
                 for c in 0..dim {
-                    for d in (0..dim).filter(|&d| full || d == c) {
+                    for d in (0..dim).filter(|&d| pair.full.is_some() || d == c) {
                         entries.push((self.coordinate(a as usize, i, c) as u32, self.coordinate(b as usize, j, d) as u32));
                     }
                 }
@@ -188,13 +206,13 @@ impl Kkt {
             }
         }
         self.solver = Solver::new(self.size(), &entries, &self.elimination_order(pairs));
-        for (&(a, b), &(_, full)) in &pairs.found {
-            self.full_index.push(if full { (self.full.len() / (fields * fields * dim * dim)) as u32 } else { NONE });
+        for (&(a, b), pair) in &pairs.found {
+            self.full_index.push(pair.full.unwrap_or(NONE));
             for &(i, j) in &combinations {
                 for c in 0..dim {
                     let row = self.coordinate(a as usize, i, c);
                     self.diagonal.push(self.solver.position(row, self.coordinate(b as usize, j, c)));
-                    for d in (0..dim).filter(|_| full) {
+                    for d in (0..dim).filter(|_| pair.full.is_some()) {
                         self.full.push(self.solver.position(row, self.coordinate(b as usize, j, d)));
                     }
                 }

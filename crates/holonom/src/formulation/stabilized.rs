@@ -16,6 +16,7 @@ use super::kkt::{ALL, Block, Kkt};
 use super::stage::Stage;
 use super::sweep::Sweeps;
 use super::workspace::Workspace;
+use crate::linalg::largest;
 use crate::system::{MAX_ARGUMENTS, NO_CHANGE, System};
 
 /// Scratch of the second level; the first is the workspace's.
@@ -28,11 +29,14 @@ pub struct Stabilized {
     pub mu: Vec<f64>,
     /// Multiplier of the velocity rows, hγ (r).
     pub gamma: Vec<f64>,
+    /// What γ' is expected to change by in the first iteration (r); its matrices have it.
+    pub gamma_change: Vec<f64>,
     /// h v̄ of all nodes (full), m.
     w: Vec<f64>,
-    /// H w and H u, D a slot.
+    /// H w, H u and H v_n, D a slot.
     turned_w: Vec<f64>,
     pub(super) turned_u: Vec<f64>,
+    turned_start: Vec<f64>,
     /// ∂Φ̇/∂v between the ends of the step (D a slot).
     velocity_gradient: Vec<f64>,
     /// What γ' pulls with in the first equation, ½ H w + DΦ − D_vΦ̇ (D a slot).
@@ -59,9 +63,11 @@ impl Stabilized {
             u: vec![0.0; all],
             mu: vec![0.0; r],
             gamma: vec![0.0; r],
+            gamma_change: vec![0.0; r],
             w: vec![0.0; all],
             turned_w: vec![0.0; slots],
             turned_u: vec![0.0; slots],
+            turned_start: vec![0.0; slots],
             velocity_gradient: vec![0.0; slots],
             pull: vec![0.0; slots],
             rate: vec![0.0; r],
@@ -75,6 +81,7 @@ impl Stabilized {
     /// Newton on increments, velocities and both multipliers from the values in the workspaces, and from the free flight
     /// and shares of it where that fails.
     pub fn solve(&mut self, system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<usize, Failure> {
+        system.invariants.curvature(&work.v0, &mut work.half, &mut self.turned_start);
         let mut outcome = self.newton(system, stage, settings, work);
         let mut spent = 0;
         for &share in settings.restarts() {
@@ -88,6 +95,7 @@ impl Stabilized {
             }
             self.mu.fill(0.0);
             self.gamma.fill(0.0);
+            self.gamma_change.fill(0.0);
             outcome = self.newton(system, stage, settings, work);
         }
         outcome.map(|iterations| spent + iterations)
@@ -99,7 +107,7 @@ impl Stabilized {
         let mut convergence = Convergence::new(settings, work.shortest);
         for iteration in 1..=settings.max_iterations {
             work.lambda.iter_mut().zip(&self.mu).for_each(|(lambda, mu)| *lambda = mu / stage.inertia);
-            work.place(system, stage);
+            work.place(stage);
             work.evaluate(system, stage);
             self.turn(system, stage, work);
             self.residual(system, stage, work);
@@ -112,12 +120,14 @@ impl Stabilized {
                 self.kkt.factor().map_err(|_| Failure::NotFinite)?;
             }
             let left = self.sweep(system, settings, iteration == 1, work)?;
-            let increment = self.advance(system, work);
-            if !increment.is_finite() {
+            if !self.unknowns.iter().chain(&work.unknowns).all(|unknown| unknown.is_finite()) {
                 return Err(Failure::NotFinite);
             }
+            let increment = self.advance(system, work);
             let n = system.coordinates();
-            let turned = work.turned(stage.inertia, n).max(work.scaled_multipliers(self.unknowns[n..].iter().copied()));
+            let steps = self.unknowns[n..].iter().zip(&self.gamma_change).map(|(step, change)| step - change);
+            let turned = work.turned(stage.inertia, n).max(work.scaled_multipliers(steps));
+            self.gamma_change.fill(0.0);
             if convergence.is_reached(increment, turned.max(left)) {
                 return Ok(iteration);
             }
@@ -127,11 +137,13 @@ impl Stabilized {
 
     /// w, and H times w and u.
     pub fn turn(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
-        for i in 0..self.w.len() {
-            self.w[i] = self.u[i] + 0.5 * stage.step * work.v0[i];
-        }
-        system.turn(&work.sampled, &work.xs, &self.w, stage.time(), &mut work.half, &mut self.turned_w);
+        let half = 0.5 * stage.step;
+        self.w.iter_mut().zip(&self.u).zip(&work.v0).for_each(|((w, u), v)| *w = u + half * v);
         system.turn(&work.at_end, &work.x1, &self.u, stage.end(), &mut work.half, &mut self.turned_u);
+        // The Hessians of invariants are constant; the slots of functions come later.
+        let turned = self.turned_u.iter().zip(&self.turned_start);
+        self.turned_w.iter_mut().zip(turned).for_each(|(w, (u, start))| *w = u + half * start);
+        system.turn_custom(&work.xs, &self.w, stage.time(), &mut self.turned_w);
         self.velocity_gradient.copy_from_slice(&work.sampled.gradient);
         self.turn_functions(system, stage.step, work);
         self.pull.iter_mut().zip(&self.turned_w).for_each(|(pull, turned)| *pull = 0.5 * turned);
@@ -215,22 +227,17 @@ impl Stabilized {
     /// Adds the solution to the unknowns; the largest increment over the size of the mechanism.
     fn advance(&mut self, system: &System, work: &mut Workspace) -> f64 {
         let n = system.coordinates();
-        let mut largest = 0.0_f64;
-        for i in 0..n {
-            let (step, turn) = (work.unknowns[i], self.unknowns[i]);
-            work.d[i] += step;
-            self.u[i] += turn;
-            largest = if step.is_finite() && turn.is_finite() { largest.max(step.abs()).max(turn.abs()) } else { f64::NAN };
-        }
+        work.d.iter_mut().zip(&work.unknowns).for_each(|(d, step)| *d += step);
+        self.u.iter_mut().zip(&self.unknowns[..n]).for_each(|(u, turn)| *u += turn);
         self.mu.iter_mut().zip(&work.unknowns[n..]).for_each(|(mu, step)| *mu += step);
         self.gamma.iter_mut().zip(&self.unknowns[n..]).for_each(|(gamma, step)| *gamma += step);
-        largest / work.length
+        largest(&work.unknowns[..n]).max(largest(&self.unknowns[..n])) / work.length
     }
 
     fn is_met(&self, system: &System, work: &Workspace) -> bool {
         let n = system.coordinates();
-        let momentum = work.unknowns[..n].iter().chain(&self.unknowns[..n]).fold(0.0, |m: f64, u| m.max(u.abs()));
-        let scaled = self.rate.iter().zip(&work.softness).map(|(rate, softness)| rate.abs() / (softness * work.heaviest).sqrt());
+        let momentum = largest(&work.unknowns[..n]).max(largest(&self.unknowns[..n]));
+        let scaled = self.rate.iter().zip(&work.row_scale).map(|(rate, scale)| rate.abs() / scale);
         let rate = scaled.fold(0.0, f64::max) / work.length;
         momentum <= STALLED * work.heaviest * work.length && work.scaled_violation() <= STALLED && rate <= STALLED
     }

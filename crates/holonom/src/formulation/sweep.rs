@@ -7,13 +7,11 @@
 use super::iteration::{Failure, SolveSettings};
 use super::stabilized::Stabilized;
 use super::workspace::Workspace;
+use crate::linalg::largest;
 use crate::system::System;
 
 /// What the sweeps may leave, over the first increment of d: as much as kept factors leave.
 const SWEPT: f64 = 1e-4;
-
-/// How near to the tolerance an iteration is taken for the last, and how far below it the sweeps then go.
-const LAST: f64 = 100.0;
 
 /// Sweeps between two extrapolations, and extrapolations of one iteration.
 const SWEEPS: usize = 8;
@@ -42,7 +40,13 @@ impl Stabilized {
     /// of them that the sweeps leave. What `starts` a step takes the second level first, at the increment that was predicted.
     pub(super) fn sweep(&mut self, system: &System, settings: &SolveSettings, starts: bool, work: &mut Workspace) -> Result<f64, Failure> {
         let n = system.coordinates();
-        self.curves = self.gamma.iter().any(|gamma| gamma.abs() > SWEPT * work.heaviest);
+        let mut gamma = self.gamma.iter().zip(&self.gamma_change).map(|(gamma, change)| gamma + change);
+        self.curves = gamma.any(|gamma| gamma.abs() > SWEPT * work.heaviest);
+        if self.curves {
+            self.kkt.start_with_mass(0.0);
+            self.kkt.add_row_hessians(&self.gamma, 1.0);
+            self.kkt.add_row_hessians(&self.gamma_change, 1.0);
+        }
         let mut sweeps = std::mem::replace(&mut self.sweeps, Sweeps { first: Vec::new(), second: Vec::new() });
         let mut unknowns = std::mem::take(&mut self.unknowns);
         sweeps.second[0].copy_from_slice(&unknowns);
@@ -78,8 +82,7 @@ impl Stabilized {
             for j in 0..SWEEPS {
                 let inertia = self.follow(system, &first[j][..n], &mut second[j], &mut work.full, &mut work.inertial);
                 whole = inertia.max(whole);
-                // Once that comes near the tolerance it is the last iteration, and nothing follows that makes up for it.
-                let least = if SWEPT * whole > LAST * tolerance { SWEPT * whole } else { tolerance / LAST };
+                let least = (SWEPT * whole).max(tolerance);
                 let mut left = inertia;
                 let mut met = j;
                 // The first has a residual of its own to take away.
@@ -122,16 +125,12 @@ impl Stabilized {
         full.fill(0.0);
         full[..n].copy_from_slice(change);
         system.mass.times(system.dim, full, inertial);
-        let mut largest = 0.0_f64;
-        for (right, &force) in right.iter_mut().zip(&*inertial) {
-            *right += force;
-            largest = largest.max(force.abs());
-        }
+        add(1.0, inertial, right);
         if self.curves {
-            self.kkt.add_curvature(-0.5, &self.gamma, change, right);
+            self.kkt.add_sum_times(-0.5, change, right);
         }
         self.kkt.add_along(-1.0, &self.turned_u, full, &mut right[n..]);
-        largest
+        largest(inertial)
     }
 
     /// Leaves in `force` what a change of u and γ' brings to the first equation; the largest of it.
@@ -139,9 +138,9 @@ impl Stabilized {
         self.force.fill(0.0);
         self.kkt.add_forces(&change[n..], &self.pull, &mut self.force);
         if self.curves {
-            self.kkt.add_curvature(0.5, &self.gamma, &change[..n], &mut self.force);
+            self.kkt.add_sum_times(0.5, &change[..n], &mut self.force);
         }
-        self.force[..n].iter().fold(0.0, |m: f64, force| m.max(force.abs()))
+        largest(&self.force[..n])
     }
 }
 

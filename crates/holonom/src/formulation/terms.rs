@@ -54,8 +54,7 @@ impl Workspace {
         system.constraint_values(&self.sampled, t, &mut self.phi);
         self.phi.iter_mut().for_each(|phi| *phi *= scale * level.position);
         if level.velocity != 0.0 {
-            let (plan, nodes) = (&self.kkt.row_slots, &self.kkt.slot_nodes);
-            system.constraint_rates(plan, nodes, &self.sampled, &self.vs, t, &mut self.rows);
+            system.constraint_rates(&self.kkt.slots, &self.sampled, &self.vs, t, &mut self.rows);
             self.phi.iter_mut().zip(&self.rows).for_each(|(phi, rate)| *phi += scale * level.velocity * rate);
         }
         if level.acceleration != 0.0 {
@@ -162,7 +161,7 @@ impl Workspace {
         self.kkt.clear();
         self.kkt.start_with_mass(1.0);
         if geometric != 0.0 {
-            self.kkt.add_row_hessians(Block(0, 0), &self.lambda, geometric * weight);
+            self.kkt.add_row_hessians(&self.lambda, geometric * weight);
             self.add_function_rows(system, stage, Block(0, 0));
             self.add_custom_hessians(system, stage.time(), Block(0, 0), geometric * weight);
         }
@@ -319,21 +318,17 @@ impl Workspace {
     /// Leaves Φ̈ at the sampled position, with the accelerations `a1`, in `rows`.
     pub fn sampled_acceleration_violation(&mut self, system: &System, time: f64) {
         system.constraint_curvatures(&self.sampled, &self.xs, &self.vs, time, &mut self.half, &mut self.motion, &mut self.rows);
-        for (row, slots) in self.rows.iter_mut().zip(&self.kkt.row_slots) {
-            *row += system.along(slots, &self.kkt.slot_nodes, &self.sampled, &self.a1);
-        }
+        self.kkt.add_along(1.0, &self.sampled.gradient, &self.a1, &mut self.rows);
     }
 
     /// Leaves Φ̇ at the end of the step in `rows`.
     pub fn rate_violation(&mut self, system: &System, time: f64) {
-        system.constraint_rates(&self.kkt.row_slots, &self.kkt.slot_nodes, &self.at_end, &self.v1, time, &mut self.rows);
+        system.constraint_rates(&self.kkt.slots, &self.at_end, &self.v1, time, &mut self.rows);
     }
 
     /// Leaves Φ̈ at the end of the step in `rows`.
     pub fn acceleration_violation(&mut self, system: &System, time: f64) {
         system.constraint_curvatures(&self.at_end, &self.x1, &self.v1, time, &mut self.half, &mut self.motion, &mut self.rows);
-        for (row, slots) in self.rows.iter_mut().zip(&self.kkt.row_slots) {
-            *row += system.along(slots, &self.kkt.slot_nodes, &self.at_end, &self.a1);
-        }
+        self.kkt.add_along(1.0, &self.at_end.gradient, &self.a1, &mut self.rows);
     }
 }

@@ -4,6 +4,7 @@ use super::iteration::Failure;
 use super::kkt::{ALL, Kkt};
 use super::level::Level;
 use super::stage::Stage;
+use crate::linalg::largest;
 use crate::system::{Evaluation, Response, SIZE, System};
 
 /// Share of the rows' own stiffness that the proximal term may soften: δ = (G M⁻¹ Gᵀ)/ρ (methods §1.2, §11). With redundant
@@ -66,6 +67,8 @@ pub struct Workspace {
     pub unknowns: Vec<f64>,
     /// Size of each row of G M⁻¹ Gᵀ (r), 1/kg in the row's units.
     pub softness: Vec<f64>,
+    /// Length of each row's gradient as its softness and the heaviest mass have it (r).
+    pub row_scale: Vec<f64>,
     pub delta: Vec<f64>,
     /// −M g (full), N.
     pub weight: Vec<f64>,
@@ -152,6 +155,7 @@ impl Workspace {
             responses: vec![Response::default(); system.laws.len() + system.function_rows.len()],
             load_force: vec![0.0; loads],
             softness: vec![1.0; r],
+            row_scale: vec![1.0; r],
             delta: vec![0.0; r],
             weight,
             full: vec![0.0; all],
@@ -189,13 +193,14 @@ impl Workspace {
         }
         for slots in self.kkt.row_slots[..system.rows.len()].iter().filter(|slots| slots.end <= system.invariants.slots()) {
             let gradient = &self.at_start.gradient[slots.start * dim..slots.end * dim];
-            let size = gradient.iter().fold(0.0, |m: f64, g| m.max(g.abs()));
+            let size = largest(gradient);
             if size > SHORT * self.length {
                 self.shortest = self.shortest.min(size / self.length);
             }
         }
         let largest = self.softness.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         self.softness.iter_mut().for_each(|s| *s = s.max(1e-6 * largest));
+        self.row_scale.iter_mut().zip(&self.softness).for_each(|(scale, softness)| *scale = (softness * self.heaviest).sqrt());
     }
 
     /// Fills δ for the proximal term: ρ = [`RHO`], or what a penalty α in the paper's sense comes to, 1/(ϖα), kept
@@ -218,20 +223,15 @@ impl Workspace {
 
     /// Puts the sampled position and velocity, and the end position, of the free nodes where the increment `d` has
     /// them. Those of the known nodes are the integrator's to set.
-    pub fn place(&mut self, system: &System, stage: &Stage) {
-        let n = system.coordinates();
-        for i in 0..n {
-            self.x1[i] = self.x0[i] + self.d[i];
-            self.vs[i] = stage.rate * self.d[i] + self.offset[i];
-        }
-        if self.level.acceleration != 0.0 {
-            for i in 0..n {
-                self.a1[i] = (self.d[i] - self.drift[i]) / stage.inertia;
-            }
-        }
+    pub fn place(&mut self, stage: &Stage) {
+        let Self { d, x0, x1, xs, vs, a1, offset, drift, .. } = self;
         let share = stage.share();
-        for i in 0..n {
-            self.xs[i] = self.x0[i] + share * self.d[i];
+        for (((x1, xs), x0), d) in x1.iter_mut().zip(xs).zip(&*x0).zip(&*d) {
+            (*x1, *xs) = (x0 + d, x0 + share * d);
+        }
+        vs.iter_mut().zip(&*d).zip(offset).for_each(|((v, d), offset)| *v = stage.rate * d + *offset);
+        if self.level.acceleration != 0.0 {
+            a1.iter_mut().zip(d).zip(drift).for_each(|((a, d), drift)| *a = (*d - *drift) / stage.inertia);
         }
     }
 
@@ -244,7 +244,7 @@ impl Workspace {
     /// this is left out where nothing does work.
     pub fn settle(&mut self, system: &System, stage: &Stage) {
         if self.works {
-            self.place(system, stage);
+            self.place(stage);
             self.evaluate(system, stage);
         }
     }
@@ -269,7 +269,7 @@ impl Workspace {
 
     /// Largest multiplier in units of mass × length: each times its row's own gradient.
     pub fn scaled_multipliers(&self, multipliers: impl IntoIterator<Item = f64>) -> f64 {
-        let scaled = multipliers.into_iter().zip(&self.softness).map(|(mu, softness)| mu.abs() * (softness * self.heaviest).sqrt());
+        let scaled = multipliers.into_iter().zip(&self.row_scale).map(|(mu, scale)| mu.abs() * scale);
         scaled.fold(0.0, f64::max) / (self.heaviest * self.length)
     }
 
@@ -303,7 +303,7 @@ impl Workspace {
 
     /// Largest |Φ_k| in units of length: each row over its own gradient.
     pub fn scaled_violation(&self) -> f64 {
-        let scaled = self.phi.iter().zip(&self.softness).map(|(phi, softness)| phi.abs() / (softness * self.heaviest).sqrt());
+        let scaled = self.phi.iter().zip(&self.row_scale).map(|(phi, scale)| phi.abs() / scale);
         scaled.fold(0.0, f64::max) / self.length
     }
 }

@@ -1,6 +1,7 @@
 //! Symmetric compositions of a symmetric scheme of order 2: what it conserves stays exact (Hairer, Lubich and Wanner,
 //! Geometric Numerical Integration, §V.3).
 
+use super::history::{History, is_same_length, take_over};
 use super::{Integrator, Step, Work};
 use crate::energy;
 use crate::formulation::{Failure, SolveSettings, Workspace};
@@ -23,6 +24,25 @@ pub(super) struct Composed {
     inner: Box<dyn Integrator>,
     shares: Vec<f64>,
     start: Vec<f64>,
+    /// The memory of the inner scheme in one of its steps.
+    memory: Vec<f64>,
+}
+
+/// What is kept of each inner step for that of the next step, which comes nearer to it than the inner step before.
+struct Memory<'a> {
+    acceleration: History<'a>,
+    lambda: &'a mut [f64],
+    lambda_change: &'a mut [f64],
+    inner: &'a mut [f64],
+}
+
+impl<'a> Memory<'a> {
+    fn of(system: &System, memory: &'a mut [f64]) -> Self {
+        let (acceleration, rest) = memory.split_at_mut(History::SIZE * system.coordinates());
+        let (lambda, rest) = rest.split_at_mut(system.constraints());
+        let (lambda_change, inner) = rest.split_at_mut(system.constraints());
+        Self { acceleration: History::of(acceleration), lambda, lambda_change, inner }
+    }
 }
 
 impl Composed {
@@ -33,23 +53,46 @@ impl Composed {
             4 => suzuki(),
             _ => kahan_li(),
         };
-        Box::new(Self { inner, shares, start: vec![0.0; system.nodes() * system.dim] })
+        let memory = vec![0.0; inner.memory(system)];
+        Box::new(Self { inner, shares, start: vec![0.0; system.nodes() * system.dim], memory })
     }
 }
 
 impl Integrator for Composed {
     fn memory(&self, system: &System) -> usize {
-        self.inner.memory(system)
+        1 + self.shares.len() * (History::SIZE * system.coordinates() + 2 * system.constraints() + self.memory.len())
     }
 
     fn step(&mut self, system: &System, start: f64, h: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
-        let n = system.coordinates();
         self.start.copy_from_slice(&work.x0);
         // What was predicted over the whole step says nothing of its parts.
         work.a_change.fill(0.0);
+        work.lambda_change.fill(0.0);
+        let mut memory = std::mem::take(&mut work.memory);
+        let outcome = self.steps(system, start, h, settings, &mut memory, work);
+        work.memory = memory;
+        work.x0.copy_from_slice(&self.start);
+        outcome
+    }
+}
+
+impl Composed {
+    fn steps(
+        &mut self,
+        system: &System,
+        start: f64,
+        h: f64,
+        settings: &SolveSettings,
+        memory: &mut [f64],
+        work: &mut Workspace,
+    ) -> Result<Step, Failure> {
+        let n = system.coordinates();
+        let (last_step, memory) = memory.split_first_mut().expect("there is room for a step");
+        let follows = is_same_length(h, *last_step);
+        let each = memory.len() / self.shares.len();
         let (mut iterations, mut done, mut passed) = (0, 0.0, 0.0);
         let mut last = None;
-        for (k, share) in self.shares.iter().enumerate() {
+        for (k, (share, memory)) in self.shares.iter().zip(memory.chunks_exact_mut(each)).enumerate() {
             if k > 0 {
                 for i in 0..n {
                     work.x1[i] = work.x0[i] + work.d[i];
@@ -60,13 +103,27 @@ impl Integrator for Composed {
                 system.evaluate_again(&work.x0, t, &mut work.at_start);
                 system.constraint_values(&work.at_start, t, &mut work.phi_start);
             }
-            let step = match self.inner.step(system, start + passed * h, share * h, settings, work) {
+            let mut memory = Memory::of(system, memory);
+            if follows {
+                work.a1[..n].copy_from_slice(memory.acceleration.value);
+                work.a_change[..n].copy_from_slice(memory.acceleration.change);
+                work.lambda.copy_from_slice(memory.lambda);
+                work.lambda_change.copy_from_slice(memory.lambda_change);
+            }
+            self.memory.copy_from_slice(memory.inner);
+            std::mem::swap(&mut self.memory, &mut work.memory);
+            let outcome = self.inner.step(system, start + passed * h, share * h, settings, work);
+            std::mem::swap(&mut self.memory, &mut work.memory);
+            let step = match outcome {
                 Ok(step) => step,
                 Err(failure) => {
                     system.evaluate_again(&self.start, start, &mut work.at_start);
                     return Err(failure);
                 }
             };
+            memory.inner.copy_from_slice(&self.memory);
+            memory.acceleration.remember(follows, |i| work.a1[i]);
+            take_over(memory.lambda, memory.lambda_change, follows, &work.lambda);
             iterations += step.iterations;
             if let Work::Between(extra) = step.work {
                 done += energy::work_between(system, &step.stage, work) + extra;
@@ -74,12 +131,12 @@ impl Integrator for Composed {
             passed += share;
             last = Some(step);
         }
+        *last_step = h;
         let step = last.expect("a composition has steps");
         for i in 0..n {
             let end = work.x0[i] + work.d[i];
             work.d[i] = end - self.start[i];
         }
-        work.x0.copy_from_slice(&self.start);
         Ok(Step { iterations, stage: step.stage, work: Work::Sum(done), estimate: None })
     }
 }

@@ -1,46 +1,68 @@
 //! The conserving scheme with the rows at both levels: energy, momentum, Φ and Φ̇ exact (methods §2.4).
 
 use super::conserving::midpoint_kinematics;
+use super::history::{History, is_same_length, take_over};
 use super::{Integrator, Step, Work};
 use crate::formulation::{Failure, RowsAt, Sampling, SolveSettings, Stabilized, Workspace};
 use crate::system::System;
 
 pub(super) struct ConservingGgl {
     stabilized: Stabilized,
-    /// Step of the last solution, s: γ' grows with its cube.
-    last_step: f64,
 }
 
 impl ConservingGgl {
     pub(super) fn new(system: &System) -> Self {
-        Self { stabilized: Stabilized::new(system), last_step: 0.0 }
+        Self { stabilized: Stabilized::new(system) }
+    }
+}
+
+/// What is kept from step to step.
+struct Memory<'a> {
+    /// Step of the last solution, s.
+    step: &'a mut f64,
+    /// γ' of the last step and its change there (r each).
+    gamma: &'a mut [f64],
+    gamma_change: &'a mut [f64],
+    /// By how much γ' makes the increment of the free coordinates exceed that of the mean velocity, Δq − h v̄ = M⁻¹Ḡᵀγ', m.
+    slip: History<'a>,
+}
+
+impl<'a> Memory<'a> {
+    fn of(system: &System, memory: &'a mut [f64]) -> Self {
+        let (step, rest) = memory.split_first_mut().expect("there is room for a step");
+        let (gamma, rest) = rest.split_at_mut(system.constraints());
+        let (gamma_change, slip) = rest.split_at_mut(system.constraints());
+        Self { step, gamma, gamma_change, slip: History::of(slip) }
     }
 }
 
 impl Integrator for ConservingGgl {
+    fn memory(&self, system: &System) -> usize {
+        1 + 2 * system.constraints() + History::SIZE * system.coordinates()
+    }
+
     fn step(&mut self, system: &System, start: f64, step: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
         let (n, h) = (system.coordinates(), step);
         let stage = midpoint_kinematics(system, start, h, Sampling::Between, RowsAt::End, work);
         let both = &mut self.stabilized;
+        let memory = Memory::of(system, &mut work.memory);
+        let follows = is_same_length(h, *memory.step);
         for i in 0..work.x1.len() {
             if i < n {
                 both.u[i] = work.d[i] - 0.5 * h * work.v0[i];
+                work.d[i] += if follows { memory.slip.value[i] + memory.slip.change[i] } else { 0.0 };
             } else {
                 both.u[i] = 0.5 * h * work.v1[i];
                 work.a1[i] = (work.x1[i] - work.x0[i] - h * work.v0[i]) / stage.inertia;
             }
         }
-        // A failed step leaves nothing to start from, and a step of another length little.
-        let carried = if self.last_step == h { 1.0 } else { 0.0 };
+        // γ' and μ = ϖλ − γ' begin at zero; what they are expected to be is for the first iteration's matrices.
         for row in 0..both.mu.len() {
-            both.gamma[row] *= carried;
-            // μ = ϖλ − γ' begins at zero; what it is expected to be is for the first tangent.
-            both.mu[row] = 0.0;
-            work.lambda[row] -= both.gamma[row] / stage.inertia;
+            let expected = if follows { memory.gamma[row] + memory.gamma_change[row] } else { 0.0 };
+            (both.gamma[row], both.mu[row], both.gamma_change[row]) = (0.0, 0.0, expected);
+            work.lambda[row] -= expected / stage.inertia;
         }
-        self.last_step = 0.0;
         let iterations = both.solve(system, &stage, settings, work)?;
-        self.last_step = h;
         for i in 0..work.x1.len() {
             if i < n {
                 work.v1[i] = work.v0[i] + 2.0 / h * (both.u[i] - 0.5 * work.drift[i]);
@@ -50,6 +72,10 @@ impl Integrator for ConservingGgl {
         for row in 0..both.mu.len() {
             work.lambda[row] = (both.mu[row] + both.gamma[row]) / stage.inertia;
         }
+        let mut memory = Memory::of(system, &mut work.memory);
+        *memory.step = h;
+        memory.slip.remember(follows, |i| work.d[i] - both.u[i] - 0.5 * work.drift[i]);
+        take_over(memory.gamma, memory.gamma_change, follows, &both.gamma);
         let mut extra_work = 0.0;
         if work.is_worked_on() {
             work.settle(system, &stage);

@@ -56,7 +56,7 @@ impl GeneralizedAlpha {
             before[i] = work.a1[i] + h * before[i];
         }
         let iterations = solve(system, &stage, settings, work)?;
-        work.place(system, &stage);
+        work.place(&stage);
         for i in 0..n {
             let (a, dv) = (work.memory[i], work.memory[n + i]);
             let new = (work.d[i] - work.drift[i]) / stage.inertia;

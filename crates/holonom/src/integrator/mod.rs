@@ -7,6 +7,7 @@ mod conserving_ggl;
 mod dop853;
 mod explicit;
 mod generalized_alpha;
+mod history;
 mod midpoint;
 mod newmark;
 mod rattle;
@@ -16,6 +17,7 @@ mod table;
 use crate::formulation::{Failure, RowsAt, SolveSettings, Stage, Workspace};
 use crate::system::System;
 
+pub(crate) use history::{Differences, extrapolate, is_same_length};
 pub use table::{Entry, Estimate, INTEGRATORS};
 
 /// Time stepping from the start values in a workspace (x0, v0, a0 in `a1`, λ) to its end values (d, v1, a1, λ).

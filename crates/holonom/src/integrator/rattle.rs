@@ -26,7 +26,7 @@ impl Integrator for Rattle {
         let Workspace { x1, v1, full, .. } = work;
         system.place_known(stage.end(), x1, v1, full);
         let iterations = solve(system, &stage, settings, work)?;
-        work.place(system, &stage);
+        work.place(&stage);
         kick(system, &stage, work)?;
         Ok(Step { iterations, stage: Stage { sampling: Sampling::End, ..stage }, work: Work::AtEnds, estimate: None })
     }

@@ -1,6 +1,7 @@
 //! Coordinate projections of velocity and acceleration (10)–(13): the nearest ones that satisfy the rows, in a metric A.
 
 use crate::formulation::{Block, RowsAt, Sampling, Stage, Workspace};
+use crate::linalg::largest;
 use crate::system::System;
 
 /// The matrix A that measures the distance moved.
@@ -135,7 +136,7 @@ impl Projection {
         for _ in 0..passes {
             let violation = self.violation(system, time, level, work);
             let values = if level == Level::Velocity { &work.v1 } else { &work.a1 };
-            let size = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+            let size = largest(values);
             if violation <= ROUND_OFF * size {
                 break;
             }
@@ -164,7 +165,7 @@ impl Projection {
             Level::Velocity => work.rate_violation(system, time),
             Level::Acceleration => work.acceleration_violation(system, time),
         }
-        let scaled = work.rows.iter().zip(&work.softness).map(|(row, softness)| row.abs() / (softness * work.heaviest).sqrt());
+        let scaled = work.rows.iter().zip(&work.row_scale).map(|(row, scale)| row.abs() / scale);
         scaled.fold(0.0, f64::max)
     }
 }

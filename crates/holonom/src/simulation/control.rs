@@ -3,6 +3,7 @@
 use super::State;
 use crate::formulation::Workspace;
 use crate::integrator::{Estimate, Step};
+use crate::linalg::largest;
 
 /// Velocities that the third derivatives are taken from, the present ones included.
 const KEPT: usize = 4;
@@ -70,7 +71,6 @@ impl Control {
         self.start.copy_from_slice(&state.a[..n]);
         self.count = 0;
         self.remember(state.t, v);
-        let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         self.speed = largest(&state.v).max((largest(&state.a) * length).sqrt()).max(length / span);
         if self.step == 0.0 {
             let share = 0.1 * self.accuracy.powf(1.0 / f64::from(self.order));
@@ -91,7 +91,7 @@ impl Control {
         let n = self.start.len();
         self.velocities[0].copy_from_slice(&v[..n]);
         self.count = (self.count + 1).min(KEPT);
-        self.speed = v.iter().fold(self.speed, |m, v| m.max(v.abs()));
+        self.speed = largest(v).max(self.speed);
     }
 
     /// The error of a step of length `h` to the time `t` and velocities `v` over what is allowed.
@@ -100,9 +100,9 @@ impl Control {
         if self.estimate == Estimate::History {
             self.look_back(h, t, v, work);
         }
-        let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::INFINITY } else { m.max(x.abs()) });
-        let position = largest(&work.error_q) / work.length;
-        let velocity = largest(&work.error_v) / self.speed;
+        let error = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::INFINITY } else { m.max(x.abs()) });
+        let position = error(&work.error_q) / work.length;
+        let velocity = error(&work.error_v) / self.speed;
         let is_noise = position <= ROUND_OFF && velocity <= ROUND_OFF * (work.length / (h * self.speed)).max(1.0);
         // The estimate of a lower order shows how many times shorter than the motion's own time the step is; the error is
         // that to a higher power.

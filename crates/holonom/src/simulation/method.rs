@@ -126,7 +126,7 @@ pub const NAMED: &[Named] = &[
 
 /// Tolerance of the Newton iteration: estimated remaining increment over the size of the mechanism. Velocities are
 /// increments over the step, and energy is to be exact to round-off, so that this is below the last digit of a position.
-pub const TOLERANCE: f64 = 1e-17;
+pub const TOLERANCE: f64 = 2e-17;
 
 /// Tolerance of the paper's loops: 2-norm of the increment, m.
 pub const LOOP_TOLERANCE: f64 = 1e-9;

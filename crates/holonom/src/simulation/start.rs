@@ -2,6 +2,7 @@
 
 use super::Method;
 use crate::formulation::{Level, Multipliers, Workspace};
+use crate::linalg::largest;
 use crate::system::System;
 
 /// What was corrected before the start.
@@ -88,9 +89,8 @@ fn correct_velocities(system: &System, work: &mut Workspace, start: &mut Start) 
     let mut violation = f64::INFINITY;
     for _ in 0..4 {
         work.rate_violation(system, 0.0);
-        let size = work.v1.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        violation =
-            work.rows.iter().zip(&work.softness).fold(0.0, |m, (row, softness)| f64::max(m, row.abs() / (softness * work.heaviest).sqrt()));
+        let size = largest(&work.v1);
+        violation = work.rows.iter().zip(&work.row_scale).fold(0.0, |m, (row, scale)| f64::max(m, row.abs() / scale));
         if violation <= ROUND_OFF * size {
             break;
         }
@@ -100,7 +100,7 @@ fn correct_velocities(system: &System, work: &mut Workspace, start: &mut Start) 
         work.v1[..n].iter_mut().zip(&work.unknowns).for_each(|(v, step)| *v += step);
     }
     start.turned = work.v1.iter().zip(&system.start_velocity).fold(0.0, |m, (v, v0)| f64::max(m, (v - v0).abs()));
-    let size = work.v1.iter().fold(work.length, |m: f64, v| m.max(v.abs()));
+    let size = largest(&work.v1).max(work.length);
     match violation <= MET * size {
         true => Ok(()),
         false => Err(StartError::Velocity { rows: worst(system, &work.rows) }),

@@ -1,6 +1,7 @@
 //! Numbers of a moment: what a step starts from and leaves.
 
 use crate::formulation::Workspace;
+use crate::integrator::{Differences, extrapolate, is_same_length};
 use crate::system::System;
 
 /// Numbers of a moment. A clone is a checkpoint.
@@ -19,8 +20,8 @@ pub struct State {
     /// Predicted change of the accelerations in the next step (D × nodes), m/s²; zero where the last two steps were of
     /// different lengths.
     pub a_change: Vec<f64>,
-    /// Backward differences of the accelerations up to the last step (ORDERS × D × nodes), m/s², zero in the same cases.
-    pub a_differences: Vec<f64>,
+    /// Backward differences of the accelerations up to the last step (D × nodes), m/s², zero in the same cases.
+    pub a_differences: Vec<Differences>,
     /// Change of the multipliers in the last step (r), zero in the same cases. Only a tangent is built with it: what redundant
     /// rows leave undetermined of the multipliers would run away.
     pub lambda_change: Vec<f64>,
@@ -32,9 +33,6 @@ pub struct State {
     pub angle: Vec<f64>,
 }
 
-/// Backward differences of accelerations that are kept.
-const ORDERS: usize = 3;
-
 impl State {
     /// The start that a workspace was put at.
     pub(super) fn new(work: &Workspace) -> Self {
@@ -45,7 +43,7 @@ impl State {
             a: work.a1.clone(),
             lambda: work.lambda.clone(),
             a_change: vec![0.0; work.a1.len()],
-            a_differences: vec![0.0; ORDERS * work.a1.len()],
+            a_differences: vec![Differences::default(); work.a1.len()],
             lambda_change: vec![0.0; work.lambda.len()],
             last_step: 0.0,
             memory: work.memory.clone(),
@@ -57,7 +55,7 @@ impl State {
     pub(super) fn fits(&self, system: &System) -> bool {
         let all = system.nodes() * system.dim;
         [&self.x, &self.v, &self.a, &self.a_change].iter().all(|values| values.len() == all)
-            && self.a_differences.len() == ORDERS * all
+            && self.a_differences.len() == all
             && [&self.lambda, &self.lambda_change].iter().all(|values| values.len() == system.constraints())
             && self.angle.len() == system.evaluation().functions.angle.len()
     }
@@ -65,8 +63,8 @@ impl State {
     /// Takes over another state of the same run, without allocating.
     pub(super) fn copy_from(&mut self, other: &Self) {
         (self.t, self.last_step) = (other.t, other.last_step);
-        let accelerations =
-            [(&mut self.a, &other.a), (&mut self.a_change, &other.a_change), (&mut self.a_differences, &other.a_differences)];
+        self.a_differences.copy_from_slice(&other.a_differences);
+        let accelerations = [(&mut self.a, &other.a), (&mut self.a_change, &other.a_change)];
         let rest = [
             (&mut self.lambda, &other.lambda),
             (&mut self.lambda_change, &other.lambda_change),
@@ -91,28 +89,12 @@ impl State {
         work.at_start.functions.angle.copy_from_slice(&self.angle);
     }
 
-    /// Remembers how the accelerations changed in a step, and predicts how they change in the next: by the polynomial through
-    /// the last of them that would have come nearest to this step.
+    /// Remembers how accelerations and multipliers changed in a step, for the prediction of the next.
     pub(super) fn remember(&mut self, step: f64, work: &Workspace) {
-        // Steps of the same length tell of another; round-off of the times is no other length.
-        let same = if (step - self.last_step).abs() <= 1e-9 * step { 1.0 } else { 0.0 };
-        let all = self.a.len();
-        let mut sizes = [0.0; ORDERS + 1];
-        for k in 0..all {
-            let mut difference = same * (work.a1[k] - self.a[k]);
-            for order in 0..ORDERS {
-                sizes[order] += difference * difference;
-                let last = std::mem::replace(&mut self.a_differences[order * all + k], difference);
-                difference -= same * last;
-            }
-            sizes[ORDERS] += difference * difference;
-        }
-        let order = (1..=ORDERS).min_by(|&i, &j| sizes[i].total_cmp(&sizes[j])).unwrap_or(1);
-        for (k, change) in self.a_change.iter_mut().enumerate() {
-            *change = (0..order).map(|i| self.a_differences[i * all + k]).sum();
-        }
+        let follows = is_same_length(step, self.last_step);
+        extrapolate(&mut self.a_differences, &mut self.a_change, follows, |k| work.a1[k] - self.a[k]);
         for ((change, new), old) in self.lambda_change.iter_mut().zip(&work.lambda).zip(&self.lambda) {
-            *change = same * (new - old);
+            *change = if follows { new - old } else { 0.0 };
         }
         self.last_step = step;
     }

@@ -1,6 +1,6 @@
 //! Values and gradients of all invariants and constraint rows, *at* one position and *between* two.
 
-use super::{CustomEntry, FunctionValues, InvariantId, MAX_ARGUMENTS, NodeId, Quantity, System, along};
+use super::{CustomEntry, FunctionValues, InvariantId, MAX_ARGUMENTS, NodeId, Quantity, RowSlot, System, add_along_rows, along};
 
 /// Values and gradients at one position, or between two.
 ///
@@ -164,10 +164,9 @@ impl System {
     }
 
     /// Φ̇ = G v + Φ_t (r), `v` over all nodes.
-    pub fn constraint_rates(&self, plan: &[std::ops::Range<usize>], nodes: &[u32], at: &Evaluation, v: &[f64], t: f64, out: &mut [f64]) {
-        for (k, out) in out.iter_mut().enumerate() {
-            *out = self.along(&plan[k], nodes, at, v) + self.explicit_rate(k, at, t);
-        }
+    pub fn constraint_rates(&self, slots: &[RowSlot], at: &Evaluation, v: &[f64], t: f64, out: &mut [f64]) {
+        out.iter_mut().enumerate().for_each(|(row, out)| *out = self.explicit_rate(row, at, t));
+        add_along_rows(self.dim, slots, 1.0, &at.gradient, v, out);
     }
 
     /// ∂Φ_k/∂t with all nodes held.
@@ -242,6 +241,11 @@ impl System {
             let local = &at.functions.local[k];
             std::array::from_fn(|i| [local.gradient[i], local.bend(i, &rates)])
         });
+        self.turn_custom(x, v, t, turned);
+    }
+
+    /// The slots of the custom rows in what [`System::turn`] fills.
+    pub(crate) fn turn_custom(&self, x: &[f64], v: &[f64], t: f64, turned: &mut [f64]) {
         if self.custom.is_empty() {
             return;
         }

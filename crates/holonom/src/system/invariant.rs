@@ -263,7 +263,7 @@ fn dot<const D: usize>(u: &[f64; D], w: &[f64; D]) -> f64 {
 
 /// w × e; in the plane e is the normal.
 #[inline]
-fn cross<const D: usize>(w: &[f64; D], e: &[f64; 3]) -> [f64; D] {
+pub(crate) fn cross<const D: usize>(w: &[f64; D], e: &[f64; 3]) -> [f64; D] {
     std::array::from_fn(|c| match D {
         2 => [w[1], -w[0]][c],
         _ => w[(c + 1) % D] * e[(c + 2) % 3] - w[(c + 2) % D] * e[(c + 1) % 3],

@@ -29,12 +29,13 @@ pub use function::{FunctionId, Part, Quantity};
 pub(crate) use function::{FunctionValues, Functions};
 pub(crate) use gauge::Gauges;
 pub use gauge::{Form, GaugeValues};
-pub(crate) use invariant::{HessianBlock, skew};
+pub(crate) use invariant::{HessianBlock, cross, skew};
 pub use invariant::{InvariantId, Invariants};
 pub use law::{Law, Load, MAX_ARGUMENTS, Reach, Response};
 pub use mass::{Mass, MassBlock};
 pub use motion::{Constant, Signal};
-pub(crate) use slots::{along, scatter};
+pub use slots::RowSlot;
+pub(crate) use slots::{add_along_rows, along, scatter, scatter_rows};
 
 use std::sync::Arc;
 

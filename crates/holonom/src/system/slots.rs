@@ -20,6 +20,51 @@ pub(crate) fn scatter(dim: usize, nodes: &[u32], factor: f64, gradient: &[f64], 
     }
 }
 
+/// A slot of a constraint row.
+#[derive(Clone, Copy, Debug)]
+pub struct RowSlot {
+    pub row: u32,
+    pub slot: u32,
+    pub node: u32,
+}
+
+/// Adds `factor` Σ g_s·v over the slots of each row to the rows, `v` over all nodes.
+#[inline]
+pub(crate) fn add_along_rows(dim: usize, slots: &[RowSlot], factor: f64, gradient: &[f64], v: &[f64], out: &mut [f64]) {
+    match dim {
+        2 => add_along_rows_in::<2>(slots, factor, gradient, v, out),
+        _ => add_along_rows_in::<3>(slots, factor, gradient, v, out),
+    }
+}
+
+/// Adds `factors` of the rows times their g_s to the nodes of their slots, `out` over all nodes.
+#[inline]
+pub(crate) fn scatter_rows(dim: usize, slots: &[RowSlot], factors: &[f64], gradient: &[f64], out: &mut [f64]) {
+    match dim {
+        2 => scatter_rows_in::<2>(slots, factors, gradient, out),
+        _ => scatter_rows_in::<3>(slots, factors, gradient, out),
+    }
+}
+
+#[inline]
+fn add_along_rows_in<const D: usize>(slots: &[RowSlot], factor: f64, gradient: &[f64], v: &[f64], out: &mut [f64]) {
+    let (gradient, v) = (gradient.as_chunks::<D>().0, v.as_chunks::<D>().0);
+    for &RowSlot { row, slot, node } in slots {
+        let (g, v) = (&gradient[slot as usize], &v[node as usize]);
+        let along: f64 = (0..D).map(|c| g[c] * v[c]).sum();
+        out[row as usize] += factor * along;
+    }
+}
+
+#[inline]
+fn scatter_rows_in<const D: usize>(slots: &[RowSlot], factors: &[f64], gradient: &[f64], out: &mut [f64]) {
+    let (gradient, out) = (gradient.as_chunks::<D>().0, out.as_chunks_mut::<D>().0);
+    for &RowSlot { row, slot, node } in slots {
+        let (factor, g, out) = (factors[row as usize], &gradient[slot as usize], &mut out[node as usize]);
+        (0..D).for_each(|c| out[c] += factor * g[c]);
+    }
+}
+
 #[inline]
 fn along_in<const D: usize>(nodes: &[u32], gradient: &[f64], v: &[f64]) -> f64 {
     let (v, mut sum) = (v.as_chunks::<D>().0, 0.0);
