@@ -93,6 +93,14 @@ impl Fronts {
         self.front_of.len()
     }
 
+    /// Its blocks, where all is one front of few.
+    pub fn one_front(&self) -> Option<usize> {
+        match self.fronts[..] {
+            [front] if front.head <= ONE_FRONT => Some(front.head),
+            _ => None,
+        }
+    }
+
     /// The tile on the diagonal of a block, among all tiles.
     pub fn diagonal(&self, block: usize) -> usize {
         let front = &self.fronts[self.front_of[block] as usize];
@@ -159,7 +167,7 @@ struct Groups {
     roots: Vec<u32>,
 }
 
-#[derive(Clone, Default)]
+#[derive(Clone)]
 struct Group {
     members: Vec<u32>,
     /// Columns whose parent is one of the members: the last ones of the fronts below.
@@ -179,7 +187,7 @@ impl Groups {
                 None => groups.roots.push(k as u32),
             }
         }
-        let rows = |k: u32| columns[k as usize].len();
+        let (rows, in_one) = (|k: u32| columns[k as usize].len(), columns.len() <= ONE_FRONT * LANES);
         children.iter_mut().for_each(|children| children.sort_by_key(|&child| rows(child)));
         for k in 0..columns.len() {
             let alone = Group { members: vec![k as u32], children: children[k].clone(), cost: 0.0 };
@@ -197,12 +205,11 @@ impl Groups {
             }
             for &child in children[k].iter().rev() {
                 let joined = groups.priced(groups.joined(&whole, child), rows(k as u32));
-                if joined.cost < whole.cost || columns.len() <= ONE_FRONT * LANES {
+                if joined.cost < whole.cost || in_one {
                     whole = joined;
                 }
             }
-            let is_better = whole.cost < best.cost || columns.len() <= ONE_FRONT * LANES;
-            groups.best.push(if is_better { whole } else { best });
+            groups.best.push(if whole.cost < best.cost || in_one { whole } else { best });
         }
         groups.best.iter_mut().for_each(|group| group.members.sort_unstable());
         groups

@@ -73,6 +73,22 @@ impl Multifrontal {
     }
 }
 
+/// What goes faster with a single front of a size that is known.
+trait OneFront: WithSimd {
+    /// The same with a single front of `B` blocks.
+    fn one<S: Simd, const B: usize>(self, simd: S) -> Self::Output;
+}
+
+#[inline(always)]
+fn with_blocks<S: Simd, T: OneFront>(task: T, simd: S, blocks: usize) -> T::Output {
+    match blocks {
+        1 => task.one::<S, 1>(simd),
+        2 => task.one::<S, 2>(simd),
+        3 => task.one::<S, 3>(simd),
+        _ => task.one::<S, ONE_FRONT>(simd),
+    }
+}
+
 struct Factor<'a> {
     plan: &'a Fronts,
     tiles: &'a mut [Tile],
@@ -84,14 +100,8 @@ impl WithSimd for Factor<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        if let [front] = self.plan.fronts[..] {
-            match front.head {
-                1 => return self.one::<S, 1>(simd),
-                2 => return self.one::<S, 2>(simd),
-                3 => return self.one::<S, 3>(simd),
-                ONE_FRONT => return self.one::<S, ONE_FRONT>(simd),
-                _ => {}
-            }
+        if let Some(blocks) = self.plan.one_front() {
+            return with_blocks(self, simd, blocks);
         }
         let Numbers { exchange, exchanged, rows, .. } = self.numbers;
         for (front, exchanged) in self.plan.fronts.iter().zip(exchanged) {
@@ -110,10 +120,10 @@ impl WithSimd for Factor<'_> {
     }
 }
 
-impl Factor<'_> {
-    /// Factors a single front of `B` blocks, and leaves the inverse of L in its place.
+impl OneFront for Factor<'_> {
+    /// Leaves the inverse of L in its place.
     #[inline(always)]
-    fn one<S: Simd, const B: usize>(self, simd: S) -> Result<(), Singular> {
+    fn one<S: Simd, const B: usize>(self, simd: S) -> Self::Output {
         let front = Front { head: B, size: B, ..self.plan.fronts[0] };
         let (Numbers { exchange, exchanged, rows, .. }, tiles) = (self.numbers, &mut self.tiles[..B * B]);
         exchanged[0] = eliminate(simd, &front, tiles, &mut exchange[..front.pivots], rows)
@@ -386,14 +396,8 @@ impl WithSimd for Solve<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        if let [front] = self.plan.fronts[..] {
-            match front.head {
-                1 => return self.one::<S, 1>(simd),
-                2 => return self.one::<S, 2>(simd),
-                3 => return self.one::<S, 3>(simd),
-                ONE_FRONT => return self.one::<S, ONE_FRONT>(simd),
-                _ => {}
-            }
+        if let Some(blocks) = self.plan.one_front() {
+            return with_blocks(self, simd, blocks);
         }
         let Numbers { exchange, exchanged, y, local, .. } = self.numbers;
         y.fill([0.0; LANES]);
@@ -429,8 +433,7 @@ impl WithSimd for Solve<'_> {
     }
 }
 
-impl Solve<'_> {
-    /// Solves with the inverse of L and with U of a single front of `B` blocks.
+impl OneFront for Solve<'_> {
     #[inline(always)]
     fn one<S: Simd, const B: usize>(self, simd: S) {
         let (Numbers { exchange, exchanged, .. }, tiles) = (self.numbers, &self.tiles[..B * B]);
