@@ -42,6 +42,10 @@ def pendulum(row, reference, k):
     return [row[f"{point}.{axis}"] for point in ("m1", "m2") for axis in "xyz"], [*direction, *(2 * d for d in direction)]
 
 
+def pendulum_rod(row, reference, k):
+    return [row[f"m2.{axis}"] for axis in "xyz"], [2 * d for d in reference["d"][k]]
+
+
 def four_bar(row, reference, k):
     angle = reference["th"][k]
     return [row["P[0].x"], row["P[0].y"]], [math.cos(angle), math.sin(angle)]

@@ -39,6 +39,8 @@ class Problem:
     set: list = dataclasses.field(default_factory=list)
     reference: str | None = None
     key: object = None
+    # What tells this model of the mechanism from others, where it has several.
+    form: list = dataclasses.field(default_factory=list)
     # Whether the peers' scripts measure energy and violations.
     peers_measure: bool = True
     programs: list = dataclasses.field(default_factory=list)
@@ -52,9 +54,9 @@ def stiff_as_the_step(step):
     return [f"--solref={2 * step!r},1"]
 
 
-def with_methods(problem, methods):
-    """Methods of holonom come first."""
-    problem.programs[:0] = [Holonom(problem, name, by_accuracy) for name, by_accuracy in methods]
+def with_methods(problem, methods, form=None):
+    """Methods of holonom come first, on the same model as the peers or on another form of it."""
+    problem.programs[:0] = [Holonom(form or problem, name, by_accuracy) for name, by_accuracy in methods]
     return problem
 
 
@@ -66,6 +68,14 @@ def pendulum(step, end):
     problem.add("Exudyn", "generalized-α", [*options, "--solver", "ga"])
     problem.add("MuJoCo", "RK4, ball joint", ["--problem", "scp"])
     return problem
+
+
+def pendulum_in_both_forms(step, end):
+    """As two particles with five rows, and as one rigid body on a ball joint, which is what MuJoCo's is."""
+    problem = pendulum(step, end)
+    rod = dataclasses.replace(problem, model=str(ROOT / "benches" / "models" / "pendulum-rod.toml"), key=errors.pendulum_rod,
+                              form=["one rod"])
+    return with_methods(with_methods(problem, [*METHODS[:4], ("ode/dop853", False), ("ode/dop853", True)], rod), METHODS)
 
 
 def four_bar(windows, step, end):
@@ -168,12 +178,11 @@ def of_costs():
 def of_precision():
     """Problems whose steps are swept, from the largest that has rows at the times of the reference."""
     explicit = [*METHODS, ("ode/dop853", True)]
-    found = [
-        (pendulum(0.25, 20.0), METHODS),
-        (four_bar(40, 0.1, 10.0), METHODS),
-        (chain(40, 0.05, 1.0), explicit),
-        (andrews(1e-3, 0.05), METHODS),
-        (bricard(0.1, 10.0), METHODS),
-        (governor(0.1, 10.0), METHODS),
+    return [
+        pendulum_in_both_forms(0.25, 20.0),
+        with_methods(four_bar(40, 0.1, 10.0), METHODS),
+        with_methods(chain(40, 0.05, 1.0), explicit),
+        with_methods(andrews(1e-3, 0.05), METHODS),
+        with_methods(bricard(0.1, 10.0), METHODS),
+        with_methods(governor(0.1, 10.0), METHODS),
     ]
-    return [with_methods(problem, methods) for problem, methods in found]

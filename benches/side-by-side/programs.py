@@ -41,7 +41,7 @@ class Holonom:
 
     def __init__(self, problem, method, accuracy=False):
         self.problem, self.method, self.by_accuracy = problem, method, accuracy
-        self.setting = f"{method} by accuracy" if accuracy else method
+        self.setting = ", ".join([f"{method} by accuracy" if accuracy else method, *problem.form])
 
     def run(self, step, trace, limit, peers):
         """A run with a step, or an accuracy, s. With `trace` it is compared with the reference, and not timed."""

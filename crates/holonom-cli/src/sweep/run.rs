@@ -1,5 +1,6 @@
 //! One run of a sweep: the model with the values of the run, from its start to its end.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -120,7 +121,9 @@ impl Runner<'_> {
     }
 
     fn figures(&self, model: &Model, simulation: &Simulation<'_>) -> Figures {
-        let (audit, last) = (simulation.audit(), present(model, simulation));
+        let (audit, present) = (simulation.audit(), present(model, simulation));
+        let last: HashMap<&str, f64> =
+            present.columns().iter().filter_map(|column| Some((column.name.as_str(), *column.values.first()?))).collect();
         let (violation, work) = (audit.violation_summary(), audit.work_summary(simulation.steps()));
         Figures {
             steps: simulation.steps(),
@@ -129,7 +132,7 @@ impl Runner<'_> {
             velocity: violation.velocity,
             iterations_per_step: work.iterations_per_step,
             rejected_steps: work.rejected_steps,
-            last: self.columns.iter().map(|name| last.column(name).and_then(|values| values.first().copied())).collect(),
+            last: self.columns.iter().map(|name| last.get(name.as_str()).copied()).collect(),
         }
     }
 }

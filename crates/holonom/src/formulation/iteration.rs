@@ -150,8 +150,7 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
             return Ok(iteration - 1);
         }
         if !convergence.keeps_factors() {
-            work.expected_tangent(system, stage);
-            work.factor()?;
+            work.factor_tangent(system, stage, iteration == 1)?;
         }
         work.solve()?;
         let increment = advance(n, work);

@@ -101,6 +101,9 @@ pub struct Kkt {
     /// For columns and for rows, for each block: number of a slot's component and its place in the matrix.
     pub(super) row_entries: Vec<Vec<[u32; 2]>>,
     pub(super) row_diagonal: Vec<u32>,
+    /// For each row, and at the end, the first of its second derivatives that are multiples of the unit matrix, and the first
+    /// of its entries with one field.
+    pub(super) row_first: Vec<[u32; 2]>,
 }
 
 impl Kkt {
@@ -117,6 +120,12 @@ impl Kkt {
     /// Place of a multiplier among the unknowns.
     pub fn multiplier(&self, row: usize, field: usize) -> usize {
         self.fields * self.free * self.dim + row * self.fields + field
+    }
+
+    /// Where the gradient of a row is among those of all slots.
+    pub(super) fn gradient_of(&self, row: usize) -> Range<usize> {
+        let Range { start, end } = self.row_slots[row];
+        start * self.dim..end * self.dim
     }
 
     pub(super) fn is_free(&self, slot: usize) -> bool {
@@ -307,6 +316,40 @@ impl Kkt {
         for (row, &delta) in delta.iter().enumerate() {
             values[self.row_diagonal[row * self.fields + field] as usize] -= delta;
         }
+    }
+
+    /// Whether rows change entries of the matrix one by one and it can be factored in part.
+    pub fn is_changed_by_rows(&self) -> bool {
+        self.fields == 1 && self.row_skew.is_empty() && self.solver.has_parts()
+    }
+
+    /// Adds what the matrix changes by with a row: `hessian` times its second derivatives and, in its columns and its rows, the
+    /// factors times the change of its gradient.
+    pub fn change_row(&mut self, row: usize, hessian: f64, [columns, rows]: [f64; 2], change: &[f64]) {
+        let start = self.gradient_of(row).start as u32;
+        let values = self.solver.values_mut();
+        let ([isotropic, first], [isotropic_end, end]) = (self.row_first[row], self.row_first[row + 1]);
+        for &(_, pair, c) in &self.row_isotropic[isotropic as usize..isotropic_end as usize] {
+            for &position in &self.diagonal[pair as usize * self.dim..][..self.dim] {
+                values[position as usize] += hessian * c;
+            }
+        }
+        for (entries, factor) in self.row_entries.iter().zip([columns, rows]) {
+            for &[slot, position] in &entries[first as usize..end as usize] {
+                values[position as usize] += factor * change[(slot - start) as usize];
+            }
+        }
+    }
+
+    /// Factors the matrix again where some rows changed it.
+    pub fn factor_rows(&mut self, rows: &[usize]) -> Result<(), Singular> {
+        let Self { solver, dim, free, row_slots, slot_nodes, .. } = self;
+        let coordinates = |s: usize| {
+            let node = slot_nodes[s] as usize;
+            (node * *dim..(node + 1) * *dim).take_while(|q| *q < *free * *dim)
+        };
+        let unknowns = rows.iter().flat_map(|&row| row_slots[row].clone().flat_map(coordinates).chain([*free * *dim + row]));
+        solver.factor_with(unknowns)
     }
 
     /// Factors the matrix.

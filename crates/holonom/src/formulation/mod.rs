@@ -11,6 +11,7 @@
 mod acceleration;
 mod collocation;
 mod iteration;
+mod kept;
 mod kkt;
 mod level;
 mod plan;

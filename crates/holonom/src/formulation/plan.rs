@@ -172,6 +172,7 @@ impl Kkt {
             custom_pairs,
             row_entries: Vec::new(),
             row_diagonal: Vec::new(),
+            row_first: Vec::new(),
             slots: row_slots.iter().zip(0..).flat_map(|(slots, row)| slots.clone().map(move |slot| (row, slot))).map(row_slot).collect(),
             row_slots,
             slot_nodes,
@@ -236,6 +237,14 @@ impl Kkt {
             }
         }
         self.row_entries = row_entries;
+        let mut entries = 0;
+        for row in 0..=rows {
+            let isotropic = self.row_isotropic.partition_point(|&(other, _, _)| (other as usize) < row);
+            self.row_first.push([isotropic as u32, entries as u32]);
+            if let Some(slots) = self.row_slots.get(row) {
+                entries += slots.clone().filter(|&s| self.is_free(s)).count() * dim;
+            }
+        }
     }
 
     /// Nodes by least fill-in, each row right after the last of its nodes: its pivot is then minus what the row's

@@ -1,6 +1,7 @@
 //! Everything mutable of a step: positions, evaluations, forces and the matrix, allocated once.
 
 use super::iteration::Failure;
+use super::kept::Kept;
 use super::kkt::{ALL, Kkt};
 use super::level::Level;
 use super::stage::Stage;
@@ -104,6 +105,7 @@ pub struct Workspace {
     pub factorizations: u64,
     pub(super) dissipative: bool,
     works: bool,
+    pub(super) kept: Kept,
 }
 
 impl Workspace {
@@ -122,6 +124,7 @@ impl Workspace {
         let loads: usize = system.loads.iter().map(|load| load.nodes.len() * system.dim).sum();
         let mut workspace = Self {
             unknowns: vec![0.0; kkt.size()],
+            kept: Kept::new(system, kkt.is_changed_by_rows(), kkt.slot_nodes.len()),
             kkt,
             level: Level::POSITION,
             x0: system.start_position.clone(),

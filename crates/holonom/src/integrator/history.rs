@@ -1,5 +1,5 @@
-//! What steps leave, extrapolated to the next: by the polynomial through the last of them that would have come nearest to the
-//! last.
+//! What steps leave, extrapolated to the next: by the polynomial through some of the last ones, of whose highest differences a
+//! share comes again, that would have come nearest to the last.
 
 /// Most points before the last that a polynomial goes through.
 const ORDERS: usize = 5;
@@ -15,21 +15,30 @@ pub fn extrapolate(differences: &mut [Differences], change: &mut [f64], follows:
         change.fill(0.0);
         return;
     }
-    // What is left of a change by each order, the last one first predicted by one less.
-    let mut left = [0.0; ORDERS + 1];
+    // Of each order: squares of the new differences, their products with those before, and squares of those.
+    let mut sums = [[0.0; 3]; ORDERS];
     for (k, differences) in differences.iter_mut().enumerate() {
         let mut difference = latest(k);
-        for (left, kept) in left.iter_mut().zip(differences) {
-            *left += difference * difference;
+        for (sums, kept) in sums.iter_mut().zip(differences) {
             let last = std::mem::replace(kept, difference);
+            sums[0] += difference * difference;
+            sums[1] += difference * last;
+            sums[2] += last * last;
             difference -= last;
         }
-        left[ORDERS] += difference * difference;
     }
-    let order = (1..=ORDERS).min_by(|&i, &j| left[i].total_cmp(&left[j])).unwrap_or(1);
+    let fits = sums.map(fit);
+    let order = (0..ORDERS).min_by(|&i, &j| fits[i].1.total_cmp(&fits[j].1)).unwrap_or(0);
     for (change, differences) in change.iter_mut().zip(differences) {
-        *change = differences[..order].iter().sum();
+        *change = differences[..order].iter().sum::<f64>() + fits[order].0 * differences[order];
     }
+}
+
+/// The share with which differences come again, and the squares of what it leaves of them: 1 goes on as a polynomial does, -1
+/// alternates. Beyond these, errors would grow.
+fn fit([new, product, last]: [f64; 3]) -> (f64, f64) {
+    let share = if last > 0.0 { (product / last).clamp(-1.0, 1.0) } else { 0.0 };
+    (share, new - share * (2.0 * product - share * last))
 }
 
 /// Takes over new numbers, and by how much they changed in a step that follows others of its length.

@@ -11,8 +11,12 @@ pub(super) struct Fronts {
     pub below: Vec<u32>,
     /// For each of them, where it is in a column of the parent's front.
     pub in_parent: Vec<u32>,
+    /// The children of each front, one front after the other.
+    pub children: Vec<u32>,
+    /// Places of the entries of the pattern among the numbers of all tiles, ascending: those of one front after the other.
+    pub entries: Vec<u32>,
     /// Front of each block.
-    front_of: Vec<u32>,
+    of_block: Vec<u32>,
     /// Tiles of all fronts together.
     pub tiles: usize,
 }
@@ -41,6 +45,10 @@ pub(super) struct Front {
     pub below: usize,
     /// First of its tiles.
     pub tile: usize,
+    /// Its entries among those of all fronts: the first, and the one after the last.
+    pub entries: [usize; 2],
+    /// Its children among those of all fronts, likewise.
+    pub children: [usize; 2],
     /// The front that takes what the pivots add to the rows below; a root has none.
     pub parent: Option<usize>,
 }
@@ -59,38 +67,69 @@ impl Fronts {
             fronts: Vec::new(),
             below: Vec::new(),
             in_parent: Vec::new(),
-            front_of: Vec::new(),
+            children: Vec::new(),
+            entries: Vec::new(),
+            of_block: Vec::new(),
             tiles: 0,
         };
         let tops = groups.children_first();
         for &top in &tops {
-            let (block, members) = (fronts.front_of.len(), &groups.best[top as usize].members);
+            let (block, members) = (fronts.of_block.len(), &groups.best[top as usize].members);
             for (k, &column) in members.iter().enumerate() {
                 fronts.place[order[column as usize] as usize] = (block * LANES + k) as u32;
             }
             let (pivots, rows) = (members.len(), columns[top as usize].len());
             let head = pivots.div_ceil(LANES);
             let size = head + rows.div_ceil(LANES);
-            fronts.front_of.extend(std::iter::repeat_n(fronts.fronts.len() as u32, head));
-            fronts.fronts.push(Front { pivots, rows, head, size, block, below: 0, tile: fronts.tiles, parent: None });
+            fronts.of_block.extend(std::iter::repeat_n(fronts.fronts.len() as u32, head));
+            let tile = fronts.tiles;
+            fronts.fronts.push(Front { pivots, rows, head, size, block, tile, below: 0, entries: [0; 2], children: [0; 2], parent: None });
             fronts.tiles += size * size;
         }
-        fronts.row = vec![0; fronts.front_of.len() * LANES];
+        fronts.row = vec![0; fronts.of_block.len() * LANES];
         fronts.place.iter().enumerate().for_each(|(row, &place)| fronts.row[place as usize] = row as u32);
         for (k, &top) in tops.iter().enumerate() {
             let first = fronts.below.len();
             fronts.below.extend(columns[top as usize].iter().map(|&column| fronts.place[order[column as usize] as usize]));
             fronts.below[first..].sort_unstable();
             fronts.fronts[k].below = first;
-            fronts.fronts[k].parent = fronts.below.get(first).map(|&place| fronts.front_of[place as usize / LANES] as usize);
+            fronts.fronts[k].parent = fronts.below.get(first).map(|&place| fronts.of_block[place as usize / LANES] as usize);
         }
         fronts.in_parent = fronts.fronts.iter().flat_map(|front| fronts.rows_in_parent(front)).collect();
+        fronts.place_children();
+        fronts.place_entries(entries);
         fronts
+    }
+
+    fn place_children(&mut self) {
+        let mut children = vec![Vec::new(); self.fronts.len()];
+        for (k, front) in self.fronts.iter().enumerate() {
+            if let Some(parent) = front.parent {
+                children[parent].push(k as u32);
+            }
+        }
+        for (front, children) in self.fronts.iter_mut().zip(children) {
+            let first = self.children.len();
+            self.children.extend(children);
+            front.children = [first, self.children.len()];
+        }
+    }
+
+    fn place_entries(&mut self, entries: &[(u32, u32)]) {
+        let find = |&(row, column): &(u32, u32)| self.find(row as usize, column as usize).expect("the pattern is in the fronts");
+        let mut places: Vec<u32> = entries.iter().map(|entry| find(entry) as u32).collect();
+        places.sort_unstable();
+        places.dedup();
+        let before = |tile: usize| places.partition_point(|&place| (place as usize) < tile * TILE);
+        for front in &mut self.fronts {
+            front.entries = [before(front.tile), before(front.tile + front.size * front.size)];
+        }
+        self.entries = places;
     }
 
     /// Blocks of all fronts together.
     pub fn blocks(&self) -> usize {
-        self.front_of.len()
+        self.of_block.len()
     }
 
     /// Its blocks, where all is one front of few.
@@ -101,9 +140,14 @@ impl Fronts {
         }
     }
 
+    /// The front that eliminates a row of the matrix.
+    pub fn front_of(&self, row: usize) -> usize {
+        self.of_block[self.place[row] as usize / LANES] as usize
+    }
+
     /// The tile on the diagonal of a block, among all tiles.
     pub fn diagonal(&self, block: usize) -> usize {
-        let front = &self.fronts[self.front_of[block] as usize];
+        let front = &self.fronts[self.of_block[block] as usize];
         front.tile + (block - front.block) * (front.size + 1)
     }
 
@@ -125,7 +169,7 @@ impl Fronts {
     /// Where an entry of the matrix is among the numbers of all tiles; none outside the filled pattern.
     pub fn find(&self, row: usize, column: usize) -> Option<usize> {
         let (row, column) = (self.place[row], self.place[column]);
-        let front = &self.fronts[self.front_of[row.min(column) as usize / LANES] as usize];
+        let front = &self.fronts[self.of_block[row.min(column) as usize / LANES] as usize];
         let (row, column) = (self.row_in(front, row)?, self.row_in(front, column)?);
         Some(front.tile * TILE + column / LANES * front.size * TILE + column % LANES * LANES + in_column(row))
     }

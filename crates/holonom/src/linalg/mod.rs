@@ -36,15 +36,15 @@ impl Solver {
 
     /// Where the entry (row, column) of the pattern is among the values.
     pub fn position(&self, row: usize, column: usize) -> u32 {
-        self.lu.plan.find(row, column).expect("the entry is in the pattern") as u32
+        self.lu.position(row, column).expect("the entry is in the pattern") as u32
     }
 
     /// The value of an entry, zero outside the pattern.
     pub fn entry(&self, row: usize, column: usize) -> f64 {
-        self.lu.plan.find(row, column).map_or(0.0, |at| self.lu.values()[at])
+        self.lu.position(row, column).map_or(0.0, |at| self.lu.values()[at])
     }
 
-    /// The values; after [`Solver::factor`] they are overwritten by the factors.
+    /// The values; [`Solver::factor`] may overwrite them by the factors.
     pub fn values_mut(&mut self) -> &mut [f64] {
         self.lu.values_mut()
     }
@@ -52,6 +52,16 @@ impl Solver {
     /// Factors the matrix in place.
     pub fn factor(&mut self) -> Result<(), Singular> {
         self.lu.factor()
+    }
+
+    /// Whether it can be factored in part.
+    pub fn has_parts(&self) -> bool {
+        self.lu.plan.one_front().is_none()
+    }
+
+    /// Factors again after a few values changed: those of all entries that the given unknowns share with each other.
+    pub fn factor_with(&mut self, unknowns: impl Iterator<Item = usize>) -> Result<(), Singular> {
+        self.lu.factor_with(unknowns)
     }
 
     /// Replaces `b` by the solution.
@@ -95,21 +105,25 @@ mod tests {
         entries
     }
 
-    fn residual(size: usize) -> f64 {
-        let entries = chain(size);
+    fn factored(size: usize, entries: &[(usize, usize, f64)]) -> Solver {
         let pattern: Vec<_> = entries.iter().map(|&(i, j, _)| (i as u32, j as u32)).collect();
         let order: Vec<u32> = (0..size as u32).step_by(2).chain((1..size as u32).step_by(2)).collect();
         let mut solver = Solver::new(size, &pattern, &order);
-        for &(i, j, value) in &entries {
+        for &(i, j, value) in entries {
             let at = solver.position(i, j) as usize;
             solver.values_mut()[at] += value;
         }
         solver.factor().expect("the matrix is regular");
+        solver
+    }
+
+    /// What the solution leaves of a right side.
+    fn residual(size: usize, entries: &[(usize, usize, f64)], solver: &mut Solver) -> f64 {
         let b: Vec<f64> = (0..size).map(|i| (i as f64).sin()).collect();
         let mut x = b.clone();
         solver.solve(&mut x);
         let mut r = b;
-        for &(i, j, value) in &entries {
+        for &(i, j, value) in entries {
             r[i] -= value * x[j];
         }
         r.iter().fold(0.0, |m, r| f64::max(m, r.abs()))
@@ -118,7 +132,27 @@ mod tests {
     #[test]
     fn chains_are_solved() {
         for size in [2, 8, 24, 26, 200] {
-            assert!(residual(size) < 1e-10, "size {size}: {}", residual(size));
+            let entries = chain(size);
+            let left = residual(size, &entries, &mut factored(size, &entries));
+            assert!(left < 1e-10, "size {size}: {left}");
         }
+    }
+
+    #[test]
+    fn factors_follow_a_few_values() {
+        let mut entries = chain(200);
+        let mut solver = factored(200, &entries);
+        for place in [13, 14, 151] {
+            for (i, j, value) in entries.iter_mut().filter(|(i, j, _)| [*i, *j].contains(&place)) {
+                let at = solver.position(*i, *j) as usize;
+                solver.values_mut()[at] += 0.5;
+                *value += 0.5;
+            }
+        }
+        assert!(residual(200, &entries, &mut solver) > 1e-3, "the factors are those of before");
+        let changed = [13, 14, 151].into_iter().flat_map(|place| [place - 1, place, place + 1]);
+        solver.factor_with(changed).expect("the matrix is regular");
+        let left = residual(200, &entries, &mut solver);
+        assert!(left < 1e-10, "{left}");
     }
 }

@@ -19,11 +19,16 @@ pub(super) struct Multifrontal {
     pub(super) plan: Fronts,
     /// The tiles of all fronts; after the factorisation L (below the diagonal, which is 1) and U, on the diagonal their inverses.
     tiles: Vec<Tile>,
+    /// The entries of the matrix where there is more than one front: each is put together right before it is factored. A single
+    /// front has its entries in its tiles.
+    values: Vec<f64>,
     numbers: Numbers,
     arch: Arch,
 }
 
 struct Numbers {
+    /// Whether a front is to be factored.
+    stale: Vec<bool>,
     /// Row of its front that came to each pivot, and whether any of a front did.
     exchange: Vec<u32>,
     exchanged: Vec<bool>,
@@ -41,25 +46,47 @@ impl Multifrontal {
         let pivots = plan.fronts.iter().map(|front| front.pivots).max().unwrap_or(0);
         let blocks = plan.blocks();
         let numbers = Numbers {
+            stale: vec![true; plan.fronts.len()],
             exchange: vec![0; blocks * LANES],
             exchanged: vec![false; plan.fronts.len()],
             y: vec![[0.0; LANES]; blocks],
             local: vec![[0.0; LANES]; most],
             rows: vec![[0.0; LANES]; pivots],
         };
-        Self { tiles: vec![[0.0; TILE]; plan.tiles], plan, numbers, arch: Arch::new() }
+        let values = if plan.one_front().is_some() { Vec::new() } else { vec![0.0; plan.entries.len()] };
+        Self { tiles: vec![[0.0; TILE]; plan.tiles], values, plan, numbers, arch: Arch::new() }
+    }
+
+    /// Where an entry of the matrix is among the values; none outside the pattern.
+    pub(super) fn position(&self, row: usize, column: usize) -> Option<usize> {
+        let place = self.plan.find(row, column)?;
+        if self.plan.one_front().is_some() { Some(place) } else { self.plan.entries.binary_search(&(place as u32)).ok() }
     }
 
     pub(super) fn values(&self) -> &[f64] {
-        self.tiles.as_flattened()
+        if self.plan.one_front().is_some() { self.tiles.as_flattened() } else { &self.values }
     }
 
     pub(super) fn values_mut(&mut self) -> &mut [f64] {
-        self.tiles.as_flattened_mut()
+        if self.plan.one_front().is_some() { self.tiles.as_flattened_mut() } else { &mut self.values }
     }
 
     pub(super) fn factor(&mut self) -> Result<(), Singular> {
-        self.arch.dispatch(Factor { plan: &self.plan, tiles: &mut self.tiles, numbers: &mut self.numbers })
+        self.numbers.stale.fill(true);
+        self.factor_stale()
+    }
+
+    /// Factors the fronts of some unknowns and those above them anew.
+    pub(super) fn factor_with(&mut self, unknowns: impl Iterator<Item = usize>) -> Result<(), Singular> {
+        for unknown in unknowns {
+            self.numbers.stale[self.plan.front_of(unknown)] = true;
+        }
+        self.factor_stale()
+    }
+
+    fn factor_stale(&mut self) -> Result<(), Singular> {
+        let Self { plan, tiles, values, numbers, arch } = self;
+        arch.dispatch(Factor { plan, tiles, values, numbers })
     }
 
     pub(super) fn solve(&mut self, b: &mut [f64]) {
@@ -92,6 +119,7 @@ fn with_blocks<S: Simd, T: OneFront>(task: T, simd: S, blocks: usize) -> T::Outp
 struct Factor<'a> {
     plan: &'a Fronts,
     tiles: &'a mut [Tile],
+    values: &'a [f64],
     numbers: &'a mut Numbers,
 }
 
@@ -103,18 +131,29 @@ impl WithSimd for Factor<'_> {
         if let Some(blocks) = self.plan.one_front() {
             return with_blocks(self, simd, blocks);
         }
-        let Numbers { exchange, exchanged, rows, .. } = self.numbers;
-        for (front, exchanged) in self.plan.fronts.iter().zip(exchanged) {
-            let (own, later) = self.tiles[front.tile..].split_at_mut(front.size * front.size);
+        let (plan, Numbers { stale, exchange, exchanged, rows, .. }) = (self.plan, self.numbers);
+        for (k, (front, exchanged)) in plan.fronts.iter().zip(exchanged).enumerate() {
+            if !std::mem::take(&mut stale[k]) {
+                continue;
+            }
+            if let Some(parent) = front.parent {
+                stale[parent] = true;
+            }
+            let (done, own) = self.tiles.split_at_mut(front.tile);
+            let own = &mut own[..front.size * front.size];
+            own.fill([0.0; TILE]);
+            let [first, last] = front.entries;
+            for (&place, value) in plan.entries[first..last].iter().zip(&self.values[first..last]) {
+                own.as_flattened_mut()[place as usize - front.tile * TILE] = *value;
+            }
+            let [first, last] = front.children;
+            for &child in &plan.children[first..last] {
+                let child = &plan.fronts[child as usize];
+                take_over(child, &done[child.tile..], &plan.in_parent[child.range()], front.size, own.as_flattened_mut());
+            }
             let exchange = &mut exchange[front.block * LANES..front.block * LANES + front.pivots];
             *exchanged = eliminate(simd, front, own, exchange, rows)
-                .map_err(|pivot| Singular { pivot: self.plan.row[front.block * LANES + pivot] as usize })?;
-            if let Some(parent) = front.parent {
-                let parent = &self.plan.fronts[parent];
-                let offset = parent.tile - front.tile - front.size * front.size;
-                let square = later[offset..offset + parent.size * parent.size].as_flattened_mut();
-                hand_on(front, own, &self.plan.in_parent[front.range()], parent.size, square);
-            }
+                .map_err(|pivot| Singular { pivot: plan.row[front.block * LANES + pivot] as usize })?;
         }
         Ok(())
     }
@@ -342,7 +381,7 @@ fn times<S: Simd>(simd: S, tile: &Tile, x: &Block) -> Block {
 /// target −= tile x
 #[inline(always)]
 fn subtract_times<S: Simd>(simd: S, target: &mut Block, tile: &Tile, x: &Block) {
-    *target = add_times(simd, target, tile, x, -1.0);
+    *target = shortly_times(simd, target, tile, &x.map(|x| -x));
 }
 
 /// Zero in place of numbers below 1e-146, and others but for so much as they are. What a long chain hands on falls off
@@ -370,9 +409,9 @@ fn add_product<S: Simd>(simd: S, target: &mut Tile, a: &Tile, b: &Tile, sign: f6
     }
 }
 
-/// Adds what a front leaves to the rows below its pivots to the front of its parent, whose columns have `size` tiles.
+/// Adds what a front left to the rows below its pivots to the front of its parent, whose columns have `size` tiles.
 #[inline(always)]
-fn hand_on(front: &Front, tiles: &[Tile], in_parent: &[u32], size: usize, square: &mut [f64]) {
+fn take_over(front: &Front, tiles: &[Tile], in_parent: &[u32], size: usize, square: &mut [f64]) {
     for (k, &to) in in_parent.iter().enumerate() {
         let (to, lane) = (to as usize, k % LANES);
         let target = &mut square[to / TILE * size * TILE + to % LANES * LANES..];
@@ -471,7 +510,7 @@ fn solve_lower<S: Simd>(simd: S, front: &Front, tiles: &[Tile], own: &mut [Block
     for (block, column) in tiles.chunks_exact(front.size).take(front.head).enumerate() {
         let (head, tail) = own[block..].split_first_mut().expect("a block for each tile on the diagonal");
         let (pivots, rows) = column.split_at(front.head);
-        *head = above_tiny(times(simd, &lower(&pivots[block]), head));
+        *head = above_tiny(shortly_times(simd, &[0.0; LANES], &lower(&pivots[block]), head));
         for (target, tile) in tail.iter_mut().zip(&pivots[block + 1..]) {
             subtract_times(simd, target, tile, head);
         }
@@ -493,7 +532,7 @@ fn solve_upper<S: Simd>(simd: S, front: &Front, tiles: &[Tile], own: &mut [Block
     for block in (0..front.head).rev() {
         let (column, diagonal) = pivots[block * front.size..][..=block].split_at(block);
         let (above, last) = own[..=block].split_at_mut(block);
-        last[0] = above_tiny(times(simd, &upper(&diagonal[0]), &last[0]));
+        last[0] = above_tiny(shortly_times(simd, &[0.0; LANES], &upper(&diagonal[0]), &last[0]));
         for (target, tile) in above.iter_mut().zip(column) {
             subtract_times(simd, target, tile, &last[0]);
         }

@@ -1,0 +1,86 @@
+//! Factors that are made anew in part: what is far from linear in a step is often confined to few places of a mechanism.
+
+use super::iteration::Failure;
+use super::level::Level;
+use super::stage::{RowsAt, Stage};
+use super::workspace::Workspace;
+use crate::system::System;
+
+/// Rows that would leave less than this share of what any row leaves keep their part of the factors.
+const LEFT: f64 = 1e-5;
+
+/// The rows as the matrix has them.
+pub(super) struct Kept {
+    /// Whether the matrix changes with the rows alone, and can be factored in part.
+    by_rows: bool,
+    /// Their gradients at the end of the step (D a slot), and their multipliers.
+    gradient: Vec<f64>,
+    lambda: Vec<f64>,
+    /// What each would leave, m.
+    left: Vec<f64>,
+    /// Those that are brought up to date.
+    rows: Vec<usize>,
+}
+
+impl Kept {
+    pub(super) fn new(system: &System, by_rows: bool, slots: usize) -> Self {
+        let by_rows = by_rows
+            && system.laws.is_empty()
+            && system.loads.is_empty()
+            && system.custom.is_empty()
+            && system.function_rows.is_empty()
+            && !system.is_nonholonomic();
+        let rows = if by_rows { system.constraints() } else { 0 };
+        let gradient = vec![0.0; if by_rows { slots * system.dim } else { 0 }];
+        Self { by_rows, gradient, lambda: vec![0.0; rows], left: vec![0.0; rows], rows: Vec::with_capacity(rows) }
+    }
+}
+
+impl Workspace {
+    /// Factors the tangent at the multipliers that are expected: as a whole in the first iteration of a step, later only
+    /// where rows have turned since and the multipliers change.
+    pub(super) fn factor_tangent(&mut self, system: &System, stage: &Stage, first: bool) -> Result<(), Failure> {
+        let in_part = self.kept.by_rows && self.level == Level::POSITION && stage.rows != RowsAt::Middle;
+        if in_part && !first {
+            return self.factor_turned(stage);
+        }
+        self.expected_tangent(system, stage);
+        if in_part {
+            self.kept.gradient.copy_from_slice(&self.at_end.gradient);
+            for (kept, (lambda, change)) in self.kept.lambda.iter_mut().zip(self.lambda.iter().zip(&self.lambda_change)) {
+                *kept = lambda + change;
+            }
+        }
+        self.factor()
+    }
+
+    /// With factors of before, a row with the gradient g, turned by Δg, and a multiplier that changed by Δμ leaves a force Δg μ,
+    /// a force Δμ H d and a violation Δg·d, where the next μ and H d are at most as large as Δμ and Δg: as distances
+    /// |Δg| (Δμ/m + |Δg|/|g|) together.
+    fn factor_turned(&mut self, stage: &Stage) -> Result<(), Failure> {
+        let Self { kkt, kept, at_end, lambda, row_scale, heaviest, .. } = self;
+        let Kept { gradient, lambda: kept_lambda, left, rows, .. } = kept;
+        let mut most = 0.0_f64;
+        for (row, left) in left.iter_mut().enumerate() {
+            let slots = kkt.gradient_of(row);
+            let changes = at_end.gradient[slots.clone()].iter().zip(&gradient[slots]).map(|(g, kept)| g - kept);
+            let turned = changes.map(|change| change * change).sum::<f64>().sqrt();
+            let pulled = stage.inertia * (lambda[row] - kept_lambda[row]).abs() / *heaviest;
+            *left = turned * (pulled + turned / row_scale[row]);
+            most = most.max(*left);
+        }
+        rows.clear();
+        rows.extend((0..left.len()).filter(|&row| left[row] > LEFT * most));
+        let factors = [stage.share(), if stage.rows == RowsAt::Mean { 0.5 } else { 1.0 }];
+        for &row in &*rows {
+            let (slots, pull) = (kkt.gradient_of(row), lambda[row] - kept_lambda[row]);
+            let (change, g) = (&mut gradient[slots.clone()], &at_end.gradient[slots]);
+            change.iter_mut().zip(g).for_each(|(kept, g)| *kept = g - *kept);
+            kkt.change_row(row, stage.inertia * stage.share() * pull, factors, change);
+            change.copy_from_slice(g);
+            kept_lambda[row] = lambda[row];
+        }
+        self.factorizations += 1;
+        kkt.factor_rows(rows).map_err(|_| Failure::NotFinite)
+    }
+}
