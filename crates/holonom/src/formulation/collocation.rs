@@ -11,7 +11,7 @@
 //! M (h q̇_i − u_i) + G_iᵀν_i = 0      h² (M a_i − Q_i) + G_iᵀ h²λ_i = 0      Φ_i = 0      h Φ̇_i = 0
 //! ```
 
-use super::iteration::{Convergence, Failure, Multipliers, STALLED, SolveSettings};
+use super::iteration::{Convergence, Failure, KEPT, Multipliers, STALLED, SolveSettings};
 use super::kkt::{ALL, Block, Kkt, OWN_STAGE, TWO_LEVELS};
 use super::level::Level;
 use super::stage::{RowsAt, Sampling, Stage};
@@ -101,7 +101,7 @@ impl Collocation {
                 None
             }
         };
-        let mut convergence = Convergence::new(settings, work.shortest);
+        let mut convergence = Convergence::new(settings, work.shortest, KEPT);
         for iteration in 1..=settings.max_iterations {
             let keeps = convergence.keeps_factors();
             if !keeps {

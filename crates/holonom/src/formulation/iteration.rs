@@ -47,7 +47,7 @@ pub struct SolveSettings {
     pub tolerance: f64,
     /// Most factorisations in one step.
     pub max_iterations: usize,
-    /// Exactly so many Newton iterations with new factors each, whatever they leave: every step costs the same.
+    /// Exactly so many Newton iterations with new factors each, whatever they leave: no step costs more than another.
     pub iterations: Option<usize>,
 }
 
@@ -137,7 +137,8 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
         (None, Multipliers::Augmented(penalty)) => work.proximal(stage.inertia, penalty),
         (None, Multipliers::Penalty(_)) => unreachable!("a penalty is soft"),
     }
-    let mut convergence = Convergence::new(settings, work.shortest);
+    let kept = if work.is_factored_in_part(stage) { KEPT_IN_PART } else { KEPT };
+    let mut convergence = Convergence::new(settings, work.shortest, kept);
     for iteration in 1..=settings.max_iterations {
         work.place(stage);
         work.evaluate(system, stage);
@@ -163,13 +164,15 @@ fn newton(system: &System, stage: &Stage, settings: &SolveSettings, soft: Option
     Err(Failure::NotConverged(settings.max_iterations))
 }
 
-/// Iterations with kept factors that are cheaper than new ones.
-const KEPT: i32 = 4;
+/// Iterations with kept factors that are cheaper than new ones of the whole matrix, and of a part of it.
+pub(super) const KEPT: i32 = 4;
+const KEPT_IN_PART: i32 = 2;
 
 /// How a Newton iteration goes: sizes of its increments, relative to the mechanism.
 pub(super) struct Convergence {
     tolerance: f64,
     shortest: f64,
+    kept: i32,
     /// Iterations that are left where their number is fixed.
     left: Option<usize>,
     /// Last increment of the coordinates.
@@ -184,10 +187,12 @@ pub(super) struct Convergence {
 }
 
 impl Convergence {
-    /// `shortest` is the length of the shortest row over that of the mechanism: it turns by so much more.
-    pub(super) fn new(settings: &SolveSettings, shortest: f64) -> Self {
+    /// `shortest` is the length of the shortest row over that of the mechanism: it turns by so much more. Factors are kept for
+    /// up to `kept` iterations.
+    pub(super) fn new(settings: &SolveSettings, shortest: f64, kept: i32) -> Self {
         Self {
             shortest,
+            kept,
             tolerance: settings.tolerance,
             left: settings.iterations,
             increment: f64::INFINITY,
@@ -207,7 +212,7 @@ impl Convergence {
     /// what increments with them left, and each leaves that much of the one before.
     pub(super) fn keeps_factors(&mut self) -> bool {
         let stale = (self.stale + self.turn).max(self.contraction);
-        let keeps = self.left.is_none() && self.increment * stale.powi(KEPT) <= self.tolerance;
+        let keeps = self.left.is_none() && self.increment * stale.powi(self.kept) <= self.tolerance;
         (self.stale, self.contraction) = if keeps { (stale, self.contraction) } else { (0.0, 0.0) };
         keeps
     }

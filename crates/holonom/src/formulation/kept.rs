@@ -37,10 +37,15 @@ impl Kept {
 }
 
 impl Workspace {
+    /// Whether all factorisations of a step but the first are in part.
+    pub(super) fn is_factored_in_part(&self, stage: &Stage) -> bool {
+        self.kept.by_rows && self.level == Level::POSITION && stage.rows != RowsAt::Middle
+    }
+
     /// Factors the tangent at the multipliers that are expected: as a whole in the first iteration of a step, later only
     /// where rows have turned since and the multipliers change.
     pub(super) fn factor_tangent(&mut self, system: &System, stage: &Stage, first: bool) -> Result<(), Failure> {
-        let in_part = self.kept.by_rows && self.level == Level::POSITION && stage.rows != RowsAt::Middle;
+        let in_part = self.is_factored_in_part(stage);
         if in_part && !first {
             return self.factor_turned(stage);
         }
@@ -54,9 +59,9 @@ impl Workspace {
         self.factor()
     }
 
-    /// With factors of before, a row with the gradient g, turned by Δg, and a multiplier that changed by Δμ leaves a force Δg μ,
-    /// a force Δμ H d and a violation Δg·d, where the next μ and H d are at most as large as Δμ and Δg: as distances
-    /// |Δg| (Δμ/m + |Δg|/|g|) together.
+    /// Brings the factors up to date where that matters. Without it a row, whose gradient g has turned by Δg and whose multiplier
+    /// has changed by Δμ since, leaves a force Δgᵀμ', a force Δμ H d' and a violation Δg·d' of the next increments μ' and d'.
+    /// These are taken to be as large as those since: |Δg| (Δμ/m + |Δg|/|g|), a length.
     fn factor_turned(&mut self, stage: &Stage) -> Result<(), Failure> {
         let Self { kkt, kept, at_end, lambda, row_scale, heaviest, .. } = self;
         let Kept { gradient, lambda: kept_lambda, left, rows, .. } = kept;

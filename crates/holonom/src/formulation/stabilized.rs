@@ -11,7 +11,7 @@
 //! one level. What γ' does on the left, ½ (H w)ᵀγ', is some (hω)²/4 of the whole when things turn with ω, and met by sweeps
 //! over the two.
 
-use super::iteration::{Convergence, Failure, STALLED, SolveSettings, restart};
+use super::iteration::{Convergence, Failure, KEPT, STALLED, SolveSettings, restart};
 use super::kkt::{ALL, Block, Kkt};
 use super::stage::Stage;
 use super::sweep::Sweeps;
@@ -104,7 +104,7 @@ impl Stabilized {
     fn newton(&mut self, system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<usize, Failure> {
         work.proximal_of_redundant();
         work.expect_multipliers();
-        let mut convergence = Convergence::new(settings, work.shortest);
+        let mut convergence = Convergence::new(settings, work.shortest, KEPT);
         for iteration in 1..=settings.max_iterations {
             work.lambda.iter_mut().zip(&self.mu).for_each(|(lambda, mu)| *lambda = mu / stage.inertia);
             work.place(stage);

@@ -138,19 +138,13 @@ impl Workspace {
     /// Writes minus the residual of the stage to `unknowns`: ϖ(M a + f) for the coordinates, Φ for the rows.
     pub fn residual(&mut self, system: &System, stage: &Stage) {
         let n = system.coordinates();
-        for i in 0..n {
-            self.full[i] = self.d[i] - self.drift[i];
-        }
-        for i in n..self.full.len() {
-            self.full[i] = stage.inertia * self.a1[i];
-        }
-        system.mass.times(system.dim, &self.full, &mut self.inertial);
-        for i in 0..n {
-            self.unknowns[i] = -(self.inertial[i] + stage.inertia * self.force[i]);
-        }
-        for (unknown, phi) in self.unknowns[n..].iter_mut().zip(&self.phi) {
-            *unknown = -phi;
-        }
+        let (free, known) = self.full.split_at_mut(n);
+        free.iter_mut().zip(self.d.iter().zip(&self.drift)).for_each(|(full, (d, drift))| *full = d - drift);
+        known.iter_mut().zip(&self.a1[n..]).for_each(|(full, a)| *full = stage.inertia * a);
+        let (forces, rows) = self.unknowns.split_at_mut(n);
+        system.mass.times(system.dim, &self.full, forces);
+        forces.iter_mut().zip(&self.force).for_each(|(unknown, force)| *unknown = -(*unknown + stage.inertia * force));
+        rows.iter_mut().zip(&self.phi).for_each(|(unknown, phi)| *unknown = -phi);
     }
 
     /// Assembles the tangent of the stage without its proximal term. `geometric` is 1 for the full tangent and 0 for

@@ -105,6 +105,7 @@ pub struct Workspace {
     pub factorizations: u64,
     pub(super) dissipative: bool,
     works: bool,
+    /// What the factors were last made of.
     pub(super) kept: Kept,
 }
 

@@ -439,7 +439,9 @@ impl WithSimd for Solve<'_> {
             return with_blocks(self, simd, blocks);
         }
         let Numbers { exchange, exchanged, y, local, .. } = self.numbers;
-        y.fill([0.0; LANES]);
+        for front in self.plan.fronts.iter().filter(|front| front.pivots < front.head * LANES) {
+            y[front.block + front.head - 1] = [0.0; LANES];
+        }
         for (&place, &b) in self.plan.place.iter().zip(&*self.b) {
             y.as_flattened_mut()[place as usize] = b;
         }

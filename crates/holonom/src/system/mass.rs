@@ -8,6 +8,8 @@ pub struct Mass {
     column: Vec<u32>,
     value: Vec<f64>,
     turn: Vec<f64>,
+    /// Whether there is a quarter turn in it.
+    turns: bool,
 }
 
 /// The block m 1 + s J of a pair of nodes, kg.
@@ -51,6 +53,7 @@ impl Mass {
         for a in 0..nodes {
             mass.start[a + 1] += mass.start[a];
         }
+        mass.turns = mass.turn.iter().any(|&s| s != 0.0);
         mass
     }
 
@@ -81,25 +84,26 @@ impl Mass {
     /// y = M x over the first `nodes` nodes of `y`, `x` over all nodes, `dim` numbers a node.
     pub fn times(&self, dim: usize, x: &[f64], y: &mut [f64]) {
         match dim {
-            2 => self.times_in_plane(x, y),
-            _ => self.times_in_space(x, y),
+            2 if self.turns => self.times_with_turns(x, y),
+            2 => self.times_in::<2>(x, y),
+            _ => self.times_in::<3>(x, y),
         }
     }
 
-    fn times_in_space(&self, x: &[f64], y: &mut [f64]) {
-        for (a, y) in y.chunks_exact_mut(3).enumerate() {
-            let mut sum = [0.0; 3];
-            for k in self.start[a] as usize..self.start[a + 1] as usize {
-                let (b, m) = (self.column[k] as usize * 3, self.value[k]);
-                for c in 0..3 {
-                    sum[c] += m * x[b + c];
-                }
+    fn times_in<const D: usize>(&self, x: &[f64], y: &mut [f64]) {
+        let (x, y) = (x.as_chunks::<D>().0, y.as_chunks_mut::<D>().0);
+        for (y, range) in y.iter_mut().zip(self.start.windows(2)) {
+            let range = range[0] as usize..range[1] as usize;
+            let mut sum = [0.0; D];
+            for (&b, m) in self.column[range.clone()].iter().zip(&self.value[range]) {
+                let x = &x[b as usize];
+                (0..D).for_each(|c| sum[c] += m * x[c]);
             }
-            y.copy_from_slice(&sum);
+            *y = sum;
         }
     }
 
-    fn times_in_plane(&self, x: &[f64], y: &mut [f64]) {
+    fn times_with_turns(&self, x: &[f64], y: &mut [f64]) {
         for (a, y) in y.chunks_exact_mut(2).enumerate() {
             let mut sum = [0.0; 2];
             for k in self.start[a] as usize..self.start[a + 1] as usize {
