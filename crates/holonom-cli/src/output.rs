@@ -1,5 +1,6 @@
 //! One run and what it leaves in its folder.
 
+use std::collections::HashSet;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -148,10 +149,10 @@ fn only(recording: &Recording, points: &[String], model: &Model) -> Recording {
 pub fn columns(recording: &Recording, points: &[String], model: &Model) -> Vec<String> {
     let all = || recording.columns().iter().map(|column| column.name.as_str());
     let of = |name: &'_ str, owner: &str| name.rsplit_once('.').is_some_and(|(known, _)| known == owner);
-    let has_owner = |name: &&str| {
-        let owners = model.points.iter().map(|point| &point.name).chain(model.bodies.iter().map(|body| &body.name));
-        owners.chain(model.channels.points.iter().map(|point| &point.name)).any(|owner| of(name, owner))
-    };
+    let owners = model.points.iter().map(|point| &point.name).chain(model.bodies.iter().map(|body| &body.name));
+    let owners = owners.chain(model.channels.points.iter().map(|point| &point.name));
+    let owners: HashSet<&str> = owners.map(String::as_str).collect();
+    let has_owner = |name: &&str| name.rsplit_once('.').is_some_and(|(owner, _)| owners.contains(owner));
     let is_force = |name: &&str| name.rsplit_once('.').is_some_and(|(_, suffix)| suffix.len() == 2 && suffix.starts_with('r'));
     let kept = |name: &&str| points.iter().any(|point| of(name, point));
     let motion = points.iter().flat_map(|point| all().filter(move |name| of(name, point) && !is_force(name)));

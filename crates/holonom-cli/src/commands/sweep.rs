@@ -1,8 +1,8 @@
 //! `holonom sweep`.
 
 use std::process::ExitCode;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
 
 use cpu_time::ProcessTime;
 use holonom_io::Table;
@@ -33,8 +33,14 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
     let folder = Folder::create(&arguments.to.folder(&format!("{name}-sweep")))?;
     let identity = identity(arguments, overrides.given(), source.text());
     let mut journal = open(&folder, &identity, &plan, &sheet)?;
-    let runner =
-        Runner { source: &source, plan: &plan, method: arguments.method.name.as_deref(), columns: &columns, interrupted: interrupt_flag() };
+    let runner = Runner {
+        source: &source,
+        plan: &plan,
+        method: arguments.method.name.as_deref(),
+        columns: &columns,
+        eliminations: Arc::default(),
+        interrupted: interrupt_flag(),
+    };
     let spent = run(&runner, &sheet, &mut journal, arguments)?;
     let table = sheet.table(journal.lines.iter().flatten());
     let is_whole = journal.missing().is_empty();

@@ -1,9 +1,9 @@
 //! One run of a sweep: the model with the values of the run, from its start to its end.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use holonom::linalg::Plans;
 use holonom::model::{Model, Value};
 use holonom::record::{Recorder, Recording};
 use holonom::simulation::{Method, Observer, Simulation, Status, Verdict};
@@ -74,6 +74,8 @@ pub struct Runner<'a> {
     pub method: Option<&'a str>,
     /// Columns of the trajectory whose last values are kept.
     pub columns: &'a [String],
+    /// The eliminations of the runs, planned once where runs differ in numbers only.
+    pub eliminations: Arc<Plans>,
     pub interrupted: Arc<AtomicBool>,
 }
 
@@ -85,10 +87,11 @@ impl Runner<'_> {
         }
         let changes: Vec<(&str, Value)> =
             self.plan.varied.iter().zip(settings).map(|(vary, setting)| (vary.path.as_str(), setting.value.clone())).collect();
-        let model = match self.source.model_with(&changes) {
+        let mut model = match self.source.model_with(&changes) {
             Ok(model) => model,
             Err(faults) => return Some(refused(faults.to_string())),
         };
+        model.system.share_plans(&self.eliminations);
         match self.simulate(&model) {
             Ok(outcome) => outcome,
             Err(Failure::Usage { message, .. }) => Some(refused(message)),
@@ -121,9 +124,7 @@ impl Runner<'_> {
     }
 
     fn figures(&self, model: &Model, simulation: &Simulation<'_>) -> Figures {
-        let (audit, present) = (simulation.audit(), present(model, simulation));
-        let last: HashMap<&str, f64> =
-            present.columns().iter().filter_map(|column| Some((column.name.as_str(), *column.values.first()?))).collect();
+        let (audit, last) = (simulation.audit(), present(model, simulation));
         let (violation, work) = (audit.violation_summary(), audit.work_summary(simulation.steps()));
         Figures {
             steps: simulation.steps(),
@@ -132,7 +133,7 @@ impl Runner<'_> {
             velocity: violation.velocity,
             iterations_per_step: work.iterations_per_step,
             rejected_steps: work.rejected_steps,
-            last: self.columns.iter().map(|name| last.get(name.as_str()).copied()).collect(),
+            last: self.columns.iter().map(|name| last.column(name).and_then(|values| values.first().copied())).collect(),
         }
     }
 }

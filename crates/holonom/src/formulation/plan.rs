@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::kkt::{Coupling, Hessian, Kkt, NONE, OuterTerm, Turn};
-use crate::linalg::{Solver, fill_reducing_order};
+use crate::linalg::{Plans, Solver, fill_reducing_order};
 use crate::system::{HessianBlock, InvariantId, Mass, NodeId, Quantity, Row, RowSlot, System};
 
 /// Pairs of free nodes that share a block of the matrix.
@@ -149,7 +149,7 @@ impl Kkt {
 
         let row_slot = |(row, slot): (u32, usize)| RowSlot { row, slot: slot as u32, node: slot_nodes[slot] };
         let mut kkt = Self {
-            solver: Solver::new(0, &[], &[]),
+            solver: Solver::new(&Plans::default(), 0, &[], &[]),
             dim,
             fields,
             free,
@@ -177,11 +177,11 @@ impl Kkt {
             row_slots,
             slot_nodes,
         };
-        kkt.plan(&pairs);
+        kkt.plan(&pairs, &system.plans);
         kkt
     }
 
-    fn plan(&mut self, pairs: &Pairs) {
+    fn plan(&mut self, pairs: &Pairs, plans: &Plans) {
         let (dim, fields, rows) = (self.dim, self.fields, self.row_slots.len());
         let combinations: Vec<(usize, usize)> = (0..fields).flat_map(|i| (0..fields).map(move |j| (i, j))).collect();
         let mut entries = Vec::new();
@@ -206,7 +206,7 @@ impl Kkt {
                 }
             }
         }
-        self.solver = Solver::new(self.size(), &entries, &self.elimination_order(pairs));
+        self.solver = Solver::new(plans, self.size(), &entries, &self.elimination_order(pairs));
         for (&(a, b), pair) in &pairs.found {
             self.full_index.push(pair.full.unwrap_or(NONE));
             for &(i, j) in &combinations {

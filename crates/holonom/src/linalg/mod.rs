@@ -3,12 +3,18 @@
 //! The only folder that names the linear algebra library.
 
 mod eigen;
+mod factor;
 mod fronts;
+mod groups;
 mod multifrontal;
 mod ordering;
+mod plans;
+mod solve;
+mod tile;
 
 pub use eigen::{inverse, null_space, relative_eigenvalues};
 pub use ordering::fill_reducing_order;
+pub use plans::Plans;
 
 use multifrontal::Multifrontal;
 
@@ -29,9 +35,9 @@ pub struct Singular {
 
 impl Solver {
     /// Plans a matrix of `size` rows with the structurally symmetric pattern `entries` (row, column), eliminated in
-    /// the order `order`, but for unknowns that do not know of each other.
-    pub fn new(size: usize, entries: &[(u32, u32)], order: &[u32]) -> Self {
-        Self { lu: Multifrontal::new(size, entries, order) }
+    /// the order `order`, but for unknowns that do not know of each other. What is among the `plans` is not planned again.
+    pub fn new(plans: &Plans, size: usize, entries: &[(u32, u32)], order: &[u32]) -> Self {
+        Self { lu: Multifrontal::new(plans.fronts(size, entries, order)) }
     }
 
     /// Where the entry (row, column) of the pattern is among the values.
@@ -108,7 +114,7 @@ mod tests {
     fn factored(size: usize, entries: &[(usize, usize, f64)]) -> Solver {
         let pattern: Vec<_> = entries.iter().map(|&(i, j, _)| (i as u32, j as u32)).collect();
         let order: Vec<u32> = (0..size as u32).step_by(2).chain((1..size as u32).step_by(2)).collect();
-        let mut solver = Solver::new(size, &pattern, &order);
+        let mut solver = Solver::new(&Plans::default(), size, &pattern, &order);
         for &(i, j, value) in entries {
             let at = solver.position(i, j) as usize;
             solver.values_mut()[at] += value;

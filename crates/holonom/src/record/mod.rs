@@ -12,6 +12,8 @@ pub use scene::{Anchor, Line, LineKind, PointKind, Scene, SceneBody, SceneJoint,
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
     columns: Vec<Column>,
+    /// The columns by their names.
+    by_name: Vec<u32>,
 }
 
 /// One channel over time, in SI units.
@@ -26,8 +28,10 @@ pub struct Column {
 impl Recording {
     /// An empty table with the given column names.
     pub fn new(names: impl IntoIterator<Item = String>) -> Self {
-        let columns = names.into_iter().map(|name| Column { name, values: Vec::new() }).collect();
-        Self { columns }
+        let columns: Vec<Column> = names.into_iter().map(|name| Column { name, values: Vec::new() }).collect();
+        let mut by_name: Vec<u32> = (0..columns.len() as u32).collect();
+        by_name.sort_by_key(|&k| &columns[k as usize].name);
+        Self { columns, by_name }
     }
 
     /// Appends one row.
@@ -48,7 +52,8 @@ impl Recording {
 
     /// The values of one column, if there is one of that name.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
-        self.columns.iter().find(|c| c.name == name).map(|c| c.values.as_slice())
+        let at = self.by_name.binary_search_by_key(&name, |&k| &self.columns[k as usize].name).ok()?;
+        Some(&self.columns[self.by_name[at] as usize].values)
     }
 
     /// Number of rows.

@@ -286,6 +286,7 @@ impl SystemBuilder {
             row_names,
             start_position: self.position,
             start_velocity: self.velocity,
+            plans: Arc::default(),
         }
     }
 }

@@ -39,6 +39,8 @@ pub(crate) use slots::{add_along_rows, along, scatter, scatter_rows};
 
 use std::sync::Arc;
 
+use crate::linalg::Plans;
+
 /// A constraint row Φ_k = π_k − c_k(t).
 pub(crate) struct Row {
     pub name: String,
@@ -115,9 +117,17 @@ pub struct System {
     pub(crate) row_names: Vec<String>,
     pub(crate) start_position: Vec<f64>,
     pub(crate) start_velocity: Vec<f64>,
+    /// Of the eliminations that methods do with this system.
+    pub(crate) plans: Arc<Plans>,
 }
 
 impl System {
+    /// Takes part in the plans that other systems made and will make. Where systems have the same structure and differ in numbers
+    /// only, such as the runs of a sweep, the elimination is planned once for all of them.
+    pub fn share_plans(&mut self, plans: &Arc<Plans>) {
+        self.plans = plans.clone();
+    }
+
     /// Coordinates a node: 3 in space, 2 in the plane.
     pub fn dimension(&self) -> usize {
         self.dim

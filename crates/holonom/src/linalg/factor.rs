@@ -1,0 +1,202 @@
+//! The numbers of a factorisation: fronts in their order, each put together, eliminated and left to its parent.
+
+use pulp::{Simd, WithSimd};
+
+use super::Singular;
+use super::fronts::{Front, Fronts};
+use super::multifrontal::{Numbers, OneFront, with_blocks};
+use super::tile::{Block, LANES, TILE, Tile, above_tiny, add_product, inverses, lower, packed, product};
+
+pub(super) struct Factor<'a> {
+    pub(super) plan: &'a Fronts,
+    pub(super) tiles: &'a mut [Tile],
+    pub(super) values: &'a [f64],
+    pub(super) numbers: &'a mut Numbers,
+}
+
+impl WithSimd for Factor<'_> {
+    type Output = Result<(), Singular>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        if let Some(blocks) = self.plan.one_front() {
+            return with_blocks(self, simd, blocks);
+        }
+        let (plan, Numbers { stale, exchange, exchanged, rows, .. }) = (self.plan, self.numbers);
+        for (k, (front, exchanged)) in plan.fronts.iter().zip(exchanged).enumerate() {
+            if !std::mem::take(&mut stale[k]) {
+                continue;
+            }
+            if let Some(parent) = front.parent {
+                stale[parent] = true;
+            }
+            let (done, own) = self.tiles.split_at_mut(front.tile);
+            let own = &mut own[..front.size * front.size];
+            own.fill([0.0; TILE]);
+            let [first, last] = front.entries;
+            for (&place, value) in plan.entries[first..last].iter().zip(&self.values[first..last]) {
+                own.as_flattened_mut()[place as usize - front.tile * TILE] = *value;
+            }
+            let [first, last] = front.children;
+            for &child in &plan.children[first..last] {
+                let child = &plan.fronts[child as usize];
+                take_over(child, &done[child.tile..], &plan.in_parent[child.range()], front.size, own.as_flattened_mut());
+            }
+            let exchange = &mut exchange[front.block * LANES..front.block * LANES + front.pivots];
+            *exchanged = eliminate(simd, front, own, exchange, rows)
+                .map_err(|pivot| Singular { pivot: plan.row[front.block * LANES + pivot] as usize })?;
+        }
+        Ok(())
+    }
+}
+
+impl OneFront for Factor<'_> {
+    /// Leaves the inverse of L in its place.
+    #[inline(always)]
+    fn one<S: Simd, const B: usize>(self, simd: S) -> Self::Output {
+        let front = Front { head: B, size: B, ..self.plan.fronts[0] };
+        let (Numbers { exchange, exchanged, rows, .. }, tiles) = (self.numbers, &mut self.tiles[..B * B]);
+        exchanged[0] = eliminate(simd, &front, tiles, &mut exchange[..front.pivots], rows)
+            .map_err(|pivot| Singular { pivot: self.plan.row[pivot] as usize })?;
+        let inverse: [Tile; B] = std::array::from_fn(|k| lower(&tiles[k * (B + 1)]));
+        for k in 0..B {
+            for i in k + 1..B {
+                let mut sum = product(simd, &tiles[k * B + i], &inverse[k]);
+                for j in k + 1..i {
+                    add_product(simd, &mut sum, &tiles[j * B + i], &tiles[k * B + j], 1.0);
+                }
+                tiles[k * B + i] = product(simd, &inverse[i], &sum).map(|x| -x);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A pivot this far below the largest number under it is exchanged.
+const SMALL: f64 = 1e-3;
+
+/// Eliminates the pivots of a front, a block at a time; whether rows changed places, or the pivot that cannot be one.
+#[inline(always)]
+fn eliminate<S: Simd>(simd: S, front: &Front, tiles: &mut [Tile], exchange: &mut [u32], rows: &mut [Block]) -> Result<bool, usize> {
+    let size = front.size;
+    for k in front.pivots..front.head * LANES {
+        tiles[k / LANES * (size + 1)][k % LANES * (LANES + 1)] = 1.0;
+    }
+    let mut exchanged = false;
+    for block in 0..front.head {
+        let pivots = block * (size + 1)..block * size + front.head;
+        let inverse = match in_order(simd, &tiles[pivots.clone()]) {
+            Some(inverse) => inverse,
+            None => {
+                if !exchanged {
+                    exchange.iter_mut().enumerate().for_each(|(k, row)| *row = k as u32);
+                }
+                exchanged = true;
+                exchange_rows(block, front, tiles, exchange, rows)?;
+                in_order(simd, &tiles[pivots]).ok_or(block * LANES)?
+            }
+        };
+        tiles[block * (size + 1)] = packed(&inverse);
+        let (done, rest) = tiles.split_at_mut((block + 1) * size);
+        let panel = &mut done[block * (size + 1) + 1..];
+        for l in panel.iter_mut() {
+            *l = above_tiny(product(simd, l, &inverse[1]));
+        }
+        for column in rest.chunks_exact_mut(size) {
+            let (head, tail) = column[block..].split_first_mut().expect("a column has all rows");
+            *head = above_tiny(product(simd, &inverse[0], head));
+            for (l, target) in panel.iter().zip(tail) {
+                add_product(simd, target, l, head, -1.0);
+            }
+        }
+    }
+    Ok(exchanged)
+}
+
+/// The inverses of the factors of the first of a column of tiles, where all pivots are fit in the order as it is.
+#[inline(always)]
+fn in_order<S: Simd>(simd: S, panel: &[Tile]) -> Option<[Tile; 2]> {
+    let (diagonal, below) = panel.split_first()?;
+    let mut factors = *diagonal;
+    let mut largest = [0.0; LANES];
+    for k in 0..LANES {
+        let scale = 1.0 / factors[k * LANES + k];
+        for row in k + 1..LANES {
+            factors[k * LANES + row] *= scale;
+            larger(&mut largest[row], factors[k * LANES + row]);
+            for j in k + 1..LANES {
+                factors[j * LANES + row] -= factors[j * LANES + k] * factors[k * LANES + row];
+            }
+        }
+    }
+    let inverse = inverses(&factors);
+    for tile in below {
+        let l = product(simd, tile, &inverse[1]);
+        for k in 0..TILE {
+            larger(&mut largest[k % LANES], l[k]);
+        }
+    }
+    // Neither infinite numbers nor what is no number pass.
+    let ends = (0..LANES).all(|k| factors[k * (LANES + 1)].is_normal());
+    (ends && largest.iter().all(|&l| l <= 1.0 / SMALL)).then_some(inverse)
+}
+
+/// Raises `largest` to |x|, and to what is no number.
+#[inline(always)]
+fn larger(largest: &mut f64, x: f64) {
+    *largest = if x.abs() <= *largest { *largest } else { x.abs() };
+}
+
+/// Exchanges the row of each pivot of a block that is far smaller than the largest number below it among the pivots for the
+/// row of that; the pivot that cannot be one.
+#[inline(never)]
+fn exchange_rows(block: usize, front: &Front, tiles: &mut [Tile], exchange: &mut [u32], rows: &mut [Block]) -> Result<(), usize> {
+    let first = block * LANES;
+    let place = |row: usize, column: usize| (column / LANES * front.size + row / LANES, column % LANES * LANES + row % LANES);
+    let rows = &mut rows[..front.pivots - first];
+    for (row, numbers) in rows.iter_mut().enumerate() {
+        *numbers = std::array::from_fn(|k| {
+            let (tile, at) = place(first + row, first + k);
+            tiles[tile][at]
+        });
+    }
+    for k in 0..rows.len().min(LANES) {
+        let (largest, size) = (k..rows.len()).fold((k, 0.0), |(m, size), row| {
+            let other = rows[row][k].abs();
+            if other > size { (row, other) } else { (m, size) }
+        });
+        if !size.is_normal() {
+            return Err(first + k);
+        }
+        if rows[k][k].abs() < SMALL * size {
+            rows.swap(k, largest);
+            exchange[first + k] = (first + largest) as u32;
+            for column in 0..front.size * LANES {
+                let (from, to) = (place(first + k, column), place(first + largest, column));
+                let kept = tiles[from.0][from.1];
+                tiles[from.0][from.1] = tiles[to.0][to.1];
+                tiles[to.0][to.1] = kept;
+            }
+        }
+        let pivot = rows[k];
+        for row in &mut rows[k + 1..] {
+            let factor = row[k] / pivot[k];
+            (k + 1..LANES).for_each(|j| row[j] -= factor * pivot[j]);
+        }
+    }
+    Ok(())
+}
+
+/// Adds what a front left to the rows below its pivots to the front of its parent, whose columns have `size` tiles.
+#[inline(always)]
+fn take_over(front: &Front, tiles: &[Tile], in_parent: &[u32], size: usize, square: &mut [f64]) {
+    for (k, &to) in in_parent.iter().enumerate() {
+        let (to, lane) = (to as usize, k % LANES);
+        let target = &mut square[to / TILE * size * TILE + to % LANES * LANES..];
+        let column = &tiles[(front.head + k / LANES) * front.size + front.head..];
+        for (rows, tile) in in_parent.chunks(LANES).zip(column) {
+            let values = &tile[lane * LANES..(lane + 1) * LANES];
+            rows.iter().zip(values).for_each(|(&row, value)| target[row as usize] += value);
+        }
+    }
+}
