@@ -17,6 +17,8 @@ use clap::Parser;
 use options::{Cli, Command};
 
 fn main() -> ExitCode {
+    // Who reads no further, as `head` does, ends the command without a word.
+    sigpipe::reset();
     let cli = Cli::parse();
     let outcome = match &cli.command {
         Command::Run(arguments) => commands::run::run(arguments),

@@ -40,6 +40,16 @@ fn wrong_use_ends_with_two_and_says_what_there_is() {
 }
 
 #[test]
+fn nothing_is_said_when_nobody_reads() {
+    for word in ["methods", "examples", "schema"] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = Process::new(env!("CARGO_BIN_EXE_holonom")).arg(word).stdout(writer).output().unwrap();
+        assert!(output.stderr.is_empty(), "{word}: {}", text(&output.stderr));
+    }
+}
+
+#[test]
 fn a_wrong_model_is_answered_with_every_fault() {
     let folder = folder();
     let model = "[point.a]\nmas = 1\nposition = [1, 0]\n\n[constraint.rod]\ntype = \"distance\"\nbetween = [\"ground\", \"b\"]\n";
