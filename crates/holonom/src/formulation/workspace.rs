@@ -257,7 +257,10 @@ impl Workspace {
     pub fn factor(&mut self) -> Result<(), Failure> {
         self.kkt.regularise(0, &self.delta);
         self.factorizations += 1;
-        self.kkt.factor().map_err(|_| Failure::NotFinite)?;
+        if self.kkt.factor().is_err() {
+            self.regular.fill(false);
+            return Err(Failure::NotFinite);
+        }
         for (row, regular) in self.regular.iter_mut().enumerate() {
             let pivot = self.kkt.solver.pivot(self.kkt.multiplier(row, 0));
             *regular = pivot - self.delta[row] > REDUNDANT * self.softness[row];

@@ -85,7 +85,7 @@ fn eliminate<S: Simd>(simd: S, front: &Front, tiles: &mut [Tile], exchange: &mut
     let mut exchanged = false;
     for block in 0..front.head {
         let pivots = block * (size + 1)..block * size + front.head;
-        let inverse = match in_order(simd, &tiles[pivots.clone()]) {
+        let inverse = match in_order(simd, &tiles[pivots.clone()], 1.0 / SMALL) {
             Some(inverse) => inverse,
             None => {
                 if !exchanged {
@@ -93,7 +93,8 @@ fn eliminate<S: Simd>(simd: S, front: &Front, tiles: &mut [Tile], exchange: &mut
                 }
                 exchanged = true;
                 exchange_rows(block, front, tiles, exchange, rows)?;
-                in_order(simd, &tiles[pivots]).ok_or(block * LANES)?
+                // Round-off may put what was exchanged a little above.
+                in_order(simd, &tiles[pivots], 2.0 / SMALL).ok_or(block * LANES)?
             }
         };
         tiles[block * (size + 1)] = packed(&inverse);
@@ -113,9 +114,10 @@ fn eliminate<S: Simd>(simd: S, front: &Front, tiles: &mut [Tile], exchange: &mut
     Ok(exchanged)
 }
 
-/// The inverses of the factors of the first of a column of tiles, where all pivots are fit in the order as it is.
+/// The inverses of the factors of the first of a column of tiles, where in the order as it is all pivots are fit: nothing in L is
+/// larger than `most`.
 #[inline(always)]
-fn in_order<S: Simd>(simd: S, panel: &[Tile]) -> Option<[Tile; 2]> {
+fn in_order<S: Simd>(simd: S, panel: &[Tile], most: f64) -> Option<[Tile; 2]> {
     let (diagonal, below) = panel.split_first()?;
     let mut factors = *diagonal;
     let mut largest = [0.0; LANES];
@@ -138,7 +140,7 @@ fn in_order<S: Simd>(simd: S, panel: &[Tile]) -> Option<[Tile; 2]> {
     }
     // Neither infinite numbers nor what is no number pass.
     let ends = (0..LANES).all(|k| factors[k * (LANES + 1)].is_normal());
-    (ends && largest.iter().all(|&l| l <= 1.0 / SMALL)).then_some(inverse)
+    (ends && largest.iter().all(|&l| l <= most)).then_some(inverse)
 }
 
 /// Raises `largest` to |x|, and to what is no number.
