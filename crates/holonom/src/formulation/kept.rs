@@ -24,12 +24,7 @@ pub(super) struct Kept {
 
 impl Kept {
     pub(super) fn new(system: &System, by_rows: bool, slots: usize) -> Self {
-        let by_rows = by_rows
-            && system.laws.is_empty()
-            && system.loads.is_empty()
-            && system.custom.is_empty()
-            && system.function_rows.is_empty()
-            && !system.is_nonholonomic();
+        let by_rows = by_rows && system.has_only_quadratic_rows();
         let rows = if by_rows { system.constraints() } else { 0 };
         let gradient = vec![0.0; if by_rows { slots * system.dim } else { 0 }];
         Self { by_rows, gradient, lambda: vec![0.0; rows], left: vec![0.0; rows], rows: Vec::with_capacity(rows) }

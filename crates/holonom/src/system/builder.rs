@@ -59,6 +59,7 @@ pub struct SystemBuilder {
     functions: Functions,
     pub(super) gauges: Gauges,
     rows: Vec<Row>,
+    row_names: Vec<String>,
     custom: Vec<CustomEntry>,
     laws: Vec<LawEntry>,
     loads: Vec<LoadEntry>,
@@ -82,6 +83,7 @@ impl SystemBuilder {
             functions: Functions::default(),
             gauges: Gauges::new(dim),
             rows: Vec::new(),
+            row_names: Vec::new(),
             custom: Vec::new(),
             laws: Vec::new(),
             loads: Vec::new(),
@@ -209,7 +211,8 @@ impl SystemBuilder {
 
     /// Adds the row Φ = π − c(t).
     pub fn row(&mut self, name: impl Into<String>, quantity: impl Into<Quantity>, target: Arc<dyn Signal>) {
-        self.rows.push(Row::new(name.into(), quantity.into(), target));
+        self.row_names.push(name.into());
+        self.rows.push(Row::new(quantity.into(), target));
     }
 
     /// Adds the row Φ = π − c with a constant c.
@@ -248,7 +251,7 @@ impl SystemBuilder {
 
     /// The finished system.
     pub fn build(self) -> System {
-        let mut row_names: Vec<String> = self.rows.iter().map(|row| row.name.clone()).collect();
+        let mut row_names = self.row_names;
         for custom in &self.custom {
             match custom.rows.rows() {
                 1 => row_names.push(custom.name.clone()),

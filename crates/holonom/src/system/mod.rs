@@ -43,30 +43,33 @@ use crate::linalg::Plans;
 
 /// A constraint row Φ_k = π_k − c_k(t).
 pub(crate) struct Row {
-    pub name: String,
     pub quantity: Quantity,
-    target: Arc<dyn Signal>,
-    /// The value of a target that never changes.
-    constant: Option<f64>,
+    target: Target,
+}
+
+/// c of a row.
+enum Target {
+    Constant(f64),
+    Signal(Arc<dyn Signal>),
 }
 
 impl Row {
-    pub fn new(name: String, quantity: Quantity, target: Arc<dyn Signal>) -> Self {
-        let constant = target.is_constant().then(|| target.at(0.0)[0]);
-        Self { name, quantity, target, constant }
+    pub fn new(quantity: Quantity, target: Arc<dyn Signal>) -> Self {
+        let target = if target.is_constant() { Target::Constant(target.at(0.0)[0]) } else { Target::Signal(target) };
+        Self { quantity, target }
     }
 
     /// c, ċ and c̈ at a time.
     #[inline]
     pub fn target(&self, t: f64) -> [f64; 3] {
-        match self.constant {
-            Some(value) => [value, 0.0, 0.0],
-            None => self.target.at(t),
+        match &self.target {
+            Target::Constant(value) => [*value, 0.0, 0.0],
+            Target::Signal(signal) => signal.at(t),
         }
     }
 
     pub fn is_constant(&self) -> bool {
-        self.constant.is_some()
+        matches!(self.target, Target::Constant(_))
     }
 }
 
@@ -151,6 +154,11 @@ impl System {
     /// Whether some rows hold velocities only.
     pub fn is_nonholonomic(&self) -> bool {
         !self.velocity_rows.is_empty()
+    }
+
+    /// Whether there is nothing but masses, weight and rows that are quadratic.
+    pub(crate) fn has_only_quadratic_rows(&self) -> bool {
+        self.laws.is_empty() && self.loads.is_empty() && self.custom.is_empty() && self.function_rows.is_empty()
     }
 
     /// Number of constraint rows r.
