@@ -3,7 +3,7 @@
 use pulp::{Simd, WithSimd};
 
 use super::Singular;
-use super::fronts::{Front, Fronts};
+use super::fronts::{Front, Fronts, Sources};
 use super::multifrontal::{Numbers, OneFront, with_blocks};
 use super::tile::{Block, LANES, TILE, Tile, above_tiny, add_product, inverses, lower, packed, product};
 
@@ -27,18 +27,17 @@ impl WithSimd for Factor<'_> {
             if !std::mem::take(&mut stale[k]) {
                 continue;
             }
-            if let Some(parent) = front.parent {
+            let Sources { entries: [first, last], children: [eldest, end], parent } = plan.sources[k];
+            if let Some(parent) = parent {
                 stale[parent] = true;
             }
             let (done, own) = self.tiles.split_at_mut(front.tile);
             let own = &mut own[..front.size * front.size];
             own.fill([0.0; TILE]);
-            let [first, last] = front.entries;
             for (&place, value) in plan.entries[first..last].iter().zip(&self.values[first..last]) {
                 own.as_flattened_mut()[place as usize - front.tile * TILE] = *value;
             }
-            let [first, last] = front.children;
-            for &child in &plan.children[first..last] {
+            for &child in &plan.children[eldest..end] {
                 let child = &plan.fronts[child as usize];
                 take_over(child, &done[child.tile..], &plan.in_parent[child.range()], front.size, own.as_flattened_mut());
             }

@@ -10,6 +10,7 @@ pub(super) struct Fronts {
     pub row: Vec<u32>,
     /// Children before their parents.
     pub fronts: Vec<Front>,
+    pub sources: Vec<Sources>,
     /// Places of the rows below the pivots, ascending, one front after the other.
     pub below: Vec<u32>,
     /// For each of them, where it is in a column of the parent's front.
@@ -42,6 +43,11 @@ pub(super) struct Front {
     pub below: usize,
     /// First of its tiles.
     pub tile: usize,
+}
+
+/// What a front is put together from. Solutions go through the fronts without it.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Sources {
     /// Its entries among those of all fronts: the first, and the one after the last.
     pub entries: [usize; 2],
     /// Its children among those of all fronts, likewise.
@@ -62,6 +68,7 @@ impl Fronts {
             place: vec![0; size],
             row: Vec::new(),
             fronts: Vec::new(),
+            sources: Vec::new(),
             below: Vec::new(),
             in_parent: Vec::new(),
             children: Vec::new(),
@@ -80,7 +87,7 @@ impl Fronts {
             let size = head + rows.div_ceil(LANES);
             fronts.of_block.extend(std::iter::repeat_n(fronts.fronts.len() as u32, head));
             let tile = fronts.tiles;
-            fronts.fronts.push(Front { pivots, rows, head, size, block, tile, below: 0, entries: [0; 2], children: [0; 2], parent: None });
+            fronts.fronts.push(Front { pivots, rows, head, size, block, tile, below: 0 });
             fronts.tiles += size * size;
         }
         fronts.row = vec![0; fronts.of_block.len() * LANES];
@@ -90,9 +97,10 @@ impl Fronts {
             fronts.below.extend(columns[top as usize].iter().map(|&column| fronts.place[order[column as usize] as usize]));
             fronts.below[first..].sort_unstable();
             fronts.fronts[k].below = first;
-            fronts.fronts[k].parent = fronts.below.get(first).map(|&place| fronts.of_block[place as usize / LANES] as usize);
+            let parent = fronts.below.get(first).map(|&place| fronts.of_block[place as usize / LANES] as usize);
+            fronts.sources.push(Sources { parent, ..Sources::default() });
         }
-        fronts.in_parent = fronts.fronts.iter().flat_map(|front| fronts.rows_in_parent(front)).collect();
+        fronts.in_parent = (0..fronts.fronts.len()).flat_map(|k| fronts.rows_in_parent(k)).collect();
         fronts.place_children();
         fronts.place_entries(entries);
         fronts
@@ -100,15 +108,15 @@ impl Fronts {
 
     fn place_children(&mut self) {
         let mut children = vec![Vec::new(); self.fronts.len()];
-        for (k, front) in self.fronts.iter().enumerate() {
-            if let Some(parent) = front.parent {
+        for (k, sources) in self.sources.iter().enumerate() {
+            if let Some(parent) = sources.parent {
                 children[parent].push(k as u32);
             }
         }
-        for (front, children) in self.fronts.iter_mut().zip(children) {
+        for (sources, children) in self.sources.iter_mut().zip(children) {
             let first = self.children.len();
             self.children.extend(children);
-            front.children = [first, self.children.len()];
+            sources.children = [first, self.children.len()];
         }
     }
 
@@ -118,8 +126,8 @@ impl Fronts {
         places.sort_unstable();
         places.dedup();
         let before = |tile: usize| places.partition_point(|&place| (place as usize) < tile * TILE);
-        for front in &mut self.fronts {
-            front.entries = [before(front.tile), before(front.tile + front.size * front.size)];
+        for (front, sources) in self.fronts.iter().zip(&mut self.sources) {
+            sources.entries = [before(front.tile), before(front.tile + front.size * front.size)];
         }
         self.entries = places;
     }
@@ -148,11 +156,11 @@ impl Fronts {
         front.tile + (block - front.block) * (front.size + 1)
     }
 
-    fn rows_in_parent(&self, front: &Front) -> Vec<u32> {
-        let Some(parent) = front.parent else { return Vec::new() };
+    fn rows_in_parent(&self, front: usize) -> Vec<u32> {
+        let Some(parent) = self.sources[front].parent else { return Vec::new() };
         let parent = &self.fronts[parent];
         let row = |&place| in_column(self.row_in(parent, place).expect("a parent has the rows of its children")) as u32;
-        self.below[front.range()].iter().map(row).collect()
+        self.below[self.fronts[front].range()].iter().map(row).collect()
     }
 
     /// Which row of a front is at a place.

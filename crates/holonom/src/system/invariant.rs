@@ -15,16 +15,16 @@ enum Product {
     Square,
     /// U·W
     Dot,
-    /// e·(U × W); in the plane the scalar cross product.
-    Cross([f64; 3]),
+    /// e·(U × W); in the plane the scalar cross product. Number of e among the vectors.
+    Cross(u32),
 }
 
-/// One of the two sums of an invariant: a range of terms and a constant.
+/// One of the two sums of an invariant: a range of terms and the number of its constant among the vectors.
 #[derive(Clone, Copy, Debug)]
 struct Sum {
     start: u32,
     end: u32,
-    constant: [f64; 3],
+    constant: u32,
 }
 
 #[derive(Clone, Debug)]
@@ -39,6 +39,8 @@ struct Invariant {
 pub struct Invariants {
     dim: usize,
     items: Vec<Invariant>,
+    /// Constants of the sums and e of the products, zero first: most sums have no constant.
+    vectors: Vec<[f64; 3]>,
     term_node: Vec<u32>,
     /// Factors of the nodes and, in the plane, of their quarter turns.
     term_factors: Vec<[f64; 2]>,
@@ -58,7 +60,7 @@ pub(crate) enum HessianBlock {
 
 impl Invariants {
     pub(crate) fn new(dim: usize) -> Self {
-        Self { dim, items: Vec::new(), term_node: Vec::new(), term_factors: Vec::new() }
+        Self { dim, items: Vec::new(), vectors: vec![[0.0; 3]], term_node: Vec::new(), term_factors: Vec::new() }
     }
 
     pub(crate) fn square(&mut self, u: &[Term]) -> InvariantId {
@@ -70,7 +72,7 @@ impl Invariants {
     }
 
     pub(crate) fn cross(&mut self, e: [f64; 3], u: &[Term], w: &[Term]) -> InvariantId {
-        let e = if self.dim == 2 { NORMAL } else { e };
+        let e = self.vector(if self.dim == 2 { NORMAL } else { e });
         self.add(Product::Cross(e), u, w)
     }
 
@@ -98,7 +100,20 @@ impl Invariants {
                 }
             }
         }
-        Sum { start, end: self.term_node.len() as u32, constant }
+        Sum { start, end: self.term_node.len() as u32, constant: self.vector(constant) }
+    }
+
+    /// The number of a vector, which is taken in if it is another than the last and not zero.
+    fn vector(&mut self, vector: [f64; 3]) -> u32 {
+        let last = self.vectors.len() - 1;
+        match vector {
+            [0.0, 0.0, 0.0] => 0,
+            _ if self.vectors[last] == vector => last as u32,
+            _ => {
+                self.vectors.push(vector);
+                last as u32 + 1
+            }
+        }
     }
 
     /// Number of invariants.
@@ -155,6 +170,7 @@ impl Invariants {
                         push(b, a, along, -across, NORMAL);
                     }
                     Product::Cross(e) => {
+                        let e = self.vectors[e as usize];
                         // e × and J multiply to −1 in the plane; in space there are no quarter turns.
                         push(a, b, -across, along, e);
                         push(b, a, -across, -along, e);
@@ -178,7 +194,7 @@ impl Invariants {
         match item.product {
             Product::Square => 0.5 * dot(&u, &u),
             Product::Dot => dot(&u, &w),
-            Product::Cross(e) => dot(&u, &cross(&w, &e)),
+            Product::Cross(e) => dot(&u, &cross(&w, &self.vectors[e as usize])),
         }
     }
 
@@ -217,20 +233,24 @@ impl Invariants {
                 }
                 Product::Cross(e) => {
                     let w = self.sum_at(&item.w, constants, x);
-                    let right = cross(&w, &e);
+                    let e = &self.vectors[e as usize];
+                    let right = cross(&w, e);
                     *value = dot(&u, &right);
                     self.spread(&item.u, &right, gradient);
-                    self.spread(&item.w, &cross(&u, &e).map(|c| -c), gradient);
+                    self.spread(&item.w, &cross(&u, e).map(|c| -c), gradient);
                 }
             }
         }
     }
 
     /// One of the sums of an invariant, with `constants` times its constant.
-    #[inline]
+    #[inline(always)]
     fn sum_at<const D: usize>(&self, sum: &Sum, constants: f64, x: &[[f64; D]]) -> [f64; D] {
         let slots = sum.start as usize..sum.end as usize;
-        let mut out = std::array::from_fn(|c| constants * sum.constant[c]);
+        let mut out = match sum.constant {
+            0 => [0.0; D],
+            k => std::array::from_fn(|c| constants * self.vectors[k as usize][c]),
+        };
         for (&node, &[factor, turn]) in self.term_node[slots.clone()].iter().zip(&self.term_factors[slots]) {
             let x = &x[node as usize];
             (0..D).for_each(|c| out[c] += factor * x[c]);
