@@ -4,7 +4,7 @@ use super::iteration::Failure;
 use super::kept::Kept;
 use super::kkt::{ALL, Kkt};
 use super::level::Level;
-use super::stage::{Sampling, Stage};
+use super::stage::Stage;
 use crate::linalg::largest;
 use crate::system::{Evaluation, Response, SIZE, System};
 
@@ -105,8 +105,6 @@ pub struct Workspace {
     pub factorizations: u64,
     pub(super) dissipative: bool,
     works: bool,
-    /// Whether between two positions only the mean of the gradients counts.
-    only_gradients: bool,
     /// What the factors were last made of.
     pub(super) kept: Kept,
 }
@@ -175,7 +173,6 @@ impl Workspace {
             factorizations: 0,
             dissipative: system.laws.iter().any(|law| !law.law.conservative()),
             works: system.is_worked_on(),
-            only_gradients: system.has_only_quadratic_rows(),
         };
         system.evaluate_again(&workspace.x0, 0.0, &mut workspace.at_start);
         workspace.measure_softness(system);
@@ -228,14 +225,10 @@ impl Workspace {
         }
     }
 
-    /// Puts the end position, and the sampled position and velocity where something looks at them, of the free nodes where the
-    /// increment `d` has them. Those of the known nodes are the integrator's to set.
+    /// Puts the sampled position and velocity, and the end position, of the free nodes where the increment `d` has
+    /// them. Those of the known nodes are the integrator's to set.
     pub fn place(&mut self, stage: &Stage) {
         let Self { d, x0, x1, xs, vs, a1, offset, drift, .. } = self;
-        if stage.sampling == Sampling::Between && self.only_gradients && self.level == Level::POSITION {
-            x1.iter_mut().zip(&*x0).zip(&*d).for_each(|((x1, x0), d)| *x1 = x0 + d);
-            return;
-        }
         let share = stage.share();
         for (((x1, xs), x0), d) in x1.iter_mut().zip(xs).zip(&*x0).zip(&*d) {
             (*x1, *xs) = (x0 + d, x0 + share * d);
