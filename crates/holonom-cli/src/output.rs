@@ -148,17 +148,22 @@ fn only(recording: &Recording, points: &[String], model: &Model) -> Recording {
 /// Names of the columns without the points and bodies that are not among `points`, which come in this order.
 pub fn columns(recording: &Recording, points: &[String], model: &Model) -> Vec<String> {
     let all = || recording.columns().iter().map(|column| column.name.as_str());
-    let of = |name: &'_ str, owner: &str| name.rsplit_once('.').is_some_and(|(known, _)| known == owner);
     let owners = model.points.iter().map(|point| &point.name).chain(model.bodies.iter().map(|body| &body.name));
     let owners = owners.chain(model.channels.points.iter().map(|point| &point.name));
     let owners: HashSet<&str> = owners.map(String::as_str).collect();
-    let has_owner = |name: &&str| name.rsplit_once('.').is_some_and(|(owner, _)| owners.contains(owner));
-    let is_force = |name: &&str| name.rsplit_once('.').is_some_and(|(_, suffix)| suffix.len() == 2 && suffix.starts_with('r'));
-    let kept = |name: &&str| points.iter().any(|point| of(name, point));
-    let motion = points.iter().flat_map(|point| all().filter(move |name| of(name, point) && !is_force(name)));
-    let others = all().skip(COLUMNS.len()).filter(|name| !has_owner(name) || (is_force(name) && kept(name)));
+    let is_of = |name: &str, point: &str| owner_and_suffix(name).is_some_and(|(owner, _)| owner == point);
+    let has_owner = |name: &&str| owner_and_suffix(name).is_some_and(|(owner, _)| owners.contains(owner));
+    let is_force = |name: &&str| owner_and_suffix(name).is_some_and(|(_, suffix)| suffix.len() == 2 && suffix.starts_with('r'));
+    let is_kept = |name: &&str| points.iter().any(|point| is_of(name, point));
+    let motion = points.iter().flat_map(|point| all().filter(move |name| is_of(name, point) && !is_force(name)));
+    let others = all().skip(COLUMNS.len()).filter(|name| !has_owner(name) || (is_force(name) && is_kept(name)));
     let names = COLUMNS.into_iter().chain(motion).chain(others).map(str::to_string);
     names.filter(|name| recording.column(name).is_some()).collect()
+}
+
+/// The point, body or joint that a column is of, and what it shows of it.
+fn owner_and_suffix(column: &str) -> Option<(&str, &str)> {
+    column.rsplit_once('.')
 }
 
 /// Makes a folder and writes into it through a closure for each file.

@@ -73,6 +73,48 @@ fn compositions_conserve() {
     }
 }
 
+/// What is shown as ‖Φ̈‖ of a conserving scheme is x̄·a + v̄·v̄ of each rod at the middle of the step: with mean position,
+/// mean velocity Δx/h and mean acceleration Δv/h from the states at both ends. The gradient x̄ is that of the last
+/// evaluation, which the last increment of 1e-9 m at most comes after.
+#[test]
+fn the_violation_of_accelerations_is_that_of_the_middle_of_the_step() {
+    use holonom::simulation::{Method, Simulation, Verdict};
+    let mut builder = SystemBuilder::new(2, [0.0, -9.81, 0.0]);
+    let [a, b] = [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]].map(|position| Place::Node(builder.free_node(position, [0.0; 3])));
+    for (name, mass, node, other) in [("inner", 1.0, a, None), ("outer", 2.0, b, Some(a))] {
+        builder.mass(node, node, mass);
+        let ends: Vec<(Place, f64)> = [(node, 1.0)].into_iter().chain(other.map(|place| (place, -1.0))).collect();
+        let square = builder.square(&ends);
+        builder.constant_row(name, square, 0.5);
+    }
+    let (system, h) = (builder.build(), 0.05);
+    let mut simulation = Simulation::new(&system, Method::resolve(&named("conserving")).unwrap(), h).unwrap();
+    let rods = |x: &[f64]| [[x[0], x[1]], [x[2] - x[0], x[3] - x[1]]];
+    let mut before = (rods(&simulation.state().x), rods(&simulation.state().v));
+    let mut largest = 0.0_f64;
+    let mut observer = |simulation: &Simulation<'_>| {
+        let state = simulation.state();
+        let after = (rods(&state.x), rods(&state.v));
+        let of_rod = |k: usize| -> f64 {
+            let along = |c: usize| {
+                let (x0, x1, v0, v1) = (before.0[k][c], after.0[k][c], before.1[k][c], after.1[k][c]);
+                0.5 * (x0 + x1) * (v1 - v0) / h + ((x1 - x0) / h).powi(2)
+            };
+            along(0) + along(1)
+        };
+        let expected = of_rod(0).hypot(of_rod(1));
+        if state.t > 0.0 {
+            let shown = simulation.audit().phi_ddot;
+            assert!((shown - expected).abs() <= 1e-8 * (1.0 + expected), "{shown} instead of {expected} at {} s", state.t);
+            largest = largest.max(expected);
+        }
+        before = after;
+        Verdict::GoOn
+    };
+    assert_eq!(simulation.run(2.0, &mut observer), Status::Completed);
+    assert!(largest > 1e-3, "there is something to show: {largest}");
+}
+
 /// Steps of any length, forwards, keep the energy: one-step schemes have no past to disturb.
 #[test]
 fn conserving_ggl_keeps_the_energy_with_any_steps() {

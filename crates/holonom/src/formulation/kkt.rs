@@ -302,7 +302,7 @@ impl Kkt {
 
     /// Adds Σ factor_k g_k of all rows to forces on all nodes.
     pub fn add_forces(&self, factors: &[f64], gradient: &[f64], force: &mut [f64]) {
-        // As in the first iteration of a step.
+        // Newton starts every step without multipliers.
         if factors.iter().all(|factor| *factor == 0.0) {
             return;
         }

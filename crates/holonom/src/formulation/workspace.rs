@@ -4,7 +4,7 @@ use super::iteration::Failure;
 use super::kept::Kept;
 use super::kkt::{ALL, Kkt};
 use super::level::Level;
-use super::stage::Stage;
+use super::stage::{Sampling, Stage};
 use crate::linalg::largest;
 use crate::system::{Evaluation, Response, SIZE, System};
 
@@ -105,6 +105,8 @@ pub struct Workspace {
     pub factorizations: u64,
     pub(super) dissipative: bool,
     works: bool,
+    /// Whether a stage between two positions looks at their gradients and nothing else.
+    only_gradients: bool,
     /// What the factors were last made of.
     pub(super) kept: Kept,
 }
@@ -173,6 +175,7 @@ impl Workspace {
             factorizations: 0,
             dissipative: system.laws.iter().any(|law| !law.law.conservative()),
             works: system.is_worked_on(),
+            only_gradients: system.has_only_quadratic_rows(),
         };
         system.evaluate_again(&workspace.x0, 0.0, &mut workspace.at_start);
         workspace.measure_softness(system);
@@ -225,18 +228,25 @@ impl Workspace {
         }
     }
 
-    /// Puts the sampled position and velocity, and the end position, of the free nodes where the increment `d` has
-    /// them. Those of the known nodes are the integrator's to set.
+    /// Puts the end position of the free nodes where the increment `d` has it, and where a stage looks at them the sampled
+    /// position and velocity too. Those of the known nodes are the integrator's to set.
     pub fn place(&mut self, stage: &Stage) {
-        let Self { d, x0, x1, xs, vs, a1, offset, drift, .. } = self;
-        let share = stage.share();
-        for (((x1, xs), x0), d) in x1.iter_mut().zip(xs).zip(&*x0).zip(&*d) {
-            (*x1, *xs) = (x0 + d, x0 + share * d);
-        }
-        vs.iter_mut().zip(&*d).zip(offset).for_each(|((v, d), offset)| *v = stage.rate * d + *offset);
+        let Self { d, x0, x1, a1, drift, .. } = self;
+        x1.iter_mut().zip(&*x0).zip(&*d).for_each(|((x1, x0), d)| *x1 = x0 + d);
         if self.level.acceleration != 0.0 {
-            a1.iter_mut().zip(d).zip(drift).for_each(|((a, d), drift)| *a = (*d - *drift) / stage.inertia);
+            a1.iter_mut().zip(&*d).zip(drift).for_each(|((a, d), drift)| *a = (*d - *drift) / stage.inertia);
         }
+        if stage.sampling != Sampling::Between || !self.only_gradients {
+            self.place_sample(stage);
+        }
+    }
+
+    /// Puts the sampled position and velocity of the free nodes where the increment `d` has them.
+    fn place_sample(&mut self, stage: &Stage) {
+        let Self { d, x0, xs, vs, offset, .. } = self;
+        let share = stage.share();
+        xs.iter_mut().zip(x0).zip(&*d).for_each(|((xs, x0), d)| *xs = *x0 + share * d);
+        vs.iter_mut().zip(d).zip(offset).for_each(|((v, d), offset)| *v = stage.rate * *d + *offset);
     }
 
     /// Whether anything does work on the system from outside its energy.
@@ -244,9 +254,10 @@ impl Workspace {
         self.works
     }
 
-    /// Brings forces and gradients to the solution of a stage, for the balance of work. The last increment is tiny, so
-    /// this is left out where nothing does work.
+    /// Brings the sampled state to the solution of a stage, and for the balance of work forces and gradients: the last
+    /// increment is tiny, so that they are left where nothing does work.
     pub fn settle(&mut self, system: &System, stage: &Stage) {
+        self.place_sample(stage);
         if self.works {
             self.place(stage);
             self.evaluate(system, stage);

@@ -77,8 +77,8 @@ impl Integrator for ConservingGgl {
         memory.slip.remember(follows, |i| work.d[i] - both.u[i] - 0.5 * work.drift[i]);
         take_over(memory.gamma, memory.gamma_change, follows, &both.gamma);
         let mut extra_work = 0.0;
+        work.settle(system, &stage);
         if work.is_worked_on() {
-            work.settle(system, &stage);
             both.turn(system, &stage, work);
             extra_work = both.work(system, &stage, work);
         }
