@@ -311,7 +311,7 @@ impl Workspace {
 
     /// Leaves Φ̈ at the sampled position, with the accelerations `a1`, in `rows`.
     pub fn sampled_acceleration_violation(&mut self, system: &System, time: f64) {
-        system.constraint_curvatures(&self.sampled, &self.xs, &self.vs, time, &mut self.half, &mut self.motion, &mut self.rows);
+        system.constraint_curvatures(&self.sampled, &self.xs, &self.vs, time, &mut self.half, &mut self.rows);
         self.kkt.add_along(1.0, &self.sampled.gradient, &self.a1, &mut self.rows);
     }
 
@@ -322,7 +322,7 @@ impl Workspace {
 
     /// Leaves Φ̈ at the end of the step in `rows`.
     pub fn acceleration_violation(&mut self, system: &System, time: f64) {
-        system.constraint_curvatures(&self.at_end, &self.x1, &self.v1, time, &mut self.half, &mut self.motion, &mut self.rows);
+        system.constraint_curvatures(&self.at_end, &self.x1, &self.v1, time, &mut self.half, &mut self.rows);
         self.kkt.add_along(1.0, &self.at_end.gradient, &self.a1, &mut self.rows);
     }
 }

@@ -2,7 +2,7 @@
 //! share comes again, that would have come nearest to the last.
 
 /// Most points before the last that a polynomial goes through.
-const ORDERS: usize = 5;
+const ORDERS: usize = 8;
 
 /// Backward differences of a number, of order 1 first.
 pub type Differences = [f64; ORDERS];

@@ -193,19 +193,9 @@ impl System {
     }
 
     /// Everything in Φ̈ but G a (r): (G v)_q v + 2 Φ_qt v + Φ_tt, at the evaluation `at` of `x`. `half` has room for one
-    /// number an invariant and `product` for D numbers a slot.
-    #[expect(clippy::too_many_arguments)] // a state, scratch and what comes of it
-    pub fn constraint_curvatures(
-        &self,
-        at: &Evaluation,
-        x: &[f64],
-        v: &[f64],
-        t: f64,
-        half: &mut [f64],
-        product: &mut [f64],
-        out: &mut [f64],
-    ) {
-        self.invariants.curvature(v, half, product);
+    /// number an invariant.
+    pub fn constraint_curvatures(&self, at: &Evaluation, x: &[f64], v: &[f64], t: f64, half: &mut [f64], out: &mut [f64]) {
+        self.invariants.half_curvature(v, half);
         for (out, row) in out.iter_mut().zip(&self.rows) {
             let curvature = match row.quantity {
                 Quantity::Invariant(id) => 2.0 * half[id.0 as usize],

@@ -32,6 +32,8 @@ struct Invariant {
     product: Product,
     u: Sum,
     w: Sum,
+    /// Whether both sums are those of the invariant before, as for the components of one cross product.
+    repeats: bool,
 }
 
 /// All invariants of a system, with one *slot* (node, gradient) for each term of each sum.
@@ -78,7 +80,8 @@ impl Invariants {
 
     fn add(&mut self, product: Product, u: &[Term], w: &[Term]) -> InvariantId {
         let (u, w) = (self.sum(u), self.sum(w));
-        self.items.push(Invariant { product, u, w });
+        let repeats = self.items.last().is_some_and(|last| self.are_equal(&last.u, &u) && self.are_equal(&last.w, &w));
+        self.items.push(Invariant { product, u, w, repeats });
         InvariantId(self.items.len() as u32 - 1)
     }
 
@@ -101,6 +104,14 @@ impl Invariants {
             }
         }
         Sum { start, end: self.term_node.len() as u32, constant: self.vector(constant) }
+    }
+
+    fn are_equal(&self, sum: &Sum, other: &Sum) -> bool {
+        let terms = |sum: &Sum| {
+            let slots = sum.start as usize..sum.end as usize;
+            (&self.term_node[slots.clone()], &self.term_factors[slots], sum.constant)
+        };
+        terms(sum) == terms(other)
     }
 
     /// The number of a vector, which is taken in if it is another than the last and not zero.
@@ -182,19 +193,29 @@ impl Invariants {
     }
 
     pub(crate) fn value_of(&self, id: InvariantId, x: &[f64]) -> f64 {
+        let item = &self.items[id.0 as usize];
         match self.dim {
-            2 => self.value_in::<2>(id, x),
-            _ => self.value_in::<3>(id, x),
+            2 => self.value_in::<2>(item, 1.0, x.as_chunks().0),
+            _ => self.value_in::<3>(item, 1.0, x.as_chunks().0),
         }
     }
 
-    fn value_in<const D: usize>(&self, id: InvariantId, x: &[f64]) -> f64 {
-        let (item, x) = (&self.items[id.0 as usize], x.as_chunks().0);
-        let (u, w): ([f64; D], _) = (self.sum_at(&item.u, 1.0, x), self.sum_at(&item.w, 1.0, x));
+    /// ½ vᵀ H v (one an invariant).
+    pub(crate) fn half_curvature(&self, v: &[f64], half: &mut [f64]) {
+        let items = self.items.iter().zip(half);
+        match self.dim {
+            2 => items.for_each(|(item, half)| *half = self.value_in::<2>(item, 0.0, v.as_chunks().0)),
+            _ => items.for_each(|(item, half)| *half = self.value_in::<3>(item, 0.0, v.as_chunks().0)),
+        }
+    }
+
+    #[inline(always)]
+    fn value_in<const D: usize>(&self, item: &Invariant, constants: f64, x: &[[f64; D]]) -> f64 {
+        let u = self.sum_at(&item.u, constants, x);
         match item.product {
             Product::Square => 0.5 * dot(&u, &u),
-            Product::Dot => dot(&u, &w),
-            Product::Cross(e) => dot(&u, &cross(&w, &self.vectors[e as usize])),
+            Product::Dot => dot(&u, &self.sum_at(&item.w, constants, x)),
+            Product::Cross(e) => dot(&u, &cross(&self.sum_at(&item.w, constants, x), &self.vectors[e as usize])),
         }
     }
 
@@ -218,21 +239,25 @@ impl Invariants {
     /// Values and gradients with `constants` times the constants of the sums.
     fn evaluate_in<const D: usize>(&self, constants: f64, x: &[f64], value: &mut [f64], gradient: &mut [f64]) {
         let (x, gradient) = (x.as_chunks::<D>().0, gradient.as_chunks_mut::<D>().0);
+        let [mut u, mut w] = [[0.0; D]; 2];
         for (item, value) in self.items.iter().zip(value) {
-            let u = self.sum_at(&item.u, constants, x);
+            if !item.repeats {
+                u = self.sum_at(&item.u, constants, x);
+                if item.product != Product::Square {
+                    w = self.sum_at(&item.w, constants, x);
+                }
+            }
             match item.product {
                 Product::Square => {
                     *value = 0.5 * dot(&u, &u);
                     self.spread(&item.u, &u, gradient);
                 }
                 Product::Dot => {
-                    let w = self.sum_at(&item.w, constants, x);
                     *value = dot(&u, &w);
                     self.spread(&item.u, &w, gradient);
                     self.spread(&item.w, &u, gradient);
                 }
                 Product::Cross(e) => {
-                    let w = self.sum_at(&item.w, constants, x);
                     let e = &self.vectors[e as usize];
                     let right = cross(&w, e);
                     *value = dot(&u, &right);
