@@ -5,7 +5,7 @@ use pulp::{Simd, WithSimd};
 use super::Singular;
 use super::fronts::{Front, Fronts, Sources};
 use super::multifrontal::{Numbers, OneFront, with_blocks};
-use super::tile::{Block, LANES, TILE, Tile, above_tiny, add_product, inverses, lower, packed, product};
+use super::tile::{Block, Factors, LANES, TILE, Tile, above_tiny, add_product, lower, of_columns, packed, product, raise};
 
 pub(super) struct Factor<'a> {
     pub(super) plan: &'a Fronts,
@@ -84,8 +84,8 @@ fn eliminate<S: Simd>(simd: S, front: &Front, tiles: &mut [Tile], exchange: &mut
     let mut exchanged = false;
     for block in 0..front.head {
         let pivots = block * (size + 1)..block * size + front.head;
-        let inverse = match in_order(simd, &tiles[pivots.clone()], 1.0 / SMALL) {
-            Some(inverse) => inverse,
+        let factors = match in_order(simd, &tiles[pivots.clone()], 1.0 / SMALL) {
+            Some(factors) => factors,
             None => {
                 if !exchanged {
                     exchange.iter_mut().enumerate().for_each(|(k, row)| *row = k as u32);
@@ -96,15 +96,16 @@ fn eliminate<S: Simd>(simd: S, front: &Front, tiles: &mut [Tile], exchange: &mut
                 in_order(simd, &tiles[pivots], 2.0 / SMALL).ok_or(block * LANES)?
             }
         };
-        tiles[block * (size + 1)] = packed(&inverse);
+        let inverse = factors.lower_inverse();
+        tiles[block * (size + 1)] = packed(&inverse, &factors.upper_inverse(simd));
         let (done, rest) = tiles.split_at_mut((block + 1) * size);
         let panel = &mut done[block * (size + 1) + 1..];
         for l in panel.iter_mut() {
-            *l = above_tiny(product(simd, l, &inverse[1]));
+            *l = above_tiny(of_columns(&factors.over_upper(simd, l)));
         }
         for column in rest.chunks_exact_mut(size) {
             let (head, tail) = column[block..].split_first_mut().expect("a column has all rows");
-            *head = above_tiny(product(simd, &inverse[0], head));
+            *head = above_tiny(product(simd, &inverse, head));
             for (l, target) in panel.iter().zip(tail) {
                 add_product(simd, target, l, head, -1.0);
             }
@@ -113,39 +114,18 @@ fn eliminate<S: Simd>(simd: S, front: &Front, tiles: &mut [Tile], exchange: &mut
     Ok(exchanged)
 }
 
-/// The inverses of the factors of the first of a column of tiles, where in the order as it is all pivots are fit: nothing in L is
-/// larger than `most`.
+/// The factors of the first of a column of tiles, where in the order as it is all pivots are fit: nothing in L is larger than
+/// `most`.
 #[inline(always)]
-fn in_order<S: Simd>(simd: S, panel: &[Tile], most: f64) -> Option<[Tile; 2]> {
+fn in_order<S: Simd>(simd: S, panel: &[Tile], most: f64) -> Option<Factors> {
     let (diagonal, below) = panel.split_first()?;
-    let mut factors = *diagonal;
-    let mut largest = [0.0; LANES];
-    for k in 0..LANES {
-        let scale = 1.0 / factors[k * LANES + k];
-        for row in k + 1..LANES {
-            factors[k * LANES + row] *= scale;
-            larger(&mut largest[row], factors[k * LANES + row]);
-            for j in k + 1..LANES {
-                factors[j * LANES + row] -= factors[j * LANES + k] * factors[k * LANES + row];
-            }
-        }
-    }
-    let inverse = inverses(&factors);
+    let factors = Factors::of(simd, diagonal);
+    let mut largest = factors.largest()?;
     for tile in below {
-        let l = product(simd, tile, &inverse[1]);
-        for k in 0..TILE {
-            larger(&mut largest[k % LANES], l[k]);
-        }
+        factors.over_upper(simd, tile).iter().for_each(|column| raise(&mut largest, column));
     }
     // Neither infinite numbers nor what is no number pass.
-    let ends = (0..LANES).all(|k| factors[k * (LANES + 1)].is_normal());
-    (ends && largest.iter().all(|&l| l <= most)).then_some(inverse)
-}
-
-/// Raises `largest` to |x|, and to what is no number.
-#[inline(always)]
-fn larger(largest: &mut f64, x: f64) {
-    *largest = if x.abs() <= *largest { *largest } else { x.abs() };
+    largest.iter().all(|&l| l <= most).then_some(factors)
 }
 
 /// Exchanges the row of each pivot of a block that is far smaller than the largest number below it among the pivots for the

@@ -16,27 +16,116 @@ pub(super) type Tile = [f64; TILE];
 /// A block of a vector.
 pub(super) type Block = [f64; LANES];
 
-/// The inverses of the lower (with ones on its diagonal) and of the upper triangle of a tile.
-#[inline(always)]
-pub(super) fn inverses(tile: &Tile) -> [Tile; 2] {
-    let [mut lower, mut upper] = [[0.0; TILE]; 2];
-    for k in 0..LANES {
-        lower[k * LANES + k] = 1.0;
-        for row in k + 1..LANES {
-            lower[k * LANES + row] = -(k..row).map(|j| tile[j * LANES + row] * lower[k * LANES + j]).sum::<f64>();
+/// L and U of a tile without exchanges, on their way to their inverses.
+pub(super) struct Factors {
+    /// Columns of what is left of the tile, in the end U.
+    upper: [Block; LANES],
+    /// Columns of the inverse of L.
+    lower: [Block; LANES],
+    /// 1 over the pivots.
+    reciprocal: Block,
+    /// Largest number of L in each row.
+    largest: Block,
+}
+
+impl Factors {
+    #[inline(always)]
+    pub(super) fn of<S: Simd>(simd: S, tile: &Tile) -> Self {
+        let mut factors = Self {
+            upper: std::array::from_fn(|k| *column(tile, k)),
+            lower: std::array::from_fn(unit),
+            reciprocal: [0.0; LANES],
+            largest: [0.0; LANES],
+        };
+        factors.eliminate::<S, 0>(simd);
+        factors.eliminate::<S, 1>(simd);
+        factors.eliminate::<S, 2>(simd);
+        factors.eliminate::<S, 3>(simd);
+        factors
+    }
+
+    /// Takes pivot K out of the columns after it, and out of those of the inverse of L.
+    #[inline(always)]
+    fn eliminate<S: Simd, const K: usize>(&mut self, simd: S) {
+        self.reciprocal[K] = 1.0 / self.upper[K][K];
+        let l = std::array::from_fn(|row| if row > K { self.upper[K][row] * self.reciprocal[K] } else { 0.0 });
+        raise(&mut self.largest, &l);
+        for upper in &mut self.upper[K + 1..] {
+            *upper = plus(simd, upper, -upper[K], &l);
         }
-        let scale = 1.0 / tile[k * LANES + k];
-        upper[k * LANES + k] = scale;
-        for row in 0..k {
-            upper[k * LANES + row] = -scale * (row..k).map(|j| upper[j * LANES + row] * tile[k * LANES + j]).sum::<f64>();
+        for lower in &mut self.lower[..=K] {
+            *lower = plus(simd, lower, -lower[K], &l);
         }
     }
-    [lower, upper]
+
+    /// Whether all pivots are numbers to divide by; the largest number of L in each row.
+    #[inline(always)]
+    pub(super) fn largest(&self) -> Option<Block> {
+        (0..LANES).all(|k| self.upper[k][k].is_normal()).then_some(self.largest)
+    }
+
+    /// The inverse of L.
+    #[inline(always)]
+    pub(super) fn lower_inverse(&self) -> Tile {
+        of_columns(&self.lower)
+    }
+
+    /// The inverse of U.
+    #[inline(always)]
+    pub(super) fn upper_inverse<S: Simd>(&self, simd: S) -> Tile {
+        of_columns(&self.over_upper(simd, &of_columns(&std::array::from_fn(unit))))
+    }
+
+    /// The tile times the inverse of U: L where the tile is below the diagonal.
+    #[inline(always)]
+    pub(super) fn over_upper<S: Simd>(&self, simd: S, tile: &Tile) -> [Block; LANES] {
+        let mut l: [Block; LANES] = std::array::from_fn(|k| *column(tile, k));
+        self.divide::<S, 0>(simd, &mut l);
+        self.divide::<S, 1>(simd, &mut l);
+        self.divide::<S, 2>(simd, &mut l);
+        self.divide::<S, 3>(simd, &mut l);
+        l
+    }
+
+    /// Column K of what U goes into, where those before are done.
+    #[inline(always)]
+    fn divide<S: Simd, const K: usize>(&self, simd: S, l: &mut [Block; LANES]) {
+        for j in 0..K {
+            l[K] = plus(simd, &l[K], -self.upper[K][j], &l[j]);
+        }
+        l[K] = l[K].map(|l| l * self.reciprocal[K]);
+    }
+}
+
+#[inline(always)]
+pub(super) fn of_columns(columns: &[Block; LANES]) -> Tile {
+    std::array::from_fn(|k| columns[k / LANES][k % LANES])
+}
+
+#[inline(always)]
+fn unit(k: usize) -> Block {
+    std::array::from_fn(|row| if row == k { 1.0 } else { 0.0 })
+}
+
+/// Raises each of some numbers to the size of another, and to what is no number.
+#[inline(always)]
+pub(super) fn raise(largest: &mut Block, x: &Block) {
+    *largest = std::array::from_fn(|k| if x[k].abs() <= largest[k] { largest[k] } else { x[k].abs() });
+}
+
+/// target + factor x
+#[inline(always)]
+fn plus<S: Simd>(simd: S, target: &Block, factor: f64, x: &Block) -> Block {
+    let mut out = *target;
+    for (sum, &x) in S::as_mut_simd_f64s(&mut out).0.iter_mut().zip(S::as_simd_f64s(x).0) {
+        *sum = simd.mul_add_f64s(simd.splat_f64s(factor), x, *sum);
+    }
+    out
 }
 
 /// Both inverses in one tile: what is below the diagonal of the first, and the second.
 #[inline(always)]
-pub(super) fn packed([lower, upper]: &[Tile; 2]) -> Tile {
+pub(super) fn packed(lower: &Tile, upper: &Tile) -> Tile {
     std::array::from_fn(|k| if k % LANES > k / LANES { lower[k] } else { upper[k] })
 }
 
