@@ -46,7 +46,7 @@ class Holonom:
     def run(self, step, trace, limit, peers):
         """A run with a step, or an accuracy, s. With `trace` it is compared with the reference, and not timed."""
         problem = self.problem
-        compared = trace and problem.reference is not None
+        compared = trace and problem.reference in peers.references
         with tempfile.TemporaryDirectory() as folder:
             command = [holonom_binary(), "run", problem.model, "--method", self.method, "--end", repr(problem.end)]
             for entry in problem.set:
@@ -119,7 +119,7 @@ class Peer:
 
 
 class Peers:
-    """The folder of the peers: their scripts, their environment and the references."""
+    """The folder of the peers: their scripts, their environment and the references. Without its reference a problem has no errors."""
 
     def __init__(self, folder):
         self.folder = folder.resolve()
