@@ -80,7 +80,9 @@ impl Invariants {
 
     fn add(&mut self, product: Product, u: &[Term], w: &[Term]) -> InvariantId {
         let (u, w) = (self.sum(u), self.sum(w));
-        let repeats = self.items.last().is_some_and(|last| self.are_equal(&last.u, &u) && self.are_equal(&last.w, &w));
+        // A square takes one sum only.
+        let is_same = |last: &Invariant| last.product != Product::Square && self.are_equal(&last.u, &u) && self.are_equal(&last.w, &w);
+        let repeats = self.items.last().is_some_and(is_same);
         self.items.push(Invariant { product, u, w, repeats });
         InvariantId(self.items.len() as u32 - 1)
     }
@@ -109,7 +111,7 @@ impl Invariants {
     fn are_equal(&self, sum: &Sum, other: &Sum) -> bool {
         let terms = |sum: &Sum| {
             let slots = sum.start as usize..sum.end as usize;
-            (&self.term_node[slots.clone()], &self.term_factors[slots], sum.constant)
+            (&self.term_node[slots.clone()], &self.term_factors[slots], &self.vectors[sum.constant as usize])
         };
         terms(sum) == terms(other)
     }
@@ -318,4 +320,41 @@ pub(crate) fn cross<const D: usize>(w: &[f64; D], e: &[f64; 3]) -> [f64; D] {
 /// The matrix E with U·E·W = e·(U × W).
 pub(crate) fn skew(e: &[f64; 3]) -> [[f64; 3]; 3] {
     [[0.0, e[2], -e[1]], [-e[2], 0.0, e[0]], [e[1], -e[0], 0.0]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::system::NodeId;
+
+    /// Sums that come again one after the other are taken once: values are those of each invariant alone, and of quadratic forms
+    /// half the difference between two sides is the gradient along the way.
+    #[test]
+    fn values_and_gradients_of_invariants_with_the_same_sums() {
+        let node = |k: u32, factor: f64| Term { place: Place::Node(NodeId(k)), factor, turn: 0.0 };
+        let fixed = Term { place: Place::Fixed([0.3, -0.2, 0.5]), factor: 1.0, turn: 0.0 };
+        let (u, w) = ([node(0, 1.0), fixed], [node(1, 2.0), node(0, -1.0)]);
+        let axes = [[1.0, 0.0, 0.0], [0.2, 0.9, -0.4], [0.2, 0.9, -0.4]];
+        let mut invariants = Invariants::new(3);
+        let mut all: Vec<InvariantId> = axes.iter().map(|&e| invariants.cross(e, &u, &w)).collect();
+        all.push(invariants.dot(&u, &w));
+        all.push(invariants.square(&u));
+        all.push(invariants.dot(&u, &[]));
+        all.push(invariants.square(&w));
+        all.push(invariants.cross(axes[1], &w, &u));
+        let repeats: Vec<bool> = invariants.items.iter().map(|item| item.repeats).collect();
+        assert_eq!(repeats, [false, true, true, true, false, false, false, false]);
+
+        let (x, v) = ([0.4, -1.1, 0.7, 1.3, 0.2, -0.6], [0.5, 0.8, -0.3, -0.9, 0.1, 1.2]);
+        let (mut value, mut gradient) = (vec![0.0; all.len()], vec![0.0; 3 * invariants.slots()]);
+        invariants.evaluate(&x, &mut value, &mut gradient);
+        let moved = |sign: f64| -> Vec<f64> { x.iter().zip(&v).map(|(x, v)| x + sign * v).collect() };
+        for (k, &id) in all.iter().enumerate() {
+            assert_eq!(value[k], invariants.value_of(id, &x), "value of {k}");
+            let slots = invariants.slots_of(id);
+            let along = super::super::along(3, &invariants.slot_nodes()[slots.clone()], &gradient[3 * slots.start..3 * slots.end], &v);
+            let expected = 0.5 * (invariants.value_of(id, &moved(1.0)) - invariants.value_of(id, &moved(-1.0)));
+            assert!((along - expected).abs() <= 1e-14, "gradient of {k}: {along} instead of {expected}");
+        }
+    }
 }
