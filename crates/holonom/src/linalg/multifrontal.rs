@@ -1,6 +1,6 @@
 //! L U by fronts: dense squares that hand what they add to the rows below to their parents (Duff and Reid 1983), in place.
 //!
-//! Everything but the arithmetic is worked out beforehand, and the arithmetic is products of tiles. Pivots are taken in the
+//! Everything but the arithmetic is worked out beforehand, and the arithmetic is that of tiles. Pivots are taken in the
 //! given order; within a front rows change places where a pivot is far below what stands under it.
 
 use std::sync::Arc;
