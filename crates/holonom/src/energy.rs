@@ -28,6 +28,26 @@ pub fn potential(system: &System, weight: &[f64], x: &[f64], at: &Evaluation, pe
     energy
 }
 
+/// The sizes of the terms that the potential energy is a sum of, and of what rounded arguments of the laws make of it, J.
+pub fn size(system: &System, work: &Workspace, x: &[f64]) -> f64 {
+    let mut size: f64 = work.weight.iter().zip(x).map(|(w, x)| (w * x).abs()).sum();
+    for (law, response) in system.laws.iter().zip(&work.responses) {
+        if law.law.conservative() {
+            size += law.law.energy(&system.arguments(law, &work.at_end)[..law.arguments.len()]).abs();
+        }
+        for (i, &id) in law.invariants.iter().enumerate() {
+            let value = work.at_end.value[id.0 as usize];
+            let rise = |j: usize| {
+                let k = law.invariants[j].0 as usize;
+                response.by_value[i][j] * (work.at_end.value[k] - work.at_start.value[k])
+            };
+            let pull = response.force[i].abs() + (0..law.invariants.len()).map(|j| rise(j).abs()).sum::<f64>();
+            size += pull * value.abs();
+        }
+    }
+    size
+}
+
 /// Work in a step with forces between its ends: loads, dissipation, and known motion through inertia, forces and rows,
 /// J. The rows take part through their targets alone: work of a violated row is the integrator's (25)–(27).
 pub fn work_between(system: &System, stage: &Stage, work: &Workspace) -> f64 {

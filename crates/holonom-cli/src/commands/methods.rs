@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use holonom::formulation::{FORMULATIONS, Formulation, ITERATIONS};
 use holonom::integrator::{Entry, Estimate, INTEGRATORS, Parameters};
 use holonom::projection::{METRICS, SOLVES};
-use holonom::simulation::{Choice, Method, NAMED, ProjectionChoice, combinations};
+use holonom::simulation::{Choice, Method, NAMED, ProjectionChoice, Promise, combinations};
 
 use crate::failure::Failure;
 use crate::options::MethodsArguments;
@@ -21,7 +21,7 @@ pub fn methods(arguments: &MethodsArguments) -> Result<ExitCode, Failure> {
 }
 
 fn overview() -> String {
-    let named = NAMED.iter().map(|named| (named.name, format!("{}; keeps {}", named.doc, named.keeps)));
+    let named = NAMED.iter().map(|named| (named.name, format!("{}; keeps {}", named.doc, kept(&of_name(named.name)))));
     let named: Vec<(&str, String)> = named.collect();
     let plain = |entries: &[(&'static str, &'static str)]| entries.iter().map(|&(name, doc)| (name, doc.to_string())).collect::<Vec<_>>();
     let full_names: Vec<String> = FORMULATIONS.iter().map(Formulation::full_name).collect();
@@ -83,9 +83,7 @@ fn orders(line: &Formulation, entry: &Entry, order: u8, gap: &str) -> String {
 fn explain(name: &str) -> Result<String, Failure> {
     let mut parts = Vec::new();
     if let Some(named) = NAMED.iter().find(|named| named.name == name) {
-        let choice = Choice { method: Some(name.into()), ..Choice::default() };
-        let method = Method::resolve(&choice).expect("a named method goes together");
-        parts.push(format!("method {name}\n{}", list(&of_method(&method, named.doc, named.keeps))));
+        parts.push(format!("method {name}\n{}", list(&of_method(&of_name(name), named.doc))));
     }
     for line in FORMULATIONS.iter().filter(|line| line.full_name() == name || line.name == name) {
         parts.push(format!("formulation {}\n{}", line.full_name(), list(&of_formulation(line))));
@@ -100,19 +98,31 @@ fn explain(name: &str) -> Result<String, Failure> {
     if parts.is_empty() {
         let choice = Choice { method: Some(name.into()), ..Choice::default() };
         let method = Method::resolve(&choice).map_err(|error| Failure::usage(error.to_string(), "`holonom methods` lists every name"))?;
-        parts.push(format!("method {name}\n{}", list(&of_method(&method, method.integrator.doc, method.formulation.keeps))));
+        parts.push(format!("method {name}\n{}", list(&of_method(&method, method.integrator.doc))));
     }
     Ok(parts.join("\n\n"))
 }
 
-fn of_method(method: &Method, doc: &str, keeps: &str) -> Vec<(&'static str, String)> {
+/// A method that has a name.
+fn of_name(name: &str) -> Method {
+    let choice = Choice { method: Some(name.into()), ..Choice::default() };
+    Method::resolve(&choice).expect("a named method goes together")
+}
+
+/// What a method promises for every step.
+fn kept(method: &Method) -> String {
+    let words: Vec<&str> = method.promises().into_iter().map(Promise::words).collect();
+    if words.is_empty() { "nothing exactly".into() } else { words.join(", ") }
+}
+
+fn of_method(method: &Method, doc: &str) -> Vec<(&'static str, String)> {
     let [q, v, lambda] = method.convergence();
     vec![
         ("is", doc.into()),
         ("formulation", format!("{}, {}: {}", method.formulation.full_name(), method.formulation.source, method.formulation.doc)),
         ("integrator", format!("{}, {}: {}", method.integrator.name, method.integrator.source, method.integrator.doc)),
         ("order", format!("{q} in positions, {v} in velocities, {lambda} in reactions")),
-        ("keeps", keeps.into()),
+        ("keeps", kept(method)),
         ("take it for", method.integrator.use_for.into()),
     ]
 }

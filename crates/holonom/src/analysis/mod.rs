@@ -1,11 +1,13 @@
 //! What is asked of a model rather than simulated: rank and redundancy, what a projection does to the energy, the
 //! largest stable step.
 
+mod jacobian;
 mod projection;
 mod rank;
 mod reactions;
 mod stability;
 
+pub use jacobian::constraint_jacobian;
 pub use projection::{ProjectionForm, projection_form};
 pub use rank::{Rank, rank};
 pub use reactions::{MOST_ROWS, Undetermined, undetermined};

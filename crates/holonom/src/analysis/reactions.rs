@@ -76,7 +76,7 @@ impl Undetermined {
             let scale = SMALL * largest(space);
             for c in 0..3 {
                 unique[c] &= force[c].abs() <= scale;
-                unique[3 + c] &= moment[c].abs() <= scale * self.work.length;
+                unique[3 + c] &= moment[c].abs() <= scale * self.work.scales.length;
             }
         }
         unique

@@ -6,7 +6,8 @@
 //! with δ = 1/α for a penalty and a proximal one, iterated away, otherwise. Eliminating a first, as the factorisation
 //! does, leaves (G M⁻¹Gᵀ) λ = … of the paper's (4), which redundant rows do not upset.
 
-use super::iteration::{Failure, Multipliers, SolveSettings};
+use super::failure::Failure;
+use super::iteration::{Multipliers, SolveSettings};
 use super::kkt::Block;
 use super::level::Level;
 use super::workspace::Workspace;

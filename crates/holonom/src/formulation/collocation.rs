@@ -11,13 +11,16 @@
 //! M (h q̇_i − u_i) + G_iᵀν_i = 0      h² (M a_i − Q_i) + G_iᵀ h²λ_i = 0      Φ_i = 0      h Φ̇_i = 0
 //! ```
 
-use super::iteration::{Convergence, Failure, KEPT, Multipliers, STALLED, SolveSettings};
+use super::failure::Failure;
+use super::iteration::{Multipliers, SolveSettings};
 use super::kkt::{ALL, Block, Kkt, OWN_STAGE, TWO_LEVELS};
 use super::level::Level;
+use super::newton::{Change, Equations, newton};
+use super::round_off::{are_forces_round_off, are_rows_round_off};
+use super::scales::Scales;
 use super::stage::{RowsAt, Sampling, Stage};
 use super::velocity_rows::Source;
 use super::workspace::Workspace;
-use crate::linalg::largest;
 use crate::system::System;
 
 /// When the stages are: t_i = start + c_i step.
@@ -53,6 +56,8 @@ pub struct Collocation {
     /// ν_i (s × r).
     nu: Vec<f64>,
     unknowns: Vec<f64>,
+    /// Sizes of the terms that residuals are sums of.
+    sizes: Vec<f64>,
 }
 
 impl Collocation {
@@ -64,12 +69,27 @@ impl Collocation {
             (false, true) if !system.is_nonholonomic() => OWN_STAGE,
             (false, _) => ALL,
         };
-        let kkt = Kkt::new(system, if doubled { 2 * stages } else { stages }, coupling);
+        let kkt = Kkt::new(system, &Scales::new(system), if doubled { 2 * stages } else { stages }, coupling);
         let (n, rows) = (stages * system.coordinates(), stages * system.constraints());
         let [d, u, p, r, a] = std::array::from_fn(|_| vec![0.0; n]);
         let [lambda, nu] = std::array::from_fn(|_| vec![0.0; rows]);
         let matrix = vec![0.0; stages * stages];
-        Self { unknowns: vec![0.0; kkt.size()], kkt, stages, doubled, rate: matrix.clone(), square: matrix, d, u, p, r, a, lambda, nu }
+        Self {
+            unknowns: vec![0.0; kkt.size()],
+            sizes: vec![0.0; kkt.size()],
+            kkt,
+            stages,
+            doubled,
+            rate: matrix.clone(),
+            square: matrix,
+            d,
+            u,
+            p,
+            r,
+            a,
+            lambda,
+            nu,
+        }
     }
 
     /// Sets B (s × s), row-major.
@@ -84,49 +104,16 @@ impl Collocation {
     }
 
     /// Newton on all stages from the increments in `d` (and `u` with rows at both levels), with the multipliers of the
-    /// workspace. Says how many iterations it took.
-    pub fn solve(&mut self, system: &System, timing: Timing<'_>, settings: &SolveSettings, work: &mut Workspace) -> Result<usize, Failure> {
+    /// workspace.
+    pub fn solve(&mut self, system: &System, timing: Timing<'_>, settings: &SolveSettings, work: &mut Workspace) -> Result<(), Failure> {
         let h2 = timing.step * timing.step;
         for lambda in self.lambda.chunks_exact_mut(work.lambda.len().max(1)) {
             lambda.iter_mut().zip(&work.lambda).for_each(|(own, given)| *own = h2 * given);
         }
         self.nu.fill(0.0);
-        let soft = match settings.multipliers {
-            Multipliers::Penalty(alpha) => {
-                work.delta.fill(work.level.scale(1.0 / timing.step, h2) / (h2 * alpha));
-                Some(alpha)
-            }
-            Multipliers::Augmented(penalty) => {
-                work.proximal(h2, penalty);
-                None
-            }
-        };
-        let mut convergence = Convergence::new(settings, work.shortest, KEPT);
-        for iteration in 1..=settings.max_iterations {
-            let keeps = convergence.keeps_factors();
-            if !keeps {
-                self.kkt.clear();
-            }
-            self.assemble(system, timing, soft, !keeps, work);
-            if convergence.stalls() && self.is_met(system, work) {
-                return Ok(iteration - 1);
-            }
-            if !keeps {
-                (0..self.kkt.fields).for_each(|field| self.kkt.regularise(field, &work.delta));
-                work.factorizations += 1;
-                self.kkt.factor().map_err(|_| Failure::NotFinite)?;
-            }
-            self.kkt.solver.solve(&mut self.unknowns);
-            let increment = self.advance(system, work);
-            if !increment.is_finite() {
-                return Err(Failure::NotFinite);
-            }
-            if convergence.is_reached(increment, self.turned(work)) {
-                self.relate();
-                return Ok(iteration);
-            }
-        }
-        Err(Failure::NotConverged(settings.max_iterations))
+        newton(&mut Stages { own: self, system, timing, multipliers: settings.multipliers }, settings, work)?;
+        self.relate();
+        Ok(())
     }
 
     /// Puts a workspace's sampled state at stage `i`: position, velocity, acceleration and multipliers, known motion in
@@ -372,23 +359,116 @@ impl Collocation {
                 multipliers[i * r + row] += self.unknowns[self.kkt.multiplier(row, field)];
             }
         }
-        largest / work.length
+        largest / work.scales.length
     }
 
-    /// Largest increment of a multiplier, in units of mass × length over those of the mechanism.
+    /// Largest increment of a multiplier: how far it would move a node of its row, over the size of the mechanism.
     fn turned(&self, work: &Workspace) -> f64 {
         let multipliers = &self.unknowns[self.kkt.multiplier(0, 0)..];
         let of_field = |field| work.scaled_multipliers(multipliers.iter().copied().skip(field).step_by(self.kkt.fields));
         (0..self.kkt.fields).map(of_field).fold(0.0, f64::max)
     }
 
-    /// Whether everything is met although increments go on: the residual in `unknowns`.
-    fn is_met(&self, system: &System, work: &Workspace) -> bool {
-        let (coordinates, rows) = self.unknowns.split_at(self.kkt.fields * system.coordinates());
-        let momentum = largest(coordinates);
-        let scales = work.row_scale.iter().flat_map(|scale| std::iter::repeat_n(scale, self.kkt.fields));
-        let violation = rows.iter().zip(scales).map(|(row, scale)| row.abs() / scale).fold(0.0, f64::max);
-        momentum <= STALLED * work.heaviest * work.length && violation <= STALLED * work.length
+    /// Sizes of the terms of all residuals into `sizes`, in the order of the unknowns.
+    fn size(&mut self, system: &System, timing: Timing<'_>, work: &mut Workspace) {
+        let (s, n, r, dim, h) = (self.stages, system.coordinates(), work.lambda.len(), system.dim, timing.step);
+        for i in 0..s {
+            let t = self.place(system, timing, i, work);
+            work.sample(system, t);
+            work.at_end.copy_from(&work.sampled);
+            let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start: t - h, step: h, inertia: h * h, rate: 1.0 / h };
+            for k in 0..n {
+                // The size of the acceleration's terms, which cancel.
+                let own = |values: &[f64]| (0..s).map(|j| (self.rate[i * s + j] * values[j * n + k]).abs()).sum::<f64>();
+                let position = own(&self.d) + self.p[i * n + k].abs();
+                let velocity = own(&self.u) + self.r[i * n + k].abs();
+                (work.d[k], work.drift[k]) = (if self.doubled { velocity.max(position) } else { velocity }, 0.0);
+                work.x1[k] = work.x0[k] + self.d[i * n + k];
+            }
+            for row in 0..r {
+                work.lambda[row] = work.lambda[row].abs() + self.nu[i * r + row].abs() / (h * h);
+            }
+            work.size_forces(system, &stage);
+            work.size_rows(system);
+            for field in (i..self.kkt.fields).step_by(s) {
+                for k in 0..n {
+                    let at = self.kkt.coordinate(k / dim, field, k % dim);
+                    self.sizes[at] = work.full[k];
+                }
+                for row in 0..r {
+                    let at = self.kkt.multiplier(row, field);
+                    self.sizes[at] = work.rows[row];
+                }
+            }
+        }
+    }
+}
+
+/// Coupled stages as Newton's iteration sees them.
+struct Stages<'a> {
+    own: &'a mut Collocation,
+    system: &'a System,
+    timing: Timing<'a>,
+    multipliers: Multipliers,
+}
+
+impl Stages<'_> {
+    fn soft(&self) -> Option<f64> {
+        if let Multipliers::Penalty(alpha) = self.multipliers { Some(alpha) } else { None }
+    }
+}
+
+impl Equations for Stages<'_> {
+    fn begin(&mut self, work: &mut Workspace) {
+        let h = self.timing.step;
+        match self.multipliers {
+            Multipliers::Penalty(alpha) => work.delta.fill(work.level.scale(1.0 / h, h * h) / (h * h * alpha)),
+            Multipliers::Augmented(penalty) => work.proximal(h * h, penalty),
+        }
+    }
+
+    fn restart(&mut self, share: f64, work: &mut Workspace) {
+        let (n, h, own) = (self.system.coordinates(), self.timing.step, &mut *self.own);
+        for (i, node) in self.timing.nodes.iter().enumerate() {
+            for k in 0..n {
+                own.d[i * n + k] = share * node * h * work.v0[k];
+                own.u[i * n + k] = h * work.v0[k];
+            }
+        }
+        own.lambda.fill(0.0);
+        own.nu.fill(0.0);
+    }
+
+    fn evaluate(&mut self, is_new: bool, work: &mut Workspace) {
+        if is_new {
+            self.own.kkt.clear();
+        }
+        let soft = self.soft();
+        self.own.assemble(self.system, self.timing, soft, is_new, work);
+    }
+
+    fn is_met(&mut self, _moves: bool, work: &mut Workspace) -> bool {
+        self.own.size(self.system, self.timing, work);
+        let first = self.own.kkt.multiplier(0, 0);
+        let ((forces, rows), (of_forces, of_rows)) = (self.own.unknowns.split_at(first), self.own.sizes.split_at(first));
+        are_forces_round_off(forces, of_forces) && are_rows_round_off(rows, of_rows)
+    }
+
+    fn factor(&mut self, _is_first: bool, work: &mut Workspace) -> Result<(), Failure> {
+        let kkt = &mut self.own.kkt;
+        (0..kkt.fields).for_each(|field| kkt.regularise(field, &work.delta));
+        work.factorizations += 1;
+        kkt.factor()
+    }
+
+    fn advance(&mut self, _is_first: bool, work: &mut Workspace) -> Result<Change, Failure> {
+        let own = &mut *self.own;
+        own.kkt.solve(&mut own.unknowns);
+        let increment = own.advance(self.system, work);
+        match increment.is_finite() {
+            true => Ok(Change { increment, multipliers: own.turned(work), left: 0.0 }),
+            false => Err(Failure::NotFinite),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Factors that are made anew in part: what is far from linear in a step is often confined to few places of a mechanism.
 
-use super::iteration::Failure;
+use super::failure::Failure;
 use super::level::Level;
 use super::stage::{RowsAt, Stage};
 use super::workspace::Workspace;
@@ -58,15 +58,15 @@ impl Workspace {
     /// has changed by Δμ since, leaves a force Δgᵀμ', a force Δμ H d' and a violation Δg·d' of the next increments μ' and d'.
     /// These are taken to be as large as those since: |Δg| (Δμ/m + |Δg|/|g|), a length.
     fn factor_turned(&mut self, stage: &Stage) -> Result<(), Failure> {
-        let Self { kkt, kept, at_end, lambda, row_scale, heaviest, .. } = self;
+        let Self { kkt, kept, at_end, lambda, scales, .. } = self;
         let Kept { gradient, lambda: kept_lambda, left, rows, .. } = kept;
         let mut most = 0.0_f64;
         for (row, left) in left.iter_mut().enumerate() {
             let slots = kkt.gradient_of(row);
             let changes = at_end.gradient[slots.clone()].iter().zip(&gradient[slots]).map(|(g, kept)| g - kept);
             let turned = changes.map(|change| change * change).sum::<f64>().sqrt();
-            let pulled = stage.inertia * (lambda[row] - kept_lambda[row]).abs() / *heaviest;
-            *left = turned * (pulled + turned / row_scale[row]);
+            let pulled = stage.inertia * (lambda[row] - kept_lambda[row]).abs() * scales.reach[row] * scales.length / scales.gradient[row];
+            *left = turned * (pulled + turned / scales.gradient[row]);
             most = most.max(*left);
         }
         rows.clear();
@@ -81,6 +81,6 @@ impl Workspace {
             kept_lambda[row] = lambda[row];
         }
         self.factorizations += 1;
-        kkt.factor_rows(rows).map_err(|_| Failure::NotFinite)
+        kkt.factor_rows(rows)
     }
 }

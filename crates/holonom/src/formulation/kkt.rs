@@ -6,6 +6,7 @@
 
 use std::ops::Range;
 
+use super::failure::{Failure, Unknown};
 use crate::linalg::{Singular, Solver};
 use crate::system::{MAX_ARGUMENTS, Response, RowSlot, add_along_rows, cross, scatter_rows, skew};
 
@@ -104,6 +105,41 @@ pub struct Kkt {
     /// For each row, and at the end, the first of its second derivatives that are multiples of the unit matrix, and the first
     /// of its entries with one field.
     pub(super) row_first: Vec<[u32; 2]>,
+    /// The rows that enter the part of the coordinates, too.
+    pub(super) augmented: Vec<Augmented>,
+}
+
+/// A row whose square is added to the part of the coordinates, A + ḠᵀWG: the paper's penalty, which leaves the solution where
+/// it is and makes A regular where nodes have hardly any mass (methods §12).
+pub(super) struct Augmented {
+    /// W, kg over the square of the row's unit.
+    pub weight: f64,
+    /// Place of the row's multiplier, and of its entry on the diagonal.
+    pub row: u32,
+    pub diagonal: u32,
+    /// Coordinates of its nodes, each with the place of its entries in the row's column and in the row.
+    pub entries: Vec<[u32; 3]>,
+    /// The places of all pairs of these coordinates.
+    pub pairs: Vec<u32>,
+    /// The entries in the row's column when the matrix was last factored; none where the row is soft.
+    pub column: Vec<f64>,
+}
+
+/// A row whose δ times W is more than this is not augmented: the solution would be another.
+const SOFT: f64 = 1e-6;
+
+impl Augmented {
+    fn add(&mut self, values: &mut [f64]) {
+        let is_soft = -values[self.diagonal as usize] * self.weight > SOFT;
+        for (kept, [_, column, _]) in self.column.iter_mut().zip(&self.entries) {
+            *kept = if is_soft { 0.0 } else { values[*column as usize] };
+        }
+        for (pairs, column) in self.pairs.chunks_exact(self.entries.len()).zip(&self.column) {
+            for (&pair, [_, _, row]) in pairs.iter().zip(&self.entries) {
+                values[pair as usize] += self.weight * column * values[*row as usize];
+            }
+        }
+    }
 }
 
 impl Kkt {
@@ -324,7 +360,7 @@ impl Kkt {
 
     /// Whether rows change entries of the matrix one by one and it can be factored in part.
     pub fn is_changed_by_rows(&self) -> bool {
-        self.fields == 1 && self.row_skew.is_empty() && self.solver.has_parts()
+        self.fields == 1 && self.row_skew.is_empty() && self.augmented.is_empty() && self.solver.has_parts()
     }
 
     /// Adds what the matrix changes by with a row: `hessian` times its second derivatives and, in its columns and its rows, the
@@ -346,19 +382,40 @@ impl Kkt {
     }
 
     /// Factors the matrix again where some rows changed it.
-    pub fn factor_rows(&mut self, rows: &[usize]) -> Result<(), Singular> {
+    pub fn factor_rows(&mut self, rows: &[usize]) -> Result<(), Failure> {
         let Self { solver, dim, free, row_slots, slot_nodes, .. } = self;
         let coordinates = |s: usize| {
             let node = slot_nodes[s] as usize;
             (node * *dim..(node + 1) * *dim).take_while(|q| *q < *free * *dim)
         };
         let unknowns = rows.iter().flat_map(|&row| row_slots[row].clone().flat_map(coordinates).chain([*free * *dim + row]));
-        solver.factor_with(unknowns)
+        let outcome = solver.factor_with(unknowns);
+        outcome.map_err(|singular| self.blame(singular))
     }
 
     /// Factors the matrix.
-    pub fn factor(&mut self) -> Result<(), Singular> {
-        self.solver.factor()
+    pub fn factor(&mut self) -> Result<(), Failure> {
+        let values = self.solver.values_mut();
+        self.augmented.iter_mut().for_each(|row| row.add(values));
+        let outcome = self.solver.factor();
+        outcome.map_err(|singular| self.blame(singular))
+    }
+
+    /// Replaces a right side by the solution with the factors at hand.
+    pub fn solve(&mut self, b: &mut [f64]) {
+        for row in &self.augmented {
+            let pull = row.weight * b[row.row as usize];
+            row.entries.iter().zip(&row.column).for_each(|([q, ..], column)| b[*q as usize] += pull * column);
+        }
+        self.solver.solve(b);
+    }
+
+    /// The node or row whose pivot is none.
+    fn blame(&self, Singular { pivot }: Singular) -> Failure {
+        Failure::Singular(match pivot.checked_sub(self.multiplier(0, 0)) {
+            Some(row) => Unknown::Row(row / self.fields),
+            None => Unknown::Node(pivot / (self.fields * self.dim)),
+        })
     }
 }
 

@@ -10,11 +10,17 @@
 
 mod acceleration;
 mod collocation;
+mod coupled;
+mod failure;
+mod independence;
 mod iteration;
 mod kept;
 mod kkt;
 mod level;
+mod newton;
 mod plan;
+mod round_off;
+mod scales;
 mod stabilized;
 mod stage;
 mod sweep;
@@ -24,8 +30,9 @@ mod velocity_rows;
 mod workspace;
 
 pub use collocation::{Collocation, Timing};
-pub use iteration::{Failure, ITERATIONS, Iteration, Multipliers, SolveSettings, solve};
-pub(crate) use kkt::ALL;
+pub use failure::{Failure, Unknown};
+pub use independence::{INDEPENDENT, independence};
+pub use iteration::{ITERATIONS, Iteration, Multipliers, SolveSettings, solve};
 pub use kkt::{Block, Kkt, LawFactors};
 pub use level::Level;
 pub use stabilized::Stabilized;

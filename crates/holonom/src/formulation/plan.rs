@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::kkt::{Coupling, Hessian, Kkt, NONE, OuterTerm, Turn};
+use super::kkt::{Augmented, Coupling, Hessian, Kkt, NONE, OuterTerm, Turn};
+use super::scales::Scales;
 use crate::linalg::{Plans, Solver, fill_reducing_order};
 use crate::system::{HessianBlock, InvariantId, Mass, NodeId, Quantity, Row, RowSlot, System};
 
@@ -48,12 +49,27 @@ impl Pairs {
 
 impl Kkt {
     /// Plans the matrix of a system with `fields` fields a node, of which rows and coordinates share blocks by `coupling`.
-    pub fn new(system: &System, fields: usize, coupling: Coupling) -> Self {
-        Self::with_mass(system, &system.mass, fields, coupling)
+    pub fn new(system: &System, scales: &Scales, fields: usize, coupling: Coupling) -> Self {
+        let mut kkt = Self::with_mass(system, &system.mass, &scales.has_light, fields, coupling);
+        for row in &mut kkt.augmented {
+            let k = (row.row as usize - kkt.fields * kkt.free * kkt.dim) / kkt.fields;
+            row.weight = 1.0 / scales.softness[k];
+        }
+        let mut units = vec![0.0; kkt.size()];
+        for field in 0..fields {
+            for (node, held) in scales.held.iter().enumerate() {
+                (0..kkt.dim).for_each(|c| units[kkt.coordinate(node, field, c)] = held.sqrt());
+            }
+            for (row, softness) in scales.softness.iter().enumerate() {
+                units[kkt.multiplier(row, field)] = 1.0 / softness.sqrt();
+            }
+        }
+        kkt.solver.set_units(&units);
+        kkt
     }
 
-    /// The same with another mass matrix than the system's.
-    pub fn with_mass(system: &System, mass: &Mass, fields: usize, coupling: Coupling) -> Self {
+    /// The same with another mass matrix than the system's, where the rows `augmented` (r) enter the part of the coordinates.
+    pub fn with_mass(system: &System, mass: &Mass, augmented: &[bool], fields: usize, coupling: Coupling) -> Self {
         let (dim, free) = (system.dim, system.free);
         let slot_nodes: Vec<u32> = system.slot_nodes().map(|node| node as u32).collect();
         let row_slots = system.row_slots();
@@ -95,6 +111,12 @@ impl Kkt {
         for nodes in groups {
             for a in nodes.iter().filter(|a| is_free(a.0)) {
                 nodes.iter().filter(|b| is_free(b.0)).for_each(|b| pairs.add(a.0, b.0, true));
+            }
+        }
+        for (slots, _) in row_slots.iter().zip(augmented).filter(|(_, augmented)| **augmented) {
+            let nodes: Vec<u32> = slots.clone().map(|slot| slot_nodes[slot]).filter(|&node| is_free(node)).collect();
+            for &a in &nodes {
+                nodes.iter().for_each(|&b| pairs.add(a, b, true));
             }
         }
         pairs.number();
@@ -173,12 +195,38 @@ impl Kkt {
             row_entries: Vec::new(),
             row_diagonal: Vec::new(),
             row_first: Vec::new(),
+            augmented: Vec::new(),
             slots: row_slots.iter().zip(0..).flat_map(|(slots, row)| slots.clone().map(move |slot| (row, slot))).map(row_slot).collect(),
             row_slots,
             slot_nodes,
         };
         kkt.plan(&pairs, &system.plans);
+        let rows = (0..augmented.len()).filter(|&row| augmented[row]);
+        kkt.augmented =
+            rows.flat_map(|row| (0..fields).map(move |field| (row, field))).map(|(row, field)| kkt.augment(row, field)).collect();
         kkt
+    }
+
+    fn augment(&self, row: usize, field: usize) -> Augmented {
+        let multiplier = self.multiplier(row, field);
+        let mut coordinates = Vec::new();
+        for slot in self.row_slots[row].clone().filter(|&slot| self.is_free(slot)) {
+            for other in (0..self.fields).filter(|&other| self.are_coupled(other, field)) {
+                coordinates.extend((0..self.dim).map(|c| self.coordinate(self.slot_nodes[slot] as usize, other, c)));
+            }
+        }
+        // A function may name a node several times.
+        coordinates.sort_unstable();
+        coordinates.dedup();
+        let at = |row: usize, column: usize| self.solver.position(row, column);
+        Augmented {
+            weight: 0.0,
+            row: multiplier as u32,
+            diagonal: at(multiplier, multiplier),
+            pairs: coordinates.iter().flat_map(|&a| coordinates.iter().map(move |&b| (a, b))).map(|(a, b)| at(a, b)).collect(),
+            column: vec![0.0; coordinates.len()],
+            entries: coordinates.into_iter().map(|q| [q as u32, at(q, multiplier), at(multiplier, q)]).collect(),
+        }
     }
 
     fn plan(&mut self, pairs: &Pairs, plans: &Plans) {
@@ -248,8 +296,7 @@ impl Kkt {
     }
 
     /// Nodes by least fill-in, each row right after the last of its nodes: its pivot is then minus what the row's
-    /// gradient adds to those before it, and never the bare regularisation unless the row is redundant. Nodes without mass,
-    /// as a plate may have across it, come last and count for no row: only rows give them a pivot.
+    /// gradient adds to those before it, and never the bare regularisation unless the row is redundant.
     fn elimination_order(&self, pairs: &Pairs) -> Vec<u32> {
         let mut edges: Vec<(u32, u32)> = pairs.found.keys().copied().filter(|&(a, b)| a < b).collect();
         let free_nodes =
@@ -266,8 +313,7 @@ impl Kkt {
         let mut rows_after: Vec<Vec<usize>> = vec![Vec::new(); self.free];
         let mut first = Vec::new();
         for (row, slots) in self.row_slots.iter().enumerate() {
-            let with_mass = free_nodes(slots).into_iter().filter(|&node| !self.is_massless(node));
-            match with_mass.map(|node| place[node as usize]).max() {
+            match free_nodes(slots).into_iter().map(|node| place[node as usize]).max() {
                 Some(last) => rows_after[last].push(row),
                 None => first.push(row),
             }
@@ -275,20 +321,12 @@ impl Kkt {
         let mut order = Vec::with_capacity(self.size());
         let push_row = |order: &mut Vec<u32>, row| (0..self.fields).for_each(|f| order.push(self.multiplier(row, f) as u32));
         first.into_iter().for_each(|row| push_row(&mut order, row));
-        let push_node = |order: &mut Vec<u32>, node: u32| {
+        for (&node, rows) in nodes.iter().zip(&rows_after) {
             for field in (0..self.fields).rev() {
                 (0..self.dim).for_each(|c| order.push(self.coordinate(node as usize, field, c) as u32));
             }
-        };
-        for (k, &node) in nodes.iter().enumerate().filter(|&(_, &node)| !self.is_massless(node)) {
-            push_node(&mut order, node);
-            rows_after[k].iter().for_each(|&row| push_row(&mut order, row));
+            rows.iter().for_each(|&row| push_row(&mut order, row));
         }
-        nodes.iter().filter(|&&node| self.is_massless(node)).for_each(|&node| push_node(&mut order, node));
         order
-    }
-
-    fn is_massless(&self, node: u32) -> bool {
-        self.pair_mass[self.own_pair[node as usize] as usize] == 0.0
     }
 }

@@ -11,8 +11,13 @@
 //! one level. What γ' does on the left, ½ (H w)ᵀγ', is some (hω)²/4 of the whole when things turn with ω, and met by sweeps
 //! over the two.
 
-use super::iteration::{Convergence, Failure, KEPT, STALLED, SolveSettings, restart};
+use super::coupled::Coupled;
+use super::failure::Failure;
+use super::iteration::{SolveSettings, restart};
 use super::kkt::{ALL, Block, Kkt};
+use super::newton::{Change, Equations, newton};
+use super::round_off::{are_forces_round_off, are_rows_round_off};
+use super::scales::Scales;
 use super::stage::Stage;
 use super::sweep::Sweeps;
 use super::workspace::Workspace;
@@ -38,7 +43,7 @@ pub struct Stabilized {
     pub(super) turned_u: Vec<f64>,
     turned_start: Vec<f64>,
     /// ∂Φ̇/∂v between the ends of the step (D a slot).
-    velocity_gradient: Vec<f64>,
+    pub(super) velocity_gradient: Vec<f64>,
     /// What γ' pulls with in the first equation, ½ H w + DΦ − D_vΦ̇ (D a slot).
     pub(super) pull: Vec<f64>,
     /// ½h Φ̇ (r).
@@ -50,13 +55,21 @@ pub struct Stabilized {
     pub(super) curves: bool,
     /// Forces on all nodes (full).
     pub(super) force: Vec<f64>,
+    /// Both levels in one matrix, made when sweeps do not contract for the first time.
+    coupled: Option<Box<Coupled>>,
+    /// Steps to come that are solved with it.
+    pub coupled_steps: u32,
 }
+
+/// Steps with both levels in one matrix before sweeps are tried again.
+const COUPLED: u32 = 64;
 
 impl Stabilized {
     /// Allocates everything for a system.
     pub fn new(system: &System) -> Self {
+        let scales = Scales::new(system);
         let (r, all) = (system.constraints(), system.nodes() * system.dim);
-        let kkt = Kkt::new(system, 1, ALL);
+        let kkt = Kkt::new(system, &scales, 1, ALL);
         let (slots, size) = (kkt.slot_nodes.len() * system.dim, kkt.size());
         Self {
             kkt,
@@ -75,64 +88,40 @@ impl Stabilized {
             sweeps: Sweeps::new(size),
             curves: false,
             force: vec![0.0; all],
+            coupled: None,
+            coupled_steps: 0,
         }
     }
 
-    /// Newton on increments, velocities and both multipliers from the values in the workspaces, and from the free flight
-    /// and shares of it where that fails.
-    pub fn solve(&mut self, system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<usize, Failure> {
+    fn is_coupled(&self) -> bool {
+        self.coupled_steps > 0
+    }
+
+    /// Solves both levels in one matrix from here on.
+    fn couple(&mut self, system: &System) {
+        self.coupled_steps = COUPLED;
+        self.coupled.get_or_insert_with(|| Box::new(Coupled::new(system)));
+    }
+
+    fn factor_coupled(&mut self, system: &System, stage: &Stage, work: &mut Workspace) -> Result<(), Failure> {
+        let mut coupled = self.coupled.take().unwrap_or_else(|| Box::new(Coupled::new(system)));
+        let outcome = coupled.factor(self, system, stage, work);
+        self.coupled = Some(coupled);
+        outcome
+    }
+
+    /// Replaces both residuals by increments; nothing is left.
+    fn solve_coupled(&mut self, system: &System, work: &mut Workspace) -> f64 {
+        if let Some(coupled) = &mut self.coupled {
+            coupled.solve(system.coordinates(), system.dim, &mut work.unknowns, &mut self.unknowns);
+        }
+        0.0
+    }
+
+    /// Newton on increments, velocities and both multipliers from the values in the workspaces.
+    pub fn solve(&mut self, system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<(), Failure> {
         system.invariants.curvature(&work.v0, &mut work.half, &mut self.turned_start);
-        let mut outcome = self.newton(system, stage, settings, work);
-        let mut spent = 0;
-        for &share in settings.restarts() {
-            if outcome.is_ok() {
-                break;
-            }
-            spent += settings.max_iterations;
-            restart(share, work);
-            for i in 0..system.coordinates() {
-                self.u[i] = work.d[i] - 0.5 * stage.step * work.v0[i];
-            }
-            self.mu.fill(0.0);
-            self.gamma.fill(0.0);
-            self.gamma_change.fill(0.0);
-            outcome = self.newton(system, stage, settings, work);
-        }
-        outcome.map(|iterations| spent + iterations)
-    }
-
-    fn newton(&mut self, system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<usize, Failure> {
-        work.proximal_of_redundant();
-        work.expect_multipliers();
-        let mut convergence = Convergence::new(settings, work.shortest, KEPT);
-        for iteration in 1..=settings.max_iterations {
-            work.lambda.iter_mut().zip(&self.mu).for_each(|(lambda, mu)| *lambda = mu / stage.inertia);
-            work.place(stage);
-            work.evaluate(system, stage);
-            self.turn(system, stage, work);
-            self.residual(system, stage, work);
-            if convergence.stalls() && self.is_met(system, work) {
-                return Ok(iteration - 1);
-            }
-            if !convergence.keeps_factors() {
-                self.tangent(system, stage, work);
-                work.factor()?;
-                self.kkt.factor().map_err(|_| Failure::NotFinite)?;
-            }
-            let left = self.sweep(system, settings, iteration == 1, work)?;
-            if !self.unknowns.iter().chain(&work.unknowns).all(|unknown| unknown.is_finite()) {
-                return Err(Failure::NotFinite);
-            }
-            let increment = self.advance(system, work);
-            let n = system.coordinates();
-            let steps = self.unknowns[n..].iter().zip(&self.gamma_change).map(|(step, change)| step - change);
-            let turned = work.turned(stage.inertia, n).max(work.scaled_multipliers(steps));
-            self.gamma_change.fill(0.0);
-            if convergence.is_reached(increment, turned.max(left)) {
-                return Ok(iteration);
-            }
-        }
-        Err(Failure::NotConverged(settings.max_iterations))
+        newton(&mut BothLevels { own: self, system, stage, settings }, settings, work)
     }
 
     /// w, and H times w and u.
@@ -177,15 +166,17 @@ impl Stabilized {
             let (a, b) = (&from.functions.local[k], &to.functions.local[k]);
             let change: [f64; MAX_ARGUMENTS] =
                 std::array::from_fn(|i| base.get(i).map_or(0.0, |id| to.value[id.0 as usize] - from.value[id.0 as usize]));
-            let size: f64 = change.iter().map(|c| c * c).sum();
             // Of the change of the gradients along the rates, what the mean Hessian leaves.
             let along = |i: usize| 0.5 * (a.bend(i, &rates) + b.bend(i, &rates));
             let rise: f64 = (0..base.len()).map(|j| rates[j] * (b.gradient[j] - a.gradient[j])).sum();
             let rest = rise - (0..base.len()).map(|i| along(i) * change[i]).sum::<f64>();
-            let scale: f64 = base.iter().map(|id| to.value[id.0 as usize].powi(2)).sum();
+            // Arguments of different units are weighed by what they do to the rate.
+            let weight: [f64; MAX_ARGUMENTS] = std::array::from_fn(|i| (a.bend(i, &rates).abs() + b.bend(i, &rates).abs()).powi(2));
+            let size: f64 = (0..base.len()).map(|i| weight[i] * change[i] * change[i]).sum();
+            let scale: f64 = base.iter().enumerate().map(|(i, id)| weight[i] * to.value[id.0 as usize].powi(2)).sum();
             let factor = if size > NO_CHANGE * NO_CHANGE * scale { rest / size } else { 0.0 };
             let mean = mean(k);
-            std::array::from_fn(|i| [mean[i], along(i) + factor * change[i]])
+            std::array::from_fn(|i| [mean[i], along(i) + factor * weight[i] * change[i]])
         });
     }
 
@@ -231,15 +222,29 @@ impl Stabilized {
         self.u.iter_mut().zip(&self.unknowns[..n]).for_each(|(u, turn)| *u += turn);
         self.mu.iter_mut().zip(&work.unknowns[n..]).for_each(|(mu, step)| *mu += step);
         self.gamma.iter_mut().zip(&self.unknowns[n..]).for_each(|(gamma, step)| *gamma += step);
-        largest(&work.unknowns[..n]).max(largest(&self.unknowns[..n])) / work.length
+        largest(&work.unknowns[..n]).max(largest(&self.unknowns[..n])) / work.scales.length
     }
 
-    fn is_met(&self, system: &System, work: &Workspace) -> bool {
-        let n = system.coordinates();
-        let momentum = largest(&work.unknowns[..n]).max(largest(&self.unknowns[..n]));
-        let scaled = self.rate.iter().zip(&work.row_scale).map(|(rate, scale)| rate.abs() / scale);
-        let rate = scaled.fold(0.0, f64::max) / work.length;
-        momentum <= STALLED * work.heaviest * work.length && work.scaled_violation() <= STALLED && rate <= STALLED
+    /// Whether the residuals of both levels are round-off.
+    fn is_met(&mut self, system: &System, stage: &Stage, moves: bool, work: &mut Workspace) -> bool {
+        let (n, dim) = (system.coordinates(), system.dim);
+        // γ' pulls at the first level, too, as μ does.
+        for (lambda, (mu, gamma)) in work.lambda.iter_mut().zip(self.mu.iter().zip(&self.gamma)) {
+            *lambda = (mu.abs() + gamma.abs()) / stage.inertia;
+        }
+        if !work.is_met(system, stage, moves) || (moves && !are_forces_round_off(&self.unknowns[..n], &work.full[..n])) {
+            return false;
+        }
+        let nothing = work.nothing();
+        work.rows.iter_mut().zip(&work.scales.gradient).for_each(|(size, g)| *size = g * nothing);
+        for slot in &self.kkt.slots {
+            let (g, x) = (slot.slot as usize * dim, slot.node as usize * dim);
+            let size = |g: &[f64], x: &[f64]| largest(g) * largest(x);
+            let (g, x) = (g..g + dim, x..x + dim);
+            let own = size(&work.at_end.gradient[g.clone()], &self.u[x.clone()]);
+            work.rows[slot.row as usize] += own + size(&self.turned_u[g], &work.x1[x]);
+        }
+        are_rows_round_off(&self.unknowns[n..], &work.rows)
     }
 
     /// Work of known motion in the step that the stage's forces do not show, J: through the velocity rows,
@@ -273,5 +278,77 @@ impl Stabilized {
             sum += self.gamma[row] / h * along;
         }
         sum
+    }
+}
+
+/// Rows at both levels as Newton's iteration sees them.
+struct BothLevels<'a> {
+    own: &'a mut Stabilized,
+    system: &'a System,
+    stage: &'a Stage,
+    settings: &'a SolveSettings,
+}
+
+impl Equations for BothLevels<'_> {
+    fn begin(&mut self, work: &mut Workspace) {
+        work.proximal_of_redundant();
+        work.expect_multipliers();
+    }
+
+    fn restart(&mut self, share: f64, work: &mut Workspace) {
+        restart(share, work);
+        for i in 0..self.system.coordinates() {
+            self.own.u[i] = work.d[i] - 0.5 * self.stage.step * work.v0[i];
+        }
+        self.own.mu.fill(0.0);
+        self.own.gamma.fill(0.0);
+        self.own.gamma_change.fill(0.0);
+    }
+
+    fn evaluate(&mut self, _is_new: bool, work: &mut Workspace) {
+        let Self { own, system, stage, .. } = self;
+        work.lambda.iter_mut().zip(&own.mu).for_each(|(lambda, mu)| *lambda = mu / stage.inertia);
+        work.place(stage);
+        work.evaluate(system, stage);
+        own.turn(system, stage, work);
+        own.residual(system, stage, work);
+    }
+
+    fn is_met(&mut self, moves: bool, work: &mut Workspace) -> bool {
+        self.own.is_met(self.system, self.stage, moves, work)
+    }
+
+    fn factor(&mut self, _is_first: bool, work: &mut Workspace) -> Result<(), Failure> {
+        if self.own.is_coupled() {
+            return self.own.factor_coupled(self.system, self.stage, work);
+        }
+        self.own.tangent(self.system, self.stage, work);
+        work.factor()?;
+        self.own.kkt.factor()
+    }
+
+    fn advance(&mut self, is_first: bool, work: &mut Workspace) -> Result<Change, Failure> {
+        let Self { own, system, stage, settings } = self;
+        let left = match own.is_coupled() {
+            true => own.solve_coupled(system, work),
+            false => match own.sweep(system, settings, is_first, work)? {
+                Some(left) => left,
+                None => {
+                    own.couple(system);
+                    own.residual(system, stage, work);
+                    own.factor_coupled(system, stage, work)?;
+                    own.solve_coupled(system, work)
+                }
+            },
+        };
+        if !own.unknowns.iter().chain(&work.unknowns).all(|unknown| unknown.is_finite()) {
+            return Err(Failure::NotFinite);
+        }
+        let increment = own.advance(system, work);
+        let n = system.coordinates();
+        let steps = own.unknowns[n..].iter().zip(&own.gamma_change).map(|(step, change)| step - change);
+        let multipliers = work.turned(stage.inertia, n).max(work.scaled_multipliers(steps));
+        own.gamma_change.fill(0.0);
+        Ok(Change { increment, multipliers, left })
     }
 }

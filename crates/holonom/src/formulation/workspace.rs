@@ -1,9 +1,10 @@
 //! Everything mutable of a step: positions, evaluations, forces and the matrix, allocated once.
 
-use super::iteration::Failure;
+use super::failure::Failure;
 use super::kept::Kept;
 use super::kkt::{ALL, Kkt};
 use super::level::Level;
+use super::scales::Scales;
 use super::stage::{Sampling, Stage};
 use crate::linalg::largest;
 use crate::system::{Evaluation, Response, SIZE, System};
@@ -12,6 +13,9 @@ use crate::system::{Evaluation, Response, SIZE, System};
 /// rows round-off grows with ρ to multipliers that mean nothing.
 pub const RHO: f64 = 1e10;
 
+/// Attempts after a change of the rank that are near a singular position.
+const SINGULAR: u32 = 32;
+
 /// The same of rows that are not redundant. What they miss in an iteration falls with ρ; it comes to N²/ρ in a chain of N
 /// links.
 const RHO_REGULAR: f64 = 1e16;
@@ -19,12 +23,11 @@ const RHO_REGULAR: f64 = 1e16;
 /// Pivots of rows that are smaller over the rows' own stiffness belong to redundant ones.
 const REDUNDANT: f64 = 1e-9;
 
-/// Rows shorter than this share of the mechanism are in a singular position rather than short.
-const SHORT: f64 = 1e-6;
-
 /// Scratch of a stage. Full vectors hold D numbers a node, free nodes first.
 pub struct Workspace {
     pub kkt: Kkt,
+    /// What numbers of different nodes and rows are compared by.
+    pub scales: Scales,
     /// The condition that the rows of a stage stand for.
     pub level: Level,
     /// Position, velocity at the start of the step (full).
@@ -66,10 +69,6 @@ pub struct Workspace {
     pub load_force: Vec<f64>,
     /// Residual and solution of the linear system.
     pub unknowns: Vec<f64>,
-    /// Size of each row of G M⁻¹ Gᵀ (r), 1/kg in the row's units.
-    pub softness: Vec<f64>,
-    /// Length of each row's gradient as its softness and the heaviest mass have it (r).
-    pub row_scale: Vec<f64>,
     pub delta: Vec<f64>,
     /// −M g (full), N.
     pub weight: Vec<f64>,
@@ -92,16 +91,20 @@ pub struct Workspace {
     pub full: Vec<f64>,
     pub inertial: Vec<f64>,
     pub rows: Vec<f64>,
+    /// Sizes of gradients (D a slot).
+    pub(super) sizes: Vec<f64>,
     pub(super) dense: Vec<f64>,
-    /// Largest distance between nodes at the start, m: the unit of increments.
-    pub length: f64,
     /// Rows whose pivot in the last factorisation was no redundant one's.
     regular: Vec<bool>,
-    /// Length of the shortest row, the gradient of an invariant, over `length`, at most 1.
-    pub shortest: f64,
-    /// Largest diagonal entry of the mass matrix, kg: the unit of momentum residuals.
-    pub heaviest: f64,
-    /// Factorisations so far.
+    /// How many they leave, if any were counted, and whether that has changed then.
+    redundant: Option<usize>,
+    changes_rank: bool,
+    /// Attempts to come that are near a singular position.
+    singular: u32,
+    /// Whether rows that were regular have hardly any proximal term in this attempt.
+    pub(super) spares_regular: bool,
+    /// Newton iterations and factorisations so far, those of failed attempts included.
+    pub iterations: u64,
     pub factorizations: u64,
     pub(super) dissipative: bool,
     works: bool,
@@ -115,7 +118,8 @@ impl Workspace {
     /// Allocates everything for a system.
     pub fn new(system: &System) -> Self {
         let (n, r, all) = (system.coordinates(), system.constraints(), system.nodes() * system.dim);
-        let kkt = Kkt::new(system, 1, ALL);
+        let scales = Scales::new(system);
+        let kkt = Kkt::new(system, &scales, 1, ALL);
         let evaluation = system.evaluation();
         let mut weight = vec![0.0; all];
         for (a, weight) in weight.chunks_exact_mut(system.dim).enumerate() {
@@ -129,6 +133,7 @@ impl Workspace {
             unknowns: vec![0.0; kkt.size()],
             kept: Kept::new(system, kkt.is_changed_by_rows(), kkt.slot_nodes.len()),
             kkt,
+            scales,
             level: Level::POSITION,
             x0: system.start_position.clone(),
             v0: system.start_velocity.clone(),
@@ -154,66 +159,38 @@ impl Workspace {
             memory: Vec::new(),
             at_start: evaluation.clone(),
             at_end: evaluation.clone(),
-            sampled: evaluation,
+            sampled: evaluation.clone(),
             phi: vec![0.0; r],
             phi_start: vec![0.0; r],
             force: vec![0.0; all],
             responses: vec![Response::default(); system.laws.len() + system.function_rows.len()],
             load_force: vec![0.0; loads],
-            softness: vec![1.0; r],
-            row_scale: vec![1.0; r],
             delta: vec![0.0; r],
             weight,
             full: vec![0.0; all],
             inertial: vec![0.0; n],
             rows: vec![0.0; r],
+            sizes: vec![0.0; evaluation.gradient.len()],
             dense: vec![0.0; 2 * SIZE * SIZE],
-            length: extent(system),
             regular: vec![false; r],
-            shortest: 1.0,
-            heaviest: (0..system.free).map(|a| system.mass.diagonal(a)).fold(0.0, f64::max),
+            redundant: None,
+            changes_rank: false,
+            singular: 0,
+            spares_regular: false,
+            iterations: 0,
             factorizations: 0,
             dissipative: system.laws.iter().any(|law| !law.law.conservative()),
             works: system.is_worked_on(),
             only_gradients: system.has_only_quadratic_rows(),
         };
         system.evaluate_again(&workspace.x0, 0.0, &mut workspace.at_start);
-        workspace.measure_softness(system);
         workspace
-    }
-
-    /// G M⁻¹ Gᵀ with the mass of each node alone, row by row, at the evaluation of the start; a node without any counts as
-    /// the heaviest. Rows whose gradient happens to vanish there get a millionth of the largest.
-    fn measure_softness(&mut self, system: &System) {
-        let dim = system.dim;
-        for (row, slots) in self.kkt.row_slots.iter().enumerate() {
-            self.softness[row] = 0.0;
-            for s in slots.clone() {
-                let node = self.kkt.slot_nodes[s] as usize;
-                if node < system.free {
-                    let own = system.mass.diagonal(node);
-                    let mass = if own > 0.0 { own } else { self.heaviest };
-                    let square: f64 = self.at_start.gradient[s * dim..s * dim + dim].iter().map(|g| g * g).sum();
-                    self.softness[row] += square / mass;
-                }
-            }
-        }
-        for slots in self.kkt.row_slots[..system.rows.len()].iter().filter(|slots| slots.end <= system.invariants.slots()) {
-            let gradient = &self.at_start.gradient[slots.start * dim..slots.end * dim];
-            let size = largest(gradient);
-            if size > SHORT * self.length {
-                self.shortest = self.shortest.min(size / self.length);
-            }
-        }
-        let largest = self.softness.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        self.softness.iter_mut().for_each(|s| *s = s.max(1e-6 * largest));
-        self.row_scale.iter_mut().zip(&self.softness).for_each(|(scale, softness)| *scale = (softness * self.heaviest).sqrt());
     }
 
     /// Fills δ for the proximal term: ρ = [`RHO`], or what a penalty α in the paper's sense comes to, 1/(ϖα), kept
     /// where it neither softens the rows nor spoils the digits.
     pub fn proximal(&mut self, inertia: f64, penalty: Option<f64>) {
-        for (delta, &softness) in self.delta.iter_mut().zip(&self.softness) {
+        for (delta, &softness) in self.delta.iter_mut().zip(&self.scales.softness) {
             *delta = match penalty {
                 None => softness / RHO,
                 Some(alpha) => (1.0 / (inertia * alpha)).clamp(softness / 1e12, softness / 1e8),
@@ -221,10 +198,14 @@ impl Workspace {
         }
     }
 
-    /// The same for iterations that begin without multipliers: hardly any δ for rows that were regular when last factored.
+    /// The same for iterations that begin without multipliers: hardly any δ for rows that were regular when last factored. Near a
+    /// singular position, where the rank changes, redundancy passes from row to row and all have the δ of redundant ones.
     pub fn proximal_of_redundant(&mut self) {
-        for ((delta, &softness), &regular) in self.delta.iter_mut().zip(&self.softness).zip(&self.regular) {
-            *delta = softness / if regular { RHO_REGULAR } else { RHO };
+        self.spares_regular = true;
+        let is_singular = self.singular > 0;
+        self.singular = self.singular.saturating_sub(1);
+        for ((delta, &softness), &regular) in self.delta.iter_mut().zip(&self.scales.softness).zip(&self.regular) {
+            *delta = softness / if regular && !is_singular { RHO_REGULAR } else { RHO };
         }
     }
 
@@ -268,27 +249,58 @@ impl Workspace {
     pub fn factor(&mut self) -> Result<(), Failure> {
         self.kkt.regularise(0, &self.delta);
         self.factorizations += 1;
-        if self.kkt.factor().is_err() {
+        if let Err(failure) = self.kkt.factor() {
             self.regular.fill(false);
-            return Err(Failure::NotFinite);
+            return Err(failure);
         }
-        for (row, regular) in self.regular.iter_mut().enumerate() {
-            let pivot = self.kkt.solver.pivot(self.kkt.multiplier(row, 0));
-            *regular = pivot - self.delta[row] > REDUNDANT * self.softness[row];
-        }
+        self.classify_rows(|kkt, row| kkt.solver.pivot(kkt.multiplier(row, 0)));
         Ok(())
+    }
+
+    /// Takes note of which rows are redundant by their pivots, and whether that are as many as before.
+    fn classify_rows(&mut self, pivot: impl Fn(&Kkt, usize) -> f64) {
+        let mut redundant = 0;
+        for (row, regular) in self.regular.iter_mut().enumerate() {
+            *regular = pivot(&self.kkt, row) - self.delta[row] > REDUNDANT * self.scales.softness[row];
+            redundant += usize::from(!*regular);
+        }
+        self.changes_rank = self.redundant.replace(redundant).is_some_and(|before| before != redundant);
+        if self.changes_rank {
+            self.singular = SINGULAR;
+        }
+    }
+
+    /// The same by the matrix of several fields, of which the first is that of the positions.
+    pub(super) fn classify_rows_by(&mut self, kkt: &Kkt) {
+        self.classify_rows(|_, row| kkt.solver.pivot(kkt.multiplier(row, 0)));
+    }
+
+    /// Whether the rank turned out to be another one in the last factorisation: rows without a proximal term to speak of may have
+    /// become redundant, whose pivots are round-off. Gives them one.
+    pub(super) fn guards_rank(&mut self) -> bool {
+        let guards = std::mem::take(&mut self.changes_rank) && self.spares_regular;
+        if guards {
+            self.proximal_of_redundant();
+        }
+        guards
     }
 
     /// Replaces the residual in `unknowns` by the solution.
     pub fn solve(&mut self) -> Result<(), Failure> {
-        self.kkt.solver.solve(&mut self.unknowns);
+        self.kkt.solve(&mut self.unknowns);
         if self.unknowns.iter().all(|u| u.is_finite()) { Ok(()) } else { Err(Failure::NotFinite) }
     }
 
-    /// Largest multiplier in units of mass × length: each times its row's own gradient.
+    /// How far multipliers, of the size of ϖλ, would move a node of their row, over the size of the mechanism: the largest.
     pub fn scaled_multipliers(&self, multipliers: impl IntoIterator<Item = f64>) -> f64 {
-        let scaled = multipliers.into_iter().zip(&self.row_scale).map(|(mu, scale)| mu.abs() * scale);
-        scaled.fold(0.0, f64::max) / (self.heaviest * self.length)
+        let scaled = multipliers.into_iter().zip(&self.scales.reach).map(|(mu, reach)| mu.abs() * reach);
+        scaled.fold(0.0, f64::max)
+    }
+
+    /// How far forces on the free nodes (kg·m) would move those that they move farthest, each by its own mass, m.
+    pub(super) fn farthest(&self, system: &System, force: &[f64]) -> f64 {
+        let nodes = force.chunks_exact(system.dim).zip(&self.scales.agility);
+        nodes.map(|(force, agility)| agility * largest(force)).fold(0.0, f64::max)
     }
 
     /// What the tangent's multipliers are off by after a step of them by `mu` (r), in the same units; from here on they are
@@ -321,18 +333,7 @@ impl Workspace {
 
     /// Largest |Φ_k| in units of length: each row over its own gradient.
     pub fn scaled_violation(&self) -> f64 {
-        let scaled = self.phi.iter().zip(&self.row_scale).map(|(phi, scale)| phi.abs() / scale);
-        scaled.fold(0.0, f64::max) / self.length
+        let scaled = self.phi.iter().zip(&self.scales.gradient).map(|(phi, scale)| phi.abs() / scale);
+        scaled.fold(0.0, f64::max) / self.scales.length
     }
-}
-
-/// Diagonal of the box around all nodes at the start, at least one millimetre.
-fn extent(system: &System) -> f64 {
-    let mut square = 0.0;
-    for c in 0..system.dim {
-        let along = system.start_position.iter().skip(c).step_by(system.dim);
-        let (low, high) = along.fold((0.0, 0.0), |(low, high): (f64, f64), &x| (low.min(x), high.max(x)));
-        square += (high - low) * (high - low);
-    }
-    square.sqrt().max(1e-3)
 }

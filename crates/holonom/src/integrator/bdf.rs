@@ -124,7 +124,7 @@ impl Bdf {
             self.stage.u[k] = h * (v + h * a);
         }
         let timing = Timing { start, step: h, nodes: &[1.0] };
-        let iterations = self.stage.solve(system, timing, settings, work)?;
+        self.stage.solve(system, timing, settings, work)?;
         self.stage.place(system, timing, 0, work);
         if work.is_worked_on() {
             work.sample(system, t);
@@ -136,7 +136,7 @@ impl Bdf {
             self.choose(order, t, history, work);
         }
         let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start, step: h, inertia: h * h, rate: 1.0 / h };
-        Ok(Step { iterations, stage, work: Work::AtEnds, estimate: Some([order as u8; 2]) })
+        Ok(Step { stage, work: Work::AtEnds, estimate: Some([order as u8; 2]) })
     }
 
     fn order_in_use(&self, history: &History<'_>) -> usize {
@@ -149,7 +149,7 @@ impl Bdf {
     /// Estimates the local error at the order in use, and takes the neighbour that allows longer steps for the next one.
     fn choose(&self, order: usize, t: f64, history: &mut History<'_>, work: &mut Workspace) {
         // By how much a step of an order could be longer: its error over what is allowed.
-        let allowed = work.allowed * work.length * (t - history.time(0));
+        let allowed = work.allowed * work.scales.length * (t - history.time(0));
         let room = |order: usize, error: f64| (error / allowed).max(1e-10).powf(-1.0 / order as f64);
         let mut next = order;
         let mut best = 0.0;

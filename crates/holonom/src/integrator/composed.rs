@@ -90,7 +90,7 @@ impl Composed {
         let (last_step, memory) = memory.split_first_mut().expect("there is room for a step");
         let follows = is_same_length(h, *last_step);
         let each = memory.len() / self.shares.len();
-        let (mut iterations, mut done, mut passed) = (0, 0.0, 0.0);
+        let (mut done, mut passed) = (0.0, 0.0);
         let mut last = None;
         for (k, (share, memory)) in self.shares.iter().zip(memory.chunks_exact_mut(each)).enumerate() {
             if k > 0 {
@@ -124,7 +124,6 @@ impl Composed {
             memory.inner.copy_from_slice(&self.memory);
             memory.acceleration.remember(follows, |i| work.a1[i]);
             take_over(memory.lambda, memory.lambda_change, follows, &work.lambda);
-            iterations += step.iterations;
             if let Work::Between(extra) = step.work {
                 done += energy::work_between(system, &step.stage, work) + extra;
             }
@@ -137,6 +136,6 @@ impl Composed {
             let end = work.x0[i] + work.d[i];
             work.d[i] = end - self.start[i];
         }
-        Ok(Step { iterations, stage: step.stage, work: Work::Sum(done), estimate: None })
+        Ok(Step { stage: step.stage, work: Work::Sum(done), estimate: None })
     }
 }

@@ -20,6 +20,8 @@ impl ConservingGgl {
 struct Memory<'a> {
     /// Step of the last solution, s.
     step: &'a mut f64,
+    /// Steps to come with both levels in one matrix.
+    coupled: &'a mut f64,
     /// γ' of the last step and its change there (r each).
     gamma: &'a mut [f64],
     gamma_change: &'a mut [f64],
@@ -29,16 +31,16 @@ struct Memory<'a> {
 
 impl<'a> Memory<'a> {
     fn of(system: &System, memory: &'a mut [f64]) -> Self {
-        let (step, rest) = memory.split_first_mut().expect("there is room for a step");
+        let ([step, coupled], rest) = memory.split_first_chunk_mut().expect("there is room for a step");
         let (gamma, rest) = rest.split_at_mut(system.constraints());
         let (gamma_change, slip) = rest.split_at_mut(system.constraints());
-        Self { step, gamma, gamma_change, slip: History::of(slip) }
+        Self { step, coupled, gamma, gamma_change, slip: History::of(slip) }
     }
 }
 
 impl Integrator for ConservingGgl {
     fn memory(&self, system: &System) -> usize {
-        1 + 2 * system.constraints() + History::SIZE * system.coordinates()
+        2 + 2 * system.constraints() + History::SIZE * system.coordinates()
     }
 
     fn step(&mut self, system: &System, start: f64, step: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
@@ -47,6 +49,7 @@ impl Integrator for ConservingGgl {
         let both = &mut self.stabilized;
         let memory = Memory::of(system, &mut work.memory);
         let follows = is_same_length(h, *memory.step);
+        both.coupled_steps = *memory.coupled as u32;
         for i in 0..work.x1.len() {
             if i < n {
                 both.u[i] = work.d[i] - 0.5 * h * work.v0[i];
@@ -62,7 +65,7 @@ impl Integrator for ConservingGgl {
             (both.gamma[row], both.mu[row], both.gamma_change[row]) = (0.0, 0.0, expected);
             work.lambda[row] -= expected / stage.inertia;
         }
-        let iterations = both.solve(system, &stage, settings, work)?;
+        both.solve(system, &stage, settings, work)?;
         for i in 0..work.x1.len() {
             if i < n {
                 work.v1[i] = work.v0[i] + 2.0 / h * (both.u[i] - 0.5 * work.drift[i]);
@@ -74,6 +77,7 @@ impl Integrator for ConservingGgl {
         }
         let mut memory = Memory::of(system, &mut work.memory);
         *memory.step = h;
+        *memory.coupled = f64::from(both.coupled_steps.saturating_sub(1));
         memory.slip.remember(follows, |i| work.d[i] - both.u[i] - 0.5 * work.drift[i]);
         take_over(memory.gamma, memory.gamma_change, follows, &both.gamma);
         let mut extra_work = 0.0;
@@ -82,6 +86,6 @@ impl Integrator for ConservingGgl {
             both.turn(system, &stage, work);
             extra_work = both.work(system, &stage, work);
         }
-        Ok(Step { iterations, stage, work: Work::Between(extra_work), estimate: None })
+        Ok(Step { stage, work: Work::Between(extra_work), estimate: None })
     }
 }

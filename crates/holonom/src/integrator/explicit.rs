@@ -190,9 +190,10 @@ impl Integrator for Explicit {
         }
         self.take(system, (stages, self.tableau.rows[stages]), start + h, h, settings, work)?;
         self.extended = false;
+        work.iterations += stages as u64 + 1;
         self.estimate(n, h, work);
         let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start, step: h, inertia: h * h, rate: 1.0 / h };
-        Ok(Step { iterations: stages + 1, stage, work: Work::Sum(done), estimate: self.tableau.orders })
+        Ok(Step { stage, work: Work::Sum(done), estimate: self.tableau.orders })
     }
 
     fn interpolate(

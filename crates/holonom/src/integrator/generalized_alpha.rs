@@ -55,7 +55,7 @@ impl GeneralizedAlpha {
             after[i] = work.a1[i];
             before[i] = work.a1[i] + h * before[i];
         }
-        let iterations = solve(system, &stage, settings, work)?;
+        solve(system, &stage, settings, work)?;
         work.place(&stage);
         for i in 0..n {
             let (a, dv) = (work.memory[i], work.memory[n + i]);
@@ -65,7 +65,7 @@ impl GeneralizedAlpha {
             work.v1[i] = work.vs[i];
             work.memory[i] = (auxiliary - new) / h;
         }
-        Ok(Step { iterations, stage, work: Work::AtEnds, estimate: None })
+        Ok(Step { stage, work: Work::AtEnds, estimate: None })
     }
 }
 
@@ -77,14 +77,12 @@ impl Integrator for GeneralizedAlpha {
 
     fn step(&mut self, system: &System, start: f64, h: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
         let n = system.coordinates();
-        let mut iterations = 0;
         if work.memory[2 * n] == 0.0 {
             // Without (a_0 − v̇_0)/h = (α_m − α_f) d v̇/dt the multipliers begin with an error of first order: a trial step
             // shows the derivative.
             work.memory.fill(0.0);
             work.error_q.copy_from_slice(&work.a1[..n]);
-            let trial = self.attempt(system, start, h, settings, work)?;
-            iterations = trial.iterations;
+            self.attempt(system, start, h, settings, work)?;
             for i in 0..n {
                 work.memory[i] = (self.alpha_m - self.alpha_f) * (work.a1[i] - work.error_q[i]) / h;
                 work.a1[i] = work.error_q[i];
@@ -93,6 +91,6 @@ impl Integrator for GeneralizedAlpha {
         }
         let step = self.attempt(system, start, h, settings, work)?;
         work.settle(system, &step.stage);
-        Ok(Step { iterations: iterations + step.iterations, ..step })
+        Ok(step)
     }
 }

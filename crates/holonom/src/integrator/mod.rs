@@ -27,7 +27,7 @@ pub trait Integrator: Send {
         0
     }
 
-    /// Takes one step; says how many iterations it took and where the work done in it is booked from. An estimate of the
+    /// Takes one step; says where the work done in it is booked from. An estimate of the
     /// local errors, where the table promises one, is left in the workspace.
     fn step(&mut self, system: &System, start: f64, step: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure>;
 
@@ -49,7 +49,6 @@ pub trait Integrator: Send {
 /// What a step cost, and where its forces were taken.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    pub iterations: usize,
     pub stage: Stage,
     pub work: Work,
     /// Where the workspace has an estimate of the local errors: the order in use, and that of the estimate.

@@ -25,10 +25,10 @@ impl Integrator for Rattle {
         system.place_known(start, xs, vs, a1);
         let Workspace { x1, v1, full, .. } = work;
         system.place_known(stage.end(), x1, v1, full);
-        let iterations = solve(system, &stage, settings, work)?;
+        solve(system, &stage, settings, work)?;
         work.place(&stage);
         kick(system, &stage, work)?;
-        Ok(Step { iterations, stage: Stage { sampling: Sampling::End, ..stage }, work: Work::AtEnds, estimate: None })
+        Ok(Step { stage: Stage { sampling: Sampling::End, ..stage }, work: Work::AtEnds, estimate: None })
     }
 }
 

@@ -22,7 +22,7 @@ impl WithSimd for Factor<'_> {
         if let Some(blocks) = self.plan.one_front() {
             return with_blocks(self, simd, blocks);
         }
-        let (plan, Numbers { stale, exchange, exchanged, rows, .. }) = (self.plan, self.numbers);
+        let (plan, Numbers { stale, exchange, exchanged, rows, units, own_units, .. }) = (self.plan, self.numbers);
         for (k, (front, exchanged)) in plan.fronts.iter().zip(exchanged).enumerate() {
             if !std::mem::take(&mut stale[k]) {
                 continue;
@@ -42,7 +42,9 @@ impl WithSimd for Factor<'_> {
                 take_over(child, &done[child.tile..], &plan.in_parent[child.range()], front.size, own.as_flattened_mut());
             }
             let exchange = &mut exchange[front.block * LANES..front.block * LANES + front.pivots];
-            *exchanged = eliminate(simd, front, own, exchange, rows)
+            let own_units = &mut own_units[..front.head];
+            own_units.copy_from_slice(&units[front.block..front.block + front.head]);
+            *exchanged = eliminate(simd, front, own, exchange, rows, own_units)
                 .map_err(|pivot| Singular { pivot: plan.row[front.block * LANES + pivot] as usize })?;
         }
         Ok(())
@@ -54,8 +56,9 @@ impl OneFront for Factor<'_> {
     #[inline(always)]
     fn one<S: Simd, const B: usize>(self, simd: S) -> Self::Output {
         let front = Front { head: B, size: B, ..self.plan.fronts[0] };
-        let (Numbers { exchange, exchanged, rows, .. }, tiles) = (self.numbers, &mut self.tiles[..B * B]);
-        exchanged[0] = eliminate(simd, &front, tiles, &mut exchange[..front.pivots], rows)
+        let (Numbers { exchange, exchanged, rows, units, .. }, tiles) = (self.numbers, &mut self.tiles[..B * B]);
+        let mut own_units: [Block; B] = std::array::from_fn(|k| units[k]);
+        exchanged[0] = eliminate(simd, &front, tiles, &mut exchange[..front.pivots], rows, &mut own_units)
             .map_err(|pivot| Singular { pivot: self.plan.row[pivot] as usize })?;
         let inverse: [Tile; B] = std::array::from_fn(|k| lower(&tiles[k * (B + 1)]));
         for k in 0..B {
@@ -71,12 +74,19 @@ impl OneFront for Factor<'_> {
     }
 }
 
-/// A pivot this far below the largest number under it is exchanged.
+/// A pivot this far below the largest number under it, each in the unit of its row, is exchanged.
 const SMALL: f64 = 1e-3;
 
 /// Eliminates the pivots of a front, a block at a time; whether rows changed places, or the pivot that cannot be one.
 #[inline(always)]
-fn eliminate<S: Simd>(simd: S, front: &Front, tiles: &mut [Tile], exchange: &mut [u32], rows: &mut [Block]) -> Result<bool, usize> {
+fn eliminate<S: Simd>(
+    simd: S,
+    front: &Front,
+    tiles: &mut [Tile],
+    exchange: &mut [u32],
+    rows: &mut [Block],
+    units: &mut [Block],
+) -> Result<bool, usize> {
     let size = front.size;
     for k in front.pivots..front.head * LANES {
         tiles[k / LANES * (size + 1)][k % LANES * (LANES + 1)] = 1.0;
@@ -84,16 +94,16 @@ fn eliminate<S: Simd>(simd: S, front: &Front, tiles: &mut [Tile], exchange: &mut
     let mut exchanged = false;
     for block in 0..front.head {
         let pivots = block * (size + 1)..block * size + front.head;
-        let factors = match in_order(simd, &tiles[pivots.clone()], 1.0 / SMALL) {
+        let factors = match in_order(simd, &tiles[pivots.clone()], &units[block..], 1.0 / SMALL) {
             Some(factors) => factors,
             None => {
                 if !exchanged {
                     exchange.iter_mut().enumerate().for_each(|(k, row)| *row = k as u32);
                 }
                 exchanged = true;
-                exchange_rows(block, front, tiles, exchange, rows)?;
+                exchange_rows(block, front, tiles, exchange, rows, units)?;
                 // Round-off may put what was exchanged a little above.
-                in_order(simd, &tiles[pivots], 2.0 / SMALL).ok_or(block * LANES)?
+                in_order(simd, &tiles[pivots], &units[block..], 2.0 / SMALL).ok_or(block * LANES)?
             }
         };
         let inverse = factors.lower_inverse();
@@ -115,26 +125,42 @@ fn eliminate<S: Simd>(simd: S, front: &Front, tiles: &mut [Tile], exchange: &mut
 }
 
 /// The factors of the first of a column of tiles, where in the order as it is all pivots are fit: nothing in L is larger than
-/// `most`.
+/// `most`, where each row has its unit.
 #[inline(always)]
-fn in_order<S: Simd>(simd: S, panel: &[Tile], most: f64) -> Option<Factors> {
-    let (diagonal, below) = panel.split_first()?;
-    let factors = Factors::of(simd, diagonal);
-    let mut largest = factors.largest()?;
-    for tile in below {
-        factors.over_upper(simd, tile).iter().for_each(|column| raise(&mut largest, column));
-    }
+fn in_order<S: Simd>(simd: S, panel: &[Tile], units: &[Block], most: f64) -> Option<Factors> {
+    let ((diagonal, below), (own, others)) = (panel.split_first()?, units.split_first()?);
+    let per_unit = own.map(|unit| 1.0 / unit);
+    let factors = Factors::of(simd, diagonal, &per_unit);
     // Neither infinite numbers nor what is no number pass.
-    largest.iter().all(|&l| l <= most).then_some(factors)
+    let fits = |largest: &Block, units: &Block| largest.iter().zip(units).all(|(l, unit)| l * unit <= most);
+    if !fits(&factors.largest()?, own) {
+        return None;
+    }
+    for (tile, units) in below.iter().zip(others) {
+        let mut largest = [0.0; LANES];
+        let columns = factors.over_upper(simd, tile);
+        columns.iter().zip(per_unit).for_each(|(column, unit)| raise(&mut largest, column, unit));
+        if !fits(&largest, units) {
+            return None;
+        }
+    }
+    Some(factors)
 }
 
 /// Exchanges the row of each pivot of a block that is far smaller than the largest number below it among the pivots for the
 /// row of that; the pivot that cannot be one.
 #[inline(never)]
-fn exchange_rows(block: usize, front: &Front, tiles: &mut [Tile], exchange: &mut [u32], rows: &mut [Block]) -> Result<(), usize> {
+fn exchange_rows(
+    block: usize,
+    front: &Front,
+    tiles: &mut [Tile],
+    exchange: &mut [u32],
+    rows: &mut [Block],
+    units: &mut [Block],
+) -> Result<(), usize> {
     let first = block * LANES;
     let place = |row: usize, column: usize| (column / LANES * front.size + row / LANES, column % LANES * LANES + row % LANES);
-    let rows = &mut rows[..front.pivots - first];
+    let (rows, units) = (&mut rows[..front.pivots - first], &mut units.as_flattened_mut()[first..]);
     for (row, numbers) in rows.iter_mut().enumerate() {
         *numbers = std::array::from_fn(|k| {
             let (tile, at) = place(first + row, first + k);
@@ -143,14 +169,15 @@ fn exchange_rows(block: usize, front: &Front, tiles: &mut [Tile], exchange: &mut
     }
     for k in 0..rows.len().min(LANES) {
         let (largest, size) = (k..rows.len()).fold((k, 0.0), |(m, size), row| {
-            let other = rows[row][k].abs();
+            let other = (units[row] * rows[row][k]).abs();
             if other > size { (row, other) } else { (m, size) }
         });
         if !size.is_normal() {
             return Err(first + k);
         }
-        if rows[k][k].abs() < SMALL * size {
+        if (units[k] * rows[k][k]).abs() < SMALL * size {
             rows.swap(k, largest);
+            units.swap(k, largest);
             exchange[first + k] = (first + largest) as u32;
             for column in 0..front.size * LANES {
                 let (from, to) = (place(first + k, column), place(first + largest, column));

@@ -55,6 +55,11 @@ impl Solver {
         self.lu.values_mut()
     }
 
+    /// Sets what the rows are multiplied by when numbers of different ones are compared, as these may have different units.
+    pub fn set_units(&mut self, units: &[f64]) {
+        self.lu.set_units(units);
+    }
+
     /// Factors the matrix in place.
     pub fn factor(&mut self) -> Result<(), Singular> {
         self.lu.factor()

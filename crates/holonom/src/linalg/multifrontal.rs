@@ -37,6 +37,9 @@ pub(super) struct Numbers {
     pub(super) local: Vec<Block>,
     /// Rows of a block of pivots and of the pivots below them.
     pub(super) rows: Vec<Block>,
+    /// What the rows of all fronts are multiplied by when their numbers are compared; those of one front, exchanged with them.
+    pub(super) units: Vec<Block>,
+    pub(super) own_units: Vec<Block>,
 }
 
 impl Multifrontal {
@@ -51,6 +54,8 @@ impl Multifrontal {
             y: vec![[0.0; LANES]; blocks],
             local: vec![[0.0; LANES]; most],
             rows: vec![[0.0; LANES]; pivots],
+            units: vec![[1.0; LANES]; blocks],
+            own_units: vec![[1.0; LANES]; pivots.div_ceil(LANES)],
         };
         let values = if plan.one_front().is_some() { Vec::new() } else { vec![0.0; plan.entries.len()] };
         Self { tiles: vec![[0.0; TILE]; plan.tiles], values, plan, numbers, arch: Arch::new() }
@@ -68,6 +73,13 @@ impl Multifrontal {
 
     pub(super) fn values_mut(&mut self) -> &mut [f64] {
         if self.plan.one_front().is_some() { self.tiles.as_flattened_mut() } else { &mut self.values }
+    }
+
+    /// Sets what the rows are multiplied by when numbers of different ones are compared.
+    pub(super) fn set_units(&mut self, units: &[f64]) {
+        for (&place, &unit) in self.plan.place.iter().zip(units) {
+            self.numbers.units.as_flattened_mut()[place as usize] = unit;
+        }
     }
 
     pub(super) fn factor(&mut self) -> Result<(), Singular> {

@@ -24,32 +24,32 @@ pub(super) struct Factors {
     lower: [Block; LANES],
     /// 1 over the pivots.
     reciprocal: Block,
-    /// Largest number of L in each row.
+    /// Largest number of L in each row, over the units of the pivots' rows.
     largest: Block,
 }
 
 impl Factors {
     #[inline(always)]
-    pub(super) fn of<S: Simd>(simd: S, tile: &Tile) -> Self {
+    pub(super) fn of<S: Simd>(simd: S, tile: &Tile, units: &Block) -> Self {
         let mut factors = Self {
             upper: std::array::from_fn(|k| *column(tile, k)),
             lower: std::array::from_fn(unit),
             reciprocal: [0.0; LANES],
             largest: [0.0; LANES],
         };
-        factors.eliminate::<S, 0>(simd);
-        factors.eliminate::<S, 1>(simd);
-        factors.eliminate::<S, 2>(simd);
-        factors.eliminate::<S, 3>(simd);
+        factors.eliminate::<S, 0>(simd, units);
+        factors.eliminate::<S, 1>(simd, units);
+        factors.eliminate::<S, 2>(simd, units);
+        factors.eliminate::<S, 3>(simd, units);
         factors
     }
 
     /// Takes pivot K out of the columns after it, and out of those of the inverse of L.
     #[inline(always)]
-    fn eliminate<S: Simd, const K: usize>(&mut self, simd: S) {
+    fn eliminate<S: Simd, const K: usize>(&mut self, simd: S, units: &Block) {
         self.reciprocal[K] = 1.0 / self.upper[K][K];
         let l = std::array::from_fn(|row| if row > K { self.upper[K][row] * self.reciprocal[K] } else { 0.0 });
-        raise(&mut self.largest, &l);
+        raise(&mut self.largest, &l, units[K]);
         for upper in &mut self.upper[K + 1..] {
             *upper = plus(simd, upper, -upper[K], &l);
         }
@@ -107,10 +107,13 @@ fn unit(k: usize) -> Block {
     std::array::from_fn(|row| if row == k { 1.0 } else { 0.0 })
 }
 
-/// Raises each of some numbers to the size of another, and to what is no number.
+/// Raises each of some numbers to the size of another times `unit`, and to what is no number.
 #[inline(always)]
-pub(super) fn raise(largest: &mut Block, x: &Block) {
-    *largest = std::array::from_fn(|k| if x[k].abs() <= largest[k] { largest[k] } else { x[k].abs() });
+pub(super) fn raise(largest: &mut Block, x: &Block, unit: f64) {
+    *largest = std::array::from_fn(|k| {
+        let size = (unit * x[k]).abs();
+        if size <= largest[k] { largest[k] } else { size }
+    });
 }
 
 /// target + factor x

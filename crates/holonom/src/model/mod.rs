@@ -233,9 +233,12 @@ fn make_bodies(assembly: &mut Assembly<'_>, root: &Entry<'_>, parameters: &HashM
         shared: &survey.shared,
         merged: &survey.merged,
         needed: &survey.needed,
-        length: survey.length(&assembly.bodies),
+        extent: survey.length(&assembly.bodies),
+        length: survey.body_size(&assembly.bodies),
         points: &|k| places[k],
     };
+    let size = if wanted.bodies.is_empty() { 0.0 } else { wanted.extent };
+    assembly.builder.set_size(size);
     assembly.frames = bodies::nodes::make(&mut assembly.builder, &wanted);
 }
 

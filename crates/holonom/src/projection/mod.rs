@@ -1,6 +1,6 @@
 //! Coordinate projections of velocity and acceleration (10)–(13): the nearest ones that satisfy the rows, in a metric A.
 
-use crate::formulation::{Block, RowsAt, Sampling, Stage, Workspace};
+use crate::formulation::{Block, Failure, RowsAt, Sampling, Stage, Workspace};
 use crate::linalg::largest;
 use crate::system::System;
 
@@ -66,10 +66,10 @@ enum Level {
 
 impl Projection {
     /// Projects the velocities `v1` and the accelerations `a1` of a workspace at its end position. Where the rows are
-    /// evaluated is `at_end`. False when the matrix cannot be factored.
-    pub fn apply(&self, system: &System, time: f64, step: f64, work: &mut Workspace) -> bool {
+    /// evaluated is `at_end`.
+    pub fn apply(&self, system: &System, time: f64, step: f64, work: &mut Workspace) -> Result<(), Failure> {
         if !(self.velocity || self.acceleration) {
-            return true;
+            return Ok(());
         }
         let scale = self.assemble(system, time, step, work);
         match self.solve {
@@ -81,16 +81,15 @@ impl Projection {
         }
         work.kkt.regularise(0, &work.delta);
         work.factorizations += 1;
-        if work.kkt.factor().is_err() {
-            return false;
-        }
+        work.kkt.factor()?;
         if self.velocity {
             self.project(system, time, Level::Velocity, work);
         }
         if self.acceleration {
             self.project(system, time, Level::Acceleration, work);
         }
-        work.v1.iter().chain(&work.a1).all(|value| value.is_finite())
+        let is_finite = work.v1.iter().chain(&work.a1).all(|value| value.is_finite());
+        if is_finite { Ok(()) } else { Err(Failure::NotFinite) }
     }
 
     /// Writes [A Gᵀ; G 0]; says how much softer than M the metric lets the rows be.
@@ -102,11 +101,11 @@ impl Projection {
             Metric::Mass => work.kkt.start_with_mass(1.0),
             Metric::Identity => {
                 work.kkt.start_with_weights(std::iter::repeat(&1.0));
-                scale = work.heaviest;
+                scale = work.scales.heaviest;
             }
             Metric::Custom(weights) => {
                 work.kkt.start_with_weights(weights);
-                scale = work.heaviest / weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+                scale = work.scales.heaviest / weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
             }
             Metric::Tangent => {
                 work.kkt.start_with_mass(1.0);
@@ -144,7 +143,7 @@ impl Projection {
             for (unknown, row) in work.unknowns[n..].iter_mut().zip(&work.rows) {
                 *unknown = -row;
             }
-            work.kkt.solver.solve(&mut work.unknowns);
+            work.kkt.solve(&mut work.unknowns);
             let values = if level == Level::Velocity { &mut work.v1 } else { &mut work.a1 };
             for i in 0..n {
                 values[i] += work.unknowns[i];
@@ -165,7 +164,7 @@ impl Projection {
             Level::Velocity => work.rate_violation(system, time),
             Level::Acceleration => work.acceleration_violation(system, time),
         }
-        let scaled = work.rows.iter().zip(&work.row_scale).map(|(row, scale)| row.abs() / scale);
+        let scaled = work.rows.iter().zip(&work.scales.gradient).map(|(row, scale)| row.abs() / scale);
         scaled.fold(0.0, f64::max)
     }
 }

@@ -79,7 +79,7 @@ impl Simulation<'_> {
         let Some(mut pilot) = self.pilot.take() else { return };
         pilot.end = end;
         pilot.v.copy_from_slice(&self.shown_v);
-        pilot.control.begin(&self.state, &pilot.v, end - self.state.t, self.work.length);
+        pilot.control.begin(&self.state, &pilot.v, end - self.state.t, self.work.scales.length);
         pilot.front.keep(self);
         self.work.allowed = pilot.control.allowed();
         self.pilot = Some(pilot);
@@ -129,7 +129,7 @@ impl Simulation<'_> {
             Work::Sum(done) => Work::Sum(share * done),
             other => other,
         };
-        self.finish(Step { iterations: 0, work, ..taken }, share * length, target).map(|_| ())
+        self.finish(Step { work, ..taken }, share * length, target).map(|_| ())
     }
 
     /// One attempt at a step; a step whose error is too large, or that fails, is taken back and the next one shorter.
@@ -153,7 +153,7 @@ impl Simulation<'_> {
             return Ok(());
         }
         pilot.before.restore(self);
-        self.audit.reject();
+        self.audit.reject(&self.work);
         pilot.control.reject(step, ratio);
         Ok(())
     }
@@ -166,9 +166,7 @@ impl Simulation<'_> {
         // The end of the step is the start of the next already.
         let work = &mut self.work;
         work.at_end.copy_from(&work.at_start);
-        if !projection.apply(self.system, self.state.t, step, work) {
-            return Err(Failure::NotFinite);
-        }
+        projection.apply(self.system, self.state.t, step, work)?;
         pilot.v.copy_from_slice(&work.v1);
         Ok(())
     }

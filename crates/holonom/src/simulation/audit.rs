@@ -138,17 +138,19 @@ impl Audit {
         own.acceleration = own.acceleration.max(other.acceleration);
     }
 
-    pub(super) fn reject(&mut self) {
+    /// Books a step that was taken back, and the iterations that it took.
+    pub(super) fn reject(&mut self, work: &Workspace) {
         self.rejected += 1;
+        (self.total_iterations, self.factorizations) = (work.iterations, work.factorizations);
     }
 
     /// Books what the integrator did: ΔE_i is the change of energy that no work accounts for (21).
-    pub(super) fn integrated(&mut self, system: &System, taken: &Step, state: &State, work: &mut Workspace) -> Accounts {
-        self.total_iterations += taken.iterations as u64;
+    pub(super) fn integrated(&mut self, system: &System, taken: &Step, t: f64, work: &mut Workspace) -> Accounts {
+        self.total_iterations = work.iterations;
         self.taken += 1;
         let done = match taken.work {
             Work::AtEnds => {
-                let power = energy::power(system, state.t, &work.v1, &work.a1, work);
+                let power = energy::power(system, t, &work.v1, &work.a1, work);
                 let done = 0.5 * taken.stage.step * (self.power + power);
                 self.power = power;
                 done
@@ -156,10 +158,10 @@ impl Audit {
             Work::Between(extra) => energy::work_between(system, &taken.stage, work) + extra,
             Work::Sum(done) => done,
         };
-        system.constraint_values(&work.at_end, state.t, &mut work.phi);
+        system.constraint_values(&work.at_end, t, &mut work.phi);
         self.phi = norm(&work.phi);
         let penalty = self.penalty.map(|alpha| (alpha, work.phi.as_slice()));
-        let potential = energy::potential(system, &work.weight, &state.x, &work.at_end, penalty);
+        let potential = energy::potential(system, &work.weight, &work.x1, &work.at_end, penalty);
         let kinetic = energy::kinetic(system, &work.v1);
         let change = (kinetic - self.kinetic) + (potential - self.potential);
         self.integrator_total += change - done;
@@ -200,6 +202,10 @@ impl Audit {
         }
         work.rate_violation(system, target);
         self.phi_dot = norm(&work.rows);
+    }
+
+    /// Books the violation of projected accelerations, and what the step took.
+    pub(super) fn closed(&mut self, system: &System, method: &Method, target: f64, work: &mut Workspace) {
         if method.projection.acceleration {
             work.acceleration_violation(system, target);
             self.phi_ddot = norm(&work.rows);

@@ -101,9 +101,9 @@ impl Control {
             self.look_back(h, t, v, work);
         }
         let error = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::INFINITY } else { m.max(x.abs()) });
-        let position = error(&work.error_q) / work.length;
+        let position = error(&work.error_q) / work.scales.length;
         let velocity = error(&work.error_v) / self.speed;
-        let is_noise = position <= ROUND_OFF && velocity <= ROUND_OFF * (work.length / (h * self.speed)).max(1.0);
+        let is_noise = position <= ROUND_OFF && velocity <= ROUND_OFF * (work.scales.length / (h * self.speed)).max(1.0);
         // The estimate of a lower order shows how many times shorter than the motion's own time the step is; the error is
         // that to a higher power.
         let order = order.min(self.order);

@@ -61,7 +61,6 @@ pub struct Named {
     pub integrator: &'static str,
     pub levels: &'static [&'static str],
     pub doc: &'static str,
-    pub keeps: &'static str,
 }
 
 /// The methods people choose by name; the first is the default.
@@ -72,7 +71,6 @@ pub const NAMED: &[Named] = &[
         integrator: "conserving-ggl",
         levels: &[],
         doc: "long runs, everything exact (default)",
-        keeps: "energy, momentum, Φ, Φ̇",
     },
     Named {
         name: "conserving",
@@ -80,7 +78,6 @@ pub const NAMED: &[Named] = &[
         integrator: "conserving",
         levels: &[],
         doc: "the paper's conserving scheme (17)–(18)",
-        keeps: "energy, momentum, Φ",
     },
     Named {
         name: "conserving-projected",
@@ -88,7 +85,6 @@ pub const NAMED: &[Named] = &[
         integrator: "conserving",
         levels: &["velocity"],
         doc: "the same with velocity projection, A = M: energy never rises (§7.4)",
-        keeps: "momentum, Φ, Φ̇",
     },
     Named {
         name: "trapezoidal-projected",
@@ -96,7 +92,6 @@ pub const NAMED: &[Named] = &[
         integrator: "trapezoidal",
         levels: &["velocity", "acceleration"],
         doc: "real time: (7) with trapezoidal rule and projections, A = M",
-        keeps: "Φ, Φ̇, Φ̈",
     },
     Named {
         name: "trapezoidal",
@@ -104,7 +99,6 @@ pub const NAMED: &[Named] = &[
         integrator: "trapezoidal",
         levels: &[],
         doc: "(7) alone: the paper's unstable case, for comparison",
-        keeps: "Φ",
     },
     Named {
         name: "generalized-alpha",
@@ -112,7 +106,6 @@ pub const NAMED: &[Named] = &[
         integrator: "generalized-alpha",
         levels: &[],
         doc: "stiff, damped mechanisms: Arnold and Brüls with ρ∞ = 0.8",
-        keeps: "Φ",
     },
     Named {
         name: "radau",
@@ -120,7 +113,6 @@ pub const NAMED: &[Named] = &[
         integrator: "radau",
         levels: &[],
         doc: "reference solutions: Radau IIA of order 5 on the GGL form",
-        keeps: "Φ, Φ̇",
     },
 ];
 

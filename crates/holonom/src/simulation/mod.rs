@@ -4,6 +4,7 @@ mod adapt;
 mod audit;
 mod control;
 mod method;
+mod promise;
 mod reactions;
 mod start;
 mod state;
@@ -14,16 +15,18 @@ pub use audit::Audit;
 pub use method::{
     Choice, LEVELS, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, OMEGA, PENALTY, ProjectionChoice, TOLERANCE, XI, combinations,
 };
+pub use promise::Promise;
 pub use reactions::Reactions;
 pub(crate) use reactions::wrench;
 pub use start::{Start, StartError};
 pub use state::State;
 pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, ProjectionSummary, Summary, ViolationSummary, WorkSummary};
 
-use crate::formulation::{Failure, Iteration, Workspace};
+use crate::formulation::{Failure, Iteration, SolveSettings, Workspace};
 use crate::integrator::{Integrator, Step};
 use crate::system::{GaugeValues, System};
 use adapt::Pilot;
+use promise::Judge;
 
 /// Why words do not make a method.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -81,7 +84,11 @@ pub struct Simulation<'a> {
     /// Velocities and accelerations to show: those of the state, or their projections.
     shown_v: Vec<f64>,
     shown_a: Vec<f64>,
+    /// Velocities and accelerations that the last step found, before projections.
+    found_v: Vec<f64>,
+    found_a: Vec<f64>,
     audit: Audit,
+    judge: Judge,
     start: Start,
     step: f64,
     steps: u64,
@@ -136,6 +143,9 @@ impl<'a> Simulation<'a> {
             integrator,
             shown_v: state.v.clone(),
             shown_a: state.a.clone(),
+            found_v: state.v.clone(),
+            found_a: state.a.clone(),
+            judge: Judge::new(system, &method, &work),
             system,
             method,
             work,
@@ -208,46 +218,72 @@ impl<'a> Simulation<'a> {
                 Err(failure) if !self.method.subdivide || step <= smallest => return Err(failure),
                 Err(_) => {
                     part = 0.5 * step;
-                    self.audit.reject();
+                    self.audit.reject(&self.work);
                 }
             }
         }
         Ok(())
     }
 
-    /// One step of the method: integrate, audit, project.
+    /// One step of the method. Where its result breaks a promise it is iterated until nothing but round-off is left.
     fn substep(&mut self, step: f64, target: f64) -> Result<Step, Failure> {
+        let settings = self.method.settings;
+        match self.try_step(step, target, &settings) {
+            Err(Failure::Broken { .. }) => self.try_step(step, target, &SolveSettings { tolerance: 0.0, ..settings }),
+            outcome => outcome,
+        }
+    }
+
+    /// Integrates and finishes a step with these settings.
+    fn try_step(&mut self, step: f64, target: f64, settings: &SolveSettings) -> Result<Step, Failure> {
         let (system, work) = (self.system, &mut self.work);
         self.state.load(work);
         system.constraint_values(&work.at_start, self.state.t, &mut work.phi_start);
-        let taken = self.integrator.step(system, self.state.t, step, &self.method.settings, work)?;
+        let taken = self.integrator.step(system, self.state.t, step, settings, work)?;
         self.finish(taken, step, target)
     }
 
-    /// Takes over what the integrator left in the workspace: audits and projects it.
+    /// Audits, projects and judges what the integrator left in the workspace; it becomes the present state only then.
     fn finish(&mut self, taken: Step, step: f64, target: f64) -> Result<Step, Failure> {
-        let (system, work) = (self.system, &mut self.work);
+        let (system, work, method) = (self.system, &mut self.work, &self.method);
+        for i in 0..system.coordinates() {
+            work.x1[i] = work.x0[i] + work.d[i];
+        }
+        system.evaluate(&work.x1, target, &work.at_start, &mut work.at_end);
+        let mut audit = self.audit.clone();
+        let accounts = audit.integrated(system, &taken, target, work);
+        self.judge.positions(system, work)?;
+        audit.violate_acceleration(system, method, &taken, target, work);
+        self.found_v.copy_from_slice(&work.v1);
+        self.found_a.copy_from_slice(&work.a1);
+        method.projection.apply(system, target, step, work)?;
+        audit.projected(system, method, &self.found_v, accounts, target, work);
+        self.judge.velocities(system, step, work)?;
+        audit.closed(system, method, target, work);
+        self.judge.accelerations(step, work)?;
+        self.judge.energy(system, step, &self.audit, &audit, work)?;
+        self.commit(audit, step, target);
+        Ok(taken)
+    }
+
+    /// Makes the end of a step in the workspace the present state.
+    fn commit(&mut self, audit: Audit, step: f64, target: f64) {
+        let work = &mut self.work;
+        self.audit = audit;
         // The paper's loops start from the paper's prediction.
         if self.method.settings.iteration == Iteration::Newton {
-            self.state.remember(step, work);
+            self.state.remember(step, &self.found_a, work);
         }
-        self.state.land(system, target, work);
-        let accounts = self.audit.integrated(system, &taken, &self.state, work);
-        self.audit.violate_acceleration(system, &self.method, &taken, target, work);
-        self.state.v.copy_from_slice(&work.v1);
-        if !self.method.projection.apply(system, target, step, work) {
-            return Err(Failure::NotFinite);
-        }
-        self.audit.projected(system, &self.method, &self.state.v, accounts, target, work);
+        self.state.land(target, &self.found_a, work);
         self.shown_v.copy_from_slice(&work.v1);
         self.shown_a.copy_from_slice(&work.a1);
-        if !self.method.projection.shadow {
-            self.state.v.copy_from_slice(&work.v1);
+        let goes_on = !self.method.projection.shadow;
+        self.state.v.copy_from_slice(if goes_on { &work.v1 } else { &self.found_v });
+        if goes_on {
             self.state.a.copy_from_slice(&work.a1);
         }
         std::mem::swap(&mut work.at_start, &mut work.at_end);
-        system.measure(&self.state.x, &self.shown_v, &mut self.gauges);
-        Ok(taken)
+        self.system.measure(&self.state.x, &self.shown_v, &mut self.gauges);
     }
 
     fn reason(&mut self, failure: Failure) -> String {
@@ -255,7 +291,7 @@ impl<'a> Simulation<'a> {
         // A row at round-off is not to blame.
         let worst = worst.filter(|(_, phi)| phi.is_nan() || phi.abs() >= 1e-9);
         let row = worst.map_or(String::new(), |(k, phi)| format!("; the worst row is `{}` with {phi:.1e}", self.system.row_names[k]));
-        format!("{failure} at t = {:.6} s{row}", self.state.t)
+        format!("{} at t = {:.6} s{row}", failure.describe(self.system), self.state.t)
     }
 
     /// The system that is simulated.

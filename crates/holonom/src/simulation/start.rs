@@ -65,10 +65,10 @@ fn correct_positions(system: &System, work: &mut Workspace, start: &mut Start) -
         }
         work.unknowns[..n].fill(0.0);
         work.unknowns[n..].iter_mut().zip(&work.phi).for_each(|(unknown, phi)| *unknown = -phi);
-        work.kkt.solver.solve(&mut work.unknowns);
+        work.kkt.solve(&mut work.unknowns);
         work.x1[..n].iter_mut().zip(&work.unknowns).for_each(|(x, step)| *x += step);
         start.moved = work.x1.iter().zip(&system.start_position).fold(0.0, |m, (x, x0)| f64::max(m, (x - x0).abs()));
-        if start.moved.is_nan() || start.moved > LARGEST_MOVE * work.length {
+        if start.moved.is_nan() || start.moved > LARGEST_MOVE * work.scales.length {
             system.evaluate_again(&system.start_position, 0.0, &mut work.at_end);
             system.constraint_values(&work.at_end, 0.0, &mut work.phi);
             return Err(StartError::Position { rows: worst(system, &work.phi) });
@@ -90,17 +90,17 @@ fn correct_velocities(system: &System, work: &mut Workspace, start: &mut Start) 
     for _ in 0..4 {
         work.rate_violation(system, 0.0);
         let size = largest(&work.v1);
-        violation = work.rows.iter().zip(&work.row_scale).fold(0.0, |m, (row, scale)| f64::max(m, row.abs() / scale));
+        violation = work.rows.iter().zip(&work.scales.gradient).fold(0.0, |m, (row, scale)| f64::max(m, row.abs() / scale));
         if violation <= ROUND_OFF * size {
             break;
         }
         work.unknowns[..n].fill(0.0);
         work.unknowns[n..].iter_mut().zip(&work.rows).for_each(|(unknown, rate)| *unknown = -rate);
-        work.kkt.solver.solve(&mut work.unknowns);
+        work.kkt.solve(&mut work.unknowns);
         work.v1[..n].iter_mut().zip(&work.unknowns).for_each(|(v, step)| *v += step);
     }
     start.turned = work.v1.iter().zip(&system.start_velocity).fold(0.0, |m, (v, v0)| f64::max(m, (v - v0).abs()));
-    let size = largest(&work.v1).max(work.length);
+    let size = largest(&work.v1).max(work.scales.length);
     match violation <= MET * size {
         true => Ok(()),
         false => Err(StartError::Velocity { rows: worst(system, &work.rows) }),

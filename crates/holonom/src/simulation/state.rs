@@ -89,27 +89,22 @@ impl State {
         work.at_start.functions.angle.copy_from_slice(&self.angle);
     }
 
-    /// Remembers how accelerations and multipliers changed in a step, for the prediction of the next.
-    pub(super) fn remember(&mut self, step: f64, work: &Workspace) {
+    /// Remembers how accelerations, `a` at the end, and multipliers changed in a step, for the prediction of the next.
+    pub(super) fn remember(&mut self, step: f64, a: &[f64], work: &Workspace) {
         let follows = is_same_length(step, self.last_step);
-        extrapolate(&mut self.a_differences, &mut self.a_change, follows, |k| work.a1[k] - self.a[k]);
+        extrapolate(&mut self.a_differences, &mut self.a_change, follows, |k| a[k] - self.a[k]);
         for ((change, new), old) in self.lambda_change.iter_mut().zip(&work.lambda).zip(&self.lambda) {
             *change = if follows { new - old } else { 0.0 };
         }
         self.last_step = step;
     }
 
-    /// Takes over the end of a step: its position, evaluated there, its acceleration and multipliers.
-    pub(super) fn land(&mut self, system: &System, target: f64, work: &mut Workspace) {
-        let n = system.coordinates();
-        for i in 0..n {
-            work.x1[i] = work.x0[i] + work.d[i];
-        }
-        system.evaluate(&work.x1, target, &work.at_start, &mut work.at_end);
+    /// Takes over the end of a step: its position, evaluated there, its acceleration `a` and multipliers.
+    pub(super) fn land(&mut self, target: f64, a: &[f64], work: &Workspace) {
         self.angle.copy_from_slice(&work.at_end.functions.angle);
         self.t = target;
         self.x.copy_from_slice(&work.x1);
-        self.a.copy_from_slice(&work.a1);
+        self.a.copy_from_slice(a);
         self.lambda.copy_from_slice(&work.lambda);
         self.memory.copy_from_slice(&work.memory);
     }

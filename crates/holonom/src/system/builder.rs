@@ -67,6 +67,7 @@ pub struct SystemBuilder {
     directions: Vec<u32>,
     position: Vec<f64>,
     velocity: Vec<f64>,
+    size: f64,
 }
 
 impl SystemBuilder {
@@ -91,7 +92,13 @@ impl SystemBuilder {
             directions: Vec::new(),
             position: Vec::new(),
             velocity: Vec::new(),
+            size: 0.0,
         }
+    }
+
+    /// Sets the size of the mechanism (m) where its nodes may not show it, as those of a single body at the origin.
+    pub fn set_size(&mut self, size: f64) {
+        self.size = size;
     }
 
     /// Coordinates a node.
@@ -289,6 +296,7 @@ impl SystemBuilder {
             row_names,
             start_position: self.position,
             start_velocity: self.velocity,
+            size: self.size,
             plans: Arc::default(),
         }
     }

@@ -57,12 +57,9 @@ impl Mass {
         mass
     }
 
-    /// The same matrix with the mass `heaviest` (kg) on nodes that have none.
-    pub(crate) fn filled(&self, heaviest: f64) -> Self {
-        let entries = (0..self.nodes()).flat_map(|a| self.row(a).map(move |(b, block)| (a as u32, b as u32, block)));
-        let massless = (0..self.nodes()).filter(|&a| self.diagonal(a) == 0.0);
-        let filling = massless.map(|a| (a as u32, a as u32, MassBlock { m: heaviest, s: 0.0 }));
-        Self::new(self.nodes(), entries.chain(filling).collect())
+    /// The unit matrix.
+    pub(crate) fn ones(nodes: usize) -> Self {
+        Self::new(nodes, (0..nodes as u32).map(|a| (a, a, MassBlock { m: 1.0, s: 0.0 })).collect())
     }
 
     /// Number of nodes.
@@ -112,6 +109,17 @@ impl Mass {
                 sum[1] += m * x[b + 1] + s * x[b];
             }
             y.copy_from_slice(&sum);
+        }
+    }
+
+    /// The same with the sizes of all numbers: what y is a sum of.
+    pub fn times_sizes(&self, dim: usize, x: &[f64], y: &mut [f64]) {
+        for (a, y) in y.chunks_exact_mut(dim).enumerate() {
+            y.fill(0.0);
+            for (b, block) in self.row(a) {
+                let x = x[b * dim..(b + 1) * dim].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+                y.iter_mut().for_each(|y| *y += (block.m.abs() + block.s.abs()) * x);
+            }
         }
     }
 

@@ -120,6 +120,8 @@ pub struct System {
     pub(crate) row_names: Vec<String>,
     pub(crate) start_position: Vec<f64>,
     pub(crate) start_velocity: Vec<f64>,
+    /// Size of the mechanism as far as its nodes do not show it, m.
+    pub(crate) size: f64,
     /// Of the eliminations that methods do with this system.
     pub(crate) plans: Arc<Plans>,
 }
@@ -174,9 +176,12 @@ impl System {
     /// Whether anything does work on the system that its energy does not show: known motion, dissipation, loads, rows
     /// that depend on time.
     pub(crate) fn is_worked_on(&self) -> bool {
-        let dissipates = self.laws.iter().any(|law| !law.law.conservative());
-        let drives = self.rows.iter().any(|row| !row.is_constant());
-        dissipates || drives || !(self.motions.is_empty() && self.loads.is_empty() && self.custom.is_empty())
+        self.is_driven() || !self.loads.is_empty() || self.laws.iter().any(|law| !law.law.conservative())
+    }
+
+    /// Whether rows or nodes move as time has it.
+    pub(crate) fn is_driven(&self) -> bool {
+        self.rows.iter().any(|row| !row.is_constant()) || !(self.motions.is_empty() && self.custom.is_empty())
     }
 
     /// Names of the forces that do work beside the energy: dissipative laws, then loads.

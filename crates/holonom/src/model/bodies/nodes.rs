@@ -47,7 +47,9 @@ pub struct Wanted<'a> {
     pub merged: &'a [[usize; 2]],
     /// Directions that joints and forces need of a body, which a plate or a rod may lack.
     pub needed: &'a [(usize, Vec3)],
-    /// Length of the nodes that are directions, m: that of the mechanism, so that they weigh like its points.
+    /// Size of the mechanism, m: places are the same within round-off of it.
+    pub extent: f64,
+    /// Length of the nodes that are directions, m: that of a body, so that they weigh like its points.
     pub length: f64,
     /// Places of the points that may become nodes of bodies.
     pub points: &'a dyn Fn(usize) -> Option<Place>,
@@ -115,7 +117,7 @@ fn spread(wanted: &Wanted<'_>, groups: &[Vec<usize>], places: &mut [Option<Found
                 let Some((place, sense)) = places[known] else { continue };
                 for &(other, there) in of_group.iter().filter(|&&(other, _)| other != known) {
                     if places[other].is_none() && wanted.shared[known].is_point == wanted.shared[other].is_point {
-                        places[other] = alike(wanted.shared[known].is_point, at, there, wanted.length).map(|same| (place, sense * same));
+                        places[other] = alike(wanted.shared[known].is_point, at, there, wanted.extent).map(|same| (place, sense * same));
                         changed |= places[other].is_some();
                     }
                 }
@@ -133,9 +135,9 @@ fn of_bodies(wanted: &Wanted<'_>, members: &[usize]) -> Vec<(usize, Vec3)> {
 }
 
 /// Whether two points are the same (1), and whether two unit directions go the same way (1) or the opposite one (−1).
-fn alike(are_points: bool, a: Vec3, b: Vec3, length: f64) -> Option<f64> {
+fn alike(are_points: bool, a: Vec3, b: Vec3, extent: f64) -> Option<f64> {
     if are_points {
-        return (norm(subtract(a, b)) <= SAME * length).then_some(1.0);
+        return (norm(subtract(a, b)) <= SAME * extent).then_some(1.0);
     }
     let sense = dot(a, b).signum();
     (norm(subtract(a, scale(b, sense))) <= SAME).then_some(sense)

@@ -27,6 +27,8 @@ pub struct Survey {
     pub needed: Vec<(usize, Vec3)>,
     /// Where joints sit.
     pub sites: Vec<Vec3>,
+    /// Bodies, and how far from their centres joints sit, m.
+    pub arms: Vec<(usize, f64)>,
 }
 
 impl Survey {
@@ -41,6 +43,18 @@ impl Survey {
         let gyration = bodies.iter().map(|body| (body.inertia.trace() / body.mass).sqrt()).fold(0.0, f64::max);
         let size = if bodies.is_empty() { 0.0 } else { norm(subtract(high, low)) };
         [size, gyration, 1.0].into_iter().find(|&size| size > 0.0).expect("one is above zero")
+    }
+
+    /// The usual size of a body, m: the geometric mean of all, each the radius of gyration or the longest way from the centre to
+    /// a joint; the size of the mechanism where none has any.
+    pub fn body_size(&self, bodies: &[Body]) -> f64 {
+        let mut sizes: Vec<f64> = bodies.iter().map(|body| (body.inertia.trace() / body.mass).sqrt()).collect();
+        self.arms.iter().for_each(|&(body, arm)| sizes[body] = sizes[body].max(arm));
+        let logarithms: Vec<f64> = sizes.iter().filter(|size| **size > 0.0).map(|size| size.ln()).collect();
+        match logarithms.len() {
+            0 => self.length(bodies),
+            count => (logarithms.iter().sum::<f64>() / count as f64).exp(),
+        }
     }
 }
 
@@ -57,6 +71,7 @@ pub fn plan(assembly: &Assembly<'_>, entry: &Entry<'_>, share: bool, survey: &mu
             survey.needed.extend(used.iter().map(|&u| (k, u)));
             let arm = subtract(geometry.at[side], assembly.bodies[k].position);
             survey.needed.push((k, arm));
+            survey.arms.push((k, norm(arm)));
         }
     }
     if !share {

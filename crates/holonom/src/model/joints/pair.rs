@@ -203,7 +203,8 @@ impl Pair<'_, '_> {
         self.hold_sum(&[(part, 1.0)]);
     }
 
-    fn hold_sum(&mut self, parts: &[(Part, f64)]) {
+    /// Adds the row that a sum of parts, each with its factor, is zero.
+    pub fn hold_sum(&mut self, parts: &[(Part, f64)]) {
         let sum = self.assembly.builder.sum(parts);
         self.assembly.builder.constant_row(format!("{}[{}]", self.entry.name, self.names), sum, 0.0);
         self.names += 1;

@@ -67,8 +67,9 @@ fn rows(pair: &mut Pair<'_, '_>) -> Read<()> {
     };
     let (v, w) = (pair.e(Side::B, 1), pair.e(Side::B, 2));
     let [height, up_v, up_w] = [&d, &v, &w].map(|moving| product(pair, moving, normal));
-    let touching = Differentiated(Touching { radius, start });
-    pair.hold(Part::Smooth { of: vec![height, up_v, up_w], function: Arc::new(touching) });
+    let touching = Differentiated(Touching { start });
+    let lowest = Part::Smooth { of: vec![up_v, up_w], function: Arc::new(touching) };
+    pair.hold_sum(&[(Part::Invariant(height), 1.0), (lowest, -radius)]);
     for along in across(normal, 3) {
         let [way, along_v, along_w] = [&d, &v, &w].map(|moving| product(pair, moving, along));
         let form = Arc::new(Differentiated(Slip { radius }));
@@ -80,16 +81,15 @@ fn rows(pair: &mut Pair<'_, '_>) -> Read<()> {
 /// Sine of the smallest angle between the disc and the plane at the start.
 const FLAT: f64 = 1e-3;
 
-/// d·N + R s(0) − R s of (d·N, N·v, N·w): the lowest point of the disc stays on the plane.
+/// s − s(0) of (N·v, N·w): d·N − R (s − s(0)) is where the lowest point of the disc is, which stays on the plane. Lengths and
+/// numbers are not arguments of one function, as its discrete derivative would depend on the unit of length.
 struct Touching {
-    radius: f64,
     start: f64,
 }
 
 impl SmoothFunction for Touching {
     fn evaluate<N: Number>(&self, value: &[N]) -> N {
-        let s = (value[1] * value[1] + value[2] * value[2]).sqrt();
-        value[0] - (s - self.start) * self.radius
+        (value[0] * value[0] + value[1] * value[1]).sqrt() - self.start
     }
 }
 

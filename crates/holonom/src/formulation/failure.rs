@@ -1,0 +1,53 @@
+//! Why a step was not taken.
+
+use crate::system::System;
+
+/// Why a step was not taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Failure {
+    /// Newton's iteration ended without an answer; the last increment was this share of the mechanism's size.
+    NotConverged { iterations: usize, increment: f64 },
+    /// The matrix of the step has no inverse, or none with finite numbers: the unknown whose pivot is none.
+    Singular(Unknown),
+    /// Positions, velocities or forces that are not finite.
+    NotFinite,
+    /// No step is short enough for the accuracy.
+    TooSmall,
+    /// A step whose result misses what the method promises: what, by how much, by how much it may, and which row.
+    Broken { promise: &'static str, by: f64, bound: f64, row: Option<usize> },
+}
+
+/// An unknown of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unknown {
+    /// The multiplier of a row.
+    Row(usize),
+    /// A coordinate of a node.
+    Node(usize),
+}
+
+impl Failure {
+    /// What happened, in words.
+    pub fn describe(&self, system: &System) -> String {
+        match *self {
+            Self::NotConverged { iterations, increment } if increment.is_finite() => {
+                format!(
+                    "the iteration did not converge: after {iterations} iterations increments are {increment:.1e} of the mechanism's size"
+                )
+            }
+            Self::NotConverged { iterations, .. } => format!("the iteration did not converge in {iterations} iterations"),
+            Self::Singular(Unknown::Row(row)) => {
+                format!("the matrix of the step is singular at the row `{}`: nothing there resists it", system.row_names()[row])
+            }
+            Self::Singular(Unknown::Node(node)) => {
+                format!("the matrix of the step is singular at node {node}: it has no mass and nothing holds it")
+            }
+            Self::NotFinite => "positions, velocities or forces are not finite".into(),
+            Self::Broken { promise, by, bound, row } => {
+                let of = row.map_or(String::new(), |row| format!(" of `{}`", system.row_names()[row]));
+                format!("the step breaks a promise of the method: {promise}{of} is off by {by:.1e}, where round-off explains {bound:.1e}")
+            }
+            Self::TooSmall => "no step is short enough for the accuracy".into(),
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! How independent the rows are: geometry alone, whatever the masses and units.
+
+use super::kkt::{ALL, Block, Kkt};
+use crate::system::{Evaluation, Mass, System};
+
+/// What a row must add to those before it, squared and over its own size, to count: well above round-off, well below any row
+/// that holds something.
+pub const INDEPENDENT: f64 = 1e-9;
+
+/// Gradients below this share of what they become when the mechanism moves by its own size have vanished.
+const VANISHED: f64 = 1e-9;
+
+/// What is left to the pivot of a redundant row.
+const PROXIMAL: f64 = 1e-15;
+
+/// How much each row (r) adds to those eliminated before it, squared: 1 for a row of its own, 0 for one that follows from
+/// others. Directions are nodes with a length, so that all coordinates are lengths and weigh alike; rows are scaled to unit
+/// gradients (methods §12). The pivots of [1 Gᵀ; G −δ] are minus these numbers.
+pub fn independence(system: &System, x: &[f64], t: f64) -> Vec<f64> {
+    let ones = Mass::ones(system.nodes());
+    let mut kkt = Kkt::with_mass(system, &ones, &[], 1, ALL);
+    let mut at = system.evaluation();
+    system.evaluate_again(x, t, &mut at);
+    let natural = natural_sizes(system, &at);
+    let rows = kkt.row_slots.len();
+    for (row, natural) in natural.iter().enumerate() {
+        let free = kkt.row_slots[row].clone().filter(|&slot| kkt.is_free(slot));
+        let square: f64 = free.flat_map(|slot| &at.gradient[slot * kkt.dim..(slot + 1) * kkt.dim]).map(|g| g * g).sum();
+        let size = square.sqrt();
+        let factor = if size > VANISHED * natural { 1.0 / size } else { 0.0 };
+        at.gradient[kkt.gradient_of(row)].iter_mut().for_each(|g| *g *= factor);
+    }
+    let block = Block(0, 0);
+    kkt.clear();
+    kkt.start_with_mass(1.0);
+    kkt.write_sum(block);
+    kkt.add_columns(block, &at.gradient, 1.0);
+    kkt.add_rows(block, &at.gradient, 1.0);
+    kkt.regularise(0, &vec![PROXIMAL; rows]);
+    match kkt.factor() {
+        Ok(()) => (0..rows).map(|row| kkt.solver.pivot(kkt.multiplier(row, 0))).collect(),
+        Err(_) => vec![0.0; rows],
+    }
+}
+
+/// By how much the gradient of each row (r) changes when all nodes move by the size of the mechanism, here and there: the
+/// largest of its nodes. From a thousandth of such a move beside an evaluation at the start.
+pub(super) fn natural_sizes(system: &System, at: &Evaluation) -> Vec<f64> {
+    let (share, dim) = (1e-3, system.dim);
+    let reach = share * extent(system);
+    let start = system.start_position.iter().enumerate();
+    let moved: Vec<f64> = start.map(|(k, x)| x + reach * (12.9898 * (k as f64 + 1.0)).sin()).collect();
+    let (mut here, mut there) = (at.clone(), at.clone());
+    system.evaluate_again(&system.start_position, 0.0, &mut here);
+    system.evaluate_again(&moved, 0.0, &mut there);
+    let change =
+        |slot: usize| (0..dim).map(|c| (there.gradient[slot * dim + c] - here.gradient[slot * dim + c]).powi(2)).sum::<f64>().sqrt();
+    system.row_slots().into_iter().map(|slots| slots.map(change).fold(0.0, f64::max) / share).collect()
+}
+
+/// Diagonal of the box around the origin and all nodes at the start, or the size that is known of the mechanism where that is
+/// more; where both are nothing any unit will do.
+pub(super) fn extent(system: &System) -> f64 {
+    let mut square = 0.0;
+    for c in 0..system.dim {
+        let along = system.start_position.iter().skip(c).step_by(system.dim);
+        let (low, high) = along.fold((0.0, 0.0), |(low, high): (f64, f64), &x| (low.min(x), high.max(x)));
+        square += (high - low) * (high - low);
+    }
+    let size = square.sqrt().max(system.size);
+    if size > 0.0 { size } else { 1.0 }
+}

@@ -1,0 +1,183 @@
+//! Newton's iteration, written once: for a single stage, for stages that are solved together, and for rows at both levels.
+
+use super::failure::Failure;
+use super::iteration::SolveSettings;
+use super::workspace::Workspace;
+
+/// The equations of a step: unknowns, residual and tangent. Newton's iteration knows no more of them than this.
+pub(super) trait Equations {
+    /// Prepares the first iteration from the prediction in the workspace.
+    fn begin(&mut self, work: &mut Workspace);
+
+    /// Puts the unknowns at a share of the free flight, without multipliers.
+    fn restart(&mut self, share: f64, work: &mut Workspace);
+
+    /// Evaluates the residual at the unknowns; `is_new` says that the tangent is asked for next.
+    fn evaluate(&mut self, is_new: bool, work: &mut Workspace);
+
+    /// Whether the residual is nothing but round-off, row by row, and node by node unless the nodes no longer move
+    /// and their energy shows what forces leave.
+    fn is_met(&mut self, moves: bool, work: &mut Workspace) -> bool;
+
+    /// Factors the tangent at the unknowns, for the first time in this attempt or again.
+    fn factor(&mut self, is_first: bool, work: &mut Workspace) -> Result<(), Failure>;
+
+    /// Solves for the residual and adds the solution to the unknowns.
+    fn advance(&mut self, is_first: bool, work: &mut Workspace) -> Result<Change, Failure>;
+
+    /// Iterations with kept factors that are cheaper than new ones.
+    fn kept(&self, _work: &Workspace) -> i32 {
+        KEPT
+    }
+}
+
+/// By how much an iteration changed the unknowns.
+pub(super) struct Change {
+    /// Largest increment of a coordinate, over the size of the mechanism.
+    pub increment: f64,
+    /// Largest step of a multiplier: how far it would move a node of its row, over the same.
+    pub multipliers: f64,
+    /// Share of the equations that the solution with the factors left.
+    pub left: f64,
+}
+
+/// Iterations with kept factors that are cheaper than new ones of the whole matrix.
+pub(super) const KEPT: i32 = 4;
+
+/// Shares of the free flight h v from which Newton starts again where the prediction led nowhere: with large steps the
+/// acceleration of the last step says little of this one.
+const RESTARTS: [f64; 3] = [1.0, 0.5, 0.0];
+
+/// Solves the equations from the prediction, and from the free flight and shares of it where that fails. With a fixed number
+/// of iterations there is one attempt.
+pub(super) fn newton(equations: &mut impl Equations, settings: &SolveSettings, work: &mut Workspace) -> Result<(), Failure> {
+    let mut outcome = attempt(equations, settings, work);
+    let restarts = if settings.iterations.is_some() { &[][..] } else { &RESTARTS };
+    for &share in restarts {
+        if outcome.is_ok() {
+            break;
+        }
+        equations.restart(share, work);
+        outcome = attempt(equations, settings, work);
+    }
+    outcome
+}
+
+fn attempt(equations: &mut impl Equations, settings: &SolveSettings, work: &mut Workspace) -> Result<(), Failure> {
+    work.spares_regular = false;
+    equations.begin(work);
+    let mut convergence = Convergence::new(settings, work.scales.shortest, equations.kept(work));
+    for iteration in 1..=settings.max_iterations {
+        let keeps = convergence.keeps_factors();
+        equations.evaluate(!keeps, work);
+        if convergence.stalls() && equations.is_met(convergence.moves(), work) {
+            return Ok(());
+        }
+        if !keeps {
+            equations.factor(iteration == 1, work)?;
+            if work.guards_rank() {
+                equations.evaluate(true, work);
+                equations.factor(true, work)?;
+            }
+        }
+        let change = equations.advance(iteration == 1, work)?;
+        work.iterations += 1;
+        if convergence.is_reached(&change) {
+            return Ok(());
+        }
+        if convergence.is_lost() {
+            return Err(Failure::NotConverged { iterations: iteration, increment: change.increment });
+        }
+    }
+    Err(Failure::NotConverged { iterations: settings.max_iterations, increment: convergence.increment })
+}
+
+/// Increments of this share of the mechanism are the rounding of positions; what they leave of the energy is for its audit.
+const ROUNDED: f64 = 2.0 * f64::EPSILON;
+
+/// An attempt whose increments have not halved in so many iterations leads nowhere.
+const PATIENCE: usize = 10;
+
+/// How a Newton iteration goes: sizes of its increments, relative to the mechanism.
+struct Convergence {
+    tolerance: f64,
+    shortest: f64,
+    kept: i32,
+    /// Iterations that are left where their number is fixed.
+    left: Option<usize>,
+    /// Last increment of the coordinates.
+    increment: f64,
+    /// Last increment of coordinates or multipliers, whichever was larger: what the matrix changes by.
+    turn: f64,
+    /// What the factors in use are off by.
+    stale: f64,
+    /// Share of an increment that the next one with the same factors came to.
+    contraction: f64,
+    stalls: bool,
+    /// Smallest increment so far, and the iterations since it was halved.
+    best: f64,
+    since: usize,
+}
+
+impl Convergence {
+    /// `shortest` is the length of the shortest row over that of the mechanism: it turns by so much more. Factors are kept for
+    /// up to `kept` iterations.
+    fn new(settings: &SolveSettings, shortest: f64, kept: i32) -> Self {
+        Self {
+            shortest,
+            kept,
+            tolerance: settings.tolerance,
+            left: settings.iterations,
+            increment: f64::INFINITY,
+            turn: f64::INFINITY,
+            stale: 0.0,
+            contraction: 0.0,
+            stalls: false,
+            best: f64::INFINITY,
+            since: 0,
+        }
+    }
+
+    /// Whether increments no longer shrink.
+    fn stalls(&self) -> bool {
+        self.stalls
+    }
+
+    /// Whether increments are more than the rounding of positions, or have not been that for a while.
+    fn moves(&self) -> bool {
+        self.increment > ROUNDED || self.since < PATIENCE / 2
+    }
+
+    /// Whether increments have not shrunk for long.
+    fn is_lost(&self) -> bool {
+        self.left.is_none() && self.since >= PATIENCE
+    }
+
+    /// Whether the factors serve the iterations to come: they are off by all that has turned since they were made, or by
+    /// what increments with them left, and each leaves that much of the one before.
+    fn keeps_factors(&mut self) -> bool {
+        let stale = (self.stale + self.turn).max(self.contraction);
+        let keeps = self.left.is_none() && self.increment * stale.powi(self.kept) <= self.tolerance;
+        (self.stale, self.contraction) = if keeps { (stale, self.contraction) } else { (0.0, 0.0) };
+        keeps
+    }
+
+    /// Takes note of a change; says whether what remains is within tolerance. The remainder is as much smaller as the increment
+    /// was than the one before, and no less than its product with that of the multipliers, which Newton's linearisation of Gᵀλ
+    /// leaves out.
+    fn is_reached(&mut self, change: &Change) -> bool {
+        if let Some(left) = &mut self.left {
+            *left -= 1;
+            return *left == 0;
+        }
+        let (increment, multipliers) = (change.increment, change.multipliers.max(change.left));
+        let contraction = if self.increment.is_finite() { (increment / self.increment).min(1.0) } else { 1.0 };
+        let remaining = increment * contraction.max(multipliers).max(self.stale);
+        self.contraction = if self.stale > 0.0 { self.contraction.max(contraction) } else { 0.0 };
+        self.stalls = increment > 0.1 * self.increment;
+        self.since = if increment < 0.5 * self.best { 0 } else { self.since + 1 };
+        self.best = self.best.min(increment);
+        (self.increment, self.turn) = (increment, (increment / self.shortest).max(multipliers));
+        remaining <= self.tolerance
+    }
+}

@@ -1,0 +1,124 @@
+//! What of a residual is round-off: every node's forces and every row's value against the sizes of the terms that they are
+//! sums of (the backward error of Oettli and Prager 1964), whatever their directions. Neither masses nor units nor other parts of the mechanism matter.
+
+use super::stage::Stage;
+use super::workspace::Workspace;
+use crate::linalg::largest;
+use crate::system::{System, scatter_rows};
+
+/// Residual of a node's forces over the sum of its terms' sizes that is round-off: each term is itself a sum of some products.
+const FORCES: f64 = 32.0 * f64::EPSILON;
+
+/// The same of rows. Redundant ones may miss each other by the rounding of the constants of a model.
+const ROWS: f64 = 128.0 * f64::EPSILON;
+
+/// A share of the mechanism's size, over [`FORCES`], that is nothing: what stands still moves by that much of round-off.
+const NOTHING: f64 = 0.1 * f64::EPSILON / FORCES;
+
+impl Workspace {
+    /// A length that is nothing beside the mechanism's, over [`FORCES`].
+    pub(super) fn nothing(&self) -> f64 {
+        NOTHING * self.scales.length
+    }
+
+    /// Whether the residual of a stage in `unknowns` is round-off.
+    pub(super) fn is_met(&mut self, system: &System, stage: &Stage, moves: bool) -> bool {
+        let n = system.coordinates();
+        self.size_forces(system, stage);
+        self.size_rows(system);
+        let (forces, rows) = self.unknowns.split_at(n);
+        (!moves || are_forces_round_off(forces, &self.full[..n])) && are_rows_round_off(rows, &self.rows)
+    }
+
+    /// Leaves the sizes of the terms of ϖ (M a + f) in `full`.
+    pub(super) fn size_forces(&mut self, system: &System, stage: &Stage) {
+        let (n, dim, inertia) = (system.coordinates(), system.dim, stage.inertia);
+        for (i, size) in self.full.iter_mut().enumerate() {
+            let step = if i < n { self.d[i].abs().max(self.drift[i].abs()) } else { (inertia * self.a1[i]).abs() };
+            *size = step.max(NOTHING * self.scales.length);
+        }
+        system.mass.times_sizes(dim, &self.full, &mut self.inertial);
+        self.full.fill(0.0);
+        let sizes = self.lambda.iter().map(|lambda| lambda.abs());
+        self.rows.iter_mut().zip(sizes).for_each(|(row, size)| *row = size);
+        let Self { kkt, rows, sampled, full, sizes, .. } = self;
+        sizes.iter_mut().zip(&sampled.gradient).for_each(|(size, g)| *size = g.abs());
+        scatter_rows(dim, &kkt.slots, rows, sizes, full);
+        for (law, response) in system.laws.iter().zip(&self.responses) {
+            for (k, &id) in law.invariants.iter().enumerate() {
+                // A stiff law is as exact as its argument.
+                let give: f64 = (0..law.invariants.len())
+                    .map(|j| (response.by_value[k][j] * self.sampled.value[law.invariants[j].0 as usize]).abs())
+                    .sum();
+                let pull = response.force[k].abs() + give;
+                for s in system.invariants.slots_of(id) {
+                    let node = self.kkt.slot_nodes[s] as usize * dim;
+                    (0..dim).for_each(|c| self.full[node + c] += pull * self.sizes[s * dim + c]);
+                }
+            }
+        }
+        let mut first = 0;
+        for load in &system.loads {
+            for (k, node) in load.nodes.iter().enumerate() {
+                let (from, to) = (first + k * dim, node.index() * dim);
+                (0..dim).for_each(|c| self.full[to + c] += self.load_force[from + c].abs());
+            }
+            first += load.nodes.len() * dim;
+        }
+        for (i, size) in self.full[..n].iter_mut().enumerate() {
+            *size = inertia * (*size + self.weight[i].abs()) + self.inertial[i];
+        }
+        spread(dim, &mut self.full[..n]);
+    }
+
+    /// Leaves the sizes of the terms of Φ in `rows`: of gradients times positions, whose last digits are lost.
+    pub fn size_rows(&mut self, system: &System) {
+        self.rows.fill(0.0);
+        for slot in &self.kkt.slots {
+            let (g, x) = (slot.slot as usize * system.dim, slot.node as usize * system.dim);
+            let (g, x) = (&self.at_end.gradient[g..g + system.dim], &self.x1[x..x + system.dim]);
+            self.rows[slot.row as usize] += largest(g) * largest(x);
+        }
+        for (size, g) in self.rows.iter_mut().zip(&self.scales.gradient) {
+            *size += g * NOTHING * self.scales.length;
+        }
+        for (size, row) in self.rows.iter_mut().zip(&system.rows) {
+            // Angles are counted over turns.
+            *size += self.at_end.value[system.value_index(row.quantity)].abs();
+        }
+    }
+}
+
+impl Workspace {
+    /// Leaves the sizes of the terms of Φ̇ at the end of the step in `rows`: of gradients times velocities, and of their changes
+    /// times positions.
+    pub fn size_rates(&mut self, system: &System) {
+        let Self { at_end, x1, v1, half, turned_v, rows, kkt, .. } = self;
+        system.turn(at_end, x1, v1, 0.0, half, turned_v);
+        rows.fill(0.0);
+        for slot in &kkt.slots {
+            let (g, x) = (slot.slot as usize * system.dim, slot.node as usize * system.dim);
+            let size = |g: &[f64], x: &[f64]| largest(g) * largest(x);
+            let (g, x) = (g..g + system.dim, x..x + system.dim);
+            rows[slot.row as usize] += size(&at_end.gradient[g.clone()], &v1[x.clone()]) + size(&turned_v[g], &x1[x]);
+        }
+    }
+}
+
+/// The largest of a node's components for all of them.
+pub(super) fn spread(dim: usize, sizes: &mut [f64]) {
+    for node in sizes.chunks_exact_mut(dim) {
+        let largest = node.iter().copied().fold(0.0, f64::max);
+        node.fill(largest);
+    }
+}
+
+/// Whether each of some forces is round-off of terms of the sizes beside it.
+pub(super) fn are_forces_round_off(forces: &[f64], sizes: &[f64]) -> bool {
+    forces.iter().zip(sizes).all(|(force, size)| force.abs() <= FORCES * size)
+}
+
+/// The same of values of rows.
+pub(super) fn are_rows_round_off(rows: &[f64], sizes: &[f64]) -> bool {
+    rows.iter().zip(sizes).all(|(row, size)| row.abs() <= ROWS * size)
+}

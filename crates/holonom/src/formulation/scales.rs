@@ -1,0 +1,139 @@
+//! Sizes that belong to a mechanism, from its start: what numbers of different nodes and rows are compared by.
+
+use super::independence::{extent, natural_sizes};
+use crate::linalg::largest;
+use crate::system::{RowSlot, System};
+
+/// A node is light when its mass is below this share of the heaviest of its mechanism. What its rows add is then lost beside what
+/// heavier nodes add: the rows enter its part of the matrix (methods §12).
+const LIGHT: f64 = 1e-4;
+
+/// Smallest share of what a light node counts as that its own mass may be.
+const LEAST_SHARE: f64 = 1e-12;
+
+/// Rows shorter than this share of the mechanism are in a singular position rather than short.
+const SHORT: f64 = 1e-6;
+
+/// Share of what a gradient becomes when the mechanism moves by its own size that it counts with where it is less.
+const LEAST: f64 = 1e-3;
+
+/// Sizes of a mechanism, its nodes and its rows.
+#[derive(Clone, Debug)]
+pub struct Scales {
+    /// Diagonal of the box around the origin and all nodes at the start, m: the unit of increments.
+    pub length: f64,
+    /// Largest diagonal entry of the mass matrix, kg.
+    pub heaviest: f64,
+    /// Length of the shortest row, the gradient of an invariant, over `length`, at most 1.
+    pub shortest: f64,
+    /// 1 over the mass of each free node, 1/kg; directions that are light count as the heaviest node, as their bodies hold them.
+    pub agility: Vec<f64>,
+    /// 1 over the mass of each free node or, where it is light, of the heaviest of its mechanism, 1/kg.
+    pub held: Vec<f64>,
+    /// Whether a row has a light node (r).
+    pub has_light: Vec<bool>,
+    /// Size of each row of G M⁻¹ Gᵀ with the masses of `held` (r), 1/kg in the row's units.
+    pub softness: Vec<f64>,
+    /// Length of each row's gradient (r), 1 in the row's units over m.
+    pub gradient: Vec<f64>,
+    /// How far the step of a row's multiplier moves the node that it moves farthest, over the mechanism's size (r), 1/(kg·m) in
+    /// the row's units.
+    pub reach: Vec<f64>,
+}
+
+impl Scales {
+    /// Measures a system at its start.
+    pub fn new(system: &System) -> Self {
+        let (free, rows) = (system.free, system.constraints());
+        let own: Vec<f64> = (0..free).map(|node| system.mass.diagonal(node)).collect();
+        let heaviest = own.iter().copied().fold(0.0, f64::max);
+        let slots = slots(system);
+        let around = around(system, &own, &slots);
+        let is_light = |node: usize| own[node] < LIGHT * around[node];
+        let filled = |node: usize, mass: f64| 1.0 / if mass > 0.0 { mass } else { around[node].max(f64::MIN_POSITIVE) };
+        let mut scales = Self {
+            length: extent(system),
+            heaviest,
+            shortest: 1.0,
+            held: (0..free).map(|node| filled(node, if is_light(node) { around[node] } else { own[node] })).collect(),
+            agility: (0..free)
+                .map(|node| filled(node, if is_light(node) && !system.is_point[node] { around[node] } else { own[node] }))
+                .collect(),
+            has_light: vec![false; rows],
+            softness: vec![0.0; rows],
+            gradient: vec![0.0; rows],
+            reach: vec![0.0; rows],
+        };
+        scales.measure_rows(system, &slots, is_light);
+        scales
+    }
+
+    fn measure_rows(&mut self, system: &System, slots: &[RowSlot], is_light: impl Fn(usize) -> bool) {
+        let dim = system.dim;
+        let mut at = system.evaluation();
+        system.evaluate_again(&system.start_position, 0.0, &mut at);
+        let natural = natural_sizes(system, &at);
+        let mut longest = vec![0.0_f64; self.softness.len()];
+        for slot in slots.iter().filter(|slot| (slot.node as usize) < system.free) {
+            let (row, node) = (slot.row as usize, slot.node as usize);
+            let gradient = &at.gradient[slot.slot as usize * dim..(slot.slot as usize + 1) * dim];
+            let least = LEAST * natural[row];
+            let square = gradient.iter().map(|g| g * g).sum::<f64>().max(least * least);
+            self.has_light[row] |= is_light(node);
+            self.softness[row] += square * self.held[node];
+            self.gradient[row] += square;
+            self.reach[row] = self.reach[row].max(square.sqrt() * self.agility[node] / self.length);
+            longest[row] = longest[row].max(largest(gradient));
+        }
+        for (row, &size) in longest[..system.rows.len()].iter().enumerate() {
+            let is_invariant = system.slots_of(system.rows[row].quantity).end <= system.invariants.slots();
+            if is_invariant && size > SHORT * self.length {
+                self.shortest = self.shortest.min(size / self.length);
+            }
+        }
+        // A row of known nodes alone holds nothing.
+        self.softness.iter_mut().filter(|s| **s == 0.0).for_each(|s| *s = 1.0 / self.heaviest.max(f64::MIN_POSITIVE));
+        self.gradient.iter_mut().for_each(|g| *g = if *g > 0.0 { g.sqrt() } else { 1.0 });
+    }
+}
+
+/// The slots of all rows.
+fn slots(system: &System) -> Vec<RowSlot> {
+    let nodes: Vec<u32> = system.slot_nodes().map(|node| node as u32).collect();
+    let rows = system.row_slots();
+    let of_row = |(row, slots): (u32, std::ops::Range<usize>)| slots.map(move |slot| (row, slot));
+    let slot = |(row, slot): (u32, usize)| RowSlot { row, slot: slot as u32, node: nodes[slot] };
+    (0..).zip(rows).flat_map(of_row).map(slot).collect()
+}
+
+/// The largest mass in the mechanism that each free node belongs to, all that rows and mass hold together, kg: what a light node
+/// counts as. Ten digits of what it adds itself are kept where it adds anything.
+fn around(system: &System, own: &[f64], slots: &[RowSlot]) -> Vec<f64> {
+    let mut root: Vec<usize> = (0..own.len()).collect();
+    let mut join = |a: usize, b: usize| {
+        let (a, b) = (find(&mut root, a), find(&mut root, b));
+        root[a.max(b)] = a.min(b);
+    };
+    let mut first = vec![None; system.constraints()];
+    for slot in slots.iter().filter(|slot| (slot.node as usize) < own.len()) {
+        join(*first[slot.row as usize].get_or_insert(slot.node as usize), slot.node as usize);
+    }
+    for node in 0..own.len() {
+        system.mass.row(node).filter(|&(other, _)| other < own.len()).for_each(|(other, _)| join(node, other));
+    }
+    let mut heaviest = vec![0.0_f64; own.len()];
+    for (node, &mass) in own.iter().enumerate() {
+        let root = find(&mut root, node);
+        heaviest[root] = heaviest[root].max(mass);
+    }
+    let most = |own: f64| if own > 0.0 { own / LEAST_SHARE } else { f64::INFINITY };
+    (0..own.len()).map(|node| heaviest[find(&mut root, node)].min(most(own[node]))).collect()
+}
+
+fn find(root: &mut [usize], mut node: usize) -> usize {
+    while root[node] != node {
+        root[node] = root[root[node]];
+        node = root[node];
+    }
+    node
+}

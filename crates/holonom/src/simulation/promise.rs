@@ -1,0 +1,194 @@
+//! What a method keeps in every step, as data, and the judge that holds each step to it.
+//!
+//! Bounds follow from round-off and from the tolerance of the iteration, each from the sizes of the very terms that a figure is
+//! a sum of: they are the same in every unit and for every mass.
+
+use super::Method;
+use super::audit::Audit;
+use crate::energy;
+use crate::formulation::{Failure, Iteration, Level, Multipliers, RowsAt, Workspace};
+use crate::linalg::largest;
+use crate::projection::{Metric, Solve};
+use crate::system::System;
+
+/// Something that holds after every step, whatever the mechanism and the step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Promise {
+    /// The energy changes by the work that is done, and by nothing else.
+    Energy,
+    /// The energy rises by no more than the work that is done, where no row depends on time.
+    FallingEnergy,
+    /// Momenta that nothing outside changes.
+    Momenta,
+    /// Φ = 0
+    Position,
+    /// Φ̇ = 0
+    Velocity,
+    /// Φ̈ = 0
+    Acceleration,
+}
+
+impl Promise {
+    /// What is kept, in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Energy => "energy",
+            Self::FallingEnergy => "energy that never rises",
+            Self::Momenta => "momenta",
+            Self::Position => "Φ",
+            Self::Velocity => "Φ̇",
+            Self::Acceleration => "Φ̈",
+        }
+    }
+}
+
+impl Method {
+    /// What the method keeps in every step. With a fixed number of iterations that is nothing: whatever they leave is taken.
+    pub fn promises(&self) -> Vec<Promise> {
+        let (settings, projection) = (&self.settings, &self.projection);
+        let mut kept = Vec::new();
+        if settings.iterations.is_some() {
+            return kept;
+        }
+        let goes_on = projection.velocity && !projection.shadow;
+        let projects = projection.solve == Solve::Exact && projection.strength == 1.0;
+        let by_mass = projection.metric == Metric::Mass;
+        let is_exact = settings.iteration == Iteration::Newton && self.parameters.rows == RowsAt::End;
+        let is_soft = matches!(settings.multipliers, Multipliers::Penalty(_));
+        if self.integrator.conserves && is_exact && !is_soft {
+            match goes_on {
+                false => kept.extend([Promise::Energy, Promise::Momenta]),
+                true if by_mass && projects => kept.extend([Promise::FallingEnergy, Promise::Momenta]),
+                true => (),
+            }
+        }
+        let is_at_position = settings.doubled || settings.level == Level::POSITION && !is_soft;
+        if self.integrator.ends_on_rows && is_at_position && self.parameters.rows == RowsAt::End {
+            kept.push(Promise::Position);
+            if settings.doubled {
+                kept.push(Promise::Velocity);
+            }
+        }
+        if projects && projection.velocity {
+            kept.push(Promise::Velocity);
+        }
+        if projects && projection.acceleration {
+            kept.push(Promise::Acceleration);
+        }
+        kept
+    }
+}
+
+/// Round-off that a figure may have, over the sizes of the terms that it is a sum of.
+const ROUND_OFF: f64 = 256.0 * f64::EPSILON;
+
+/// Rounding of a position, at the start and at the end of a step, over the size of the mechanism.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
+
+/// How much farther from the solution than the iteration's tolerance a step may end: that is an estimate.
+const TOLERANCES: f64 = 16.0;
+
+/// Holds steps to what a method promises.
+pub(super) struct Judge {
+    promises: Vec<Promise>,
+    /// Tolerance of the iteration, over the size of the mechanism.
+    tolerance: f64,
+    /// All mass, kg.
+    mass: f64,
+}
+
+impl Judge {
+    pub(super) fn new(system: &System, method: &Method, work: &Workspace) -> Self {
+        let is_absolute = method.settings.iteration != Iteration::Newton;
+        let tolerance = method.settings.tolerance / if is_absolute { work.scales.length } else { 1.0 };
+        let mass = (0..system.free).map(|node| system.mass.diagonal(node)).sum();
+        let mut promises = method.promises();
+        // Where rows move, the impulse that projects velocities does work.
+        promises.retain(|&promise| promise != Promise::FallingEnergy || !system.is_driven());
+        Self { promises, tolerance: TOLERANCES * tolerance, mass }
+    }
+
+    fn promises(&self, promise: Promise) -> bool {
+        self.promises.contains(&promise)
+    }
+
+    /// Looks at the energy after a step of length `h` (s); `before` and `after` are the audits around it.
+    pub(super) fn energy(&self, system: &System, h: f64, before: &Audit, after: &Audit, work: &Workspace) -> Result<(), Failure> {
+        let promised = [Promise::Energy, Promise::FallingEnergy].into_iter().find(|&promise| self.promises(promise));
+        let Some(promise) = promised else { return Ok(()) };
+        let done = after.work - before.work;
+        let change = (after.energy() - before.energy()) - done;
+        let off = if promise == Promise::Energy { change.abs() } else { change };
+        let bound = self.energy_bound(system, h, before, after, work);
+        // What is no number is no energy.
+        if off <= bound { Ok(()) } else { Err(Failure::Broken { promise: promise.words(), by: off, bound, row: None }) }
+    }
+
+    /// Round-off of energies, of the work of rows and laws, and of velocities, which are increments of rounded positions over
+    /// the step; and what the tolerance leaves of these.
+    fn energy_bound(&self, system: &System, h: f64, before: &Audit, after: &Audit, work: &Workspace) -> f64 {
+        let scales = &work.scales;
+        let kinetic = before.kinetic.abs() + after.kinetic.abs();
+        let rows = work.lambda.iter().zip(&scales.gradient).map(|(lambda, g)| (lambda * g).abs()).sum::<f64>() * scales.length;
+        let sizes = kinetic + energy::size(system, work, &work.x1) + (after.work - before.work).abs() + rows;
+        // Cauchy and Schwarz: Σ m |v| is at most √(2 T Σ m).
+        let momentum = (2.0 * kinetic * self.mass).sqrt();
+        ROUND_OFF * sizes + momentum * scales.length * 2.0 / h.abs() * (ROUNDED + self.tolerance)
+    }
+
+    /// Looks at Φ at the end of a step, in `phi`.
+    pub(super) fn positions(&self, system: &System, work: &mut Workspace) -> Result<(), Failure> {
+        let length = work.scales.length * (ROUND_OFF + self.tolerance);
+        if !self.promises(Promise::Position) || work.phi.iter().zip(&work.scales.gradient).all(|(phi, g)| phi.abs() <= g * length) {
+            return Ok(());
+        }
+        work.size_rows(system);
+        self.compare(Promise::Position, work.scales.length, work)
+    }
+
+    /// Looks at Φ̇ at the end of a step of length `h` (s), in `rows`.
+    pub(super) fn velocities(&self, system: &System, h: f64, work: &mut Workspace) -> Result<(), Failure> {
+        let speed = largest(&work.v1);
+        let reach = ROUND_OFF * speed + self.tolerance * work.scales.length / h.abs();
+        if !self.promises(Promise::Velocity) || work.rows.iter().zip(&work.scales.gradient).all(|(rate, g)| rate.abs() <= g * reach) {
+            return Ok(());
+        }
+        std::mem::swap(&mut work.phi, &mut work.rows);
+        work.size_rates(system);
+        self.compare(Promise::Velocity, work.scales.length / h.abs(), work)
+    }
+
+    /// Looks at Φ̈ at the end of a step of length `h` (s), in `rows`.
+    pub(super) fn accelerations(&self, h: f64, work: &Workspace) -> Result<(), Failure> {
+        if !self.promises(Promise::Acceleration) {
+            return Ok(());
+        }
+        let scales = &work.scales;
+        let speed = largest(&work.v1);
+        let centripetal = speed * speed / (scales.shortest * scales.length);
+        let reach = ROUND_OFF * (largest(&work.a1) / scales.shortest + centripetal) + self.tolerance * scales.length / (h * h);
+        let worst = work.rows.iter().zip(&scales.gradient).enumerate().find(|(_, (value, g))| !is_within(**value, *g * reach));
+        match worst {
+            None => Ok(()),
+            Some((row, (value, g))) => {
+                Err(Failure::Broken { promise: Promise::Acceleration.words(), by: value.abs(), bound: g * reach, row: Some(row) })
+            }
+        }
+    }
+
+    /// Compares the numbers of the rows in `phi` with the sizes of their terms in `rows`.
+    fn compare(&self, promise: Promise, unit: f64, work: &Workspace) -> Result<(), Failure> {
+        for (row, (number, size)) in work.phi.iter().zip(&work.rows).enumerate() {
+            let bound = ROUND_OFF * size + self.tolerance * work.scales.gradient[row] * unit;
+            if !is_within(*number, bound) {
+                return Err(Failure::Broken { promise: promise.words(), by: number.abs(), bound, row: Some(row) });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether a number is at most so large; what is no number is not.
+fn is_within(number: f64, bound: f64) -> bool {
+    number.abs() <= bound
+}
