@@ -1,0 +1,204 @@
+//! One method at work on one mechanism, and whether it keeps its promises.
+
+use cpu_time::ThreadTime;
+use holonom::analysis;
+use holonom::model::Model;
+use holonom::simulation::{Choice, Method, NAMED, Named, Observer, Simulation, StartError, Status, Verdict};
+use holonom::system::Evaluation;
+
+use crate::mechanism::{Mechanism, STEPS};
+
+/// Largest energy, momentum or violation of a row that no promise allows, over what it is measured by.
+pub const BROKEN: f64 = 1e-9;
+
+/// Share of the weight times its distance from the origin that rounding may give or take as energy in a run.
+const ROUNDED: f64 = 1e-13;
+
+/// Share of the kinetic energy of all mass at the speed of the mechanism that rounding of increments may give or take.
+const STIRRED: f64 = 1e-20;
+
+/// Share of the mechanism's speed by which velocities are measured where nothing moves: what rounding leaves of increments.
+const SLOWEST: f64 = 1e-2;
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ending {
+    /// With every promise kept.
+    Kept,
+    /// Before its end or its start, with a reason: honest.
+    Stopped(String),
+    Refused(String),
+    /// Completed, with a promise broken.
+    Broken(String),
+    Slow(String),
+    Panicked(String),
+}
+
+/// Worst figures of a completed run: energy, momentum, Φ and Φ̇ over what they are measured by.
+#[derive(Clone, Copy, Debug)]
+pub struct Figures {
+    pub over_their_units: [f64; 4],
+    /// The units, in those of the promises: J, kg·m/s, m and m/s.
+    pub units: [f64; 4],
+}
+
+/// What the figures are of, as the table of methods calls it.
+pub const PROMISES: [&str; 4] = ["energy", "momenta", "Φ", "Φ̇"];
+
+/// A run with a method.
+#[derive(Clone, Debug)]
+pub struct Run {
+    pub ending: Ending,
+    pub figures: Option<Figures>,
+    /// Of a processor, s.
+    pub seconds: f64,
+}
+
+impl Run {
+    pub fn without_figures(ending: Ending) -> Self {
+        Self { ending, figures: None, seconds: 0.0 }
+    }
+}
+
+/// Runs a method on a model that is given `limit` seconds.
+pub fn run(mechanism: &Mechanism, model: &Model, named: &Named, limit: f64) -> Run {
+    let method = Method::resolve(&Choice { method: Some(named.name.into()), ..Choice::default() }).expect("a method with a name");
+    let clock = ThreadTime::now();
+    let mut simulation = match Simulation::new(&model.system, method, mechanism.step()) {
+        Ok(simulation) => simulation,
+        Err(error) => return Run::without_figures(Ending::Refused(refusal(&error).into())),
+    };
+    if mechanism.reactions {
+        simulation.find_reactions();
+    }
+    let mut watch = Watch::new(model, clock, limit);
+    let status = simulation.run(mechanism.end(), &mut watch);
+    let seconds = clock.elapsed().as_secs_f64();
+    let slow = || Ending::Slow(format!("more than {limit} s, at step {} of {STEPS}", simulation.steps()));
+    match status {
+        _ if watch.is_late => Run { ending: slow(), figures: None, seconds },
+        Status::Stopped { reason, .. } => Run { ending: Ending::Stopped(reason), figures: None, seconds },
+        Status::Completed => {
+            let figures = watch.figures(mechanism, model, &simulation);
+            Run { ending: ending(&figures, named), figures: Some(figures), seconds }
+        }
+    }
+}
+
+fn refusal(error: &StartError) -> &'static str {
+    match error {
+        StartError::Position { .. } => "positions at the start cannot be corrected",
+        StartError::Velocity { .. } => "velocities at the start cannot be corrected",
+        StartError::Nonholonomic { .. } => "rows that hold velocities",
+        StartError::Acceleration => "accelerations at the start cannot be found",
+    }
+}
+
+/// Whether a method has kept what it promises in the table of methods.
+fn ending(figures: &Figures, named: &Named) -> Ending {
+    let choice = Choice { method: Some(named.name.into()), ..Choice::default() };
+    let promises = Method::resolve(&choice).expect("a named method goes together").promises();
+    let promised = |promise: &str| promises.iter().any(|kept| kept.words() == promise);
+    let is_broken = |&(promise, figure): &(&str, f64)| promised(promise) && (figure.is_nan() || figure > BROKEN);
+    let broken: Vec<String> = PROMISES
+        .into_iter()
+        .zip(figures.over_their_units)
+        .filter(is_broken)
+        .map(|(promise, figure)| format!("{promise} {figure:.1e}"))
+        .collect();
+    if broken.is_empty() { Ending::Kept } else { Ending::Broken(broken.join(", ")) }
+}
+
+/// Looks at every step.
+struct Watch<'a> {
+    model: &'a Model,
+    clock: ThreadTime,
+    limit: f64,
+    is_late: bool,
+    /// At the last step and at this, for angles that are counted on.
+    at: [Evaluation; 2],
+    phi: Vec<f64>,
+    /// Largest |Φ|, |Φ̇| and gradient of each row so far.
+    rows: Vec<[f64; 3]>,
+    speed: f64,
+    kinetic: f64,
+    work: f64,
+    potential: [f64; 2],
+}
+
+impl<'a> Watch<'a> {
+    fn new(model: &'a Model, clock: ThreadTime, limit: f64) -> Self {
+        let system = &model.system;
+        let mut first = system.evaluation();
+        system.evaluate_again(system.start_position(), 0.0, &mut first);
+        let rows = system.constraints();
+        Self {
+            model,
+            clock,
+            limit,
+            is_late: false,
+            at: [first.clone(), first],
+            phi: vec![0.0; rows],
+            rows: vec![[0.0; 3]; rows],
+            speed: 0.0,
+            kinetic: 0.0,
+            work: 0.0,
+            potential: [f64::INFINITY, f64::NEG_INFINITY],
+        }
+    }
+}
+
+impl Observer for Watch<'_> {
+    fn after_step(&mut self, simulation: &Simulation<'_>) -> Verdict {
+        let (system, state, audit) = (&self.model.system, simulation.state(), simulation.audit());
+        let [last, now] = &mut self.at;
+        system.evaluate(&state.x, state.t, last, now);
+        system.constraint_values(now, state.t, &mut self.phi);
+        self.at.swap(0, 1);
+        let gradients = analysis::constraint_jacobian(system, &state.x, state.t);
+        for ((worst, gradient), phi) in self.rows.iter_mut().zip(&gradients).zip(&self.phi) {
+            let rate: f64 = gradient.iter().zip(simulation.velocities()).map(|(g, v)| g * v).sum();
+            let size = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
+            *worst = [larger(worst[0], *phi), larger(worst[1], rate), larger(worst[2], size)];
+        }
+        self.speed = simulation.velocities().iter().fold(self.speed, |m, v| larger(m, *v));
+        (self.kinetic, self.work) = (larger(self.kinetic, audit.kinetic), larger(self.work, audit.work));
+        self.potential = [self.potential[0].min(audit.potential), self.potential[1].max(audit.potential)];
+        self.is_late = self.clock.elapsed().as_secs_f64() > self.limit;
+        if self.is_late { Verdict::Stop } else { Verdict::GoOn }
+    }
+}
+
+/// The larger of a size and that of a number; what is no number is largest.
+fn larger(size: f64, number: f64) -> f64 {
+    if number.is_nan() || number.abs() > size { number.abs() } else { size }
+}
+
+impl Watch<'_> {
+    /// Energy is measured by what was exchanged: the largest kinetic energy, the range of the potential one and the work.
+    /// What rounding of weights and increments may come to counts where next to nothing is, as with structures and with
+    /// light parts beside heavy ones. Rows are measured in lengths, by their gradients, and over the size and the speed of
+    /// the mechanism.
+    fn figures(&self, mechanism: &Mechanism, model: &Model, simulation: &Simulation<'_>) -> Figures {
+        let audit = simulation.audit();
+        let mass: f64 = model.bodies.iter().map(|body| body.mass).chain(model.points.iter().map(|point| point.mass)).sum();
+        let nominal = mechanism.size * mechanism.rate;
+        let rounded = ROUNDED * mechanism.weight + STIRRED * mass * nominal * nominal;
+        let exchanged = self.kinetic + (self.potential[1] - self.potential[0]) + self.work;
+        let speed = self.speed.max(SLOWEST * nominal);
+        let units = [exchanged + rounded / BROKEN, mass * speed, mechanism.size, speed];
+        let drift = audit.momentum_summary();
+        let momentum = drift.linear_drift + drift.angular_drift / mechanism.size;
+        let worst = |which: usize| {
+            let in_lengths = |row: &[f64; 3]| if row[2] > 0.0 { row[which] / row[2] } else { row[which] };
+            self.rows.iter().map(in_lengths).fold(0.0, larger)
+        };
+        let figures = [audit.energy_summary().max_drift, momentum, worst(0), worst(1)];
+        Figures { over_their_units: std::array::from_fn(|k| figures[k] / units[k]), units }
+    }
+}
+
+/// The methods that are run: the two that keep energy, or all that have a name.
+pub fn methods(all: bool) -> impl Iterator<Item = &'static Named> {
+    NAMED.iter().filter(move |named| all || ["conserving-ggl", "conserving"].contains(&named.name))
+}

@@ -1,0 +1,140 @@
+//! Very many random mechanisms, and whether the engine keeps its promises with them: `cargo run --release -p holonom-random
+//! -- --count 10000 --seed 1`. Chains and loops of all joints, masses over twelve decades, sizes over six, thin, redundant
+//! and singular ones. Nothing is asked of a mechanism but what the book promises: ranks that are right, energy and
+//! constraints where a run completes, words where it does not, an end in time and no panic.
+
+mod bodies;
+mod case;
+mod extras;
+mod generate;
+mod joints;
+mod judge;
+mod layout;
+mod mechanism;
+mod random;
+mod rank;
+mod report;
+mod shrink;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+use rayon::prelude::*;
+
+use case::{Case, Demand};
+use report::Report;
+
+/// What is said of runs that took far longer than others, which is known at the end.
+const SLOW: &str = "slow for its size";
+
+/// Mechanisms between two words of progress.
+const CHUNK: u64 = 1000;
+
+/// Runs random mechanisms and judges them; exits with 1 when the engine did something wrong.
+#[derive(Parser)]
+struct Options {
+    /// How many mechanisms
+    #[arg(long, default_value_t = 1000)]
+    count: u64,
+    /// The first seed; the others follow
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Prints the model of one seed and what becomes of it, and nothing else
+    #[arg(long, value_name = "SEED")]
+    one: Option<u64>,
+    /// With --one: leaves out all that may be left out so that it still fails in the same way; with the begin of the failure
+    /// to be kept, such as `rank` or `conserving-ggl`
+    #[arg(long, value_name = "FAILURE", requires = "one", num_args = 0..=1, default_missing_value = "")]
+    shrink: Option<String>,
+    /// Writes the models that failed into a folder
+    #[arg(long, value_name = "DIR")]
+    keep: Option<PathBuf>,
+    /// Runs all methods that have a name, not only those that keep energy
+    #[arg(long)]
+    all_methods: bool,
+    /// Most seconds of a processor that a run may take
+    #[arg(long, default_value_t = 2.0)]
+    limit: f64,
+}
+
+fn main() -> ExitCode {
+    let options = Options::parse();
+    let demand = Demand { methods: judge::methods(options.all_methods).collect(), limit: options.limit };
+    case::note_panics();
+    let failed = match options.one {
+        Some(seed) => one(seed, options.shrink.as_deref(), &demand),
+        None => many(&options, &demand),
+    };
+    match failed {
+        Ok(false) => ExitCode::SUCCESS,
+        Ok(true) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Shows one mechanism; what is said about it are comments, so that the output is a model file.
+fn one(seed: u64, shrink: Option<&str>, demand: &Demand) -> std::io::Result<bool> {
+    let mut mechanism = generate::mechanism(seed);
+    if let Some(which) = shrink {
+        mechanism = shrink::shrink(seed, mechanism, which, demand);
+    }
+    println!("{}", mechanism.toml());
+    let case = case::judge(seed, &mechanism, demand);
+    comments(&case, demand).iter().for_each(|line| println!("# {line}"));
+    Ok(!case.failures(demand).is_empty())
+}
+
+/// All that is known of a case.
+fn comments(case: &Case, demand: &Demand) -> Vec<String> {
+    let mut lines = Vec::new();
+    if let Some([n, r]) = case.size {
+        lines.push(format!("{n} coordinates, {r} rows"));
+    }
+    lines.extend(case.refused.iter().flat_map(|ending| case::line("model", ending).lines().map(str::to_string).collect::<Vec<_>>()));
+    lines.extend(case.rank.iter().map(|rank| format!("rank: {rank:?}")));
+    for (named, run) in demand.methods.iter().zip(&case.runs) {
+        lines.push(format!("{}, {:.1} ms", case::line(named.name, &run.ending), 1e3 * run.seconds));
+        if let Some(figures) = run.figures {
+            let shown = (0..4).map(|k| format!("{} {:.1e} of {:.1e}", judge::PROMISES[k], figures.over_their_units[k], figures.units[k]));
+            lines.push(format!("  {}", shown.collect::<Vec<_>>().join(", ")));
+        }
+    }
+    lines
+}
+
+/// Judges many mechanisms on all cores.
+fn many(options: &Options, demand: &Demand) -> std::io::Result<bool> {
+    if let Some(folder) = &options.keep {
+        std::fs::create_dir_all(folder)?;
+    }
+    let mut report = Report::default();
+    let end = options.seed.saturating_add(options.count);
+    for first in (options.seed..end).step_by(CHUNK as usize) {
+        let seeds = first..end.min(first.saturating_add(CHUNK));
+        let cases: Vec<Case> = seeds.into_par_iter().map(|seed| case::judge(seed, &generate::mechanism(seed), demand)).collect();
+        for case in &cases {
+            report.add(case, demand);
+            keep(options.keep.as_deref(), case.seed, &case.failures(demand))?;
+        }
+        eprintln!("{} of {}", (first - options.seed) + cases.len() as u64, options.count);
+    }
+    for seed in report.find_slow(demand) {
+        keep(options.keep.as_deref(), seed, &[SLOW.into()])?;
+    }
+    report.print(demand);
+    Ok(report.has_failures())
+}
+
+/// Writes the model of a seed that failed, with how; what was said of it before is kept.
+fn keep(folder: Option<&Path>, seed: u64, failures: &[String]) -> std::io::Result<()> {
+    let Some(folder) = folder.filter(|_| !failures.is_empty()) else { return Ok(()) };
+    let path = folder.join(format!("seed-{seed}.toml"));
+    let begun = if failures == [SLOW] { std::fs::read_to_string(&path).ok() } else { None };
+    let model = begun.unwrap_or_else(|| generate::mechanism(seed).toml());
+    let said: String = failures.iter().map(|failure| format!("# {failure}\n")).collect();
+    std::fs::write(path, said + &model)
+}
