@@ -62,7 +62,7 @@ pub struct Stabilized {
 }
 
 /// Steps with both levels in one matrix before sweeps are tried again.
-const COUPLED: u32 = 64;
+const COUPLED: u32 = 16;
 
 impl Stabilized {
     /// Allocates everything for a system.

@@ -84,8 +84,8 @@ impl Stabilized {
         let n = system.coordinates();
         let Sweeps { first, second } = sweeps;
         let tolerance = settings.tolerance * work.scales.length;
-        let whole = largest(&first[..n]).max(tolerance);
-        let least = (SWEPT * whole).max(tolerance);
+        let mut whole = largest(&first[..n]).max(tolerance);
+        let mut last = f64::INFINITY;
         for sweep in 1..=SWEEPS {
             add(1.0, first, &mut work.unknowns);
             self.follow(system, &first[..n], second, &mut work.full, &mut work.inertial);
@@ -93,6 +93,7 @@ impl Stabilized {
             add(1.0, second, unknowns);
             self.pull(n, second);
             let left = work.farthest(system, &self.force);
+            let least = (SWEPT * whole).max(tolerance);
             if left <= least || (settings.iterations.is_some() && sweep >= FEW) {
                 return Some(left / whole);
             }
@@ -101,16 +102,18 @@ impl Stabilized {
             add(-1.0, &self.force[..n], first);
             work.kkt.solve(first);
             let change = largest(&first[..n]);
-            if change > whole {
-                // What round-off leaves does not contract.
-                return if whole <= NOISE * tolerance { Some(1.0) } else { None };
+            if change > last {
+                break;
             }
+            // The first may be smaller than what the residual of the second level leads to.
+            (whole, last) = (whole.max(change), change);
             if change <= least {
                 add(1.0, first, &mut work.unknowns);
                 return Some(change / whole);
             }
         }
-        None
+        // What round-off leaves does not contract.
+        (whole <= NOISE * tolerance).then_some(1.0)
     }
 
     /// Adds to the right sides of u and γ' what a change of d brings there.

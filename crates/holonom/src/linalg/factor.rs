@@ -22,7 +22,7 @@ impl WithSimd for Factor<'_> {
         if let Some(blocks) = self.plan.one_front() {
             return with_blocks(self, simd, blocks);
         }
-        let (plan, Numbers { stale, exchange, exchanged, rows, units, own_units, .. }) = (self.plan, self.numbers);
+        let (plan, Numbers { stale, exchange, exchanged, rows, units, own_units, spread, .. }) = (self.plan, self.numbers);
         for (k, (front, exchanged)) in plan.fronts.iter().zip(exchanged).enumerate() {
             if !std::mem::take(&mut stale[k]) {
                 continue;
@@ -44,7 +44,7 @@ impl WithSimd for Factor<'_> {
             let exchange = &mut exchange[front.block * LANES..front.block * LANES + front.pivots];
             let own_units = &mut own_units[..front.head];
             own_units.copy_from_slice(&units[front.block..front.block + front.head]);
-            *exchanged = eliminate(simd, front, own, exchange, rows, own_units)
+            *exchanged = eliminate(simd, front, own, exchange, rows, own_units, spread[k])
                 .map_err(|pivot| Singular { pivot: plan.row[front.block * LANES + pivot] as usize })?;
         }
         Ok(())
@@ -56,9 +56,9 @@ impl OneFront for Factor<'_> {
     #[inline(always)]
     fn one<S: Simd, const B: usize>(self, simd: S) -> Self::Output {
         let front = Front { head: B, size: B, ..self.plan.fronts[0] };
-        let (Numbers { exchange, exchanged, rows, units, .. }, tiles) = (self.numbers, &mut self.tiles[..B * B]);
+        let (Numbers { exchange, exchanged, rows, units, spread, .. }, tiles) = (self.numbers, &mut self.tiles[..B * B]);
         let mut own_units: [Block; B] = std::array::from_fn(|k| units[k]);
-        exchanged[0] = eliminate(simd, &front, tiles, &mut exchange[..front.pivots], rows, &mut own_units)
+        exchanged[0] = eliminate(simd, &front, tiles, &mut exchange[..front.pivots], rows, &mut own_units, spread[0])
             .map_err(|pivot| Singular { pivot: self.plan.row[pivot] as usize })?;
         let inverse: [Tile; B] = std::array::from_fn(|k| lower(&tiles[k * (B + 1)]));
         for k in 0..B {
@@ -86,6 +86,7 @@ fn eliminate<S: Simd>(
     exchange: &mut [u32],
     rows: &mut [Block],
     units: &mut [Block],
+    spread: f64,
 ) -> Result<bool, usize> {
     let size = front.size;
     for k in front.pivots..front.head * LANES {
@@ -94,7 +95,7 @@ fn eliminate<S: Simd>(
     let mut exchanged = false;
     for block in 0..front.head {
         let pivots = block * (size + 1)..block * size + front.head;
-        let factors = match in_order(simd, &tiles[pivots.clone()], &units[block..], 1.0 / SMALL) {
+        let factors = match in_order(simd, &tiles[pivots.clone()], &units[block..], spread, 1.0 / SMALL) {
             Some(factors) => factors,
             None => {
                 if !exchanged {
@@ -103,7 +104,7 @@ fn eliminate<S: Simd>(
                 exchanged = true;
                 exchange_rows(block, front, tiles, exchange, rows, units)?;
                 // Round-off may put what was exchanged a little above.
-                in_order(simd, &tiles[pivots], &units[block..], 2.0 / SMALL).ok_or(block * LANES)?
+                in_order(simd, &tiles[pivots], &units[block..], spread, 2.0 / SMALL).ok_or(block * LANES)?
             }
         };
         let inverse = factors.lower_inverse();
@@ -127,24 +128,32 @@ fn eliminate<S: Simd>(
 /// The factors of the first of a column of tiles, where in the order as it is all pivots are fit: nothing in L is larger than
 /// `most`, where each row has its unit.
 #[inline(always)]
-fn in_order<S: Simd>(simd: S, panel: &[Tile], units: &[Block], most: f64) -> Option<Factors> {
-    let ((diagonal, below), (own, others)) = (panel.split_first()?, units.split_first()?);
-    let per_unit = own.map(|unit| 1.0 / unit);
-    let factors = Factors::of(simd, diagonal, &per_unit);
-    // Neither infinite numbers nor what is no number pass.
+fn in_order<S: Simd>(simd: S, panel: &[Tile], units: &[Block], spread: f64, most: f64) -> Option<Factors> {
+    let (diagonal, below) = panel.split_first()?;
+    let factors = Factors::of(simd, diagonal, &[1.0; LANES]);
+    let mut largest = factors.largest()?;
+    for tile in below {
+        factors.over_upper(simd, tile).iter().for_each(|column| raise(&mut largest, column, 1.0));
+    }
+    // Where all are fit whatever their units the units need not be looked at. Neither infinite numbers nor what is no number pass.
+    match largest.iter().all(|l| l * spread <= most) {
+        true => Some(factors),
+        false => in_units(simd, panel, units, most).then_some(factors),
+    }
+}
+
+/// Whether nothing in L is larger than `most` where each row has its unit.
+#[inline(never)]
+fn in_units<S: Simd>(simd: S, panel: &[Tile], units: &[Block], most: f64) -> bool {
+    let per_unit = units[0].map(|unit| 1.0 / unit);
+    let factors = Factors::of(simd, &panel[0], &per_unit);
     let fits = |largest: &Block, units: &Block| largest.iter().zip(units).all(|(l, unit)| l * unit <= most);
-    if !fits(&factors.largest()?, own) {
-        return None;
-    }
-    for (tile, units) in below.iter().zip(others) {
+    let of_tile = |(tile, units): (&Tile, &Block)| {
         let mut largest = [0.0; LANES];
-        let columns = factors.over_upper(simd, tile);
-        columns.iter().zip(per_unit).for_each(|(column, unit)| raise(&mut largest, column, unit));
-        if !fits(&largest, units) {
-            return None;
-        }
-    }
-    Some(factors)
+        factors.over_upper(simd, tile).iter().zip(per_unit).for_each(|(column, unit)| raise(&mut largest, column, unit));
+        fits(&largest, units)
+    };
+    factors.largest().is_some_and(|largest| fits(&largest, &units[0])) && panel[1..].iter().zip(&units[1..]).all(of_tile)
 }
 
 /// Exchanges the row of each pivot of a block that is far smaller than the largest number below it among the pivots for the
