@@ -1,0 +1,177 @@
+//! Hard mechanisms, that runs once completed with wrong: light parts between heavy ones, redundant rows through a dead centre,
+//! many bodies and other units, thin rods. `benches/hard` runs more of them beside solutions of its own.
+
+use holonom::analysis::rank;
+use holonom::model::Model;
+use holonom::simulation::{Choice, Method, Promise, Simulation, Status, Summary, Verdict};
+use holonom_io::Source;
+
+fn model(text: &str) -> Model {
+    let source = Source::read("model.toml", text.as_bytes()).unwrap_or_else(|message| panic!("{message}"));
+    source.model().unwrap_or_else(|message| panic!("{message}"))
+}
+
+fn method(name: &str) -> Method {
+    Method::resolve(&Choice { method: Some(name.into()), ..Choice::default() }).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Runs a model to its end.
+fn run(name: &str, model: &Model, of: &str, step: f64, end: f64) -> Summary {
+    let mut simulation = Simulation::new(&model.system, method(of), step).unwrap_or_else(|error| panic!("{name}, {of}: {error}"));
+    let status = simulation.run(end, &mut |_: &Simulation<'_>| Verdict::GoOn);
+    assert_eq!(status, Status::Completed, "{name}, {of}");
+    let size = rank(&model.system, &simulation.state().x, end).size(&model.system);
+    simulation.summary(name, end, &status, size)
+}
+
+/// Degrees of freedom and redundant rows at the start.
+fn freedom(model: &Model) -> [usize; 2] {
+    let simulation = Simulation::new(&model.system, method("conserving"), 1e-3).unwrap_or_else(|error| panic!("{error}"));
+    let size = rank(&model.system, &simulation.state().x, 0.0).size(&model.system);
+    [size.dof, size.redundant]
+}
+
+const CONSERVING: [&str; 2] = ["conserving-ggl", "conserving"];
+
+/// Points in a row from the ground, released level in the plane.
+fn row(masses: &[f64], length: f64) -> String {
+    let mut text = "plane = \"xz\"\ngravity = [0, -9.81]\n".to_string();
+    for (k, mass) in masses.iter().enumerate() {
+        let (x, before) = (length * (k + 1) as f64, if k == 0 { "ground".into() } else { format!("p{}", k - 1) });
+        text += &format!("[point.p{k}]\nmass = {mass}\nposition = [{x}, 0]\n");
+        text += &format!("[constraint.r{k}]\ntype = \"distance\"\nbetween = [\"{before}\", \"p{k}\"]\n");
+    }
+    text
+}
+
+/// Energies are of the size of the heavy part's, 1 kg over 1 m.
+#[test]
+fn light_parts_between_heavy_ones_keep_the_energy() {
+    let rows = [1e-2, 1e-3, 1e-5, 1e-7, 1e-9].map(|m| vec![m, m, 1.0]);
+    let alternating = [1e-3, 1e-6].map(|m| vec![m, 1.0, m, 1.0]);
+    let hanging = [1e-6, 1e-9].map(|m| vec![1.0, m, m]);
+    for masses in rows.iter().chain(&alternating).chain(&hanging) {
+        let model = model(&row(masses, 1.0 / masses.len() as f64));
+        for of in CONSERVING {
+            let summary = run(&format!("{masses:?}"), &model, of, 0.01, 1.0);
+            let (drift, rate) = (summary.energy.max_drift, summary.violation.velocity);
+            println!("{masses:?}, {of}: drift {drift:.1e} J, {:.1} iterations", summary.work.iterations_per_step);
+            assert!(drift <= 1e-10 * 9.81, "{masses:?}, {of}: drift {drift:e}");
+            assert!(of == "conserving" || rate <= 1e-11, "{masses:?}: rates of rows {rate:e}");
+            assert!(summary.violation.position <= 1e-14, "{masses:?}, {of}");
+            assert_eq!([summary.size.dof, summary.size.redundant], [masses.len(), 0], "{masses:?}");
+        }
+    }
+}
+
+/// A beam on `links` equal links, all in a line at the start: all but two of the links are redundant.
+fn flattened(links: usize) -> String {
+    let mut text = "plane = \"xy\"\ngravity = [0, -9.81]\n".to_string();
+    let bar = |name: String, a: String, b: String, mass: f64| format!("[bar.{name}]\nbetween = [\"{a}\", \"{b}\"]\nmass = {mass}\n");
+    for k in 0..links {
+        text += &format!("[point.G{k}]\nposition = [{k}, 0]\nfixed = true\n");
+        text += &format!("[point.P{k}]\nposition = [{}, 0]\nvelocity = [0, 3]\n", k + 1);
+        text += &bar(format!("link{k}"), format!("G{k}"), format!("P{k}"), 1.0);
+        if k > 0 {
+            text += &bar(format!("beam{k}"), format!("P{}", k - 1), format!("P{k}"), 10.0);
+        }
+    }
+    text
+}
+
+/// 4.5 J for each link, and 90 J for each beam.
+#[test]
+fn parallelograms_go_through_their_dead_centres() {
+    for links in [2, 4, 8, 11, 20] {
+        let model = model(&flattened(links));
+        for of in ["conserving-ggl", "conserving", "conserving-projected"] {
+            let summary = run(&format!("{links} links"), &model, of, 1e-3, 2.5);
+            let (energy, scale) = (&summary.energy, 50.0 * links as f64);
+            let off = if of == "conserving-projected" { energy.max_rise } else { energy.max_drift };
+            println!("{links} links, {of}: {off:.1e} J of {scale} J");
+            assert!(off <= 1e-10 * scale, "{links} links, {of}: {off:e}");
+        }
+    }
+}
+
+/// Boxes in a row, each hinged to the one before about an axis across.
+fn boxes(count: usize, alternates: bool, [mass, length]: [f64; 2], reactions: bool) -> String {
+    let mut text = format!("gravity = [0, 0, {}]\n[output]\nreactions = {reactions}\n", -9.81 * length / 0.5);
+    for k in 0..count {
+        let (x, place) = (length * (k as f64 + 0.5), length * k as f64);
+        let before = if k == 0 { "ground".into() } else { format!("b{}", k - 1) };
+        let axis = if alternates && k % 2 == 1 { "[0, 0, 1]" } else { "[0, 1, 0]" };
+        let size = format!("[{length}, {}, {}]", 0.2 * length, 0.1 * length);
+        text += &format!("[body.b{k}]\nmass = {mass}\nshape = {{ box = {size} }}\nposition = [{x}, 0, 0]\n");
+        text += &format!("[joint.j{k}]\ntype = \"revolute\"\nbetween = [\"{before}\", \"b{k}\"]\nat = [{place}, 0, 0]\naxis = {axis}\n");
+    }
+    text
+}
+
+#[test]
+fn freedom_does_not_depend_on_size_or_units() {
+    for reactions in [false, true] {
+        for alternates in [false, true] {
+            let many = model(&boxes(250, alternates, [2.0, 0.5], reactions));
+            assert_eq!(freedom(&many), [250, 0], "250 boxes, alternating {alternates}, reactions {reactions}");
+            // In kg and m; in t and mm; 1 mg and 10 mm; in g and km.
+            for unit in [[2.0, 0.5], [0.002, 500.0], [1e-6, 0.01], [2e3, 5e-4], [1e-9, 1e3]] {
+                let two = model(&boxes(2, alternates, unit, reactions));
+                assert_eq!(freedom(&two), [2, 0], "{unit:?}, alternating {alternates}, reactions {reactions}");
+                for of in CONSERVING {
+                    let summary = run(&format!("{unit:?}"), &two, of, 0.01, 0.5);
+                    let scale = 9.81 * unit[0] * unit[1] * unit[1];
+                    assert!(summary.energy.max_drift <= 1e-10 * scale, "{unit:?}, {of}: {:e}", summary.energy.max_drift);
+                }
+            }
+        }
+    }
+}
+
+/// Two hinged rods with so much of their inertia about themselves: the motion is that of rods without any.
+#[test]
+fn thin_rods_move_like_rods_without_thickness() {
+    let rods = |share: f64| {
+        let mut text = "gravity = [0, 0, -9.81]\n".to_string();
+        for (k, before) in ["ground", "b0"].iter().enumerate() {
+            let i = 1.0 / 12.0;
+            text += &format!("[body.b{k}]\nmass = 1\ninertia = [{}, {i}, {i}]\nposition = [{}, 0, 0]\n", share * i, k as f64 + 0.5);
+            text += &format!("[joint.j{k}]\ntype = \"revolute\"\nbetween = [\"{before}\", \"b{k}\"]\nat = [{k}, 0, 0]\naxis = [0, 1, 0]\n");
+        }
+        text
+    };
+    for of in ["conserving-ggl", "conserving", "radau"] {
+        let mut limit = None;
+        for share in [0.0, 1e-12, 1e-9, 1e-7, 1e-4] {
+            let model = model(&rods(share));
+            assert_eq!(freedom(&model), [2, 0], "{share:e}");
+            let mut simulation = Simulation::new(&model.system, method(of), 0.01).unwrap_or_else(|error| panic!("{share:e}: {error}"));
+            assert_eq!(simulation.run(1.0, &mut |_: &Simulation<'_>| Verdict::GoOn), Status::Completed, "{share:e}, {of}");
+            let kinetic = simulation.audit().kinetic;
+            let first = *limit.get_or_insert(kinetic);
+            assert!((kinetic - first).abs() <= 1e-9 * first, "{share:e}, {of}: kinetic energy {kinetic} J beside {first} J");
+        }
+    }
+}
+
+/// Light wheels are no singular positions, and neither is a structure.
+#[test]
+fn healthy_mechanisms_are_not_near_singular() {
+    for name in ["robot-arm", "slider-crank", "stewart-platform"] {
+        let path = format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let model = model(&std::fs::read_to_string(path).unwrap());
+        let weakest = rank(&model.system, model.system.start_position(), 0.0).weakest.expect("there are rows");
+        assert!(weakest.1 >= 1e-4, "{name}: `{}` adds {:e}", weakest.0, weakest.1);
+    }
+}
+
+#[test]
+fn methods_say_what_they_keep() {
+    let kept = |name: &str| method(name).promises().into_iter().map(Promise::words).collect::<Vec<_>>().join(", ");
+    assert_eq!(kept("conserving-ggl"), "energy, momenta, Φ, Φ̇");
+    assert_eq!(kept("conserving"), "energy, momenta, Φ");
+    assert_eq!(kept("conserving-projected"), "energy that never rises, momenta, Φ, Φ̇");
+    assert_eq!(kept("trapezoidal-projected"), "Φ, Φ̇, Φ̈");
+    assert_eq!(kept("radau"), "Φ, Φ̇");
+    assert_eq!(kept("penalty/conserving"), "");
+}
