@@ -6,7 +6,7 @@ use holonom::analysis::{Rank, projection_form, rank, undetermined};
 use holonom::model::Model;
 use holonom::projection::Solve;
 use holonom::record::RecordedJoint;
-use holonom::simulation::{Method, PENALTY, Simulation};
+use holonom::simulation::{Method, ModelSize, PENALTY, Simulation};
 use serde_json::json;
 
 use crate::failure::Failure;
@@ -76,7 +76,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
         (None, None) => "no constraints".to_string(),
     };
     let items = [
-        ("size", format!("{} coordinates, {} rows of rank {}", size.coordinates, size.constraints, size.rank)),
+        ("size", sizes(&size, &held.size)),
         ("freedom", format!("{} degrees of freedom", size.dof)),
         ("redundant", redundant),
         ("reactions", reactions),
@@ -106,9 +106,20 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// Coordinates and rows as they are solved, and where bodies share nodes those of every body and joint by itself, which redundancies
+/// are told by.
+fn sizes(solved: &ModelSize, plain: &ModelSize) -> String {
+    let words = |size: &ModelSize| format!("{} coordinates, {} rows of rank {}", size.coordinates, size.constraints, size.rank);
+    match solved == plain {
+        true => words(solved),
+        false => format!("{}; without shared nodes {}", words(solved), words(plain)),
+    }
+}
+
 /// What holds a model, row by row.
 struct Held {
     rank: Rank,
+    size: ModelSize,
     /// Rows that take part in a redundancy.
     involved: Vec<String>,
     /// Components of forces and moments of joints that redundancies leave undetermined.
@@ -123,6 +134,7 @@ impl Held {
         let simulation = Simulation::new(&model.system, method, step).map_err(load::start_failure)?;
         let x = &simulation.state().x;
         let rank = rank(&model.system, x, 0.0);
+        let size = rank.size(&model.system);
         let (mut involved, mut not_unique) = (Vec::new(), Vec::new());
         if let Some(free) = undetermined(&model.system, x, 0.0).filter(|_| !rank.redundant.is_empty()) {
             involved = free.rows().into_iter().map(|row| model.system.row_names()[row].clone()).collect();
@@ -135,7 +147,7 @@ impl Held {
                 }
             }
         }
-        Ok(Self { rank, involved, not_unique, notes: notes(model) })
+        Ok(Self { rank, size, involved, not_unique, notes: notes(model) })
     }
 }
 

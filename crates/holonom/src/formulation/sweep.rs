@@ -18,7 +18,7 @@ const SWEPT: f64 = 1e-4;
 const SWEEPS: usize = 8;
 
 /// Changes of so many tolerances are round-off.
-const NOISE: f64 = 1e3;
+const NOISE: f64 = 1e6;
 
 /// Most sweeps of an iteration in steps of equal cost.
 const FEW: usize = 2;
