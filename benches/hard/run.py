@@ -128,11 +128,13 @@ def truth_of(case, times):
 def broken(case, method, found):
     """What a summary says against the method's promises or against what is known of the mechanism."""
     far, violation = FAR * case.offset, found["violation"]
-    limits = [("Φ", violation["position"], (ON_POSITION * case.length + far) * case.length)]
+    # Rows are lengths or products of two: the norm of both has the laxer limit.
+    unit = max(case.length, 1.0)
+    limits = [("Φ", violation["position"], (ON_POSITION * case.length + far) * unit)]
     if method in ENERGY:
         limits.append((ENERGY[method], found["energy"][ENERGY[method]], KEPT * case.energy + far * case.weight))
     if method in VELOCITY:
-        limits.append(("Φ̇", violation["velocity"], (ON_VELOCITY * case.length + far) * case.speed))
+        limits.append(("Φ̇", violation["velocity"], (ON_VELOCITY * unit + far) * case.speed))
     if method in ACCELERATION:
         share = ON_ACCELERATION + 50 * EPSILON * case.ratio
         limits.append(("Φ̈", violation["acceleration"], (share * case.length + far) * case.speed * case.pace()))
