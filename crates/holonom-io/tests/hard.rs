@@ -154,7 +154,7 @@ fn thin_rods_move_like_rods_without_thickness() {
     }
 }
 
-/// Light wheels are no singular positions, and neither is a structure.
+/// Light wheels are no singular positions.
 #[test]
 fn healthy_mechanisms_are_not_near_singular() {
     for name in ["robot-arm", "slider-crank", "stewart-platform"] {

@@ -107,7 +107,7 @@ fn slots(system: &System) -> Vec<RowSlot> {
 }
 
 /// The largest mass in the mechanism that each free node belongs to, all that rows and mass hold together, kg: what a light node
-/// counts as. Ten digits of what it adds itself are kept where it adds anything.
+/// counts as, but no more than 1e12 of its own mass.
 fn around(system: &System, own: &[f64], slots: &[RowSlot]) -> Vec<f64> {
     let mut root: Vec<usize> = (0..own.len()).collect();
     let mut join = |a: usize, b: usize| {
