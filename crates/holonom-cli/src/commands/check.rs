@@ -50,7 +50,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
             "rows_in_redundancies": held.involved, "reactions_not_unique": held.not_unique, "notes": held.notes,
             "near_singular": near, "moved": start.moved, "turned": start.turned,
             "residual": { "position": audit.phi, "velocity": audit.phi_dot, "acceleration": audit.phi_ddot },
-            "energy": { "kinetic": audit.kinetic, "potential": audit.potential },
+            "energy": { "kinetic": audit.kinetic, "potential": audit.potential + audit.lift },
         });
         if let Some(form) = form {
             value["projection"] = json!({
@@ -83,7 +83,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
         ("singular", singular),
         ("corrected", format!("positions by {} m, velocities by {} m/s", short(start.moved), short(start.turned))),
         ("residual", format!("position {}, velocity {}, acceleration {}", short(audit.phi), short(audit.phi_dot), short(audit.phi_ddot))),
-        ("energy", format!("kinetic {} J, potential {} J", short(audit.kinetic), short(audit.potential))),
+        ("energy", format!("kinetic {} J, potential {} J", short(audit.kinetic), short(audit.potential + audit.lift))),
         ("gravity", loaded.gravity()),
         ("method", name),
     ];
@@ -132,14 +132,15 @@ impl Held {
     fn new(plain: &Loaded, method: Method, step: f64) -> Result<Self, Failure> {
         let model = &plain.model;
         let simulation = Simulation::new(&model.system, method, step).map_err(load::start_failure)?;
-        let x = &simulation.state().x;
-        let rank = rank(&model.system, x, 0.0);
+        let (system, x) = (&model.system, &simulation.state().x);
+        let world = system.in_world(x);
+        let rank = rank(system, x, 0.0);
         let size = rank.size(&model.system);
         let (mut involved, mut not_unique) = (Vec::new(), Vec::new());
         if let Some(free) = undetermined(&model.system, x, 0.0).filter(|_| !rank.redundant.is_empty()) {
             involved = free.rows().into_iter().map(|row| model.system.row_names()[row].clone()).collect();
             for joint in &model.channels.joints {
-                let unique = free.are_unique(&joint.rows, &joint.nodes, joint.place(x, model.dimension));
+                let unique = free.are_unique(&joint.rows, &joint.nodes, system.of_world(joint.place(&world, model.dimension)));
                 let columns = RecordedJoint::columns(model.axes);
                 let open: Vec<&str> = columns.iter().filter(|(k, _)| !unique[*k]).map(|(_, column)| column.as_str()).collect();
                 if !open.is_empty() {

@@ -89,7 +89,8 @@ pub fn run(description: &Table, name: &str, step: f64, steps: usize) -> Track {
 
 /// What a simulation shows at the moment.
 pub fn moment(model: &Model, simulation: &Simulation<'_>) -> Moment {
-    let (x, v, dim) = (&simulation.state().x[..], simulation.velocities(), model.dimension);
+    let world = model.system.in_world(&simulation.state().x);
+    let (x, v, dim) = (&world[..], simulation.velocities(), model.dimension);
     let place = |terms: &[Term]| [sum(terms, x, dim, 1.0), sum(terms, v, dim, 0.0)];
     // As entries that are written out are called.
     let plain = |name: &str| name.replace('[', "_").replace(']', "");

@@ -131,6 +131,9 @@ impl Workspace {
     fn load_arguments(&self, system: &System, load: &LoadEntry) -> ([f64; SIZE], [f64; SIZE]) {
         let (mut x, mut v) = ([0.0; SIZE], [0.0; SIZE]);
         gather(system.dim, &load.nodes, &self.xs, &mut x);
+        for (x, _) in x.chunks_exact_mut(system.dim).zip(&load.nodes).filter(|(_, node)| system.is_point[node.index()]) {
+            x.iter_mut().zip(system.origin).for_each(|(x, origin)| *x += origin);
+        }
         gather(system.dim, &load.nodes, &self.vs, &mut v);
         (x, v)
     }

@@ -56,7 +56,7 @@ impl RecordedJoint {
         Self::components(axes.len()).iter().map(|&k| (k, ending(k))).collect()
     }
 
-    /// Where it is at the positions `x` of all nodes, m.
+    /// Where it is at the positions `x` of all nodes in the world, m.
     pub fn place(&self, x: &[f64], dim: usize) -> [f64; 3] {
         at(&self.at, x, dim)
     }
@@ -135,7 +135,8 @@ impl Channels {
 
     /// Appends the columns of motion.
     pub fn motion(&self, simulation: &Simulation<'_>, last: &mut [UnitQuaternion<f64>], row: &mut Vec<f64>) {
-        let (x, v, dim) = (&simulation.state().x[..], simulation.velocities(), self.axes.len());
+        let x = simulation.system().in_world(&simulation.state().x);
+        let (x, v, dim) = (&x[..], simulation.velocities(), self.axes.len());
         for terms in self.points.iter().map(|point| &point.terms) {
             row.extend_from_slice(&at(terms, x, dim)[..dim]);
             row.extend_from_slice(&rate(terms, v, dim)[..dim]);
@@ -160,12 +161,13 @@ impl Channels {
     pub fn reactions(&self, simulation: &Simulation<'_>, row: &mut Vec<f64>) {
         let Some(reactions) = simulation.reactions() else { return };
         let dim = self.axes.len();
+        let x = simulation.system().in_world(&simulation.state().x);
         row.extend_from_slice(&reactions.lambda);
         for node in self.points.iter().filter_map(node) {
             row.extend_from_slice(&reactions.force[node.index() * dim..(node.index() + 1) * dim]);
         }
         for joint in &self.joints {
-            let about = joint.place(&simulation.state().x, dim);
+            let about = joint.place(&x, dim);
             let (force, moment) = simulation.wrench(joint.rows.clone(), &joint.nodes, about);
             let components = [force[0], force[1], force[2], moment[0], moment[1], moment[2]];
             row.extend(RecordedJoint::components(dim).iter().map(|&k| joint.sign * components[k]));

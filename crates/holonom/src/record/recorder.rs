@@ -58,7 +58,8 @@ impl<'a> Recorder<'a> {
     fn record(&mut self, simulation: &Simulation<'_>) {
         let (audit, state) = (simulation.audit(), simulation.state());
         self.row.clear();
-        self.row.extend([state.t, audit.energy(), audit.kinetic, audit.potential, audit.work, self.since[0], self.since[1]]);
+        let lift = audit.lift;
+        self.row.extend([state.t, audit.energy() + lift, audit.kinetic, audit.potential + lift, audit.work, self.since[0], self.since[1]]);
         self.since = [0.0; 2];
         self.row.extend([audit.phi, audit.phi_dot, audit.phi_ddot, audit.iterations as f64]);
         self.channels.motion(simulation, &mut self.orientations, &mut self.row);

@@ -13,6 +13,8 @@ pub struct Audit {
     /// T and V at the present state.
     pub kinetic: f64,
     pub potential: f64,
+    /// What V is more when points are counted from the world's origin.
+    pub lift: f64,
     /// Work done on the system since the start.
     pub work: f64,
     /// ΔE_i and ΔE_p of the last nominal step (21).
@@ -71,12 +73,15 @@ impl Audit {
         system.constraint_values(&work.at_end, state.t, &mut work.phi);
         let potential = energy::potential(system, &work.weight, &state.x, &work.at_end, penalty.map(|alpha| (alpha, work.phi.as_slice())));
         let kinetic = energy::kinetic(system, &state.v);
+        let nodes = work.weight.chunks_exact(system.dim).zip(&system.is_point).filter(|(_, is_point)| **is_point);
+        let lift = nodes.flat_map(|(weight, _)| weight.iter().zip(system.origin).map(|(weight, origin)| weight * origin)).sum();
         let momenta = energy::momenta(system, &state.x, &state.v, &mut work.full);
         let mut kept_momenta = [true; 6];
         energy::drop_driven_momenta(system, work, &state.x, &mut kept_momenta);
         let mut audit = Self {
             kinetic,
             potential,
+            lift,
             work: 0.0,
             integrator: 0.0,
             projection: 0.0,
@@ -240,7 +245,7 @@ impl Audit {
     pub fn energy_summary(&self) -> EnergySummary {
         let rise = self.energy() - self.initial;
         EnergySummary {
-            initial: self.initial,
+            initial: self.initial + self.lift,
             last: self.energy(),
             max_drift: self.max_drift,
             max_rise: self.max_rise,

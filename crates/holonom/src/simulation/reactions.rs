@@ -35,6 +35,7 @@ impl Simulation<'_> {
     pub fn wrench(&self, rows: Range<usize>, nodes: &[(NodeId, bool)], about: [f64; 3]) -> ([f64; 3], [f64; 3]) {
         let Some(reactions) = &self.reactions else { return ([0.0; 3], [0.0; 3]) };
         let gradient = &self.work.at_start.gradient;
+        let about = self.system.of_world(about);
         wrench(self.system.dim, &self.work.kkt, rows, &reactions.lambda, gradient, nodes, about, &self.state.x)
     }
 

@@ -70,6 +70,9 @@ pub struct SystemBuilder {
     size: f64,
 }
 
+/// So many times farther away than large, a mechanism is counted from its own middle.
+const FAR: f64 = 1e3;
+
 impl SystemBuilder {
     /// An empty system of `dim` = 2 or 3 coordinates a node with gravity in its axes, m/s².
     pub fn new(dim: usize, gravity: [f64; 3]) -> Self {
@@ -256,8 +259,38 @@ impl SystemBuilder {
         self.custom.push(CustomEntry { name: name.into(), nodes: nodes.to_vec(), rows });
     }
 
+    /// Where points are counted from: the world's origin, or the middle of the points where that is much farther away than they
+    /// are from each other. Where rows are of coordinates in the world these are kept.
+    fn origin(&self, is_point: &[bool]) -> [f64; 3] {
+        let (mut middle, mut extent) = ([0.0; 3], self.size);
+        for c in 0..self.dim {
+            let points = self.position.chunks_exact(self.dim).zip(is_point).filter(|(_, is_point)| **is_point).map(|(x, _)| x[c]);
+            let [low, high] = points.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+            extent = extent.max(high - low);
+            // Of few digits, so that differences from it have no round-off.
+            middle[c] = f64::from((0.5 * (low + high)) as f32);
+        }
+        let [shortest, longest] = self.invariants.lengths(&self.position);
+        // A single point shows no size; what holds it does.
+        let extent = if extent > 0.0 { extent } else { shortest };
+        // Rows of coordinates in the world have all their digits in these.
+        let is_tied = longest > FAR * extent || !self.custom.is_empty();
+        let is_far = middle.iter().any(|x| x.is_finite() && x.abs() > FAR * extent);
+        if is_far && !is_tied { middle } else { [0.0; 3] }
+    }
+
     /// The finished system.
-    pub fn build(self) -> System {
+    pub fn build(mut self) -> System {
+        let mut is_point = vec![true; self.free + self.motions.len()];
+        self.directions.iter().for_each(|&node| is_point[node as usize] = false);
+        let origin = self.origin(&is_point);
+        if origin != [0.0; 3] {
+            for (x, _) in self.position.chunks_exact_mut(self.dim).zip(&is_point).filter(|(_, is_point)| **is_point) {
+                x.iter_mut().zip(origin).for_each(|(x, origin)| *x -= origin);
+            }
+            self.invariants.move_origin(&is_point, origin);
+            self.gauges.move_origin(&is_point, origin);
+        }
         let mut row_names = self.row_names;
         for custom in &self.custom {
             match custom.rows.rows() {
@@ -270,8 +303,6 @@ impl SystemBuilder {
             weighing[node as usize][0] += m;
             weighing[node as usize][1] += s;
         }
-        let mut is_point = vec![true; self.free + self.motions.len()];
-        self.directions.iter().for_each(|&node| is_point[node as usize] = false);
         let is_pfaffian = |row: &Row| matches!(row.quantity, Quantity::Function(id) if self.functions.is_pfaffian(id));
         let velocity_rows = (0..self.rows.len() as u32).filter(|&k| is_pfaffian(&self.rows[k as usize])).collect();
         let function_rows =
@@ -279,6 +310,7 @@ impl SystemBuilder {
         System {
             weighing,
             is_point,
+            origin,
             dim: self.dim,
             free: self.free,
             mass: Mass::new(self.free + self.motions.len(), self.mass),

@@ -56,6 +56,10 @@ impl Gauges {
         Self { invariants: Invariants::new(dim), functions: Functions::default(), names: Vec::new() }
     }
 
+    pub fn move_origin(&mut self, is_point: &[bool], origin: [f64; 3]) {
+        self.invariants.move_origin(is_point, origin);
+    }
+
     pub fn add(&mut self, name: String, form: &Form) {
         let part = form.part(&mut self.invariants);
         self.functions.add(&self.invariants, &[(part, 1.0)]);

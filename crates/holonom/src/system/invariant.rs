@@ -60,6 +60,11 @@ pub(crate) enum HessianBlock {
     Skew(f64, [f64; 3]),
 }
 
+/// A sum of factors of places is a whole number but for round-off, which would be much times a far origin.
+fn whole(sum: f64) -> f64 {
+    if (sum - sum.round()).abs() < 1e-12 { sum.round() } else { sum }
+}
+
 impl Invariants {
     pub(crate) fn new(dim: usize) -> Self {
         Self { dim, items: Vec::new(), vectors: vec![[0.0; 3]], term_node: Vec::new(), term_factors: Vec::new() }
@@ -106,6 +111,37 @@ impl Invariants {
             }
         }
         Sum { start, end: self.term_node.len() as u32, constant: self.vector(constant) }
+    }
+
+    /// Lengths of the shortest sum of nodes that is not nothing and of the longest, m.
+    pub(crate) fn lengths(&self, x: &[f64]) -> [f64; 2] {
+        let sums = self.items.iter().flat_map(|item| [item.u, item.w]).filter(|sum| sum.start < sum.end);
+        let length = |sum: Sum| match self.dim {
+            2 => self.sum_at::<2>(&sum, 1.0, x.as_chunks().0).iter().map(|c| c * c).sum::<f64>().sqrt(),
+            _ => self.sum_at::<3>(&sum, 1.0, x.as_chunks().0).iter().map(|c| c * c).sum::<f64>().sqrt(),
+        };
+        let lengths = sums.map(length).filter(|length| *length > 0.0);
+        lengths.fold([f64::INFINITY, 0.0], |[shortest, longest], length| [shortest.min(length), longest.max(length)])
+    }
+
+    /// Has the points among the nodes (one flag a node) counted from another origin: what the sums are stays as it is.
+    pub(crate) fn move_origin(&mut self, is_point: &[bool], origin: [f64; 3]) {
+        for k in 0..self.items.len() {
+            let (u, w) = (self.items[k].u, self.items[k].w);
+            let [u, w] = [u, w].map(|sum| Sum { constant: self.moved(&sum, is_point, origin), ..sum });
+            (self.items[k].u, self.items[k].w) = (u, w);
+        }
+    }
+
+    /// The constant of a sum whose points are counted from another origin.
+    fn moved(&mut self, sum: &Sum, is_point: &[bool], origin: [f64; 3]) -> u32 {
+        let slots = (sum.start as usize..sum.end as usize).filter(|&s| is_point[self.term_node[s] as usize]);
+        let [factor, turn] = slots.fold([0.0; 2], |[f, g], s| [f + self.term_factors[s][0], g + self.term_factors[s][1]]).map(whole);
+        let mut constant = self.vectors[sum.constant as usize];
+        (0..self.dim).for_each(|c| constant[c] += factor * origin[c]);
+        constant[0] -= turn * origin[1];
+        constant[1] += turn * origin[0];
+        self.vector(constant)
     }
 
     fn are_equal(&self, sum: &Sum, other: &Sum) -> bool {

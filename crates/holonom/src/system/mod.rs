@@ -37,6 +37,7 @@ pub use motion::{Constant, Signal};
 pub use slots::RowSlot;
 pub(crate) use slots::{add_along_rows, along, scatter, scatter_rows};
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::linalg::Plans;
@@ -104,6 +105,8 @@ pub struct System {
     pub(crate) weighing: Vec<[f64; 2]>,
     /// Whether each node is a point and not a direction.
     pub(crate) is_point: Vec<bool>,
+    /// Where points are counted from, m: positions of systems far away lose no digits.
+    pub(crate) origin: [f64; 3],
     pub(crate) gravity: [f64; 3],
     pub(crate) invariants: Invariants,
     pub(crate) functions: Functions,
@@ -190,7 +193,29 @@ impl System {
         laws.chain(self.loads.iter().map(|load| load.name.as_str()))
     }
 
-    /// Positions of all nodes as the model gives them (D × nodes), m.
+    /// Where the coordinates of points are counted from, m, in the world; its origin but for systems that are far from it.
+    pub fn origin(&self) -> [f64; 3] {
+        self.origin
+    }
+
+    /// Positions of all nodes in the world (D × nodes), m, from those of a state.
+    pub fn in_world<'x>(&self, x: &'x [f64]) -> Cow<'x, [f64]> {
+        if self.origin == [0.0; 3] {
+            return Cow::Borrowed(x);
+        }
+        let mut world = x.to_vec();
+        for (x, _) in world.chunks_exact_mut(self.dim).zip(&self.is_point).filter(|(_, is_point)| **is_point) {
+            x.iter_mut().zip(self.origin).for_each(|(x, origin)| *x += origin);
+        }
+        Cow::Owned(world)
+    }
+
+    /// A place in the world as the system counts it, m.
+    pub fn of_world(&self, place: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|c| place[c] - self.origin[c])
+    }
+
+    /// Positions of all nodes as the model gives them (D × nodes), m, from [`System::origin`].
     pub fn start_position(&self) -> &[f64] {
         &self.start_position
     }
@@ -212,7 +237,7 @@ impl System {
             for c in 0..self.dim {
                 let [position, velocity, acceleration] = motion[c].at(t);
                 let i = n + k * self.dim + c;
-                x[i] = position;
+                x[i] = position - self.origin[c];
                 v[i] = velocity;
                 a[i] = acceleration;
             }
