@@ -1,6 +1,6 @@
 //! Derivatives are never trusted: the assembled tangent of every registered kind against differences of its residual.
 
-use holonom::formulation::{RowsAt, Sampling, Stage, Workspace};
+use holonom::formulation::{Collocation, Iteration, Level, Multipliers, RowsAt, Sampling, SolveSettings, Stage, Timing, Workspace};
 use holonom::model::{Model, constraints, drives, forces, joints};
 use holonom_io::Source;
 
@@ -81,11 +81,61 @@ fn check(name: &str, text: &str) {
     }
 }
 
+/// Two stages that are solved together, with nothing zero: increments, multipliers of both levels and the start.
+fn check_coupled(name: &str, text: &str) {
+    let source = Source::read(name, text.as_bytes()).unwrap_or_else(|message| panic!("{message}"));
+    let model = source.model().unwrap_or_else(|message| panic!("{message}"));
+    let system = &model.system;
+    let timing = Timing { start: 0.3, step: 0.1, nodes: &[1.0 / 3.0, 1.0] };
+    for doubled in [false, true] {
+        let settings = SolveSettings {
+            doubled,
+            level: Level::POSITION,
+            multipliers: Multipliers::Augmented(None),
+            iteration: Iteration::Newton,
+            tolerance: 0.0,
+            max_iterations: 1,
+            iterations: None,
+        };
+        let mut work = Workspace::new(system);
+        work.level = settings.level;
+        let mut stages = Collocation::new(system, 2, &settings);
+        stages.set_rate([1.5, 0.5, -4.5, 2.5]);
+        let size = stages.linearise(system, timing, &mut work).len();
+        let unknowns: Vec<f64> = (0..size).map(|k| 0.03 * noise(k)).collect();
+        stages.add(system, &unknowns, &work);
+        let _ = stages.linearise(system, timing, &mut work);
+        let assembled: Vec<Vec<f64>> = (0..size).map(|i| (0..size).map(|j| stages.entry(i, j)).collect()).collect();
+        let mut at = |column: usize, by: f64| {
+            let mut nudge = vec![0.0; size];
+            nudge[column] = by;
+            stages.add(system, &nudge, &work);
+            let residual = stages.linearise(system, timing, &mut work);
+            nudge[column] = -by;
+            stages.add(system, &nudge, &work);
+            residual
+        };
+        for column in 0..size {
+            let (after, before) = (at(column, NUDGE), at(column, -NUDGE));
+            for row in 0..size {
+                let difference = (after[row] - before[row]) / (2.0 * NUDGE);
+                let error = (assembled[row][column] - difference).abs();
+                assert!(
+                    error <= TOLERANCE * (1.0 + difference.abs()),
+                    "{name}, doubled: {doubled}: entry ({row}, {column}) is {} and should be {difference}",
+                    assembled[row][column]
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn every_kind_has_the_tangent_of_its_residual() {
     let mut kinds = 0;
     for kind in constraints::KINDS.iter().chain(forces::KINDS).chain(joints::kinds()).chain(drives::KINDS) {
         check(kind.name, kind.example);
+        check_coupled(kind.name, kind.example);
         kinds += 1;
     }
     println!("{kinds} kinds");

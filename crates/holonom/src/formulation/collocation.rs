@@ -60,6 +60,12 @@ pub struct Collocation {
     unknowns: Vec<f64>,
     /// Sizes of the terms that residuals are sums of.
     sizes: Vec<f64>,
+    /// δ of the rows (r) of each level, and whether nothing moved them when last factored.
+    delta: Vec<f64>,
+    idle: Vec<bool>,
+    /// Whether rows were ever factored, and attempts to come that are near a change of the rank.
+    is_known: bool,
+    singular: u32,
 }
 
 impl Collocation {
@@ -75,10 +81,14 @@ impl Collocation {
         let (n, rows) = (stages * system.coordinates(), stages * system.constraints());
         let [d, u, p, r, a] = std::array::from_fn(|_| vec![0.0; n]);
         let [lambda, nu] = std::array::from_fn(|_| vec![0.0; rows]);
-        let matrix = vec![0.0; stages * stages];
+        let (matrix, levels) = (vec![0.0; stages * stages], if doubled { 2 } else { 1 });
         Self {
             unknowns: vec![0.0; kkt.size()],
             sizes: vec![0.0; kkt.size()],
+            delta: vec![0.0; levels * system.constraints()],
+            idle: vec![false; levels * system.constraints()],
+            is_known: false,
+            singular: 0,
             kkt,
             stages,
             doubled,
@@ -221,6 +231,10 @@ impl Collocation {
         for row in 0..r {
             self.unknowns[self.kkt.multiplier(row, i)] = -work.phi[row];
             self.unknowns[self.kkt.multiplier(row, s + i)] = -h * work.rows[row];
+            // Rows on velocities have no part in the first equation.
+            if system.velocity_rows.contains(&(row as u32)) {
+                continue;
+            }
             let nu = self.nu[i * r + row];
             for slot in self.kkt.row_slots[row].clone().filter(|&slot| self.kkt.is_free(slot)) {
                 let to = self.kkt.coordinate(self.kkt.slot_nodes[slot] as usize, i, 0);
@@ -283,13 +297,12 @@ impl Collocation {
 
     fn tangent_of_both(&mut self, system: &System, timing: Timing<'_>, i: usize, t: f64, work: &mut Workspace) {
         let (s, h) = (self.stages, timing.step);
-        let r = work.lambda.len();
         work.turn(system, t);
         for j in 0..s {
             let b = self.rate[i * s + j];
             self.kkt.start_with_mass(b);
             if i == j {
-                self.kkt.add_row_hessians(&self.nu[i * r..(i + 1) * r], 1.0);
+                self.add_slips(system, t, h, i, work);
             }
             self.kkt.write_sum(Block(i, j));
             self.kkt.start_with_mass(b);
@@ -304,18 +317,16 @@ impl Collocation {
         self.add_forces(system, t, h, 0.0, Block(s + i, i), i, work);
         self.kkt.write_sum(Block(s + i, i));
         let gradient = &work.sampled.gradient;
-        self.kkt.add_columns(Block(i, i), gradient, 1.0);
         self.kkt.add_columns(Block(s + i, s + i), gradient, 1.0);
         self.kkt.add_rows(Block(s + i, s + i), gradient, 1.0);
         self.kkt.add_rows(Block(s + i, i), &work.turned_v, h);
-        // Of rows on velocities the multiplier ν stays zero.
-        match system.is_nonholonomic() {
-            false => self.kkt.add_rows(Block(i, i), gradient, 1.0),
-            true => {
-                work.part_of_rows(system, Source::Sampled, false);
-                self.kkt.add_rows(Block(i, i), &work.row_gradient, 1.0);
-            }
+        // Of rows on velocities ν is zero, to the bit.
+        if system.is_nonholonomic() {
+            work.part_of_rows(system, Source::Sampled, false);
         }
+        let gradient = if system.is_nonholonomic() { &work.row_gradient } else { &work.sampled.gradient };
+        self.kkt.add_columns(Block(i, i), gradient, 1.0);
+        self.kkt.add_rows(Block(i, i), gradient, 1.0);
     }
 
     /// Adds the stiffness of rows, laws and loads of stage `i` to a block, and their damping times `rate`.
@@ -332,10 +343,44 @@ impl Collocation {
         std::mem::swap(&mut work.kkt, &mut self.kkt);
     }
 
+    /// Adds the curvature of the rows of stage `i` under ν to its own block, all of it: of redundant rows ν is round-off, which may
+    /// be much beside light nodes, and leaves them where they are only as a whole.
+    fn add_slips(&mut self, system: &System, t: f64, h: f64, i: usize, work: &mut Workspace) {
+        let r = work.lambda.len();
+        work.lambda.copy_from_slice(&self.nu[i * r..(i + 1) * r]);
+        system.velocity_rows.iter().for_each(|&row| work.lambda[row as usize] = 0.0);
+        self.kkt.add_row_hessians(&work.lambda, 1.0);
+        let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start: t - h, step: h, inertia: 1.0, rate: 1.0 / h };
+        std::mem::swap(&mut work.kkt, &mut self.kkt);
+        work.add_function_rows(system, &stage, Block(i, i));
+        work.add_custom_hessians(system, t, Block(i, i), 1.0);
+        std::mem::swap(&mut work.kkt, &mut self.kkt);
+        let lambda = &self.lambda[i * r..(i + 1) * r];
+        work.lambda.iter_mut().zip(lambda).for_each(|(own, lambda)| *own = lambda / (h * h));
+    }
+
     fn add_damping(&mut self, system: &System, t: f64, factor: f64, block: Block, work: &mut Workspace) {
         std::mem::swap(&mut work.kkt, &mut self.kkt);
         work.add_damping(system, t, block, factor);
         std::mem::swap(&mut work.kkt, &mut self.kkt);
+    }
+
+    /// Residual of all stages at the unknowns, in the order of [`Self::add`], and their tangent for [`Self::entry`].
+    pub fn linearise(&mut self, system: &System, timing: Timing<'_>, work: &mut Workspace) -> Vec<f64> {
+        self.kkt.clear();
+        self.assemble(system, timing, None, true, work);
+        self.unknowns.iter().map(|unknown| -unknown).collect()
+    }
+
+    /// The tangent's derivative of a residual by an unknown.
+    pub fn entry(&self, residual: usize, unknown: usize) -> f64 {
+        self.kkt.solver.entry(residual, unknown)
+    }
+
+    /// Adds increments to all unknowns.
+    pub fn add(&mut self, system: &System, increments: &[f64], work: &Workspace) {
+        self.unknowns.copy_from_slice(increments);
+        self.advance(system, work);
     }
 
     /// Adds the solution to the unknowns; the largest increment over the size of the mechanism.

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::level::Level;
-use super::newton::{Change, Equations, KEPT, newton};
+use super::newton::{Change, Equations, KEPT, RESTARTS, newton};
 use super::stage::{RowsAt, Sampling, Stage};
 use super::workspace::Workspace;
 use crate::linalg::largest;
@@ -70,10 +70,10 @@ pub fn solve(system: &System, stage: &Stage, settings: &SolveSettings, work: &mu
 }
 
 /// Coordinates and multipliers of one stage together. With a penalty the rows are Φ − λ/α = 0.
-struct OneStage<'a> {
-    system: &'a System,
-    stage: &'a Stage,
-    multipliers: Multipliers,
+pub(super) struct OneStage<'a> {
+    pub system: &'a System,
+    pub stage: &'a Stage,
+    pub multipliers: Multipliers,
 }
 
 /// Iterations with kept factors that are cheaper than new ones of a part of the matrix.
@@ -93,8 +93,8 @@ impl Equations for OneStage<'_> {
         }
     }
 
-    fn restart(&mut self, share: f64, work: &mut Workspace) {
-        restart(share, work);
+    fn restart(&mut self, again: usize, work: &mut Workspace) -> bool {
+        RESTARTS.get(again).map(|&share| restart(share, work)).is_some()
     }
 
     fn evaluate(&mut self, _is_new: bool, work: &mut Workspace) {
@@ -126,6 +126,14 @@ impl Equations for OneStage<'_> {
 
     fn kept(&self, work: &Workspace) -> i32 {
         if work.is_factored_in_part(self.stage) { KEPT_IN_PART } else { KEPT }
+    }
+}
+
+/// Puts the increment where the velocity at the start and the accelerations that are expected lead, with v̄ = Δq/h.
+pub fn predict(stage: &Stage, work: &mut Workspace) {
+    let Workspace { d, drift, a1, a_change, .. } = work;
+    for (((d, drift), a), change) in d.iter_mut().zip(drift).zip(a1).zip(a_change) {
+        *d = *drift + stage.inertia * (*a + *change);
     }
 }
 

@@ -32,7 +32,7 @@ mod workspace;
 pub use collocation::{Collocation, Timing};
 pub use failure::{Failure, Unknown};
 pub use independence::{INDEPENDENT, independence};
-pub use iteration::{ITERATIONS, Iteration, Multipliers, SolveSettings, solve};
+pub use iteration::{ITERATIONS, Iteration, Multipliers, SolveSettings, predict, solve};
 pub use kkt::{Block, Kkt, LawFactors};
 pub use level::Level;
 pub use stabilized::Stabilized;

@@ -9,8 +9,8 @@ pub(super) trait Equations {
     /// Prepares the first iteration from the prediction in the workspace.
     fn begin(&mut self, work: &mut Workspace);
 
-    /// Puts the unknowns at a share of the free flight, without multipliers.
-    fn restart(&mut self, share: f64, work: &mut Workspace);
+    /// Puts the unknowns where another attempt may begin, the `again`th after the first; no where there is no such place left.
+    fn restart(&mut self, again: usize, work: &mut Workspace) -> bool;
 
     /// Evaluates the residual at the unknowns; `is_new` says that the tangent is asked for next.
     fn evaluate(&mut self, is_new: bool, work: &mut Workspace);
@@ -46,19 +46,16 @@ pub(super) const KEPT: i32 = 4;
 
 /// Shares of the free flight h v from which Newton starts again where the prediction led nowhere: with large steps the
 /// acceleration of the last step says little of this one.
-const RESTARTS: [f64; 3] = [1.0, 0.5, 0.0];
+pub(super) const RESTARTS: [f64; 3] = [1.0, 0.5, 0.0];
 
-/// Solves the equations from the prediction, and from the free flight and shares of it where that fails. With a fixed number
+/// Solves the equations from the prediction, and from where they can be started again while that fails. With a fixed number
 /// of iterations there is one attempt.
 pub(super) fn newton(equations: &mut impl Equations, settings: &SolveSettings, work: &mut Workspace) -> Result<(), Failure> {
     let mut outcome = attempt(equations, settings, work);
-    let restarts = if settings.iterations.is_some() { &[][..] } else { &RESTARTS };
-    for &share in restarts {
-        if outcome.is_ok() {
-            break;
-        }
-        equations.restart(share, work);
+    let mut again = 0;
+    while outcome.is_err() && settings.iterations.is_none() && equations.restart(again, work) {
         outcome = attempt(equations, settings, work);
+        again += 1;
     }
     outcome
 }
@@ -66,16 +63,17 @@ pub(super) fn newton(equations: &mut impl Equations, settings: &SolveSettings, w
 fn attempt(equations: &mut impl Equations, settings: &SolveSettings, work: &mut Workspace) -> Result<(), Failure> {
     work.spares_regular = false;
     equations.begin(work);
+    let has_light = work.scales.has_light.contains(&true);
     let mut convergence = Convergence::new(settings, work.scales.shortest, equations.kept(work));
     for iteration in 1..=settings.max_iterations {
         let keeps = convergence.keeps_factors();
         equations.evaluate(!keeps, work);
-        if convergence.stalls() && equations.is_met(convergence.moves(), work) {
+        if convergence.may_be_met(has_light) && equations.is_met(convergence.moves(), work) {
             return Ok(());
         }
         if !keeps {
             equations.factor(iteration == 1, work)?;
-            if work.guards_rank() {
+            if settings.iterations.is_none() && work.guards_rank() {
                 equations.evaluate(true, work);
                 equations.factor(true, work)?;
             }
@@ -94,6 +92,10 @@ fn attempt(equations: &mut impl Equations, settings: &SolveSettings, work: &mut 
 
 /// Increments of this share of the mechanism are the rounding of positions; what they leave of the energy is for its audit.
 const ROUNDED: f64 = 2.0 * f64::EPSILON;
+
+/// Round-off moves light nodes by up to this share of the mechanism: their residual says sooner than their increments that
+/// nothing else is left.
+const NEAR: f64 = 1e-11;
 
 /// An attempt whose increments have not halved in so many iterations leads nowhere.
 const PATIENCE: usize = 10;
@@ -138,9 +140,9 @@ impl Convergence {
         }
     }
 
-    /// Whether increments no longer shrink.
-    fn stalls(&self) -> bool {
-        self.stalls
+    /// Whether the residual may be nothing but round-off: increments no longer shrink, or come near the round-off of light nodes.
+    fn may_be_met(&self, has_light: bool) -> bool {
+        self.stalls || (has_light && self.increment < NEAR)
     }
 
     /// Whether increments are more than the rounding of positions, or have not been that for a while.

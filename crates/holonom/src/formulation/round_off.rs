@@ -30,20 +30,38 @@ impl Workspace {
         (!moves || are_forces_round_off(forces, &self.full[..n])) && are_rows_round_off(rows, &self.rows)
     }
 
-    /// Leaves the sizes of the terms of ϖ (M a + f) in `full`.
-    pub(super) fn size_forces(&mut self, system: &System, stage: &Stage) {
-        let (n, dim, inertia) = (system.coordinates(), system.dim, stage.inertia);
+    /// Leaves the sizes of the terms of M d in `inertial`, known nodes moving by `inertia` times their accelerations, and of Gᵀλ
+    /// in `full`.
+    fn size_parts(&mut self, system: &System, inertia: f64) {
+        let (n, dim) = (system.coordinates(), system.dim);
         for (i, size) in self.full.iter_mut().enumerate() {
             let step = if i < n { self.d[i].abs().max(self.drift[i].abs()) } else { (inertia * self.a1[i]).abs() };
             *size = step.max(NOTHING * self.scales.length);
         }
         system.mass.times_sizes(dim, &self.full, &mut self.inertial);
-        self.full.fill(0.0);
-        let sizes = self.lambda.iter().map(|lambda| lambda.abs());
-        self.rows.iter_mut().zip(sizes).for_each(|(row, size)| *row = size);
-        let Self { kkt, rows, sampled, full, sizes, .. } = self;
+        let Self { kkt, rows, lambda, sampled, full, sizes, .. } = self;
+        rows.iter_mut().zip(&*lambda).for_each(|(row, lambda)| *row = lambda.abs());
         sizes.iter_mut().zip(&sampled.gradient).for_each(|(size, g)| *size = g.abs());
+        full.fill(0.0);
         scatter_rows(dim, &kkt.slots, rows, sizes, full);
+    }
+
+    /// Leaves the sizes of the terms of M d + Gᵀλ in `full`, of free nodes alone.
+    pub(super) fn size_increments(&mut self, system: &System) {
+        self.size_parts(system, 0.0);
+        let n = system.coordinates();
+        self.full.iter_mut().zip(&self.inertial).for_each(|(size, inertial)| *size += inertial);
+        let nothing = self.nothing();
+        for (node, massless) in self.full[..n].chunks_exact_mut(system.dim).zip(&self.scales.massless) {
+            node.iter_mut().for_each(|size| *size += massless * nothing);
+        }
+        spread(system.dim, &mut self.full[..n]);
+    }
+
+    /// Leaves the sizes of the terms of ϖ (M a + f) in `full`.
+    pub(super) fn size_forces(&mut self, system: &System, stage: &Stage) {
+        let (n, dim, inertia) = (system.coordinates(), system.dim, stage.inertia);
+        self.size_parts(system, inertia);
         for (law, response) in system.laws.iter().zip(&self.responses) {
             for (k, &id) in law.invariants.iter().enumerate() {
                 // A stiff law is as exact as its argument.

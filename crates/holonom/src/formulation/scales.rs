@@ -28,6 +28,8 @@ pub struct Scales {
     pub shortest: f64,
     /// 1 over the mass of each free node, 1/kg; directions that are light count as the heaviest node, as their bodies hold them.
     pub agility: Vec<f64>,
+    /// Mass of each free node that has none, or none to speak of, as its body holds it, kg; else zero.
+    pub massless: Vec<f64>,
     /// 1 over the mass of each free node or, where it is light, of the heaviest of its mechanism, 1/kg.
     pub held: Vec<f64>,
     /// Whether a row has a light node (r).
@@ -59,6 +61,7 @@ impl Scales {
             agility: (0..free)
                 .map(|node| filled(node, if is_light(node) && !system.is_point[node] { around[node] } else { own[node] }))
                 .collect(),
+            massless: (0..free).map(|node| if own[node] <= LEAST_SHARE * around[node] { around[node] } else { 0.0 }).collect(),
             has_light: vec![false; rows],
             softness: vec![0.0; rows],
             gradient: vec![0.0; rows],

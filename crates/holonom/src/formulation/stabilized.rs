@@ -13,9 +13,9 @@
 
 use super::coupled::Coupled;
 use super::failure::Failure;
-use super::iteration::{SolveSettings, restart};
+use super::iteration::{Multipliers, OneStage, SolveSettings, predict, restart};
 use super::kkt::{ALL, Block, Kkt};
-use super::newton::{Change, Equations, newton};
+use super::newton::{Change, Equations, RESTARTS, newton};
 use super::round_off::{are_forces_round_off, are_rows_round_off};
 use super::scales::Scales;
 use super::stage::Stage;
@@ -34,6 +34,8 @@ pub struct Stabilized {
     pub mu: Vec<f64>,
     /// Multiplier of the velocity rows, hγ (r).
     pub gamma: Vec<f64>,
+    /// Multipliers λ of the last step (r), for the first tangent.
+    pub lambda_start: Vec<f64>,
     /// What γ' is expected to change by in the first iteration (r); its matrices have it.
     pub gamma_change: Vec<f64>,
     /// h v̄ of all nodes (full), m.
@@ -76,6 +78,7 @@ impl Stabilized {
             u: vec![0.0; all],
             mu: vec![0.0; r],
             gamma: vec![0.0; r],
+            lambda_start: vec![0.0; r],
             gamma_change: vec![0.0; r],
             w: vec![0.0; all],
             turned_w: vec![0.0; slots],
@@ -121,7 +124,7 @@ impl Stabilized {
     /// Newton on increments, velocities and both multipliers from the values in the workspaces.
     pub fn solve(&mut self, system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<(), Failure> {
         system.invariants.curvature(&work.v0, &mut work.half, &mut self.turned_start);
-        newton(&mut BothLevels { own: self, system, stage, settings }, settings, work)
+        newton(&mut BothLevels { own: self, system, stage, settings, is_near: false }, settings, work)
     }
 
     /// w, and H times w and u.
@@ -287,6 +290,18 @@ struct BothLevels<'a> {
     system: &'a System,
     stage: &'a Stage,
     settings: &'a SolveSettings,
+    /// Whether the attempt began at the solution without velocity rows.
+    is_near: bool,
+}
+
+impl BothLevels<'_> {
+    /// Solves the step with the rows at position level alone; whether that worked.
+    fn start_from_positions(&mut self, work: &mut Workspace) -> bool {
+        predict(self.stage, work);
+        work.lambda.copy_from_slice(&self.own.lambda_start);
+        let mut positions = OneStage { system: self.system, stage: self.stage, multipliers: Multipliers::Augmented(None) };
+        newton(&mut positions, self.settings, work).is_ok()
+    }
 }
 
 impl Equations for BothLevels<'_> {
@@ -295,14 +310,24 @@ impl Equations for BothLevels<'_> {
         work.expect_multipliers();
     }
 
-    fn restart(&mut self, share: f64, work: &mut Workspace) {
-        restart(share, work);
+    /// From the solution without velocity rows. If that leads nowhere, the step is too long for rows at both levels, and shares of
+    /// the free flight do no better.
+    fn restart(&mut self, again: usize, work: &mut Workspace) -> bool {
+        let place = again.checked_sub(1);
+        match place {
+            None => self.is_near = self.start_from_positions(work),
+            Some(place) => match RESTARTS.get(place) {
+                Some(&share) if !self.is_near => restart(share, work),
+                _ => return false,
+            },
+        }
         for i in 0..self.system.coordinates() {
             self.own.u[i] = work.d[i] - 0.5 * self.stage.step * work.v0[i];
         }
         self.own.mu.fill(0.0);
         self.own.gamma.fill(0.0);
         self.own.gamma_change.fill(0.0);
+        true
     }
 
     fn evaluate(&mut self, _is_new: bool, work: &mut Workspace) {
@@ -328,7 +353,7 @@ impl Equations for BothLevels<'_> {
     }
 
     fn advance(&mut self, is_first: bool, work: &mut Workspace) -> Result<Change, Failure> {
-        let Self { own, system, stage, settings } = self;
+        let Self { own, system, stage, settings, .. } = self;
         let left = match own.is_coupled() {
             true => own.solve_coupled(system, work),
             false => match own.sweep(system, settings, is_first, work)? {

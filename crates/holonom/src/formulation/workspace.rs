@@ -14,7 +14,7 @@ use crate::system::{Evaluation, Response, SIZE, System};
 pub const RHO: f64 = 1e10;
 
 /// Attempts after a change of the rank that are near a singular position.
-const SINGULAR: u32 = 32;
+pub(super) const SINGULAR: u32 = 32;
 
 /// The same of rows that are not redundant. What they miss in an iteration falls with ρ; it comes to N²/ρ in a chain of N
 /// links.
@@ -273,6 +273,11 @@ impl Workspace {
     /// The same by the matrix of several fields, of which the first is that of the positions.
     pub(super) fn classify_rows_by(&mut self, kkt: &Kkt) {
         self.classify_rows(|_, row| kkt.solver.pivot(kkt.multiplier(row, 0)));
+    }
+
+    /// Takes note that rows became redundant, or no longer are, and that δ is to be another.
+    pub(super) fn note_rank(&mut self, changes: bool) {
+        (self.changes_rank, self.spares_regular) = (changes, true);
     }
 
     /// Whether the rank turned out to be another one in the last factorisation: rows without a proximal term to speak of may have

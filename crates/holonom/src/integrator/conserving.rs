@@ -1,7 +1,7 @@
 //! The energy-momentum conserving scheme (14)–(18): midpoint kinematics with discrete gradients (methods §2.1).
 
 use super::{Integrator, Step, Work};
-use crate::formulation::{Failure, Multipliers, RowsAt, Sampling, SolveSettings, Stage, Workspace, solve};
+use crate::formulation::{Failure, Multipliers, RowsAt, Sampling, SolveSettings, Stage, Workspace, predict, solve};
 use crate::system::System;
 
 pub(super) struct Conserving {
@@ -28,8 +28,8 @@ pub(super) fn midpoint_kinematics(system: &System, start: f64, h: f64, sampling:
     for i in 0..n {
         work.drift[i] = h * work.v0[i];
         work.offset[i] = 0.0;
-        work.d[i] = h * work.v0[i] + 0.5 * h * h * (work.a1[i] + work.a_change[i]);
     }
+    predict(&stage, work);
     system.place_known(stage.end(), &mut work.x1, &mut work.v1, &mut work.a1);
     for i in n..work.x1.len() {
         work.xs[i] = 0.5 * (work.x0[i] + work.x1[i]);

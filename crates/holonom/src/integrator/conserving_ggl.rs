@@ -59,6 +59,7 @@ impl Integrator for ConservingGgl {
                 work.a1[i] = (work.x1[i] - work.x0[i] - h * work.v0[i]) / stage.inertia;
             }
         }
+        both.lambda_start.copy_from_slice(&work.lambda);
         // γ' and μ = ϖλ − γ' begin at zero; what they are expected to be is for the first iteration's matrices.
         for row in 0..both.mu.len() {
             let expected = if follows { memory.gamma[row] + memory.gamma_change[row] } else { 0.0 };

@@ -3,11 +3,16 @@
 use super::{Collocation, Timing};
 use crate::formulation::failure::Failure;
 use crate::formulation::iteration::Multipliers;
-use crate::formulation::newton::{Change, Equations};
+use crate::formulation::newton::{Change, Equations, RESTARTS};
 use crate::formulation::round_off::{are_forces_round_off, are_rows_round_off};
 use crate::formulation::stage::{RowsAt, Sampling, Stage};
-use crate::formulation::workspace::Workspace;
+use crate::formulation::workspace::{RHO, SINGULAR, Workspace};
 use crate::system::System;
+
+/// Share of a row's own stiffness below which its pivot is that of a row that nothing moves, and ρ of such rows and of all others.
+const IDLE: f64 = 1e-10;
+const RHO_IDLE: f64 = 1e4;
+const RHO_HELD: f64 = 1e13;
 
 impl Collocation {
     /// Sizes of the terms of all residuals into `sizes`, in the order of the unknowns.
@@ -18,29 +23,43 @@ impl Collocation {
             work.sample(system, t);
             work.at_end.copy_from(&work.sampled);
             let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start: t - h, step: h, inertia: h * h, rate: 1.0 / h };
+            work.drift.fill(0.0);
             for k in 0..n {
-                // The size of the acceleration's terms, which cancel.
-                let own = |values: &[f64]| (0..s).map(|j| (self.rate[i * s + j] * values[j * n + k]).abs()).sum::<f64>();
-                let position = own(&self.d) + self.p[i * n + k].abs();
-                let velocity = own(&self.u) + self.r[i * n + k].abs();
-                (work.d[k], work.drift[k]) = (if self.doubled { velocity.max(position) } else { velocity }, 0.0);
                 work.x1[k] = work.x0[k] + self.d[i * n + k];
-            }
-            for row in 0..r {
-                work.lambda[row] = work.lambda[row].abs() + self.nu[i * r + row].abs() / (h * h);
+                work.d[k] = self.size_of_sum(i, k, &self.u, &self.r);
             }
             work.size_forces(system, &stage);
             work.size_rows(system);
-            for field in (i..self.kkt.fields).step_by(s) {
+            let momenta = self.kkt.fields - s + i;
+            self.write_sizes(momenta, dim, work);
+            if self.doubled {
+                work.lambda.copy_from_slice(&self.nu[i * r..(i + 1) * r]);
                 for k in 0..n {
-                    let at = self.kkt.coordinate(k / dim, field, k % dim);
-                    self.sizes[at] = work.full[k];
+                    work.d[k] = self.size_of_sum(i, k, &self.d, &self.p).max(self.u[i * n + k].abs());
                 }
-                for row in 0..r {
-                    let at = self.kkt.multiplier(row, field);
-                    self.sizes[at] = work.rows[row];
-                }
+                work.size_increments(system);
+                work.size_rows(system);
+                self.write_sizes(i, dim, work);
             }
+        }
+    }
+
+    /// The size of the terms of Σ_j b_ij x_j + constant, which cancel.
+    fn size_of_sum(&self, i: usize, k: usize, values: &[f64], constant: &[f64]) -> f64 {
+        let (s, n) = (self.stages, values.len() / self.stages);
+        let terms = (0..s).map(|j| (self.rate[i * s + j] * values[j * n + k]).abs());
+        terms.sum::<f64>() + constant[i * n + k].abs()
+    }
+
+    /// Takes over the sizes of a field's residuals from the workspace.
+    fn write_sizes(&mut self, field: usize, dim: usize, work: &Workspace) {
+        for k in 0..work.d.len() {
+            let at = self.kkt.coordinate(k / dim, field, k % dim);
+            self.sizes[at] = work.full[k];
+        }
+        for (row, &size) in work.rows.iter().enumerate() {
+            let at = self.kkt.multiplier(row, field);
+            self.sizes[at] = size;
         }
     }
 }
@@ -59,16 +78,41 @@ impl Stages<'_> {
     }
 }
 
+impl Stages<'_> {
+    /// Gives rows that nothing moves a δ of their own: their multipliers are round-off over δ, and more than light nodes weigh.
+    /// All others have hardly any, as redundant rows have their part of it.
+    fn let_go(&mut self, work: &Workspace) {
+        if self.multipliers != Multipliers::Augmented(None) {
+            return;
+        }
+        let (softness, is_singular) = (work.scales.softness.iter().cycle(), self.own.singular > 0);
+        for ((delta, softness), &idle) in self.own.delta.iter_mut().zip(softness).zip(&self.own.idle) {
+            *delta = softness
+                / if is_singular {
+                    RHO
+                } else if idle {
+                    RHO_IDLE
+                } else {
+                    RHO_HELD
+                };
+        }
+    }
+}
+
 impl Equations for Stages<'_> {
     fn begin(&mut self, work: &mut Workspace) {
-        let h = self.timing.step;
+        let (h, own) = (self.timing.step, &mut *self.own);
         match self.multipliers {
             Multipliers::Penalty(alpha) => work.delta.fill(work.level.scale(1.0 / h, h * h) / (h * h * alpha)),
             Multipliers::Augmented(penalty) => work.proximal(h * h, penalty),
         }
+        own.delta.chunks_exact_mut(work.delta.len().max(1)).for_each(|delta| delta.copy_from_slice(&work.delta));
+        self.let_go(work);
+        self.own.singular = self.own.singular.saturating_sub(1);
     }
 
-    fn restart(&mut self, share: f64, work: &mut Workspace) {
+    fn restart(&mut self, again: usize, work: &mut Workspace) -> bool {
+        let Some(share) = RESTARTS.get(again) else { return false };
         let (n, h, own) = (self.system.coordinates(), self.timing.step, &mut *self.own);
         for (i, node) in self.timing.nodes.iter().enumerate() {
             for k in 0..n {
@@ -78,6 +122,7 @@ impl Equations for Stages<'_> {
         }
         own.lambda.fill(0.0);
         own.nu.fill(0.0);
+        true
     }
 
     fn evaluate(&mut self, is_new: bool, work: &mut Workspace) {
@@ -96,10 +141,26 @@ impl Equations for Stages<'_> {
     }
 
     fn factor(&mut self, _is_first: bool, work: &mut Workspace) -> Result<(), Failure> {
-        let kkt = &mut self.own.kkt;
-        (0..kkt.fields).for_each(|field| kkt.regularise(field, &work.delta));
+        let (rows, own) = (work.delta.len(), &mut *self.own);
+        let field = |k: usize| k / rows.max(1) * own.stages;
+        for field in 0..own.kkt.fields {
+            own.kkt.regularise(field, &own.delta[field / own.stages * rows..][..rows]);
+        }
         work.factorizations += 1;
-        kkt.factor()
+        own.kkt.factor()?;
+        let mut changes = false;
+        for (k, idle) in own.idle.iter_mut().enumerate() {
+            let pivot = own.kkt.solver.pivot(own.kkt.multiplier(k % rows, field(k))) - own.delta[k];
+            let is = pivot < IDLE * work.scales.softness[k % rows];
+            changes |= std::mem::replace(idle, is) != is;
+        }
+        if self.multipliers == Multipliers::Augmented(None) {
+            // Near a singular position redundancy passes from row to row, and all have the δ of redundant ones.
+            own.singular = if changes && std::mem::replace(&mut own.is_known, true) { SINGULAR } else { own.singular };
+            work.note_rank(changes);
+            self.let_go(work);
+        }
+        Ok(())
     }
 
     fn advance(&mut self, _is_first: bool, work: &mut Workspace) -> Result<Change, Failure> {
