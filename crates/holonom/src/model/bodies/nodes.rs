@@ -4,7 +4,7 @@
 //! body stay independent: the rows that would hold the two together are then not needed (methods §4.1). Bodies that are
 //! joined rigidly are one.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -58,14 +58,15 @@ pub struct Wanted<'a> {
 /// Makes the nodes of all bodies, their mass and the rows that keep them rigid; a frame for each body.
 pub fn make(builder: &mut SystemBuilder, wanted: &Wanted<'_>) -> Vec<Frame> {
     let groups = groups(wanted);
+    let sharing = Sharing::new(wanted, &groups);
     let mut places: Vec<Option<Found>> = wanted.shared.iter().map(|shared| known_place(shared, wanted)).collect();
-    spread(wanted, &groups, &mut places);
+    sharing.spread(wanted, (0..groups.len()).collect(), &mut places);
     let mut kept = HashSet::new();
     let mut frames: Vec<Option<Frame>> = vec![None; wanted.bodies.len()];
     for (root, members) in groups.iter().enumerate().filter(|(_, members)| !members.is_empty()) {
-        let group = Group { members, lead: &wanted.bodies[root], wanted };
+        let group = Group { members, shared: &sharing.of_group[root], lead: &wanted.bodies[root], wanted };
         let basis = group.basis(builder, &mut places);
-        spread(wanted, &groups, &mut places);
+        sharing.spread(wanted, sharing.beside(root), &mut places);
         let frame = Frame::new(builder.dimension(), basis.clone());
         group.add_mass(builder, &frame, basis[0].at);
         keep_rigid(builder, &group.lead.name, &basis, &mut kept);
@@ -106,32 +107,59 @@ fn known_place(shared: &Shared, wanted: &Wanted<'_>) -> Option<Found> {
     place.map(|place| (place, 1.0))
 }
 
-/// Gives what is shared at one joint of a body the node of another joint that has the same point or a parallel direction
-/// there, from body to body as far as it goes.
-fn spread(wanted: &Wanted<'_>, groups: &[Vec<usize>], places: &mut [Option<Found>]) {
-    let own: Vec<Vec<(usize, Vec3)>> = groups.iter().map(|members| of_bodies(wanted, members)).collect();
-    let mut changed = true;
-    while std::mem::take(&mut changed) {
-        for of_group in &own {
-            for &(known, at) in of_group {
+/// What the groups of bodies share with others.
+struct Sharing {
+    /// Numbers of what each group shares, with its reference coordinates there.
+    of_group: Vec<Vec<(usize, Vec3)>>,
+    /// The groups that share each.
+    groups: Vec<Vec<usize>>,
+}
+
+impl Sharing {
+    fn new(wanted: &Wanted<'_>, groups: &[Vec<usize>]) -> Self {
+        let mut group_of = vec![0; wanted.bodies.len()];
+        for (root, members) in groups.iter().enumerate() {
+            members.iter().for_each(|&body| group_of[body] = root);
+        }
+        let mut sharing = Self { of_group: vec![Vec::new(); groups.len()], groups: vec![Vec::new(); wanted.shared.len()] };
+        for (k, shared) in wanted.shared.iter().enumerate() {
+            for &(member, at) in &shared.sides {
+                let Member::Body(body) = member else { continue };
+                // Of two sides in a group the first counts.
+                if !sharing.groups[k].contains(&group_of[body]) {
+                    sharing.groups[k].push(group_of[body]);
+                    sharing.of_group[group_of[body]].push((k, at));
+                }
+            }
+        }
+        sharing
+    }
+
+    /// The groups that share something with a group, and itself.
+    fn beside(&self, group: usize) -> BTreeSet<usize> {
+        self.of_group[group].iter().flat_map(|&(k, _)| &self.groups[k]).copied().collect()
+    }
+
+    /// Gives what is shared at one joint of a body the node of another joint that has the same point or a parallel direction
+    /// there, from body to body as far as it goes, beginning with the groups `open`.
+    fn spread(&self, wanted: &Wanted<'_>, mut open: BTreeSet<usize>, places: &mut [Option<Found>]) {
+        let mut from = 0;
+        while let Some(group) = open.range(from..).next().or(open.first()).copied() {
+            open.remove(&group);
+            from = group + 1;
+            for &(known, at) in &self.of_group[group] {
                 let Some((place, sense)) = places[known] else { continue };
-                for &(other, there) in of_group.iter().filter(|&&(other, _)| other != known) {
+                for &(other, there) in self.of_group[group].iter().filter(|&&(other, _)| other != known) {
                     if places[other].is_none() && wanted.shared[known].is_point == wanted.shared[other].is_point {
                         places[other] = alike(wanted.shared[known].is_point, at, there, wanted.extent).map(|same| (place, sense * same));
-                        changed |= places[other].is_some();
+                        if places[other].is_some() {
+                            open.extend(&self.groups[other]);
+                        }
                     }
                 }
             }
         }
     }
-}
-
-/// What some bodies share with others, with its reference coordinates on them.
-fn of_bodies(wanted: &Wanted<'_>, members: &[usize]) -> Vec<(usize, Vec3)> {
-    let side = |shared: &Shared| {
-        shared.sides.iter().find_map(|&(member, at)| matches!(member, Member::Body(k) if members.contains(&k)).then_some(at))
-    };
-    wanted.shared.iter().enumerate().filter_map(|(k, shared)| Some((k, side(shared)?))).collect()
 }
 
 /// Whether two points are the same (1), and whether two unit directions go the same way (1) or the opposite one (−1).
@@ -148,6 +176,8 @@ const SAME: f64 = 1e-13;
 
 struct Group<'a> {
     members: &'a [usize],
+    /// Numbers of what it shares, with its reference coordinates there.
+    shared: &'a [(usize, Vec3)],
     lead: &'a Body,
     wanted: &'a Wanted<'a>,
 }
@@ -158,7 +188,7 @@ impl Group<'_> {
     fn basis(&self, builder: &mut SystemBuilder, places: &mut [Option<Found>]) -> Vec<Basis> {
         let (dim, centre, solid) = (builder.dimension(), self.centre(), self.solid(builder.dimension()));
         let lies_in = |edge: Vec3| norm(rest(&solid, edge)) <= THIN * norm(edge);
-        let mut own = of_bodies(self.wanted, self.members);
+        let mut own = self.shared.to_vec();
         let is_point = |k: usize| self.wanted.shared[k].is_point;
         // Fixed places first, as they are no unknowns; then points.
         own.sort_by_key(|&(k, _)| (!matches!(places[k], Some((Place::Fixed(_), _))), !is_point(k)));
