@@ -3,6 +3,7 @@
 use super::{Collocation, Timing};
 use crate::formulation::failure::Failure;
 use crate::formulation::iteration::Multipliers;
+use crate::formulation::level::Level;
 use crate::formulation::newton::{Change, Equations, RESTARTS};
 use crate::formulation::round_off::{are_forces_round_off, are_rows_round_off};
 use crate::formulation::stage::{RowsAt, Sampling, Stage};
@@ -76,13 +77,16 @@ impl Stages<'_> {
     fn soft(&self) -> Option<f64> {
         if let Multipliers::Penalty(alpha) = self.multipliers { Some(alpha) } else { None }
     }
-}
 
-impl Stages<'_> {
+    /// Whether positions stay on the rows: where they drift off, redundant ones become independent.
+    fn lets_go(&self, work: &Workspace) -> bool {
+        self.multipliers == Multipliers::Augmented(None) && work.level == Level::POSITION
+    }
+
     /// Gives rows that nothing moves a δ of their own: their multipliers are round-off over δ, and more than light nodes weigh.
     /// All others have hardly any, as redundant rows have their part of it.
     fn let_go(&mut self, work: &Workspace) {
-        if self.multipliers != Multipliers::Augmented(None) {
+        if !self.lets_go(work) {
             return;
         }
         let (softness, is_singular) = (work.scales.softness.iter().cycle(), self.own.singular > 0);
@@ -141,7 +145,7 @@ impl Equations for Stages<'_> {
     }
 
     fn factor(&mut self, _is_first: bool, work: &mut Workspace) -> Result<(), Failure> {
-        let (rows, own) = (work.delta.len(), &mut *self.own);
+        let (rows, lets_go, own) = (work.delta.len(), self.lets_go(work), &mut *self.own);
         let field = |k: usize| k / rows.max(1) * own.stages;
         for field in 0..own.kkt.fields {
             own.kkt.regularise(field, &own.delta[field / own.stages * rows..][..rows]);
@@ -154,7 +158,7 @@ impl Equations for Stages<'_> {
             let is = pivot < IDLE * work.scales.softness[k % rows];
             changes |= std::mem::replace(idle, is) != is;
         }
-        if self.multipliers == Multipliers::Augmented(None) {
+        if lets_go {
             // Near a singular position redundancy passes from row to row, and all have the δ of redundant ones.
             own.singular = if changes && std::mem::replace(&mut own.is_known, true) { SINGULAR } else { own.singular };
             work.note_rank(changes);
