@@ -91,14 +91,12 @@ impl Stages<'_> {
         }
         let (softness, is_singular) = (work.scales.softness.iter().cycle(), self.own.singular > 0);
         for ((delta, softness), &idle) in self.own.delta.iter_mut().zip(softness).zip(&self.own.idle) {
-            *delta = softness
-                / if is_singular {
-                    RHO
-                } else if idle {
-                    RHO_IDLE
-                } else {
-                    RHO_HELD
-                };
+            let rho = match (is_singular, idle) {
+                (true, _) => RHO,
+                (false, true) => RHO_IDLE,
+                (false, false) => RHO_HELD,
+            };
+            *delta = softness / rho;
         }
     }
 }
