@@ -186,6 +186,7 @@ impl<'a> Simulation<'a> {
 
     /// Takes the nominal step to `target`.
     fn advance(&mut self, target: f64) -> Result<(), Failure> {
+        let (from, before) = (self.state.t, [self.audit.energy(), self.audit.work]);
         self.audit.begin_step();
         match self.pilot.take() {
             None => self.halve(target)?,
@@ -198,6 +199,7 @@ impl<'a> Simulation<'a> {
                 outcome?;
             }
         }
+        self.judge.whole(self.state.t - from, before, &self.audit, &self.work)?;
         self.steps += 1;
         self.audit.end_step(self.system, &mut self.work, &self.state, self.steps);
         self.react();

@@ -85,6 +85,9 @@ const ROUND_OFF: f64 = 256.0 * f64::EPSILON;
 /// Rounding of a position, at the start and at the end of a step, over the size of the mechanism.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
+/// Share of the energies of the mechanism that a nominal step may be off by, however many parts it was taken in.
+const WHOLE: f64 = 1e-9;
+
 /// How much farther from the solution than the iteration's tolerance a step may end: that is an estimate.
 const TOLERANCES: f64 = 16.0;
 
@@ -121,6 +124,22 @@ impl Judge {
         let off = if promise == Promise::Energy { change.abs() } else { change };
         let bound = self.energy_bound(system, h, before, after, work);
         // What is no number is no energy.
+        if off <= bound { Ok(()) } else { Err(Failure::Broken { promise: promise.words(), by: off, bound, row: None }) }
+    }
+
+    /// Looks at the energy after a nominal step of length `h` (s) that began with the energy and the work `before` (J): parts of it
+    /// may each be round-off and add up to more.
+    pub(super) fn whole(&self, h: f64, before: [f64; 2], after: &Audit, work: &Workspace) -> Result<(), Failure> {
+        let promised = [Promise::Energy, Promise::FallingEnergy].into_iter().find(|&promise| self.promises(promise));
+        let Some(promise) = promised else { return Ok(()) };
+        let done = after.work - before[1];
+        let change = (after.energy() - before[0]) - done;
+        let off = if promise == Promise::Energy { change.abs() } else { change };
+        let length = work.scales.length;
+        let weight = work.weight.iter().map(|w| w.abs()).sum::<f64>() * length;
+        let sizes = after.kinetic + after.potential.abs() + before[0].abs() + done.abs() + weight;
+        let trembling = self.mass * (ROUNDED * length * 2.0 / h).powi(2);
+        let bound = WHOLE * sizes + trembling;
         if off <= bound { Ok(()) } else { Err(Failure::Broken { promise: promise.words(), by: off, bound, row: None }) }
     }
 
