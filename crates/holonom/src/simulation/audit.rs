@@ -32,6 +32,10 @@ pub struct Audit {
     kept_momenta: [bool; 6],
     momentum_drift: [f64; 6],
     initial: f64,
+    /// T and V at the start, the smallest V since, and all work that was put in by nominal steps, J.
+    first: [f64; 2],
+    lowest: f64,
+    input: f64,
     before: Mark,
     max_drift: f64,
     max_rise: f64,
@@ -94,6 +98,9 @@ impl Audit {
             kept_momenta,
             momentum_drift: [0.0; 6],
             initial: kinetic + potential,
+            first: [kinetic, potential],
+            lowest: potential,
+            input: 0.0,
             before: Mark { energy: kinetic + potential, ..Mark::default() },
             max_drift: 0.0,
             max_rise: 0.0,
@@ -135,6 +142,7 @@ impl Audit {
         self.before = shown.before;
         self.max_drift = shown.max_drift;
         self.max_rise = shown.max_rise;
+        (self.input, self.lowest) = (shown.input, shown.lowest);
         self.momentum_drift = shown.momentum_drift;
         self.kept_momenta = shown.kept_momenta;
         let (own, other) = (&mut self.violation, &shown.violation);
@@ -232,6 +240,8 @@ impl Audit {
         self.projection = self.projection_total - self.before.projection;
         self.max_drift = self.max_drift.max((self.energy() - self.initial - self.work).abs());
         self.max_rise = self.max_rise.max(self.energy() - self.before.energy - (self.work - self.before.work));
+        self.input += (self.work - self.before.work).max(0.0);
+        self.lowest = self.lowest.min(self.potential);
         self.momenta = energy::momenta(system, &state.x, &state.v, &mut work.full);
         if steps.is_power_of_two() {
             energy::drop_driven_momenta(system, work, &state.x, &mut self.kept_momenta);
@@ -241,12 +251,19 @@ impl Audit {
         }
     }
 
+    /// By how much the energy exceeds that of the start and all work that was put in, and all that could have become motion, J.
+    pub(super) fn supply(&self) -> [f64; 2] {
+        let input = self.input + (self.work - self.before.work).max(0.0);
+        let [kinetic, potential] = self.first;
+        [self.energy() - self.initial - input, kinetic + (potential - self.lowest.min(self.potential)) + input]
+    }
+
     /// The energies of the summary.
     pub fn energy_summary(&self) -> EnergySummary {
         let rise = self.energy() - self.initial;
         EnergySummary {
             initial: self.initial + self.lift,
-            last: self.energy(),
+            last: self.energy() + self.lift,
             max_drift: self.max_drift,
             max_rise: self.max_rise,
             integrator_total: self.integrator_total,

@@ -142,6 +142,8 @@ pub struct Method {
     pub settings: SolveSettings,
     pub parameters: Parameters,
     pub projection: Projection,
+    /// Whether it is unstable on rows at position level for want of a projection.
+    pub is_unstable: bool,
     /// Whether a step that fails is retried in halves.
     pub subdivide: bool,
     /// Relative error of position at the end of a run that steps are chosen for; without one they are the user's.
@@ -183,13 +185,14 @@ impl Method {
                 },
             });
         }
-        let bare = integrator.needs_projection && formulation.is_at_position() && !levels.iter().any(|level| level == "velocity");
-        let accuracy = accuracy(choice, integrator, order, bare)?;
+        let is_unstable = integrator.needs_projection && formulation.is_at_position() && !levels.iter().any(|level| level == "velocity");
+        let accuracy = accuracy(choice, integrator, order, is_unstable)?;
         let iterations = iterations(choice, integrator, iteration.0)?;
         let loops = iteration.1 != Iteration::Newton;
         let (omega, xi) = (positive("omega", choice.omega, OMEGA)?, positive("xi", choice.xi, XI)?);
         Ok(Self {
             name: name(formulation, integrator, order, &levels),
+            is_unstable,
             formulation,
             integrator,
             iteration: iteration.0,

@@ -18,6 +18,8 @@ pub enum Promise {
     Energy,
     /// The energy rises by no more than the work that is done, where no row depends on time.
     FallingEnergy,
+    /// The energy never exceeds that of the start by more than all that could have come of it and of work.
+    SuppliedEnergy,
     /// Momenta that nothing outside changes.
     Momenta,
     /// Φ = 0
@@ -34,6 +36,7 @@ impl Promise {
         match self {
             Self::Energy => "energy",
             Self::FallingEnergy => "energy that never rises",
+            Self::SuppliedEnergy => "energy that something supplies",
             Self::Momenta => "momenta",
             Self::Position => "Φ",
             Self::Velocity => "Φ̇",
@@ -61,6 +64,9 @@ impl Method {
                 true if by_mass && projects => kept.extend([Promise::FallingEnergy, Promise::Momenta]),
                 true => (),
             }
+        }
+        if kept.is_empty() && !self.is_unstable {
+            kept.push(Promise::SuppliedEnergy);
         }
         let is_at_position = settings.doubled || settings.level == Level::POSITION && !is_soft;
         if self.integrator.ends_on_rows && is_at_position && self.parameters.rows == RowsAt::End {
@@ -107,7 +113,9 @@ impl Judge {
         let mass = (0..system.free).map(|node| system.mass.diagonal(node)).sum();
         let mut promises = method.promises();
         // Where rows move, the impulse that projects velocities does work.
-        promises.retain(|&promise| promise != Promise::FallingEnergy || !system.is_driven());
+        for promise in promises.iter_mut().filter(|promise| **promise == Promise::FallingEnergy && system.is_driven()) {
+            *promise = Promise::SuppliedEnergy;
+        }
         Self { promises, tolerance: TOLERANCES * tolerance, mass }
     }
 
@@ -117,29 +125,38 @@ impl Judge {
 
     /// Looks at the energy after a step of length `h` (s); `before` and `after` are the audits around it.
     pub(super) fn energy(&self, system: &System, h: f64, before: &Audit, after: &Audit, work: &Workspace) -> Result<(), Failure> {
-        let promised = [Promise::Energy, Promise::FallingEnergy].into_iter().find(|&promise| self.promises(promise));
-        let Some(promise) = promised else { return Ok(()) };
-        let done = after.work - before.work;
-        let change = (after.energy() - before.energy()) - done;
-        let off = if promise == Promise::Energy { change.abs() } else { change };
-        let bound = self.energy_bound(system, h, before, after, work);
-        // What is no number is no energy.
-        if off <= bound { Ok(()) } else { Err(Failure::Broken { promise: promise.words(), by: off, bound, row: None }) }
+        self.hold_energy([before.energy(), before.work], after, || self.energy_bound(system, h, before, after, work))
     }
 
     /// Looks at the energy after a nominal step of length `h` (s) that began with the energy and the work `before` (J): parts of it
     /// may each be round-off and add up to more.
     pub(super) fn whole(&self, h: f64, before: [f64; 2], after: &Audit, work: &Workspace) -> Result<(), Failure> {
-        let promised = [Promise::Energy, Promise::FallingEnergy].into_iter().find(|&promise| self.promises(promise));
-        let Some(promise) = promised else { return Ok(()) };
-        let done = after.work - before[1];
-        let change = (after.energy() - before[0]) - done;
-        let off = if promise == Promise::Energy { change.abs() } else { change };
+        self.hold_energy(before, after, || self.nothing(h, before[0].abs() + (after.work - before[1]).abs(), after, work))?;
+        if !self.promises(Promise::SuppliedEnergy) {
+            return Ok(());
+        }
+        let [excess, supply] = after.supply();
+        // What is no number is no energy.
+        match excess <= supply + self.nothing(h, 0.0, after, work) {
+            true => Ok(()),
+            false => Err(Failure::Unsupplied { excess, supply }),
+        }
+    }
+
+    /// Energy that is nothing beside the energies after a nominal step of length `h` (s), J; `more` are others beside them.
+    fn nothing(&self, h: f64, more: f64, after: &Audit, work: &Workspace) -> f64 {
         let length = work.scales.length;
         let weight = work.weight.iter().map(|w| w.abs()).sum::<f64>() * length;
-        let sizes = after.kinetic + after.potential.abs() + before[0].abs() + done.abs() + weight;
         let trembling = self.mass * (ROUNDED * length * 2.0 / h).powi(2);
-        let bound = WHOLE * sizes + trembling;
+        WHOLE * (after.kinetic + after.potential.abs() + weight + more) + trembling
+    }
+
+    /// Compares what the energy changes by without work, from the energy and the work `before` (J), with a bound (J).
+    fn hold_energy(&self, before: [f64; 2], after: &Audit, bound: impl Fn() -> f64) -> Result<(), Failure> {
+        let promised = [Promise::Energy, Promise::FallingEnergy].into_iter().find(|&promise| self.promises(promise));
+        let Some(promise) = promised else { return Ok(()) };
+        let change = (after.energy() - before[0]) - (after.work - before[1]);
+        let (off, bound) = (if promise == Promise::Energy { change.abs() } else { change }, bound());
         if off <= bound { Ok(()) } else { Err(Failure::Broken { promise: promise.words(), by: off, bound, row: None }) }
     }
 

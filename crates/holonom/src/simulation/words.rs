@@ -92,8 +92,8 @@ pub(super) fn order(choice: &Choice, integrator: &Entry) -> Result<u8, MethodErr
     }
 }
 
-/// The accuracy asked for, if the integrator can estimate its errors; `bare` when it is unstable for want of projections.
-pub(super) fn accuracy(choice: &Choice, integrator: &Entry, order: u8, bare: bool) -> Result<Option<f64>, MethodError> {
+/// The accuracy asked for, if the integrator can estimate its errors; `is_unstable` for want of projections.
+pub(super) fn accuracy(choice: &Choice, integrator: &Entry, order: u8, is_unstable: bool) -> Result<Option<f64>, MethodError> {
     let Some(accuracy) = choice.accuracy else { return Ok(None) };
     let estimates = |entry: &Entry, order: u8| match entry.estimate {
         Estimate::History => order == 2,
@@ -101,7 +101,7 @@ pub(super) fn accuracy(choice: &Choice, integrator: &Entry, order: u8, bare: boo
         Estimate::Own => order > 1,
         Estimate::None => false,
     };
-    if bare {
+    if is_unstable {
         return Err(MethodError::Unstable { integrator: integrator.name });
     }
     if !estimates(integrator, order) {
