@@ -57,7 +57,7 @@ pub fn work_between(system: &System, stage: &Stage, work: &Workspace) -> f64 {
         for (k, id) in law.invariants.iter().enumerate() {
             let rise = match stage.sampling {
                 Sampling::Between => work.at_end.value[id.0 as usize] - work.at_start.value[id.0 as usize],
-                _ => h * system.along(&system.invariants.slots_of(*id), &work.kkt.slot_nodes, &work.sampled, &work.vs),
+                _ => h * system.along(&system.invariants.slots_of(*id), &system.slots.nodes, &work.sampled, &work.vs),
             };
             sum -= response.force[k] * rise;
         }
@@ -92,7 +92,7 @@ pub fn power(system: &System, t: f64, v: &[f64], a: &[f64], work: &Workspace) ->
     let mut sum = loads_along(system, work, |i| v[i]);
     for (law, response) in system.laws.iter().zip(&work.responses).filter(|(law, _)| !law.law.conservative()) {
         for (k, id) in law.invariants.iter().enumerate() {
-            sum -= response.force[k] * system.along(&system.invariants.slots_of(*id), &work.kkt.slot_nodes, &work.sampled, v);
+            sum -= response.force[k] * system.along(&system.invariants.slots_of(*id), &system.slots.nodes, &work.sampled, v);
         }
     }
     sum += (n..v.len()).map(|i| work.force[i] * v[i]).sum::<f64>();
@@ -164,7 +164,7 @@ pub fn drop_driven_momenta(system: &System, work: &Workspace, x: &[f64], kept: &
         let pushes = |slots: std::ops::Range<usize>| {
             let (mut sum, mut size) = (0.0_f64, 0.0_f64);
             for s in slots {
-                let node = work.kkt.slot_nodes[s] as usize * dim;
+                let node = system.slots.nodes[s] as usize * dim;
                 let direction = flow(k, node / dim, &x[node..node + dim]);
                 for c in 0..dim {
                     sum += work.at_start.gradient[s * dim + c] * direction[c];
@@ -173,7 +173,7 @@ pub fn drop_driven_momenta(system: &System, work: &Workspace, x: &[f64], kept: &
             }
             sum.abs() > 1e-9 * size
         };
-        let rows = work.kkt.row_slots.iter().cloned();
+        let rows = system.slots.rows.iter().cloned();
         let laws = system.laws.iter().flat_map(|law| law.invariants.iter().map(|&id| system.invariants.slots_of(id)));
         let pushed = rows.chain(laws).any(pushes);
         let turned: f64 = x

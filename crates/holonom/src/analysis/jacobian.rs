@@ -8,13 +8,13 @@ pub fn constraint_jacobian(system: &System, x: &[f64], t: f64) -> Vec<Vec<f64>> 
     let (n, dim) = (system.coordinates(), system.dimension());
     let mut at = system.evaluation();
     system.evaluate_again(x, t, &mut at);
-    let nodes: Vec<usize> = system.slot_nodes().collect();
-    let dense = |slots: std::ops::Range<usize>| {
+    let dense = |slots: &std::ops::Range<usize>| {
         let mut line = vec![0.0; n];
-        for s in slots.filter(|&s| nodes[s] < system.free_nodes()) {
-            (0..dim).for_each(|c| line[nodes[s] * dim + c] += at.gradient[s * dim + c]);
+        for s in slots.clone() {
+            let node = system.slots.nodes[s] as usize;
+            (0..dim).filter(|_| node < system.free_nodes()).for_each(|c| line[node * dim + c] += at.gradient[s * dim + c]);
         }
         line
     };
-    system.row_slots().into_iter().map(dense).collect()
+    system.slots.rows.iter().map(dense).collect()
 }

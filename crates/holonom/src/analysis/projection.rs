@@ -44,9 +44,9 @@ pub fn projection_form(system: &System, projection: &Projection, alpha: f64, ste
     }
     let rows = system.constraints();
     let mut g = vec![0.0; rows * n];
-    for (row, slots) in work.kkt.row_slots.iter().enumerate() {
-        for s in slots.clone().filter(|&s| (work.kkt.slot_nodes[s] as usize) < free) {
-            let node = work.kkt.slot_nodes[s] as usize * dim;
+    for (row, slots) in system.slots.rows.iter().enumerate() {
+        for s in slots.clone().filter(|&s| (system.slots.nodes[s] as usize) < free) {
+            let node = system.slots.nodes[s] as usize * dim;
             (0..dim).for_each(|c| g[row * n + node + c] += work.at_end.gradient[s * dim + c]);
         }
     }

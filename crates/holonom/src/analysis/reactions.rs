@@ -2,17 +2,19 @@
 
 use std::ops::Range;
 
-use crate::formulation::Workspace;
+use super::constraint_jacobian;
+use crate::formulation::extent;
 use crate::linalg::null_space;
-use crate::system::{NodeId, System};
+use crate::simulation::wrench;
+use crate::system::{Evaluation, NodeId, System};
 
 /// Multipliers λ with Gᵀλ = 0 at a position: what may be added to the multipliers without any effect on the motion.
-pub struct Undetermined {
+pub struct Undetermined<'s> {
+    system: &'s System,
     /// One list of multipliers (r) for each redundant row, by the rows scaled to unit gradients.
     spaces: Vec<Vec<f64>>,
-    work: Workspace,
+    at: Evaluation,
     x: Vec<f64>,
-    dim: usize,
 }
 
 /// Eigenvalue of the scaled G Gᵀ, over the largest, below which a combination of rows holds nothing: the square of what
@@ -24,25 +26,17 @@ pub const MOST_ROWS: usize = 1500;
 
 /// Finds what redundant rows leave undetermined at the positions `x` of all nodes and time `t`. `None` without rows and for more than
 /// [`MOST_ROWS`] rows.
-pub fn undetermined(system: &System, x: &[f64], t: f64) -> Option<Undetermined> {
-    let (rows, n, dim) = (system.constraints(), system.coordinates(), system.dimension());
+pub fn undetermined<'s>(system: &'s System, x: &[f64], t: f64) -> Option<Undetermined<'s>> {
+    let (rows, n) = (system.constraints(), system.coordinates());
     if rows == 0 || rows > MOST_ROWS {
         return None;
     }
-    let mut work = Workspace::new(system);
-    system.evaluate_again(x, t, &mut work.at_end);
-    let mut scaled = vec![0.0; rows * n];
-    let mut sizes = vec![0.0; rows];
-    for (row, slots) in work.kkt.row_slots.iter().enumerate() {
-        let line = &mut scaled[row * n..(row + 1) * n];
-        for s in slots.clone() {
-            let node = work.kkt.slot_nodes[s] as usize * dim;
-            if node < n {
-                (0..dim).for_each(|c| line[node + c] += work.at_end.gradient[s * dim + c]);
-            }
-        }
-        sizes[row] = line.iter().map(|g| g * g).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
-        line.iter_mut().for_each(|g| *g /= sizes[row]);
+    let mut scaled = Vec::with_capacity(rows * n);
+    let mut sizes = Vec::with_capacity(rows);
+    for line in constraint_jacobian(system, x, t) {
+        let size = line.iter().map(|g| g * g).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+        scaled.extend(line.iter().map(|g| g / size));
+        sizes.push(size);
     }
     let product = |k: usize| -> f64 {
         let (a, b) = (k / rows * n, k % rows * n);
@@ -51,10 +45,12 @@ pub fn undetermined(system: &System, x: &[f64], t: f64) -> Option<Undetermined> 
     let gram: Vec<f64> = (0..rows * rows).map(product).collect();
     let mut spaces = null_space(rows, &gram, NOTHING);
     spaces.iter_mut().for_each(|space| space.iter_mut().zip(&sizes).for_each(|(lambda, size)| *lambda /= size));
-    Some(Undetermined { spaces, work, x: x.to_vec(), dim })
+    let mut at = system.evaluation();
+    system.evaluate_again(x, t, &mut at);
+    Some(Undetermined { system, spaces, at, x: x.to_vec() })
 }
 
-impl Undetermined {
+impl Undetermined<'_> {
     /// Number of independent combinations: the redundant rows.
     pub fn count(&self) -> usize {
         self.spaces.len()
@@ -62,21 +58,19 @@ impl Undetermined {
 
     /// The rows that take part in a redundancy: any one of the combination may be left out.
     pub fn rows(&self) -> Vec<usize> {
-        let rows = self.work.kkt.row_slots.len();
-        (0..rows).filter(|&row| self.spaces.iter().any(|space| space[row].abs() > SMALL * largest(space))).collect()
+        (0..self.system.constraints()).filter(|&row| self.spaces.iter().any(|space| space[row].abs() > SMALL * largest(space))).collect()
     }
 
     /// Whether the components of force (3) and moment about a place (3) of some rows on some nodes (points or directions)
     /// are unique.
     pub fn are_unique(&self, rows: &Range<usize>, nodes: &[(NodeId, bool)], about: [f64; 3]) -> [bool; 6] {
-        let mut unique = [true; 6];
+        let (mut unique, length) = ([true; 6], extent(self.system));
         for space in &self.spaces {
-            let at_end = &self.work.at_end.gradient;
-            let (force, moment) = crate::simulation::wrench(self.dim, &self.work.kkt, rows.clone(), space, at_end, nodes, about, &self.x);
+            let (force, moment) = wrench(self.system, rows.clone(), space, &self.at.gradient, nodes, about, &self.x);
             let scale = SMALL * largest(space);
             for c in 0..3 {
                 unique[c] &= force[c].abs() <= scale;
-                unique[3 + c] &= moment[c].abs() <= scale * self.work.scales.length;
+                unique[3 + c] &= moment[c].abs() <= scale * length;
             }
         }
         unique

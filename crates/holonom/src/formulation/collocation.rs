@@ -205,8 +205,8 @@ impl Collocation {
         work.weigh_levels(system, t, scale);
         if work.level == Level::POSITION {
             for &row in &system.velocity_rows {
-                let slots = &work.kkt.row_slots[row as usize];
-                work.phi[row as usize] = h * system.along(slots, &work.kkt.slot_nodes, &work.sampled, &work.vs);
+                let slots = &system.slots.rows[row as usize];
+                work.phi[row as usize] = h * system.along(slots, &system.slots.nodes, &work.sampled, &work.vs);
             }
         }
         for row in 0..r {
@@ -227,7 +227,7 @@ impl Collocation {
         system.mass.times(dim, &work.full, &mut work.inertial);
         self.write(dim, i, work);
         system.constraint_values(&work.sampled, t, &mut work.phi);
-        system.constraint_rates(&work.kkt.slots, &work.sampled, &work.vs, t, &mut work.rows);
+        system.constraint_rates(&system.slots.by_row, &work.sampled, &work.vs, t, &mut work.rows);
         for row in 0..r {
             self.unknowns[self.kkt.multiplier(row, i)] = -work.phi[row];
             self.unknowns[self.kkt.multiplier(row, s + i)] = -h * work.rows[row];
@@ -236,8 +236,8 @@ impl Collocation {
                 continue;
             }
             let nu = self.nu[i * r + row];
-            for slot in self.kkt.row_slots[row].clone().filter(|&slot| self.kkt.is_free(slot)) {
-                let to = self.kkt.coordinate(self.kkt.slot_nodes[slot] as usize, i, 0);
+            for slot in system.slots.rows[row].clone().filter(|&slot| self.kkt.is_free(slot)) {
+                let to = self.kkt.coordinate(system.slots.nodes[slot] as usize, i, 0);
                 (0..dim).for_each(|c| self.unknowns[to + c] -= nu * work.sampled.gradient[slot * dim + c]);
             }
         }

@@ -22,9 +22,9 @@ pub fn independence(system: &System, x: &[f64], t: f64) -> Vec<f64> {
     let mut at = system.evaluation();
     system.evaluate_again(x, t, &mut at);
     let natural = natural_sizes(system, &at);
-    let rows = kkt.row_slots.len();
+    let rows = system.slots.rows.len();
     for (row, natural) in natural.iter().enumerate() {
-        let free = kkt.row_slots[row].clone().filter(|&slot| kkt.is_free(slot));
+        let free = system.slots.rows[row].clone().filter(|&slot| kkt.is_free(slot));
         let square: f64 = free.flat_map(|slot| &at.gradient[slot * kkt.dim..(slot + 1) * kkt.dim]).map(|g| g * g).sum();
         let size = square.sqrt();
         let factor = if size > VANISHED * natural { 1.0 / size } else { 0.0 };
@@ -55,12 +55,12 @@ pub(super) fn natural_sizes(system: &System, at: &Evaluation) -> Vec<f64> {
     system.evaluate_again(&moved, 0.0, &mut there);
     let change =
         |slot: usize| (0..dim).map(|c| (there.gradient[slot * dim + c] - here.gradient[slot * dim + c]).powi(2)).sum::<f64>().sqrt();
-    system.row_slots().into_iter().map(|slots| slots.map(change).fold(0.0, f64::max) / share).collect()
+    system.slots.rows.iter().map(|slots| slots.clone().map(change).fold(0.0, f64::max) / share).collect()
 }
 
 /// Diagonal of the box around the origin and all nodes at the start, or the size that is known of the mechanism where that is
 /// more; where both are nothing any unit will do.
-pub(super) fn extent(system: &System) -> f64 {
+pub(crate) fn extent(system: &System) -> f64 {
     let mut square = 0.0;
     for c in 0..system.dim {
         let along = system.start_position.iter().skip(c).step_by(system.dim);

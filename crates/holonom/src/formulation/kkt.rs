@@ -5,10 +5,11 @@
 //! (one number a pair of nodes) and then written to the matrix.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::failure::{Failure, Unknown};
 use crate::linalg::{Singular, Solver};
-use crate::system::{MAX_ARGUMENTS, Response, RowSlot, add_along_rows, cross, scatter_rows, skew};
+use crate::system::{MAX_ARGUMENTS, Response, Slots, add_along_rows, cross, scatter_rows, skew};
 
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -75,11 +76,8 @@ pub struct Kkt {
     pub(super) fields: usize,
     pub(super) free: usize,
     pub(super) coupling: Coupling,
-    /// Slots of each row, and of all rows one after the other.
-    pub row_slots: Vec<Range<usize>>,
-    pub slots: Vec<RowSlot>,
-    /// Node of each slot.
-    pub slot_nodes: Vec<u32>,
+    /// The system's slots.
+    pub(super) slots: Arc<Slots>,
     /// The nodes of each pair.
     pub(super) pair_nodes: Vec<[u32; 2]>,
     pub(super) pair_mass: Vec<f64>,
@@ -145,7 +143,7 @@ impl Augmented {
 impl Kkt {
     /// Number of unknowns.
     pub fn size(&self) -> usize {
-        self.fields * (self.free * self.dim + self.row_slots.len())
+        self.fields * (self.free * self.dim + self.slots.rows.len())
     }
 
     /// Place of a coordinate among the unknowns.
@@ -160,12 +158,12 @@ impl Kkt {
 
     /// Where the gradient of a row is among those of all slots.
     pub(super) fn gradient_of(&self, row: usize) -> Range<usize> {
-        let Range { start, end } = self.row_slots[row];
+        let Range { start, end } = self.slots.rows[row];
         start * self.dim..end * self.dim
     }
 
     pub(super) fn is_free(&self, slot: usize) -> bool {
-        (self.slot_nodes[slot] as usize) < self.free
+        (self.slots.nodes[slot] as usize) < self.free
     }
 
     /// Whether the rows of one field and the coordinates of another have entries in common.
@@ -342,12 +340,12 @@ impl Kkt {
         if factors.iter().all(|factor| *factor == 0.0) {
             return;
         }
-        scatter_rows(self.dim, &self.slots, factors, gradient, force);
+        scatter_rows(self.dim, &self.slots.by_row, factors, gradient, force);
     }
 
     /// Adds `factor` g_k·x of all rows (r), `x` over all nodes.
     pub fn add_along(&self, factor: f64, gradient: &[f64], x: &[f64], out: &mut [f64]) {
-        add_along_rows(self.dim, &self.slots, factor, gradient, x, out);
+        add_along_rows(self.dim, &self.slots.by_row, factor, gradient, x, out);
     }
 
     /// Subtracts δ (r) from the diagonal of the rows of a field.
@@ -383,12 +381,12 @@ impl Kkt {
 
     /// Factors the matrix again where some rows changed it.
     pub fn factor_rows(&mut self, rows: &[usize]) -> Result<(), Failure> {
-        let Self { solver, dim, free, row_slots, slot_nodes, .. } = self;
+        let Self { solver, dim, free, slots, .. } = self;
         let coordinates = |s: usize| {
-            let node = slot_nodes[s] as usize;
+            let node = slots.nodes[s] as usize;
             (node * *dim..(node + 1) * *dim).take_while(|q| *q < *free * *dim)
         };
-        let unknowns = rows.iter().flat_map(|&row| row_slots[row].clone().flat_map(coordinates).chain([*free * *dim + row]));
+        let unknowns = rows.iter().flat_map(|&row| slots.rows[row].clone().flat_map(coordinates).chain([*free * *dim + row]));
         let outcome = solver.factor_with(unknowns);
         outcome.map_err(|singular| self.blame(singular))
     }

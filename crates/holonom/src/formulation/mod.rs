@@ -31,6 +31,7 @@ mod workspace;
 
 pub use collocation::{Collocation, Timing};
 pub use failure::{Failure, Unknown};
+pub(crate) use independence::extent;
 pub use independence::{INDEPENDENT, independence};
 pub use iteration::{ITERATIONS, Iteration, Multipliers, SolveSettings, predict, solve};
 pub use kkt::{Block, Kkt, LawFactors};

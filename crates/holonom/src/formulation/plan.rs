@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::kkt::{Augmented, Coupling, Hessian, Kkt, NONE, OuterTerm, Turn};
 use super::scales::Scales;
 use crate::linalg::{Plans, Solver, fill_reducing_order};
-use crate::system::{HessianBlock, InvariantId, Mass, NodeId, Quantity, Row, RowSlot, System};
+use crate::system::{HessianBlock, InvariantId, Mass, NodeId, Quantity, Row, System};
 
 /// Pairs of free nodes that share a block of the matrix.
 #[derive(Default)]
@@ -71,8 +71,7 @@ impl Kkt {
     /// The same with another mass matrix than the system's, where the rows `augmented` (r) enter the part of the coordinates.
     pub fn with_mass(system: &System, mass: &Mass, augmented: &[bool], fields: usize, coupling: Coupling) -> Self {
         let (dim, free) = (system.dim, system.free);
-        let slot_nodes: Vec<u32> = system.slot_nodes().map(|node| node as u32).collect();
-        let row_slots = system.row_slots();
+        let (slot_nodes, row_slots) = (&system.slots.nodes, &system.slots.rows);
         let is_free = |node: u32| (node as usize) < free;
         let mut pairs = Pairs::default();
         for a in 0..free as u32 {
@@ -169,7 +168,6 @@ impl Kkt {
             }
         }
 
-        let row_slot = |(row, slot): (u32, usize)| RowSlot { row, slot: slot as u32, node: slot_nodes[slot] };
         let mut kkt = Self {
             solver: Solver::new(&Plans::default(), 0, &[], &[]),
             dim,
@@ -196,9 +194,7 @@ impl Kkt {
             row_diagonal: Vec::new(),
             row_first: Vec::new(),
             augmented: Vec::new(),
-            slots: row_slots.iter().zip(0..).flat_map(|(slots, row)| slots.clone().map(move |slot| (row, slot))).map(row_slot).collect(),
-            row_slots,
-            slot_nodes,
+            slots: system.slots.clone(),
         };
         kkt.plan(&pairs, &system.plans);
         let rows = (0..augmented.len()).filter(|&row| augmented[row]);
@@ -210,9 +206,9 @@ impl Kkt {
     fn augment(&self, row: usize, field: usize) -> Augmented {
         let multiplier = self.multiplier(row, field);
         let mut coordinates = Vec::new();
-        for slot in self.row_slots[row].clone().filter(|&slot| self.is_free(slot)) {
+        for slot in self.slots.rows[row].clone().filter(|&slot| self.is_free(slot)) {
             for other in (0..self.fields).filter(|&other| self.are_coupled(other, field)) {
-                coordinates.extend((0..self.dim).map(|c| self.coordinate(self.slot_nodes[slot] as usize, other, c)));
+                coordinates.extend((0..self.dim).map(|c| self.coordinate(self.slots.nodes[slot] as usize, other, c)));
             }
         }
         // A function may name a node several times.
@@ -230,7 +226,7 @@ impl Kkt {
     }
 
     fn plan(&mut self, pairs: &Pairs, plans: &Plans) {
-        let (dim, fields, rows) = (self.dim, self.fields, self.row_slots.len());
+        let (dim, fields, rows) = (self.dim, self.fields, self.slots.rows.len());
         let combinations: Vec<(usize, usize)> = (0..fields).flat_map(|i| (0..fields).map(move |j| (i, j))).collect();
         let mut entries = Vec::new();
         for (&(a, b), pair) in &pairs.found {
@@ -246,9 +242,9 @@ impl Kkt {
             for &(i, j) in &combinations {
                 let r = self.multiplier(row, i) as u32;
                 entries.push((r, self.multiplier(row, j) as u32));
-                for s in self.row_slots[row].clone().filter(|&s| self.is_free(s) && self.are_coupled(j, i)) {
+                for s in self.slots.rows[row].clone().filter(|&s| self.is_free(s) && self.are_coupled(j, i)) {
                     for c in 0..dim {
-                        let q = self.coordinate(self.slot_nodes[s] as usize, j, c) as u32;
+                        let q = self.coordinate(self.slots.nodes[s] as usize, j, c) as u32;
                         entries.extend([(r, q), (q, r)]);
                     }
                 }
@@ -269,10 +265,10 @@ impl Kkt {
         }
         let mut row_entries = vec![Vec::new(); 2 * fields * fields];
         for row in 0..rows {
-            for s in self.row_slots[row].clone().filter(|&s| self.is_free(s)) {
+            for s in self.slots.rows[row].clone().filter(|&s| self.is_free(s)) {
                 for &(i, j) in combinations.iter().filter(|&&(i, j)| self.are_coupled(i, j)) {
                     for c in 0..dim {
-                        let (q, r) = (self.coordinate(self.slot_nodes[s] as usize, i, c), self.multiplier(row, j));
+                        let (q, r) = (self.coordinate(self.slots.nodes[s] as usize, i, c), self.multiplier(row, j));
                         for (side, position) in [self.solver.position(q, r), self.solver.position(r, q)].into_iter().enumerate() {
                             row_entries[(side * fields + i) * fields + j].push([(s * dim + c) as u32, position]);
                         }
@@ -289,7 +285,7 @@ impl Kkt {
         for row in 0..=rows {
             let isotropic = self.row_isotropic.partition_point(|&(other, _, _)| (other as usize) < row);
             self.row_first.push([isotropic as u32, entries as u32]);
-            if let Some(slots) = self.row_slots.get(row) {
+            if let Some(slots) = self.slots.rows.get(row) {
                 entries += slots.clone().filter(|&s| self.is_free(s)).count() * dim;
             }
         }
@@ -300,8 +296,8 @@ impl Kkt {
     fn elimination_order(&self, pairs: &Pairs) -> Vec<u32> {
         let mut edges: Vec<(u32, u32)> = pairs.found.keys().copied().filter(|&(a, b)| a < b).collect();
         let free_nodes =
-            |slots: &Range<usize>| -> Vec<u32> { slots.clone().filter(|&s| self.is_free(s)).map(|s| self.slot_nodes[s]).collect() };
-        for slots in &self.row_slots {
+            |slots: &Range<usize>| -> Vec<u32> { slots.clone().filter(|&s| self.is_free(s)).map(|s| self.slots.nodes[s]).collect() };
+        for slots in &self.slots.rows {
             let nodes = free_nodes(slots);
             for &a in &nodes {
                 edges.extend(nodes.iter().filter(|&&b| a < b).map(|&b| (a, b)));
@@ -312,7 +308,7 @@ impl Kkt {
         nodes.iter().enumerate().for_each(|(k, &node)| place[node as usize] = k);
         let mut rows_after: Vec<Vec<usize>> = vec![Vec::new(); self.free];
         let mut first = Vec::new();
-        for (row, slots) in self.row_slots.iter().enumerate() {
+        for (row, slots) in self.slots.rows.iter().enumerate() {
             match free_nodes(slots).into_iter().map(|node| place[node as usize]).max() {
                 Some(last) => rows_after[last].push(row),
                 None => first.push(row),

@@ -39,11 +39,11 @@ impl Workspace {
             *size = step.max(NOTHING * self.scales.length);
         }
         system.mass.times_sizes(dim, &self.full, &mut self.inertial);
-        let Self { kkt, rows, lambda, sampled, full, sizes, .. } = self;
+        let Self { rows, lambda, sampled, full, sizes, .. } = self;
         rows.iter_mut().zip(&*lambda).for_each(|(row, lambda)| *row = lambda.abs());
         sizes.iter_mut().zip(&sampled.gradient).for_each(|(size, g)| *size = g.abs());
         full.fill(0.0);
-        scatter_rows(dim, &kkt.slots, rows, sizes, full);
+        scatter_rows(dim, &system.slots.by_row, rows, sizes, full);
     }
 
     /// Leaves the sizes of the terms of M d + Gᵀλ in `full`, of free nodes alone.
@@ -70,7 +70,7 @@ impl Workspace {
                     .sum();
                 let pull = response.force[k].abs() + give;
                 for s in system.invariants.slots_of(id) {
-                    let node = self.kkt.slot_nodes[s] as usize * dim;
+                    let node = system.slots.nodes[s] as usize * dim;
                     (0..dim).for_each(|c| self.full[node + c] += pull * self.sizes[s * dim + c]);
                 }
             }
@@ -92,7 +92,7 @@ impl Workspace {
     /// Leaves the sizes of the terms of Φ in `rows`: of gradients times positions, whose last digits are lost.
     pub fn size_rows(&mut self, system: &System) {
         self.rows.fill(0.0);
-        for slot in &self.kkt.slots {
+        for slot in &system.slots.by_row {
             let (g, x) = (slot.slot as usize * system.dim, slot.node as usize * system.dim);
             let (g, x) = (&self.at_end.gradient[g..g + system.dim], &self.x1[x..x + system.dim]);
             self.rows[slot.row as usize] += largest(g) * largest(x);
@@ -111,10 +111,10 @@ impl Workspace {
     /// Leaves the sizes of the terms of Φ̇ at the end of the step in `rows`: of gradients times velocities, and of their changes
     /// times positions.
     pub fn size_rates(&mut self, system: &System) {
-        let Self { at_end, x1, v1, half, turned_v, rows, kkt, .. } = self;
+        let Self { at_end, x1, v1, half, turned_v, rows, .. } = self;
         system.turn(at_end, x1, v1, 0.0, half, turned_v);
         rows.fill(0.0);
-        for slot in &kkt.slots {
+        for slot in &system.slots.by_row {
             let (g, x) = (slot.slot as usize * system.dim, slot.node as usize * system.dim);
             let size = |g: &[f64], x: &[f64]| largest(g) * largest(x);
             let (g, x) = (g..g + system.dim, x..x + system.dim);

@@ -2,7 +2,7 @@
 
 use super::independence::{extent, natural_sizes};
 use crate::linalg::largest;
-use crate::system::{RowSlot, System};
+use crate::system::System;
 
 /// A node is light when its mass is below this share of the heaviest of its mechanism. What its rows add is then lost beside what
 /// heavier nodes add: the rows enter its part of the matrix (methods §12).
@@ -49,8 +49,7 @@ impl Scales {
         let (free, rows) = (system.free, system.constraints());
         let own: Vec<f64> = (0..free).map(|node| system.mass.diagonal(node)).collect();
         let heaviest = own.iter().copied().fold(0.0, f64::max);
-        let slots = slots(system);
-        let around = around(system, &own, &slots);
+        let around = around(system, &own);
         let is_light = |node: usize| own[node] < LIGHT * around[node];
         let filled = |node: usize, mass: f64| 1.0 / if mass > 0.0 { mass } else { around[node].max(f64::MIN_POSITIVE) };
         let mut scales = Self {
@@ -67,17 +66,17 @@ impl Scales {
             gradient: vec![0.0; rows],
             reach: vec![0.0; rows],
         };
-        scales.measure_rows(system, &slots, is_light);
+        scales.measure_rows(system, is_light);
         scales
     }
 
-    fn measure_rows(&mut self, system: &System, slots: &[RowSlot], is_light: impl Fn(usize) -> bool) {
+    fn measure_rows(&mut self, system: &System, is_light: impl Fn(usize) -> bool) {
         let dim = system.dim;
         let mut at = system.evaluation();
         system.evaluate_again(&system.start_position, 0.0, &mut at);
         let natural = natural_sizes(system, &at);
         let mut longest = vec![0.0_f64; self.softness.len()];
-        for slot in slots.iter().filter(|slot| (slot.node as usize) < system.free) {
+        for slot in system.slots.by_row.iter().filter(|slot| (slot.node as usize) < system.free) {
             let (row, node) = (slot.row as usize, slot.node as usize);
             let gradient = &at.gradient[slot.slot as usize * dim..(slot.slot as usize + 1) * dim];
             let least = LEAST * natural[row];
@@ -100,25 +99,16 @@ impl Scales {
     }
 }
 
-/// The slots of all rows.
-fn slots(system: &System) -> Vec<RowSlot> {
-    let nodes: Vec<u32> = system.slot_nodes().map(|node| node as u32).collect();
-    let rows = system.row_slots();
-    let of_row = |(row, slots): (u32, std::ops::Range<usize>)| slots.map(move |slot| (row, slot));
-    let slot = |(row, slot): (u32, usize)| RowSlot { row, slot: slot as u32, node: nodes[slot] };
-    (0..).zip(rows).flat_map(of_row).map(slot).collect()
-}
-
 /// The largest mass in the mechanism that each free node belongs to, all that rows and mass hold together, kg: what a light node
 /// counts as, but no more than 1e12 of its own mass.
-fn around(system: &System, own: &[f64], slots: &[RowSlot]) -> Vec<f64> {
+fn around(system: &System, own: &[f64]) -> Vec<f64> {
     let mut root: Vec<usize> = (0..own.len()).collect();
     let mut join = |a: usize, b: usize| {
         let (a, b) = (find(&mut root, a), find(&mut root, b));
         root[a.max(b)] = a.min(b);
     };
     let mut first = vec![None; system.constraints()];
-    for slot in slots.iter().filter(|slot| (slot.node as usize) < own.len()) {
+    for slot in system.slots.by_row.iter().filter(|slot| (slot.node as usize) < own.len()) {
         join(*first[slot.row as usize].get_or_insert(slot.node as usize), slot.node as usize);
     }
     for node in 0..own.len() {

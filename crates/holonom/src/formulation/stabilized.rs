@@ -72,7 +72,7 @@ impl Stabilized {
         let scales = Scales::new(system);
         let (r, all) = (system.constraints(), system.nodes() * system.dim);
         let kkt = Kkt::new(system, &scales, 1, ALL);
-        let (slots, size) = (kkt.slot_nodes.len() * system.dim, kkt.size());
+        let (slots, size) = (system.slots.nodes.len() * system.dim, kkt.size());
         Self {
             kkt,
             u: vec![0.0; all],
@@ -240,7 +240,7 @@ impl Stabilized {
         }
         let nothing = work.nothing();
         work.rows.iter_mut().zip(&work.scales.gradient).for_each(|(size, g)| *size = g * nothing);
-        for slot in &self.kkt.slots {
+        for slot in &system.slots.by_row {
             let (g, x) = (slot.slot as usize * dim, slot.node as usize * dim);
             let size = |g: &[f64], x: &[f64]| largest(g) * largest(x);
             let (g, x) = (g..g + dim, x..x + dim);
@@ -268,11 +268,11 @@ impl Stabilized {
                 sum += mass.product(&push, &slip) + mass.product(&lag, &pull);
             }
         }
-        for (row, slots) in self.kkt.row_slots.iter().enumerate() {
+        for (row, slots) in system.slots.rows.iter().enumerate() {
             let rate_change = system.explicit_rate(row, &work.at_end, stage.end()) - system.explicit_rate(row, &work.at_start, stage.start);
             let mut along = rate_change;
-            for s in slots.clone().filter(|&s| self.kkt.slot_nodes[s] as usize >= system.free) {
-                let node = self.kkt.slot_nodes[s] as usize * dim;
+            for s in slots.clone().filter(|&s| system.slots.nodes[s] as usize >= system.free) {
+                let node = system.slots.nodes[s] as usize * dim;
                 for c in 0..dim {
                     let (g, turned) = (self.velocity_gradient[s * dim + c], self.turned_w[s * dim + c] / h);
                     along += g * (work.v1[node + c] - work.v0[node + c]) + turned * (work.x1[node + c] - work.x0[node + c]);

@@ -54,7 +54,7 @@ impl Workspace {
         system.constraint_values(&self.sampled, t, &mut self.phi);
         self.phi.iter_mut().for_each(|phi| *phi *= scale * level.position);
         if level.velocity != 0.0 {
-            system.constraint_rates(&self.kkt.slots, &self.sampled, &self.vs, t, &mut self.rows);
+            system.constraint_rates(&system.slots.by_row, &self.sampled, &self.vs, t, &mut self.rows);
             self.phi.iter_mut().zip(&self.rows).for_each(|(phi, rate)| *phi += scale * level.velocity * rate);
         }
         if level.acceleration != 0.0 {
@@ -81,7 +81,7 @@ impl Workspace {
             for (k, &id) in law.invariants.iter().enumerate() {
                 let slots = system.invariants.slots_of(id);
                 let gradient = &self.sampled.gradient[slots.start * dim..slots.end * dim];
-                scatter(dim, &self.kkt.slot_nodes[slots], response.force[k], gradient, &mut self.force);
+                scatter(dim, &system.slots.nodes[slots], response.force[k], gradient, &mut self.force);
             }
         }
         let mut first = 0;
@@ -117,7 +117,7 @@ impl Workspace {
                 let mut rate = [0.0; MAX_ARGUMENTS];
                 if !law.law.conservative() {
                     for (rate, &quantity) in rate.iter_mut().zip(&law.arguments) {
-                        *rate = system.along(&system.slots_of(quantity), &self.kkt.slot_nodes, &self.sampled, &self.vs);
+                        *rate = system.along(&system.slots_of(quantity), &system.slots.nodes, &self.sampled, &self.vs);
                     }
                 }
                 law.law.at(&value[..m], &rate[..m], stage.time(), &mut own);
@@ -320,7 +320,7 @@ impl Workspace {
 
     /// Leaves Φ̇ at the end of the step in `rows`.
     pub fn rate_violation(&mut self, system: &System, time: f64) {
-        system.constraint_rates(&self.kkt.slots, &self.at_end, &self.v1, time, &mut self.rows);
+        system.constraint_rates(&system.slots.by_row, &self.at_end, &self.v1, time, &mut self.rows);
     }
 
     /// Leaves Φ̈ at the end of the step in `rows`.

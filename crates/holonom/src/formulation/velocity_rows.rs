@@ -17,8 +17,8 @@ impl Workspace {
             *way = x1 - x0;
         }
         for &row in &system.velocity_rows {
-            let slots = &self.kkt.row_slots[row as usize];
-            let along = |at, v| system.along(slots, &self.kkt.slot_nodes, at, v);
+            let slots = &system.slots.rows[row as usize];
+            let along = |at, v| system.along(slots, &system.slots.nodes, at, v);
             self.phi[row as usize] = match stage.sampling {
                 Sampling::Between => along(&self.sampled, &self.full),
                 Sampling::Start => 0.5 * (along(&self.at_start, &self.full) + along(&self.at_end, &self.full)),
@@ -34,7 +34,7 @@ impl Workspace {
         if system.velocity_rows.is_empty() {
             return;
         }
-        let Self { row_gradient, turned_v, half, at_start, at_end: end, sampled, xs, vs, x0, x1, full, kkt, .. } = self;
+        let Self { row_gradient, turned_v, half, at_start, at_end: end, sampled, xs, vs, x0, x1, full, .. } = self;
         row_gradient.copy_from_slice(if at_end { &end.gradient } else { &sampled.gradient });
         for (way, (x1, x0)) in full.iter_mut().zip(x1.iter().zip(&*x0)) {
             *way = x1 - x0;
@@ -53,7 +53,8 @@ impl Workspace {
         }
         let share = stage.share() / stage.rate;
         for &row in &system.velocity_rows {
-            for i in kkt.row_slots[row as usize].start * system.dim..kkt.row_slots[row as usize].end * system.dim {
+            let slots = &system.slots.rows[row as usize];
+            for i in slots.start * system.dim..slots.end * system.dim {
                 row_gradient[i] = match stage.sampling {
                     Sampling::Between => turned_v[i],
                     Sampling::Start => 0.5 * (at_start.gradient[i] + end.gradient[i] + turned_v[i]),
@@ -65,7 +66,7 @@ impl Workspace {
 
     /// Fills `row_gradient` with those of the velocity rows alone, or of all others; zero elsewhere.
     pub(super) fn part_of_rows(&mut self, system: &System, gradient: Source, velocity: bool) {
-        let Self { row_gradient, sampled, turned_v, kkt, .. } = self;
+        let Self { row_gradient, sampled, turned_v, .. } = self;
         let from = match gradient {
             Source::Sampled => &sampled.gradient,
             Source::Turned => turned_v,
@@ -76,7 +77,7 @@ impl Workspace {
             row_gradient.copy_from_slice(from);
         }
         for &row in &system.velocity_rows {
-            let slots = &kkt.row_slots[row as usize];
+            let slots = &system.slots.rows[row as usize];
             let own = slots.start * system.dim..slots.end * system.dim;
             match velocity {
                 true => row_gradient[own.clone()].copy_from_slice(&from[own]),

@@ -131,7 +131,7 @@ impl Workspace {
         let loads: usize = system.loads.iter().map(|load| load.nodes.len() * system.dim).sum();
         let mut workspace = Self {
             unknowns: vec![0.0; kkt.size()],
-            kept: Kept::new(system, kkt.is_changed_by_rows(), kkt.slot_nodes.len()),
+            kept: Kept::new(system, kkt.is_changed_by_rows(), system.slots.nodes.len()),
             kkt,
             scales,
             level: Level::POSITION,

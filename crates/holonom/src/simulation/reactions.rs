@@ -3,8 +3,8 @@
 use super::Simulation;
 use std::ops::Range;
 
-use crate::formulation::{Kkt, Workspace};
-use crate::system::NodeId;
+use crate::formulation::Workspace;
+use crate::system::{NodeId, System};
 
 /// Forces of the constraints at a state, of the order of its positions and velocities.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +36,7 @@ impl Simulation<'_> {
         let Some(reactions) = &self.reactions else { return ([0.0; 3], [0.0; 3]) };
         let gradient = &self.work.at_start.gradient;
         let about = self.system.of_world(about);
-        wrench(self.system.dim, &self.work.kkt, rows, &reactions.lambda, gradient, nodes, about, &self.state.x)
+        wrench(self.system, rows, &reactions.lambda, gradient, nodes, about, &self.state.x)
     }
 
     /// Finds the forces of the constraints at the present state, where they are wanted.
@@ -65,10 +65,8 @@ impl Simulation<'_> {
 
 /// Force (3) and moment about a place (3) of some rows with the multipliers `lambda` and gradients (D a slot) on some nodes,
 /// points or directions, at the positions `x`.
-#[expect(clippy::too_many_arguments)] // rows, what they pull with, and at what
 pub(crate) fn wrench(
-    dim: usize,
-    kkt: &Kkt,
+    system: &System,
     rows: Range<usize>,
     lambda: &[f64],
     gradient: &[f64],
@@ -78,12 +76,12 @@ pub(crate) fn wrench(
 ) -> ([f64; 3], [f64; 3]) {
     let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
     for row in rows {
-        for s in kkt.row_slots[row].clone() {
-            let Some(&(node, is_point)) = nodes.iter().find(|(node, _)| node.index() == kkt.slot_nodes[s] as usize) else { continue };
+        for s in system.slots.rows[row].clone() {
+            let Some(&(node, is_point)) = nodes.iter().find(|(node, _)| node.index() == system.slots.nodes[s] as usize) else { continue };
             let (mut push, mut arm) = ([0.0; 3], [0.0; 3]);
-            for c in 0..dim {
-                push[c] = -lambda[row] * gradient[s * dim + c];
-                arm[c] = x[node.index() * dim + c] - if is_point { about[c] } else { 0.0 };
+            for c in 0..system.dim {
+                push[c] = -lambda[row] * gradient[s * system.dim + c];
+                arm[c] = x[node.index() * system.dim + c] - if is_point { about[c] } else { 0.0 };
             }
             for c in 0..3 {
                 let (i, j) = ((c + 1) % 3, (c + 2) % 3);

@@ -6,7 +6,7 @@ use super::function::{FunctionId, Functions, Part, Quantity};
 use super::gauge::{Form, Gauges};
 use super::{
     Constant, CustomEntry, CustomRows, InvariantId, Invariants, Law, LawEntry, Load, LoadEntry, MAX_ARGUMENTS, Mass, MassBlock, Row,
-    Signal, System,
+    Signal, Slots, System,
 };
 
 /// A node of a [`SystemBuilder`] and of the system it makes.
@@ -307,7 +307,7 @@ impl SystemBuilder {
         let velocity_rows = (0..self.rows.len() as u32).filter(|&k| is_pfaffian(&self.rows[k as usize])).collect();
         let function_rows =
             (0..self.rows.len() as u32).filter(|&k| matches!(self.rows[k as usize].quantity, Quantity::Function(_))).collect();
-        System {
+        let mut system = System {
             weighing,
             is_point,
             origin,
@@ -329,7 +329,10 @@ impl SystemBuilder {
             start_position: self.position,
             start_velocity: self.velocity,
             size: self.size,
+            slots: Arc::default(),
             plans: Arc::default(),
-        }
+        };
+        system.slots = Arc::new(Slots::new(&system));
+        system
     }
 }

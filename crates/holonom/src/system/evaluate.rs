@@ -49,7 +49,7 @@ impl System {
         let customs = self.constraints() - self.rows.len();
         Evaluation {
             value: vec![0.0; self.invariants.len() + self.functions.len() + customs],
-            gradient: vec![0.0; self.slot_nodes().count() * self.dim],
+            gradient: vec![0.0; self.slots.nodes.len() * self.dim],
             functions: self.functions.values(),
             by_time: vec![0.0; customs],
             beta: vec![0.5; customs],
@@ -74,30 +74,6 @@ impl System {
                 first + slots.start..first + slots.end
             }
         }
-    }
-
-    /// The node of each slot: those of the invariants, of the functions, then row by row those of the custom rows.
-    pub(crate) fn slot_nodes(&self) -> impl Iterator<Item = usize> + '_ {
-        let of_custom = |entry: &'_ CustomEntry| -> Vec<usize> {
-            let nodes: Vec<usize> = entry.nodes.iter().map(|node| node.index()).collect();
-            nodes.repeat(entry.rows.rows())
-        };
-        let of_invariants = self.invariants.slot_nodes();
-        let of_functions = self.functions.sources().map(|s| of_invariants[s] as usize);
-        of_invariants.iter().map(|&node| node as usize).chain(of_functions).chain(self.custom.iter().flat_map(of_custom))
-    }
-
-    /// The slots of each constraint row (r).
-    pub(crate) fn row_slots(&self) -> Vec<std::ops::Range<usize>> {
-        let mut slots: Vec<_> = self.rows.iter().map(|row| self.slots_of(row.quantity)).collect();
-        let mut start = self.invariants.slots() + self.functions.slots();
-        for entry in &self.custom {
-            for _ in 0..entry.rows.rows() {
-                slots.push(start..start + entry.nodes.len());
-                start += entry.nodes.len();
-            }
-        }
-        slots
     }
 
     /// Evaluates everything at the positions `x` of all nodes and time `t`. Angles are counted from those of `near`, less

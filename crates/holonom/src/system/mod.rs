@@ -35,7 +35,7 @@ pub use law::{Law, Load, MAX_ARGUMENTS, Reach, Response};
 pub use mass::{Mass, MassBlock};
 pub use motion::{Constant, Signal};
 pub use slots::RowSlot;
-pub(crate) use slots::{add_along_rows, along, scatter, scatter_rows};
+pub(crate) use slots::{Slots, add_along_rows, along, scatter, scatter_rows};
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -125,6 +125,7 @@ pub struct System {
     pub(crate) start_velocity: Vec<f64>,
     /// Size of the mechanism as far as its nodes do not show it, m.
     pub(crate) size: f64,
+    pub(crate) slots: Arc<Slots>,
     /// Of the eliminations that methods do with this system.
     pub(crate) plans: Arc<Plans>,
 }

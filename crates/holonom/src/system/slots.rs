@@ -2,6 +2,10 @@
 //!
 //! A slot is a node and D numbers of a gradient there; those of a row are next to each other.
 
+use std::ops::Range;
+
+use super::System;
+
 /// Σ g_s·v over the slots, `v` over all nodes.
 #[inline]
 pub(crate) fn along(dim: usize, nodes: &[u32], gradient: &[f64], v: &[f64]) -> f64 {
@@ -26,6 +30,34 @@ pub struct RowSlot {
     pub row: u32,
     pub slot: u32,
     pub node: u32,
+}
+
+/// The slots of a system: those of the invariants, of the functions, then row by row those of the custom rows.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Slots {
+    /// The node of each.
+    pub nodes: Vec<u32>,
+    /// Those of each constraint row (r), and all of them row by row.
+    pub rows: Vec<Range<usize>>,
+    pub by_row: Vec<RowSlot>,
+}
+
+impl Slots {
+    pub fn new(system: &System) -> Self {
+        let of_invariants = system.invariants.slot_nodes();
+        let of_functions = system.functions.sources().map(|s| of_invariants[s]);
+        let mut nodes: Vec<u32> = of_invariants.iter().copied().chain(of_functions).collect();
+        let mut rows: Vec<_> = system.rows.iter().map(|row| system.slots_of(row.quantity)).collect();
+        for entry in &system.custom {
+            for _ in 0..entry.rows.rows() {
+                rows.push(nodes.len()..nodes.len() + entry.nodes.len());
+                nodes.extend(entry.nodes.iter().map(|node| node.index() as u32));
+            }
+        }
+        let of_row = |(row, slots): (u32, &Range<usize>)| slots.clone().map(move |slot| (row, slot));
+        let slot = |(row, slot): (u32, usize)| RowSlot { row, slot: slot as u32, node: nodes[slot] };
+        Self { by_row: (0..).zip(&rows).flat_map(of_row).map(slot).collect(), nodes, rows }
+    }
 }
 
 /// Adds `factor` Σ g_s·v over the slots of each row to the rows, `v` over all nodes.
