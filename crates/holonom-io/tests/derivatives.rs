@@ -1,6 +1,8 @@
 //! Derivatives are never trusted: the assembled tangent of every registered kind against differences of its residual.
 
-use holonom::formulation::{Collocation, Iteration, Level, Multipliers, RowsAt, Sampling, SolveSettings, Stage, Timing, Workspace};
+use holonom::formulation::{
+    ALL, Collocation, Iteration, Kkt, Level, Multipliers, RowsAt, Sampling, SolveSettings, Stage, Timing, Workspace,
+};
 use holonom::model::{Model, constraints, drives, forces, joints};
 use holonom_io::Source;
 
@@ -26,8 +28,9 @@ fn noise(k: usize) -> f64 {
 fn residual(model: &Model, stage: &Stage, work: &mut Workspace) -> Vec<f64> {
     work.place(stage);
     work.evaluate(&model.system, stage);
-    work.residual(&model.system, stage);
-    work.unknowns.iter().map(|unknown| -unknown).collect()
+    let mut unknowns = vec![0.0; model.system.coordinates() + model.system.constraints()];
+    work.residual(&model.system, stage, &mut unknowns);
+    unknowns.iter().map(|unknown| -unknown).collect()
 }
 
 fn check(name: &str, text: &str) {
@@ -40,26 +43,27 @@ fn check(name: &str, text: &str) {
         let (inertia, rate) = if sampling == Sampling::End { (0.25 * step * step, 2.0 / step) } else { (0.5 * step * step, 1.0 / step) };
         let stage = Stage { sampling, rows, start: 0.3, step, inertia, rate };
         let mut work = Workspace::new(system);
-        work.x1.copy_from_slice(system.start_position());
-        let (mut x0, mut v0, mut a0) = (work.x0.clone(), work.v0.clone(), vec![0.0; work.x0.len()]);
+        work.end.x.copy_from_slice(system.start_position());
+        let (mut x0, mut v0, mut a0) = (work.start.x.clone(), work.start.v.clone(), vec![0.0; work.start.x.len()]);
         system.place_known(stage.start, &mut x0, &mut v0, &mut a0);
-        (work.x0, work.v0) = (x0, v0);
-        let (mut x1, mut v1) = (work.x1.clone(), work.v1.clone());
+        (work.start.x, work.start.v) = (x0, v0);
+        let (mut x1, mut v1) = (work.end.x.clone(), work.end.v.clone());
         system.place_known(stage.end(), &mut x1, &mut v1, &mut a0);
-        (work.x1, work.v1) = (x1, v1);
-        for i in n..work.x1.len() {
-            work.xs[i] = if sampling == Sampling::End { work.x1[i] } else { 0.5 * (work.x0[i] + work.x1[i]) };
-            work.vs[i] = (work.x1[i] - work.x0[i]) / step;
+        (work.end.x, work.end.v) = (x1, v1);
+        for i in n..work.end.x.len() {
+            work.sampled.x[i] = if sampling == Sampling::End { work.end.x[i] } else { 0.5 * (work.start.x[i] + work.end.x[i]) };
+            work.sampled.v[i] = (work.end.x[i] - work.start.x[i]) / step;
         }
         (0..n).for_each(|i| work.d[i] = 0.05 * noise(i));
-        (0..n).for_each(|i| work.offset[i] = 0.3 * noise(i + 7));
+        (0..n).for_each(|i| work.prediction.offset[i] = 0.3 * noise(i + 7));
         (0..work.lambda.len()).for_each(|k| work.lambda[k] = 3.0 * noise(k + 3));
-        let x0 = work.x0.clone();
-        system.evaluate_again(&x0, stage.start, &mut work.at_start);
+        let x0 = work.start.x.clone();
+        system.evaluate_again(&x0, stage.start, &mut work.start.at);
         residual(&model, &stage, &mut work);
-        work.tangent(system, &stage, 1.0);
+        let mut kkt = Kkt::new(system, &work.scales, 1, ALL);
+        work.tangent(system, &stage, 1.0, &mut kkt);
         let size = n + system.constraints();
-        let assembled: Vec<f64> = (0..size * n).map(|k| work.kkt.solver.entry(k / n, k % n)).collect();
+        let assembled: Vec<f64> = (0..size * n).map(|k| kkt.solver.entry(k / n, k % n)).collect();
         for column in 0..n {
             let kept = work.d[column];
             work.d[column] = kept + NUDGE;

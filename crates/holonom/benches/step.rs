@@ -6,7 +6,7 @@ mod models;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use holonom::formulation::{RowsAt, Sampling, Stage, Workspace};
+use holonom::formulation::{Newton, RowsAt, Sampling, Stage, Workspace};
 use holonom::simulation::{Simulation, Verdict};
 use holonom::system::System;
 use models::{Case, STEP, cases, method};
@@ -19,30 +19,31 @@ fn main() {
 const STAGE: Stage =
     Stage { sampling: Sampling::Between, rows: RowsAt::End, start: 0.0, step: STEP, inertia: 0.5 * STEP * STEP, rate: 1.0 / STEP };
 
-/// A workspace at the start, with the increment of free flight.
-fn workspace(system: &System) -> Workspace {
+/// A workspace at the start, with the increment of free flight, and the tangent and residual there.
+fn workspace(system: &System) -> (Workspace, Newton) {
     let mut work = Workspace::new(system);
-    for (d, v) in work.d.iter_mut().zip(&work.v0) {
+    for (d, v) in work.d.iter_mut().zip(&work.start.v) {
         *d = STEP * v;
     }
-    work.drift.copy_from_slice(&work.d);
-    work.proximal(STAGE.inertia, None);
+    work.prediction.drift.copy_from_slice(&work.d);
+    let mut newton = Newton::new(system, method("conserving").settings);
+    newton.proximal(STAGE.inertia, None, &work.scales);
     work.place(&STAGE);
     work.evaluate(system, &STAGE);
-    work.tangent(system, &STAGE, 1.0);
-    work.residual(system, &STAGE);
-    work
+    work.tangent(system, &STAGE, 1.0, &mut newton.kkt);
+    work.residual(system, &STAGE, &mut newton.unknowns);
+    (work, newton)
 }
 
 /// Positions, rows, forces and residual of an iteration.
 #[divan::bench(args = cases(), max_time = 0.5)]
 fn evaluate(bencher: Bencher<'_, '_>, case: &Case) {
     let system = case.model().system;
-    let mut work = workspace(&system);
+    let (mut work, mut newton) = workspace(&system);
     bencher.counter(ItemsCount::new(case.bodies())).bench_local(|| {
         work.place(&STAGE);
         work.evaluate(&system, &STAGE);
-        work.residual(&system, &STAGE);
+        work.residual(&system, &STAGE, &mut newton.unknowns);
     });
 }
 
@@ -50,19 +51,19 @@ fn evaluate(bencher: Bencher<'_, '_>, case: &Case) {
 #[divan::bench(args = cases(), max_time = 0.5)]
 fn assemble(bencher: Bencher<'_, '_>, case: &Case) {
     let system = case.model().system;
-    let mut work = workspace(&system);
-    bencher.counter(ItemsCount::new(case.bodies())).bench_local(|| work.tangent(&system, &STAGE, 1.0));
+    let (mut work, mut newton) = workspace(&system);
+    bencher.counter(ItemsCount::new(case.bodies())).bench_local(|| work.tangent(&system, &STAGE, 1.0, &mut newton.kkt));
 }
 
 /// Its factors, with the copy of the matrix that they overwrite.
 #[divan::bench(args = cases(), max_time = 0.5)]
 fn factor(bencher: Bencher<'_, '_>, case: &Case) {
     let system = case.model().system;
-    let mut work = workspace(&system);
-    let matrix = work.kkt.solver.values_mut().to_vec();
+    let (work, mut newton) = workspace(&system);
+    let matrix = newton.kkt.solver.values_mut().to_vec();
     bencher.counter(ItemsCount::new(case.bodies())).bench_local(|| {
-        work.kkt.solver.values_mut().copy_from_slice(&matrix);
-        work.factor().expect("the matrix is regular");
+        newton.kkt.solver.values_mut().copy_from_slice(&matrix);
+        newton.factor(&work.scales).expect("the matrix is regular");
     });
 }
 
@@ -70,12 +71,12 @@ fn factor(bencher: Bencher<'_, '_>, case: &Case) {
 #[divan::bench(args = cases(), max_time = 0.5)]
 fn solve(bencher: Bencher<'_, '_>, case: &Case) {
     let system = case.model().system;
-    let mut work = workspace(&system);
-    work.factor().expect("the matrix is regular");
-    let right_side = work.unknowns.clone();
+    let (work, mut newton) = workspace(&system);
+    newton.factor(&work.scales).expect("the matrix is regular");
+    let right_side = newton.unknowns.clone();
     bencher.counter(ItemsCount::new(case.bodies())).bench_local(|| {
-        work.unknowns.copy_from_slice(&right_side);
-        work.solve().expect("the solution is finite");
+        newton.unknowns.copy_from_slice(&right_side);
+        newton.solve().expect("the solution is finite");
     });
 }
 

@@ -30,16 +30,16 @@ pub fn potential(system: &System, weight: &[f64], x: &[f64], at: &Evaluation, pe
 
 /// The sizes of the terms that the potential energy is a sum of, and of what rounded arguments of the laws make of it, J.
 pub fn size(system: &System, work: &Workspace, x: &[f64]) -> f64 {
-    let mut size: f64 = work.weight.iter().zip(x).map(|(w, x)| (w * x).abs()).sum();
-    for (law, response) in system.laws.iter().zip(&work.responses) {
+    let mut size: f64 = work.forces.weight.iter().zip(x).map(|(w, x)| (w * x).abs()).sum();
+    for (law, response) in system.laws.iter().zip(&work.forces.responses) {
         if law.law.conservative() {
-            size += law.law.energy(&system.arguments(law, &work.at_end)[..law.arguments.len()]).abs();
+            size += law.law.energy(&system.arguments(law, &work.end.at)[..law.arguments.len()]).abs();
         }
         for (i, &id) in law.invariants.iter().enumerate() {
-            let value = work.at_end.value[id.0 as usize];
+            let value = work.end.at.value[id.0 as usize];
             let rise = |j: usize| {
                 let k = law.invariants[j].0 as usize;
-                response.by_value[i][j] * (work.at_end.value[k] - work.at_start.value[k])
+                response.by_value[i][j] * (work.end.at.value[k] - work.start.at.value[k])
             };
             let pull = response.force[i].abs() + (0..law.invariants.len()).map(|j| rise(j).abs()).sum::<f64>();
             size += pull * value.abs();
@@ -53,25 +53,25 @@ pub fn size(system: &System, work: &Workspace, x: &[f64]) -> f64 {
 pub fn work_between(system: &System, stage: &Stage, work: &Workspace) -> f64 {
     let (n, dim, h) = (system.coordinates(), system.dim, stage.step);
     let mut sum = loads_along(system, work, |i| work.d[i]);
-    for (law, response) in system.laws.iter().zip(&work.responses).filter(|(law, _)| !law.law.conservative()) {
+    for (law, response) in system.laws.iter().zip(&work.forces.responses).filter(|(law, _)| !law.law.conservative()) {
         for (k, id) in law.invariants.iter().enumerate() {
             let rise = match stage.sampling {
-                Sampling::Between => work.at_end.value[id.0 as usize] - work.at_start.value[id.0 as usize],
-                _ => h * system.along(&system.invariants.slots_of(*id), &system.slots.nodes, &work.sampled, &work.vs),
+                Sampling::Between => work.end.at.value[id.0 as usize] - work.start.at.value[id.0 as usize],
+                _ => h * system.along(&system.invariants.slots_of(*id), &system.slots.nodes, &work.sampled.at, &work.sampled.v),
             };
             sum -= response.force[k] * rise;
         }
     }
-    for i in n..work.x1.len() {
-        sum += work.force[i] * (work.x1[i] - work.x0[i]);
+    for i in n..work.end.x.len() {
+        sum += work.forces.sum[i] * (work.end.x[i] - work.start.x[i]);
     }
     for node in system.free..system.nodes() {
         for (b, mass) in system.mass.row(node) {
             let mut way = [[0.0; 3]; 2];
             for c in 0..dim {
                 let (i, j) = (node * dim + c, b * dim + c);
-                way[0][c] = 0.5 * (work.v0[i] + work.v1[i]);
-                way[1][c] = work.v1[j] - work.v0[j];
+                way[0][c] = 0.5 * (work.start.v[i] + work.end.v[i]);
+                way[1][c] = work.end.v[j] - work.start.v[j];
             }
             sum += mass.product(&way[0], &way[1]);
         }
@@ -80,7 +80,7 @@ pub fn work_between(system: &System, stage: &Stage, work: &Workspace) -> f64 {
         sum += lambda
             * match system.rows.get(row) {
                 Some(row) => row.target(stage.start)[0] - row.target(stage.end())[0],
-                None => h * system.explicit_rate(row, &work.sampled, stage.time()),
+                None => h * system.explicit_rate(row, &work.sampled.at, stage.time()),
             };
     }
     sum
@@ -90,19 +90,19 @@ pub fn work_between(system: &System, stage: &Stage, work: &Workspace) -> f64 {
 pub fn power(system: &System, t: f64, v: &[f64], a: &[f64], work: &Workspace) -> f64 {
     let (n, dim) = (system.coordinates(), system.dim);
     let mut sum = loads_along(system, work, |i| v[i]);
-    for (law, response) in system.laws.iter().zip(&work.responses).filter(|(law, _)| !law.law.conservative()) {
+    for (law, response) in system.laws.iter().zip(&work.forces.responses).filter(|(law, _)| !law.law.conservative()) {
         for (k, id) in law.invariants.iter().enumerate() {
-            sum -= response.force[k] * system.along(&system.invariants.slots_of(*id), &system.slots.nodes, &work.sampled, v);
+            sum -= response.force[k] * system.along(&system.invariants.slots_of(*id), &system.slots.nodes, &work.sampled.at, v);
         }
     }
-    sum += (n..v.len()).map(|i| work.force[i] * v[i]).sum::<f64>();
+    sum += (n..v.len()).map(|i| work.forces.sum[i] * v[i]).sum::<f64>();
     for node in system.free..system.nodes() {
         for (b, mass) in system.mass.row(node) {
             sum += mass.product(&v[node * dim..(node + 1) * dim], &a[b * dim..(b + 1) * dim]);
         }
     }
     for (row, &lambda) in work.lambda.iter().enumerate() {
-        sum += lambda * system.explicit_rate(row, &work.sampled, t);
+        sum += lambda * system.explicit_rate(row, &work.sampled.at, t);
     }
     sum
 }
@@ -114,7 +114,7 @@ fn loads_along(system: &System, work: &Workspace, motion: impl Fn(usize) -> f64)
         for (k, node) in load.nodes.iter().enumerate() {
             if node.index() < system.free {
                 for c in 0..system.dim {
-                    sum += work.load_force[first + k * system.dim + c] * motion(node.index() * system.dim + c);
+                    sum += work.forces.of_loads[first + k * system.dim + c] * motion(node.index() * system.dim + c);
                 }
             }
         }
@@ -167,8 +167,8 @@ pub fn drop_driven_momenta(system: &System, work: &Workspace, x: &[f64], kept: &
                 let node = system.slots.nodes[s] as usize * dim;
                 let direction = flow(k, node / dim, &x[node..node + dim]);
                 for c in 0..dim {
-                    sum += work.at_start.gradient[s * dim + c] * direction[c];
-                    size += work.at_start.gradient[s * dim + c].abs() * (1.0 + direction[c].abs());
+                    sum += work.start.at.gradient[s * dim + c] * direction[c];
+                    size += work.start.at.gradient[s * dim + c].abs() * (1.0 + direction[c].abs());
                 }
             }
             sum.abs() > 1e-9 * size
@@ -178,14 +178,14 @@ pub fn drop_driven_momenta(system: &System, work: &Workspace, x: &[f64], kept: &
         let pushed = rows.chain(laws).any(pushes);
         let turned: f64 = x
             .chunks_exact(dim)
-            .zip(work.weight.chunks_exact(dim))
+            .zip(work.forces.weight.chunks_exact(dim))
             .enumerate()
             .map(|(node, (x, w))| {
                 let direction = flow(k, node, x);
                 (0..dim).map(|c| w[c] * direction[c]).sum::<f64>()
             })
             .sum();
-        let size: f64 = work.weight.iter().map(|w| w.abs()).sum();
+        let size: f64 = work.forces.weight.iter().map(|w| w.abs()).sum();
         *kept &= !pushed && turned.abs() <= 1e-9 * size;
     }
 }

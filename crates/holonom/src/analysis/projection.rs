@@ -1,6 +1,6 @@
 //! What the velocity projection can do to the energy: the matrix D of (30) and the growth bound of methods §3.
 
-use crate::formulation::Workspace;
+use crate::formulation::{ALL, Kkt, Workspace};
 use crate::linalg::{inverse, relative_eigenvalues};
 use crate::projection::Projection;
 use crate::system::System;
@@ -26,12 +26,13 @@ const ROUND_OFF: f64 = 1e-7;
 pub fn projection_form(system: &System, projection: &Projection, alpha: f64, step: f64) -> Option<ProjectionForm> {
     let (n, dim, free) = (system.coordinates(), system.dimension(), system.free_nodes());
     let mut work = Workspace::new(system);
-    work.x1.copy_from_slice(system.start_position());
-    work.v1.copy_from_slice(system.start_velocity());
+    work.end.x.copy_from_slice(system.start_position());
+    work.end.v.copy_from_slice(system.start_velocity());
     work.sample_end(system, 0.0);
-    projection.assemble(system, 0.0, step, &mut work);
-    let at = |i: usize| work.kkt.coordinate(i / dim, 0, i % dim);
-    let a: Vec<f64> = (0..n * n).map(|k| work.kkt.solver.entry(at(k / n), at(k % n))).collect();
+    let mut kkt = Kkt::new(system, &work.scales, 1, ALL);
+    projection.assemble(system, 0.0, step, &mut kkt, &mut work);
+    let at = |i: usize| kkt.coordinate(i / dim, 0, i % dim);
+    let a: Vec<f64> = (0..n * n).map(|k| kkt.solver.entry(at(k / n), at(k % n))).collect();
     let mut m = vec![0.0; n * n];
     for node in 0..free {
         for (other, mass) in system.mass().row(node).filter(|&(other, _)| other < free) {
@@ -47,7 +48,7 @@ pub fn projection_form(system: &System, projection: &Projection, alpha: f64, ste
     for (row, slots) in system.slots.rows.iter().enumerate() {
         for s in slots.clone().filter(|&s| (system.slots.nodes[s] as usize) < free) {
             let node = system.slots.nodes[s] as usize * dim;
-            (0..dim).for_each(|c| g[row * n + node + c] += work.at_end.gradient[s * dim + c]);
+            (0..dim).for_each(|c| g[row * n + node + c] += work.end.at.gradient[s * dim + c]);
         }
     }
     let times =

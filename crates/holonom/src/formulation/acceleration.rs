@@ -7,9 +7,10 @@
 //! does, leaves (G M⁻¹Gᵀ) λ = … of the paper's (4), which redundant rows do not upset.
 
 use super::failure::Failure;
-use super::iteration::{Multipliers, SolveSettings};
+use super::iteration::Multipliers;
 use super::kkt::Block;
 use super::level::Level;
+use super::newton::Newton;
 use super::workspace::Workspace;
 use crate::system::System;
 
@@ -17,110 +18,110 @@ use crate::system::System;
 /// for redundant rows.
 const PASSES: usize = 3;
 
-impl Workspace {
-    /// Writes [M Gᵀ; G −δ] at the evaluation `at_end`, with the proximal δ, and factors it. False when it cannot be.
-    pub fn factor_inertia(&mut self) -> bool {
-        self.proximal(1.0, None);
-        self.assemble_inertia();
-        self.factor().is_ok()
+impl Newton {
+    /// Writes [M Gᵀ; G −δ] at the evaluation of the end, with the proximal δ, and factors it. False when it cannot be.
+    pub fn factor_inertia(&mut self, work: &Workspace) -> bool {
+        self.proximal(1.0, None, &work.scales);
+        self.assemble_inertia(work);
+        self.factor(&work.scales).is_ok()
     }
 
-    fn assemble_inertia(&mut self) {
+    fn assemble_inertia(&mut self, work: &Workspace) {
         let block = Block(0, 0);
         self.kkt.clear();
         self.kkt.start_with_mass(1.0);
         self.kkt.write_sum(block);
-        self.kkt.add_columns(block, &self.at_end.gradient, 1.0);
-        self.kkt.add_rows(block, &self.at_end.gradient, 1.0);
+        self.kkt.add_columns(block, &work.end.at.gradient, 1.0);
+        self.kkt.add_rows(block, &work.end.at.gradient, 1.0);
     }
 
-    /// Accelerations `a1` and multipliers at the end position and velocity that satisfy Φ̈ = 0: the index-1 system (3).
+    /// Accelerations and multipliers at the end position and velocity that satisfy Φ̈ = 0: the index-1 system (3).
     /// The multipliers start from those in the workspace. They are of the order of the positions and velocities
     /// whatever these were found by, so that forces can be trusted (methods §1.5).
-    pub fn react(&mut self, system: &System, t: f64) -> Result<(), Failure> {
-        let level = std::mem::replace(&mut self.level, Level::ACCELERATION);
-        let outcome = self.balance(system, t, None);
-        self.level = level;
+    pub fn react(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
+        let level = std::mem::replace(&mut work.level, Level::ACCELERATION);
+        let outcome = self.balance(system, t, None, work);
+        work.level = level;
         outcome
-    }
-
-    /// Forces of the rows on all nodes, −Gᵀλ (D × nodes), N, at the evaluation `at_end`.
-    pub fn constraint_forces(&self, force: &mut [f64]) {
-        force.fill(0.0);
-        self.kkt.add_forces(&self.lambda, &self.at_end.gradient, force);
-        force.iter_mut().for_each(|force| *force = -*force);
     }
 
     /// Accelerations and multipliers at the end position and velocity by the formulation itself, which must be one that
     /// gives them: with rows at acceleration level, or soft.
-    pub fn accelerate(&mut self, system: &System, t: f64, settings: &SolveSettings) -> Result<(), Failure> {
-        match settings.multipliers {
-            Multipliers::Penalty(alpha) if self.level.acceleration == 0.0 => self.push(system, t, alpha),
-            Multipliers::Penalty(alpha) => self.balance(system, t, Some(alpha)),
-            Multipliers::Augmented(_) => self.balance(system, t, None),
+    pub fn accelerate(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
+        match self.settings.multipliers {
+            Multipliers::Penalty(alpha) if work.level.acceleration == 0.0 => self.push(system, t, alpha, work),
+            Multipliers::Penalty(alpha) => self.balance(system, t, Some(alpha), work),
+            Multipliers::Augmented(_) => self.balance(system, t, None, work),
         }
     }
 
     /// Solves the system above; with `penalty` as it stands, otherwise until δ no longer matters.
-    fn balance(&mut self, system: &System, t: f64, penalty: Option<f64>) -> Result<(), Failure> {
+    fn balance(&mut self, system: &System, t: f64, penalty: Option<f64>, work: &mut Workspace) -> Result<(), Failure> {
         let n = system.coordinates();
         match penalty {
             Some(alpha) => {
-                self.lambda.fill(0.0);
+                work.lambda.fill(0.0);
                 self.delta.fill(1.0 / alpha);
             }
-            None => self.proximal(1.0, None),
+            None => self.proximal(1.0, None, &work.scales),
         }
-        self.sample_end(system, t);
-        self.assemble_inertia();
-        self.factor()?;
+        work.sample_end(system, t);
+        self.assemble_inertia(work);
+        self.factor(&work.scales)?;
         let passes = if penalty.is_some() { 1 } else { PASSES };
-        self.a1[..n].fill(0.0);
+        work.a[..n].fill(0.0);
         for pass in 0..passes {
-            self.sum_reactions(system, t, pass == 0);
-            self.weigh_levels(system, t, 1.0);
-            for i in 0..n {
-                self.unknowns[i] = -self.inertial[i];
+            if pass > 0 {
+                work.resample_end(system, t);
             }
-            self.unknowns[n..].iter_mut().zip(&self.phi).for_each(|(unknown, row)| *unknown = -row);
+            work.sum_reactions(system);
+            work.weigh_levels(system, t, 1.0);
+            let (forces, rows) = self.unknowns.split_at_mut(n);
+            forces.iter_mut().zip(&work.inertial).for_each(|(unknown, sum)| *unknown = -sum);
+            rows.iter_mut().zip(&work.phi).for_each(|(unknown, row)| *unknown = -row);
             self.solve()?;
-            self.a1[..n].iter_mut().zip(&self.unknowns).for_each(|(a, step)| *a += step);
-            self.lambda.iter_mut().zip(&self.unknowns[n..]).for_each(|(lambda, step)| *lambda += step);
+            let (steps, multipliers) = self.unknowns.split_at(n);
+            work.a.iter_mut().zip(steps).for_each(|(a, step)| *a += step);
+            work.lambda.iter_mut().zip(multipliers).for_each(|(lambda, step)| *lambda += step);
         }
-        self.sample_end(system, t);
+        work.sample_end(system, t);
         Ok(())
     }
 
-    /// M a + f + Gᵀλ at the end into `inertial`. The sampled forces hold Gᵀλ of the multipliers they were sampled with,
-    /// so that later passes sample again.
-    fn sum_reactions(&mut self, system: &System, t: f64, is_sampled: bool) {
-        if !is_sampled {
-            self.resample_end(system, t);
-        }
-        system.mass.times(system.dim, &self.a1, &mut self.inertial);
-        self.inertial.iter_mut().zip(&self.force).for_each(|(sum, force)| *sum += force);
-    }
-
     /// M a = Q − αGᵀΦ (5).
-    fn push(&mut self, system: &System, t: f64, alpha: f64) -> Result<(), Failure> {
+    fn push(&mut self, system: &System, t: f64, alpha: f64, work: &mut Workspace) -> Result<(), Failure> {
         let n = system.coordinates();
-        system.evaluate(&self.x1, t, &self.at_start, &mut self.at_end);
-        system.constraint_values(&self.at_end, t, &mut self.phi);
-        self.lambda.iter_mut().zip(&self.phi).for_each(|(lambda, phi)| *lambda = alpha * phi);
-        self.sample_end(system, t);
+        system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
+        system.constraint_values(&work.end.at, t, &mut work.phi);
+        work.lambda.iter_mut().zip(&work.phi).for_each(|(lambda, phi)| *lambda = alpha * phi);
+        work.sample_end(system, t);
         self.kkt.clear();
         self.kkt.start_with_mass(1.0);
         self.kkt.write_sum(Block(0, 0));
         self.delta.fill(1.0);
-        self.factor()?;
-        self.a1[..n].fill(0.0);
-        self.sum_reactions(system, t, true);
-        for i in 0..n {
-            self.unknowns[i] = -self.inertial[i];
-        }
-        self.unknowns[n..].fill(0.0);
+        self.factor(&work.scales)?;
+        work.a[..n].fill(0.0);
+        work.sum_reactions(system);
+        let (forces, rows) = self.unknowns.split_at_mut(n);
+        forces.iter_mut().zip(&work.inertial).for_each(|(unknown, sum)| *unknown = -sum);
+        rows.fill(0.0);
         self.solve()?;
-        self.a1[..n].copy_from_slice(&self.unknowns[..n]);
+        work.a[..n].copy_from_slice(&self.unknowns[..n]);
         Ok(())
+    }
+}
+
+impl Workspace {
+    /// Forces of the rows on all nodes, −Gᵀλ (D × nodes), N, at the evaluation of the end.
+    pub fn constraint_forces(&self, system: &System, force: &mut [f64]) {
+        force.fill(0.0);
+        system.slots.add_forces(system.dim, &self.lambda, &self.end.at.gradient, force);
+        force.iter_mut().for_each(|force| *force = -*force);
+    }
+
+    /// M a + f + Gᵀλ as sampled into `inertial`.
+    fn sum_reactions(&mut self, system: &System) {
+        system.mass.times(system.dim, &self.a, &mut self.inertial);
+        self.inertial.iter_mut().zip(&self.forces.sum).for_each(|(sum, force)| *sum += force);
     }
 }

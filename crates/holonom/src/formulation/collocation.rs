@@ -17,7 +17,7 @@ use super::failure::Failure;
 use super::iteration::SolveSettings;
 use super::kkt::{ALL, Block, Kkt, OWN_STAGE, TWO_LEVELS};
 use super::level::Level;
-use super::newton::newton;
+use super::newton::{Newton, iterate};
 use super::scales::Scales;
 use super::stage::{RowsAt, Sampling, Stage};
 use super::velocity_rows::Source;
@@ -63,8 +63,9 @@ pub struct Collocation {
     /// δ of the rows (r) of each level, and whether nothing moved them when last factored.
     delta: Vec<f64>,
     idle: Vec<bool>,
-    /// Whether rows were ever factored, and attempts to come that are near a change of the rank.
+    /// Whether rows were ever factored, whether the last factorisation changed what moves, and attempts to come that are near that.
     is_known: bool,
+    changes_rank: bool,
     singular: u32,
 }
 
@@ -88,6 +89,7 @@ impl Collocation {
             delta: vec![0.0; levels * system.constraints()],
             idle: vec![false; levels * system.constraints()],
             is_known: false,
+            changes_rank: false,
             singular: 0,
             kkt,
             stages,
@@ -117,13 +119,13 @@ impl Collocation {
 
     /// Newton on all stages from the increments in `d` (and `u` with rows at both levels), with the multipliers of the
     /// workspace.
-    pub fn solve(&mut self, system: &System, timing: Timing<'_>, settings: &SolveSettings, work: &mut Workspace) -> Result<(), Failure> {
+    pub fn solve(&mut self, system: &System, timing: Timing<'_>, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
         let h2 = timing.step * timing.step;
         for lambda in self.lambda.chunks_exact_mut(work.lambda.len().max(1)) {
             lambda.iter_mut().zip(&work.lambda).for_each(|(own, given)| *own = h2 * given);
         }
         self.nu.fill(0.0);
-        newton(&mut Stages { own: self, system, timing, multipliers: settings.multipliers }, settings, work)?;
+        iterate(&mut Stages { own: self, system, timing }, newton, work)?;
         self.relate();
         Ok(())
     }
@@ -133,11 +135,11 @@ impl Collocation {
     pub fn place(&self, system: &System, timing: Timing<'_>, i: usize, work: &mut Workspace) -> f64 {
         let (n, r, h) = (system.coordinates(), work.lambda.len(), timing.step);
         let t = timing.start + timing.nodes[i] * h;
-        system.place_known(t, &mut work.xs, &mut work.vs, &mut work.a1);
+        system.place_known(t, &mut work.sampled.x, &mut work.sampled.v, &mut work.a);
         for k in 0..n {
-            work.xs[k] = work.x0[k] + self.d[i * n + k];
-            work.vs[k] = self.u[i * n + k] / h;
-            work.a1[k] = self.a[i * n + k] / (h * h);
+            work.sampled.x[k] = work.start.x[k] + self.d[i * n + k];
+            work.sampled.v[k] = self.u[i * n + k] / h;
+            work.a[k] = self.a[i * n + k] / (h * h);
         }
         for k in 0..r {
             work.lambda[k] = self.lambda[i * r + k] / (h * h);
@@ -183,8 +185,8 @@ impl Collocation {
 
     /// h² (M a + f) of the sampled state into `inertial`.
     fn momentum(system: &System, h: f64, work: &mut Workspace) {
-        system.mass.times(system.dim, &work.a1, &mut work.inertial);
-        for (sum, force) in work.inertial.iter_mut().zip(&work.force) {
+        system.mass.times(system.dim, &work.a, &mut work.inertial);
+        for (sum, force) in work.inertial.iter_mut().zip(&work.forces.sum) {
             *sum = h * h * (*sum + force);
         }
     }
@@ -206,7 +208,7 @@ impl Collocation {
         if work.level == Level::POSITION {
             for &row in &system.velocity_rows {
                 let slots = &system.slots.rows[row as usize];
-                work.phi[row as usize] = h * system.along(slots, &system.slots.nodes, &work.sampled, &work.vs);
+                work.phi[row as usize] = h * system.along(slots, &system.slots.nodes, &work.sampled.at, &work.sampled.v);
             }
         }
         for row in 0..r {
@@ -226,19 +228,19 @@ impl Collocation {
         }
         system.mass.times(dim, &work.full, &mut work.inertial);
         self.write(dim, i, work);
-        system.constraint_values(&work.sampled, t, &mut work.phi);
-        system.constraint_rates(&system.slots.by_row, &work.sampled, &work.vs, t, &mut work.rows);
+        system.constraint_values(&work.sampled.at, t, &mut work.phi);
+        system.constraint_rates(&system.slots.by_row, &work.sampled.at, &work.sampled.v, t, &mut work.rows);
         for row in 0..r {
             self.unknowns[self.kkt.multiplier(row, i)] = -work.phi[row];
             self.unknowns[self.kkt.multiplier(row, s + i)] = -h * work.rows[row];
             // Rows on velocities have no part in the first equation.
-            if system.velocity_rows.contains(&(row as u32)) {
+            if system.velocity_rows.binary_search(&(row as u32)).is_ok() {
                 continue;
             }
             let nu = self.nu[i * r + row];
             for slot in system.slots.rows[row].clone().filter(|&slot| self.kkt.is_free(slot)) {
                 let to = self.kkt.coordinate(system.slots.nodes[slot] as usize, i, 0);
-                (0..dim).for_each(|c| self.unknowns[to + c] -= nu * work.sampled.gradient[slot * dim + c]);
+                (0..dim).for_each(|c| self.unknowns[to + c] -= nu * work.sampled.at.gradient[slot * dim + c]);
             }
         }
     }
@@ -257,7 +259,7 @@ impl Collocation {
             if i == j {
                 self.add_forces(system, t, h, b / h, block, i, work);
             } else {
-                self.add_damping(system, t, h * b, block, work);
+                work.add_damping(system, t, block, h * b, &mut self.kkt);
             }
             self.kkt.write_sum(block);
             if level == Level::POSITION {
@@ -265,15 +267,15 @@ impl Collocation {
                 continue;
             }
             let gradient = level.position * own + level.velocity * b / h + level.acceleration * c / (h * h);
-            self.kkt.add_rows(block, &work.sampled.gradient, scale * gradient);
+            self.kkt.add_rows(block, &work.sampled.at.gradient, scale * gradient);
             if level != Level::POSITION {
-                self.kkt.add_rows(block, &work.turned_v, scale * (level.velocity * own + 2.0 * level.acceleration * b / h));
+                self.kkt.add_rows(block, &work.turned.v, scale * (level.velocity * own + 2.0 * level.acceleration * b / h));
             }
             if level.acceleration != 0.0 && i == j {
-                self.kkt.add_rows(block, &work.turned_a, scale * level.acceleration);
+                self.kkt.add_rows(block, &work.turned.a, scale * level.acceleration);
             }
         }
-        self.kkt.add_columns(Block(i, i), &work.sampled.gradient, 1.0);
+        self.kkt.add_columns(Block(i, i), &work.sampled.at.gradient, 1.0);
     }
 
     /// Adds the rows of a stage: conditions on its position, and hΨ of those on velocities.
@@ -281,18 +283,18 @@ impl Collocation {
         let is_own = block.0 == block.1;
         if !system.is_nonholonomic() {
             if is_own {
-                self.kkt.add_rows(block, &work.sampled.gradient, 1.0);
+                self.kkt.add_rows(block, &work.sampled.at.gradient, 1.0);
             }
             return;
         }
         if is_own {
             work.part_of_rows(system, Source::Sampled, false);
-            self.kkt.add_rows(block, &work.row_gradient, 1.0);
+            self.kkt.add_rows(block, &work.turned.rows, 1.0);
             work.part_of_rows(system, Source::Turned, true);
-            self.kkt.add_rows(block, &work.row_gradient, h);
+            self.kkt.add_rows(block, &work.turned.rows, h);
         }
         work.part_of_rows(system, Source::Sampled, true);
-        self.kkt.add_rows(block, &work.row_gradient, rate);
+        self.kkt.add_rows(block, &work.turned.rows, rate);
     }
 
     fn tangent_of_both(&mut self, system: &System, timing: Timing<'_>, i: usize, t: f64, work: &mut Workspace) {
@@ -307,7 +309,7 @@ impl Collocation {
             self.kkt.write_sum(Block(i, j));
             self.kkt.start_with_mass(b);
             if i == j {
-                self.add_damping(system, t, h, Block(s + i, s + i), work);
+                work.add_damping(system, t, Block(s + i, s + i), h, &mut self.kkt);
             }
             self.kkt.write_sum(Block(s + i, s + j));
         }
@@ -316,15 +318,15 @@ impl Collocation {
         self.kkt.start_with_mass(0.0);
         self.add_forces(system, t, h, 0.0, Block(s + i, i), i, work);
         self.kkt.write_sum(Block(s + i, i));
-        let gradient = &work.sampled.gradient;
+        let gradient = &work.sampled.at.gradient;
         self.kkt.add_columns(Block(s + i, s + i), gradient, 1.0);
         self.kkt.add_rows(Block(s + i, s + i), gradient, 1.0);
-        self.kkt.add_rows(Block(s + i, i), &work.turned_v, h);
+        self.kkt.add_rows(Block(s + i, i), &work.turned.v, h);
         // Of rows on velocities ν is zero, to the bit.
         if system.is_nonholonomic() {
             work.part_of_rows(system, Source::Sampled, false);
         }
-        let gradient = if system.is_nonholonomic() { &work.row_gradient } else { &work.sampled.gradient };
+        let gradient = if system.is_nonholonomic() { &work.turned.rows } else { &work.sampled.at.gradient };
         self.kkt.add_columns(Block(i, i), gradient, 1.0);
         self.kkt.add_rows(Block(i, i), gradient, 1.0);
     }
@@ -334,13 +336,11 @@ impl Collocation {
     fn add_forces(&mut self, system: &System, t: f64, h: f64, rate: f64, block: Block, i: usize, work: &mut Workspace) {
         let r = work.lambda.len();
         self.kkt.add_row_hessians(&self.lambda[i * r..(i + 1) * r], 1.0);
-        let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start: t - h, step: h, inertia: h * h, rate };
-        std::mem::swap(&mut work.kkt, &mut self.kkt);
-        work.add_laws(system, &stage, block);
-        work.add_function_rows(system, &stage, block);
-        work.add_loads(system, &stage, block);
-        work.add_custom_hessians(system, t, block, h * h);
-        std::mem::swap(&mut work.kkt, &mut self.kkt);
+        let stage = stage(t, h, h * h, rate);
+        work.add_laws(system, &stage, block, &mut self.kkt);
+        work.add_function_rows(system, &stage, block, &mut self.kkt);
+        work.add_loads(system, &stage, block, &mut self.kkt);
+        work.add_custom_hessians(system, t, block, h * h, &mut self.kkt);
     }
 
     /// Adds the curvature of the rows of stage `i` under ν to its own block, all of it: of redundant rows ν is round-off, which may
@@ -350,19 +350,11 @@ impl Collocation {
         work.lambda.copy_from_slice(&self.nu[i * r..(i + 1) * r]);
         system.velocity_rows.iter().for_each(|&row| work.lambda[row as usize] = 0.0);
         self.kkt.add_row_hessians(&work.lambda, 1.0);
-        let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start: t - h, step: h, inertia: 1.0, rate: 1.0 / h };
-        std::mem::swap(&mut work.kkt, &mut self.kkt);
-        work.add_function_rows(system, &stage, Block(i, i));
-        work.add_custom_hessians(system, t, Block(i, i), 1.0);
-        std::mem::swap(&mut work.kkt, &mut self.kkt);
+        let stage = stage(t, h, 1.0, 1.0 / h);
+        work.add_function_rows(system, &stage, Block(i, i), &mut self.kkt);
+        work.add_custom_hessians(system, t, Block(i, i), 1.0, &mut self.kkt);
         let lambda = &self.lambda[i * r..(i + 1) * r];
         work.lambda.iter_mut().zip(lambda).for_each(|(own, lambda)| *own = lambda / (h * h));
-    }
-
-    fn add_damping(&mut self, system: &System, t: f64, factor: f64, block: Block, work: &mut Workspace) {
-        std::mem::swap(&mut work.kkt, &mut self.kkt);
-        work.add_damping(system, t, block, factor);
-        std::mem::swap(&mut work.kkt, &mut self.kkt);
     }
 
     /// Residual of all stages at the unknowns, in the order of [`Self::add`], and their tangent for [`Self::entry`].
@@ -415,6 +407,11 @@ impl Collocation {
         let of_field = |field| work.scaled_multipliers(multipliers.iter().copied().skip(field).step_by(self.kkt.fields));
         (0..self.kkt.fields).map(of_field).fold(0.0, f64::max)
     }
+}
+
+/// The terms of a stage at time `t`, whose forces count `inertia` and whose velocities change by `rate` with its position.
+fn stage(t: f64, h: f64, inertia: f64, rate: f64) -> Stage {
+    Stage { sampling: Sampling::End, rows: RowsAt::End, start: t - h, step: h, inertia, rate }
 }
 
 fn pairs(s: usize) -> impl Iterator<Item = (usize, usize)> {

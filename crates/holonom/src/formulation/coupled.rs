@@ -10,6 +10,7 @@
 
 use super::failure::Failure;
 use super::kkt::{Block, Kkt, TWO_LEVELS};
+use super::newton::Newton;
 use super::scales::Scales;
 use super::stabilized::Stabilized;
 use super::stage::Stage;
@@ -29,11 +30,16 @@ impl Coupled {
     }
 
     /// Assembles and factors the tangent at the unknowns and the multipliers that are expected.
-    pub(super) fn factor(&mut self, both: &Stabilized, system: &System, stage: &Stage, work: &mut Workspace) -> Result<(), Failure> {
-        std::mem::swap(&mut work.kkt, &mut self.kkt);
-        work.expected_tangent(system, stage);
-        std::mem::swap(&mut work.kkt, &mut self.kkt);
+    pub(super) fn factor(
+        &mut self,
+        both: &Stabilized,
+        system: &System,
+        stage: &Stage,
+        newton: &mut Newton,
+        work: &mut Workspace,
+    ) -> Result<(), Failure> {
         let kkt = &mut self.kkt;
+        work.expected_tangent(system, stage, kkt);
         let mut curve = |mass: f64, block: Block| {
             kkt.start_with_mass(mass);
             kkt.add_row_hessians(&both.gamma, 0.5);
@@ -47,12 +53,12 @@ impl Coupled {
         kkt.add_columns(Block(0, 1), &both.pull, 1.0);
         kkt.add_columns(Block(1, 1), &both.velocity_gradient, 1.0);
         kkt.add_rows(Block(1, 0), &both.turned_u, 1.0);
-        kkt.add_rows(Block(1, 1), &work.at_end.gradient, 1.0);
-        (0..2).for_each(|field| kkt.regularise(field, &work.delta));
-        work.factorizations += 1;
-        kkt.factor()?;
-        work.classify_rows_by(kkt);
-        Ok(())
+        kkt.add_rows(Block(1, 1), &work.end.at.gradient, 1.0);
+        (0..2).for_each(|field| kkt.regularise(field, &newton.delta));
+        newton.factorizations += 1;
+        let outcome = kkt.factor();
+        newton.rank.classify(&outcome, kkt, &newton.delta, &work.scales);
+        outcome
     }
 
     /// Replaces the residuals, of d and μ in `first` and of u and γ' in `second` (n + r each), by increments.

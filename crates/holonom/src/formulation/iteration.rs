@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::level::Level;
-use super::newton::{Change, Equations, KEPT, RESTARTS, newton};
+use super::newton::{Change, Equations, KEPT, Newton, RESTARTS, iterate};
 use super::stage::{RowsAt, Sampling, Stage};
 use super::workspace::Workspace;
 use crate::linalg::largest;
@@ -61,11 +61,12 @@ const LOOP_RHO: f64 = 1e6;
 const OUTER_SHARE: f64 = 1e-3;
 
 /// Solves a stage from the increment and multipliers in the workspace.
-pub fn solve(system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<(), Failure> {
-    match (settings.multipliers, settings.iteration) {
-        (Multipliers::Augmented(alpha), Iteration::Simultaneous) => simultaneous(system, stage, settings, alpha, work),
-        (Multipliers::Augmented(alpha), Iteration::Nested) => nested(system, stage, settings, alpha, work),
-        _ => newton(&mut OneStage { system, stage, multipliers: settings.multipliers }, settings, work),
+pub fn solve(system: &System, stage: &Stage, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
+    let multipliers = newton.settings.multipliers;
+    match (multipliers, newton.settings.iteration) {
+        (Multipliers::Augmented(alpha), Iteration::Simultaneous) => simultaneous(system, stage, alpha, newton, work),
+        (Multipliers::Augmented(alpha), Iteration::Nested) => nested(system, stage, alpha, newton, work),
+        _ => iterate(&mut OneStage { system, stage, multipliers }, newton, work),
     }
 }
 
@@ -80,122 +81,122 @@ pub(super) struct OneStage<'a> {
 const KEPT_IN_PART: i32 = 2;
 
 impl Equations for OneStage<'_> {
-    fn begin(&mut self, work: &mut Workspace) {
+    fn begin(&mut self, newton: &mut Newton, work: &mut Workspace) {
         let Stage { rate, inertia, rows, .. } = *self.stage;
         match self.multipliers {
-            Multipliers::Penalty(alpha) => work.delta.fill(work.level.scale(rate, inertia) / (inertia * alpha)),
+            Multipliers::Penalty(alpha) => newton.delta.fill(work.level.scale(rate, inertia) / (inertia * alpha)),
             // Where violations are held, redundant rows that miss each other would not let their multipliers settle.
             Multipliers::Augmented(None) if work.level == Level::POSITION && rows != RowsAt::Mean => {
-                work.proximal_of_redundant();
+                newton.proximal_of_redundant(&work.scales);
                 work.expect_multipliers();
             }
-            Multipliers::Augmented(penalty) => work.proximal(inertia, penalty),
+            Multipliers::Augmented(penalty) => newton.proximal(inertia, penalty, &work.scales),
         }
     }
 
-    fn restart(&mut self, again: usize, work: &mut Workspace) -> bool {
+    fn restart(&mut self, again: usize, _newton: &mut Newton, work: &mut Workspace) -> bool {
         RESTARTS.get(again).map(|&share| restart(share, work)).is_some()
     }
 
-    fn evaluate(&mut self, _is_new: bool, work: &mut Workspace) {
+    fn evaluate(&mut self, _is_new: bool, newton: &mut Newton, work: &mut Workspace) {
         work.place(self.stage);
         work.evaluate(self.system, self.stage);
         if let Multipliers::Penalty(alpha) = self.multipliers {
             let softness = work.level.scale(self.stage.rate, self.stage.inertia) / alpha;
             work.phi.iter_mut().zip(&work.lambda).for_each(|(phi, lambda)| *phi -= softness * lambda);
         }
-        work.residual(self.system, self.stage);
+        work.residual(self.system, self.stage, &mut newton.unknowns);
     }
 
-    fn is_met(&mut self, moves: bool, work: &mut Workspace) -> bool {
+    fn is_met(&mut self, moves: bool, newton: &mut Newton, work: &mut Workspace) -> bool {
         // Only the schemes between two positions have an energy that shows what forces leave.
-        work.is_met(self.system, self.stage, moves || self.stage.sampling != Sampling::Between)
+        work.is_met(self.system, self.stage, moves || self.stage.sampling != Sampling::Between, &newton.unknowns)
     }
 
-    fn factor(&mut self, is_first: bool, work: &mut Workspace) -> Result<(), Failure> {
-        work.factor_tangent(self.system, self.stage, is_first)
+    fn factor(&mut self, is_first: bool, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
+        newton.factor_tangent(self.system, self.stage, is_first, work)
     }
 
-    fn advance(&mut self, _is_first: bool, work: &mut Workspace) -> Result<Change, Failure> {
-        let (n, inertia) = (self.system.coordinates(), self.stage.inertia);
-        work.solve()?;
-        let increment = advance(n, work);
-        work.lambda.iter_mut().zip(&work.unknowns[n..]).for_each(|(lambda, mu)| *lambda += mu / inertia);
-        Ok(Change { increment, multipliers: work.turned(inertia, n), left: 0.0 })
+    fn guards_rank(&mut self, newton: &mut Newton, work: &Workspace) -> bool {
+        newton.guards_rank(&work.scales)
     }
 
-    fn kept(&self, work: &Workspace) -> i32 {
-        if work.is_factored_in_part(self.stage) { KEPT_IN_PART } else { KEPT }
+    fn advance(&mut self, _is_first: bool, newton: &mut Newton, work: &mut Workspace) -> Result<Change, Failure> {
+        let inertia = self.stage.inertia;
+        newton.solve()?;
+        let (increments, mu) = newton.unknowns.split_at(self.system.coordinates());
+        let increment = advance(increments, work);
+        work.lambda.iter_mut().zip(mu).for_each(|(lambda, mu)| *lambda += mu / inertia);
+        Ok(Change { increment, multipliers: work.turned(inertia, mu), left: 0.0 })
+    }
+
+    fn kept(&self, newton: &Newton, work: &Workspace) -> i32 {
+        if newton.is_factored_in_part(self.stage, work.level) { KEPT_IN_PART } else { KEPT }
     }
 }
 
 /// Puts the increment where the velocity at the start and the accelerations that are expected lead, with v̄ = Δq/h.
 pub fn predict(stage: &Stage, work: &mut Workspace) {
-    let Workspace { d, drift, a1, a_change, .. } = work;
-    for (((d, drift), a), change) in d.iter_mut().zip(drift).zip(a1).zip(a_change) {
+    let Workspace { d, a, prediction, .. } = work;
+    for (((d, drift), a), change) in d.iter_mut().zip(&prediction.drift).zip(a).zip(&prediction.a_change) {
         *d = *drift + stage.inertia * (*a + *change);
     }
 }
 
 /// Puts the increment at a share of the free flight, without multipliers.
 pub(super) fn restart(share: f64, work: &mut Workspace) {
-    for (d, drift) in work.d.iter_mut().zip(&work.drift) {
+    for (d, drift) in work.d.iter_mut().zip(&work.prediction.drift) {
         *d = share * drift;
     }
     work.lambda.fill(0.0);
-    work.lambda_change.fill(0.0);
+    work.prediction.lambda_change.fill(0.0);
 }
 
 /// Adds the solution to the increment; its largest entry over the size of the mechanism.
-fn advance(n: usize, work: &mut Workspace) -> f64 {
-    work.d.iter_mut().zip(&work.unknowns).for_each(|(d, step)| *d += step);
-    largest(&work.unknowns[..n]) / work.scales.length
+fn advance(increments: &[f64], work: &mut Workspace) -> f64 {
+    work.d.iter_mut().zip(increments).for_each(|(d, step)| *d += step);
+    largest(increments) / work.scales.length
 }
 
 /// Sets δ to what a penalty stands for, and says how λ changes with Φ: α for each row.
-fn penalties(stage: &Stage, penalty: Option<f64>, work: &mut Workspace) {
+fn penalties(stage: &Stage, penalty: Option<f64>, newton: &mut Newton, work: &Workspace) {
     let scale = work.level.scale(stage.rate, stage.inertia);
-    for (delta, &softness) in work.delta.iter_mut().zip(&work.scales.softness) {
+    for (delta, &softness) in newton.delta.iter_mut().zip(&work.scales.softness) {
         *delta = penalty.map_or(softness / LOOP_RHO, |alpha| scale / (stage.inertia * alpha));
     }
 }
 
 /// One increment of the coordinates at the multipliers λ + αΦ; its 2-norm, m.
-fn increment(system: &System, stage: &Stage, work: &mut Workspace) -> Result<f64, Failure> {
+fn increment(system: &System, stage: &Stage, newton: &mut Newton, work: &mut Workspace) -> Result<f64, Failure> {
     work.place(stage);
     work.evaluate(system, stage);
-    work.residual(system, stage);
-    work.tangent(system, stage, 0.0);
-    work.factor()?;
-    work.solve()?;
-    let n = system.coordinates();
-    advance(n, work);
-    work.iterations += 1;
-    Ok(work.unknowns[..n].iter().map(|u| u * u).sum::<f64>().sqrt())
+    work.residual(system, stage, &mut newton.unknowns);
+    work.tangent(system, stage, 0.0, &mut newton.kkt);
+    newton.factor(&work.scales)?;
+    newton.solve()?;
+    let increments = &newton.unknowns[..system.coordinates()];
+    advance(increments, work);
+    newton.iterations += 1;
+    Ok(increments.iter().map(|u| u * u).sum::<f64>().sqrt())
 }
 
 /// λ ← λ + αΦ at the present position; the 2-norm of Φ.
-fn update_multipliers(system: &System, stage: &Stage, work: &mut Workspace) -> f64 {
+fn update_multipliers(system: &System, stage: &Stage, newton: &Newton, work: &mut Workspace) -> f64 {
     work.place(stage);
     work.evaluate(system, stage);
-    for ((lambda, phi), delta) in work.lambda.iter_mut().zip(&work.phi).zip(&work.delta) {
+    for ((lambda, phi), delta) in work.lambda.iter_mut().zip(&work.phi).zip(&newton.delta) {
         *lambda += phi / (delta * stage.inertia);
     }
     work.phi.iter().map(|phi| phi * phi).sum::<f64>().sqrt()
 }
 
-fn simultaneous(
-    system: &System,
-    stage: &Stage,
-    settings: &SolveSettings,
-    penalty: Option<f64>,
-    work: &mut Workspace,
-) -> Result<(), Failure> {
-    penalties(stage, penalty, work);
+fn simultaneous(system: &System, stage: &Stage, penalty: Option<f64>, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
+    penalties(stage, penalty, newton, work);
+    let settings = newton.settings;
     let mut size = f64::INFINITY;
     for _ in 0..settings.max_iterations {
-        size = increment(system, stage, work)?;
-        update_multipliers(system, stage, work);
+        size = increment(system, stage, newton, work)?;
+        update_multipliers(system, stage, newton, work);
         if size < settings.tolerance {
             return Ok(());
         }
@@ -203,12 +204,13 @@ fn simultaneous(
     Err(Failure::NotConverged { iterations: settings.max_iterations, increment: size / work.scales.length })
 }
 
-fn nested(system: &System, stage: &Stage, settings: &SolveSettings, penalty: Option<f64>, work: &mut Workspace) -> Result<(), Failure> {
-    penalties(stage, penalty, work);
+fn nested(system: &System, stage: &Stage, penalty: Option<f64>, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
+    penalties(stage, penalty, newton, work);
+    let settings = newton.settings;
     let mut size = f64::INFINITY;
     for _ in 0..settings.max_iterations {
-        size = increment(system, stage, work)?;
-        if size < settings.tolerance && update_multipliers(system, stage, work) < OUTER_SHARE * settings.tolerance {
+        size = increment(system, stage, newton, work)?;
+        if size < settings.tolerance && update_multipliers(system, stage, newton, work) < OUTER_SHARE * settings.tolerance {
             return Ok(());
         }
     }

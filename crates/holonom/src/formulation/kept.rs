@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use super::level::Level;
+use super::newton::Newton;
 use super::stage::{RowsAt, Stage};
 use super::workspace::Workspace;
 use crate::system::System;
@@ -23,47 +24,48 @@ pub(super) struct Kept {
 }
 
 impl Kept {
-    pub(super) fn new(system: &System, by_rows: bool, slots: usize) -> Self {
+    pub(super) fn new(system: &System, by_rows: bool) -> Self {
         let by_rows = by_rows && system.has_only_quadratic_rows();
         let rows = if by_rows { system.constraints() } else { 0 };
-        let gradient = vec![0.0; if by_rows { slots * system.dim } else { 0 }];
+        let gradient = vec![0.0; if by_rows { system.slots.nodes.len() * system.dim } else { 0 }];
         Self { by_rows, gradient, lambda: vec![0.0; rows], left: vec![0.0; rows], rows: Vec::with_capacity(rows) }
     }
 }
 
-impl Workspace {
+impl Newton {
     /// Whether all factorisations of a step but the first are in part.
-    pub(super) fn is_factored_in_part(&self, stage: &Stage) -> bool {
-        self.kept.by_rows && self.level == Level::POSITION && stage.rows != RowsAt::Middle
+    pub(super) fn is_factored_in_part(&self, stage: &Stage, level: Level) -> bool {
+        self.kept.by_rows && level == Level::POSITION && stage.rows != RowsAt::Middle
     }
 
     /// Factors the tangent at the multipliers that are expected: as a whole in the first iteration of a step, later only
     /// where rows have turned since and the multipliers change.
-    pub(super) fn factor_tangent(&mut self, system: &System, stage: &Stage, first: bool) -> Result<(), Failure> {
-        let in_part = self.is_factored_in_part(stage);
+    pub(super) fn factor_tangent(&mut self, system: &System, stage: &Stage, first: bool, work: &mut Workspace) -> Result<(), Failure> {
+        let in_part = self.is_factored_in_part(stage, work.level);
         if in_part && !first {
-            return self.factor_turned(stage);
+            return self.factor_turned(stage, work);
         }
-        self.expected_tangent(system, stage);
+        work.expected_tangent(system, stage, &mut self.kkt);
         if in_part {
-            self.kept.gradient.copy_from_slice(&self.at_end.gradient);
-            for (kept, (lambda, change)) in self.kept.lambda.iter_mut().zip(self.lambda.iter().zip(&self.lambda_change)) {
+            self.kept.gradient.copy_from_slice(&work.end.at.gradient);
+            for (kept, (lambda, change)) in self.kept.lambda.iter_mut().zip(work.lambda.iter().zip(&work.prediction.lambda_change)) {
                 *kept = lambda + change;
             }
         }
-        self.factor()
+        self.factor(&work.scales)
     }
 
     /// Brings the factors up to date where that matters. Without it a row, whose gradient g has turned by Δg and whose multiplier
     /// has changed by Δμ since, leaves a force Δgᵀμ', a force Δμ H d' and a violation Δg·d' of the next increments μ' and d'.
     /// These are taken to be as large as those since: |Δg| (Δμ/m + |Δg|/|g|), a length.
-    fn factor_turned(&mut self, stage: &Stage) -> Result<(), Failure> {
-        let Self { kkt, kept, at_end, lambda, scales, .. } = self;
+    fn factor_turned(&mut self, stage: &Stage, work: &Workspace) -> Result<(), Failure> {
+        let Self { kkt, kept, .. } = self;
+        let Workspace { end, lambda, scales, .. } = work;
         let Kept { gradient, lambda: kept_lambda, left, rows, .. } = kept;
         let mut most = 0.0_f64;
         for (row, left) in left.iter_mut().enumerate() {
             let slots = kkt.gradient_of(row);
-            let changes = at_end.gradient[slots.clone()].iter().zip(&gradient[slots]).map(|(g, kept)| g - kept);
+            let changes = end.at.gradient[slots.clone()].iter().zip(&gradient[slots]).map(|(g, kept)| g - kept);
             let turned = changes.map(|change| change * change).sum::<f64>().sqrt();
             let pulled = stage.inertia * (lambda[row] - kept_lambda[row]).abs() * scales.reach[row] * scales.length / scales.gradient[row];
             *left = turned * (pulled + turned / scales.gradient[row]);
@@ -74,7 +76,7 @@ impl Workspace {
         let factors = [stage.share(), if stage.rows == RowsAt::Mean { 0.5 } else { 1.0 }];
         for &row in &*rows {
             let (slots, pull) = (kkt.gradient_of(row), lambda[row] - kept_lambda[row]);
-            let (change, g) = (&mut gradient[slots.clone()], &at_end.gradient[slots]);
+            let (change, g) = (&mut gradient[slots.clone()], &end.at.gradient[slots]);
             change.iter_mut().zip(g).for_each(|(kept, g)| *kept = g - *kept);
             kkt.change_row(row, stage.inertia * stage.share() * pull, factors, change);
             change.copy_from_slice(g);

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use super::failure::{Failure, Unknown};
 use crate::linalg::{Singular, Solver};
-use crate::system::{MAX_ARGUMENTS, Response, Slots, add_along_rows, cross, scatter_rows, skew};
+use crate::system::{MAX_ARGUMENTS, Response, Slots, cross, skew};
 
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -59,7 +59,7 @@ pub(super) struct Hessian {
 pub type Coupling = fn(usize, usize, usize) -> bool;
 
 /// One stage without velocities, or several stages each with all rows.
-pub(crate) const ALL: Coupling = |_, _, _| true;
+pub const ALL: Coupling = |_, _, _| true;
 
 /// Rows of a stage and coordinates of the same stage.
 pub(super) const OWN_STAGE: Coupling = |_, node, row| node == row;
@@ -332,20 +332,6 @@ impl Kkt {
         for &[slot, position] in entries {
             values[position as usize] += factor * gradient[slot as usize];
         }
-    }
-
-    /// Adds Σ factor_k g_k of all rows to forces on all nodes.
-    pub fn add_forces(&self, factors: &[f64], gradient: &[f64], force: &mut [f64]) {
-        // Newton starts every step without multipliers.
-        if factors.iter().all(|factor| *factor == 0.0) {
-            return;
-        }
-        scatter_rows(self.dim, &self.slots.by_row, factors, gradient, force);
-    }
-
-    /// Adds `factor` g_k·x of all rows (r), `x` over all nodes.
-    pub fn add_along(&self, factor: f64, gradient: &[f64], x: &[f64], out: &mut [f64]) {
-        add_along_rows(self.dim, &self.slots.by_row, factor, gradient, x, out);
     }
 
     /// Subtracts δ (r) from the diagonal of the rows of a field.

@@ -2,31 +2,90 @@
 
 use super::failure::Failure;
 use super::iteration::SolveSettings;
+use super::kept::Kept;
+use super::kkt::{ALL, Kkt};
+use super::rank::Rank;
+use super::scales::Scales;
 use super::workspace::Workspace;
+use crate::system::System;
+
+/// What solves the stages of a method: its settings, the matrix, and what is counted.
+pub struct Newton {
+    pub settings: SolveSettings,
+    /// The matrix of a single stage.
+    pub kkt: Kkt,
+    /// Right side of the linear system, and its solution.
+    pub unknowns: Vec<f64>,
+    /// δ of the proximal term (r).
+    pub delta: Vec<f64>,
+    /// Which rows are redundant.
+    pub(super) rank: Rank,
+    /// What the factors were last made of.
+    pub(super) kept: Kept,
+    /// Newton iterations and factorisations so far, those of failed attempts included.
+    pub iterations: u64,
+    pub factorizations: u64,
+}
+
+impl Newton {
+    /// Plans the matrix of a system.
+    pub fn new(system: &System, settings: SolveSettings) -> Self {
+        let kkt = Kkt::new(system, &Scales::new(system), 1, ALL);
+        Self {
+            settings,
+            unknowns: vec![0.0; kkt.size()],
+            delta: vec![0.0; system.constraints()],
+            rank: Rank::new(system.constraints()),
+            kept: Kept::new(system, kkt.is_changed_by_rows()),
+            kkt,
+            iterations: 0,
+            factorizations: 0,
+        }
+    }
+
+    /// Subtracts δ and factors the matrix; takes note of redundant rows.
+    pub fn factor(&mut self, scales: &Scales) -> Result<(), Failure> {
+        self.kkt.regularise(0, &self.delta);
+        self.factorizations += 1;
+        let outcome = self.kkt.factor();
+        self.rank.classify(&outcome, &self.kkt, &self.delta, scales);
+        outcome
+    }
+
+    /// Replaces the right side in `unknowns` by the solution.
+    pub fn solve(&mut self) -> Result<(), Failure> {
+        self.kkt.solve(&mut self.unknowns);
+        if self.unknowns.iter().all(|u| u.is_finite()) { Ok(()) } else { Err(Failure::NotFinite) }
+    }
+}
 
 /// The equations of a step: unknowns, residual and tangent. Newton's iteration knows no more of them than this.
 pub(super) trait Equations {
     /// Prepares the first iteration from the prediction in the workspace.
-    fn begin(&mut self, work: &mut Workspace);
+    fn begin(&mut self, newton: &mut Newton, work: &mut Workspace);
 
     /// Puts the unknowns where another attempt may begin, the `again`th after the first; no where there is no such place left.
-    fn restart(&mut self, again: usize, work: &mut Workspace) -> bool;
+    fn restart(&mut self, again: usize, newton: &mut Newton, work: &mut Workspace) -> bool;
 
     /// Evaluates the residual at the unknowns; `is_new` says that the tangent is asked for next.
-    fn evaluate(&mut self, is_new: bool, work: &mut Workspace);
+    fn evaluate(&mut self, is_new: bool, newton: &mut Newton, work: &mut Workspace);
 
     /// Whether the residual is nothing but round-off, row by row, and node by node unless the nodes no longer move
     /// and their energy shows what forces leave.
-    fn is_met(&mut self, moves: bool, work: &mut Workspace) -> bool;
+    fn is_met(&mut self, moves: bool, newton: &mut Newton, work: &mut Workspace) -> bool;
 
     /// Factors the tangent at the unknowns, for the first time in this attempt or again.
-    fn factor(&mut self, is_first: bool, work: &mut Workspace) -> Result<(), Failure>;
+    fn factor(&mut self, is_first: bool, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure>;
 
     /// Solves for the residual and adds the solution to the unknowns.
-    fn advance(&mut self, is_first: bool, work: &mut Workspace) -> Result<Change, Failure>;
+    fn advance(&mut self, is_first: bool, newton: &mut Newton, work: &mut Workspace) -> Result<Change, Failure>;
+
+    /// Whether the rank turned out to be another one in the last factorisation: rows without a proximal term to speak of may have
+    /// become redundant, whose pivots are round-off. Gives them one.
+    fn guards_rank(&mut self, newton: &mut Newton, work: &Workspace) -> bool;
 
     /// Iterations with kept factors that are cheaper than new ones.
-    fn kept(&self, _work: &Workspace) -> i32 {
+    fn kept(&self, _newton: &Newton, _work: &Workspace) -> i32 {
         KEPT
     }
 }
@@ -50,36 +109,36 @@ pub(super) const RESTARTS: [f64; 3] = [1.0, 0.5, 0.0];
 
 /// Solves the equations from the prediction, and from where they can be started again while that fails. With a fixed number
 /// of iterations there is one attempt.
-pub(super) fn newton(equations: &mut impl Equations, settings: &SolveSettings, work: &mut Workspace) -> Result<(), Failure> {
-    let mut outcome = attempt(equations, settings, work);
+pub(super) fn iterate(equations: &mut impl Equations, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
+    let mut outcome = attempt(equations, newton, work);
     let mut again = 0;
-    while outcome.is_err() && settings.iterations.is_none() && equations.restart(again, work) {
-        outcome = attempt(equations, settings, work);
+    while outcome.is_err() && newton.settings.iterations.is_none() && equations.restart(again, newton, work) {
+        outcome = attempt(equations, newton, work);
         again += 1;
     }
     outcome
 }
 
-fn attempt(equations: &mut impl Equations, settings: &SolveSettings, work: &mut Workspace) -> Result<(), Failure> {
-    work.spares_regular = false;
-    equations.begin(work);
-    let has_light = work.scales.has_light.contains(&true);
-    let mut convergence = Convergence::new(settings, work.scales.shortest, equations.kept(work));
+fn attempt(equations: &mut impl Equations, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
+    let settings = newton.settings;
+    newton.rank.spares_regular = false;
+    equations.begin(newton, work);
+    let mut convergence = Convergence::new(&settings, work.scales.shortest, equations.kept(newton, work));
     for iteration in 1..=settings.max_iterations {
         let keeps = convergence.keeps_factors();
-        equations.evaluate(!keeps, work);
-        if convergence.may_be_met(has_light) && equations.is_met(convergence.moves(), work) {
+        equations.evaluate(!keeps, newton, work);
+        if convergence.may_be_met(work.scales.are_light) && equations.is_met(convergence.moves(), newton, work) {
             return Ok(());
         }
         if !keeps {
-            equations.factor(iteration == 1, work)?;
-            if settings.iterations.is_none() && work.guards_rank() {
-                equations.evaluate(true, work);
-                equations.factor(true, work)?;
+            equations.factor(iteration == 1, newton, work)?;
+            if settings.iterations.is_none() && equations.guards_rank(newton, work) {
+                equations.evaluate(true, newton, work);
+                equations.factor(true, newton, work)?;
             }
         }
-        let change = equations.advance(iteration == 1, work)?;
-        work.iterations += 1;
+        let change = equations.advance(iteration == 1, newton, work)?;
+        newton.iterations += 1;
         if convergence.is_reached(&change) {
             return Ok(());
         }
@@ -141,8 +200,8 @@ impl Convergence {
     }
 
     /// Whether the residual may be nothing but round-off: increments no longer shrink, or come near the round-off of light nodes.
-    fn may_be_met(&self, has_light: bool) -> bool {
-        self.stalls || (has_light && self.increment < NEAR)
+    fn may_be_met(&self, are_light: bool) -> bool {
+        self.stalls || (are_light && self.increment < NEAR)
     }
 
     /// Whether increments are more than the rounding of positions, or have not been that for a while.

@@ -21,12 +21,12 @@ impl Workspace {
         NOTHING * self.scales.length
     }
 
-    /// Whether the residual of a stage in `unknowns` is round-off.
-    pub(super) fn is_met(&mut self, system: &System, stage: &Stage, moves: bool) -> bool {
+    /// Whether the residual of a stage, in `unknowns`, is round-off.
+    pub(super) fn is_met(&mut self, system: &System, stage: &Stage, moves: bool, unknowns: &[f64]) -> bool {
         let n = system.coordinates();
         self.size_forces(system, stage);
         self.size_rows(system);
-        let (forces, rows) = self.unknowns.split_at(n);
+        let (forces, rows) = unknowns.split_at(n);
         (!moves || are_forces_round_off(forces, &self.full[..n])) && are_rows_round_off(rows, &self.rows)
     }
 
@@ -35,13 +35,13 @@ impl Workspace {
     fn size_parts(&mut self, system: &System, inertia: f64) {
         let (n, dim) = (system.coordinates(), system.dim);
         for (i, size) in self.full.iter_mut().enumerate() {
-            let step = if i < n { self.d[i].abs().max(self.drift[i].abs()) } else { (inertia * self.a1[i]).abs() };
+            let step = if i < n { self.d[i].abs().max(self.prediction.drift[i].abs()) } else { (inertia * self.a[i]).abs() };
             *size = step.max(NOTHING * self.scales.length);
         }
         system.mass.times_sizes(dim, &self.full, &mut self.inertial);
         let Self { rows, lambda, sampled, full, sizes, .. } = self;
         rows.iter_mut().zip(&*lambda).for_each(|(row, lambda)| *row = lambda.abs());
-        sizes.iter_mut().zip(&sampled.gradient).for_each(|(size, g)| *size = g.abs());
+        sizes.iter_mut().zip(&sampled.at.gradient).for_each(|(size, g)| *size = g.abs());
         full.fill(0.0);
         scatter_rows(dim, &system.slots.by_row, rows, sizes, full);
     }
@@ -62,11 +62,11 @@ impl Workspace {
     pub(super) fn size_forces(&mut self, system: &System, stage: &Stage) {
         let (n, dim, inertia) = (system.coordinates(), system.dim, stage.inertia);
         self.size_parts(system, inertia);
-        for (law, response) in system.laws.iter().zip(&self.responses) {
+        for (law, response) in system.laws.iter().zip(&self.forces.responses) {
             for (k, &id) in law.invariants.iter().enumerate() {
                 // A stiff law is as exact as its argument.
                 let give: f64 = (0..law.invariants.len())
-                    .map(|j| (response.by_value[k][j] * self.sampled.value[law.invariants[j].0 as usize]).abs())
+                    .map(|j| (response.by_value[k][j] * self.sampled.at.value[law.invariants[j].0 as usize]).abs())
                     .sum();
                 let pull = response.force[k].abs() + give;
                 for s in system.invariants.slots_of(id) {
@@ -79,12 +79,12 @@ impl Workspace {
         for load in &system.loads {
             for (k, node) in load.nodes.iter().enumerate() {
                 let (from, to) = (first + k * dim, node.index() * dim);
-                (0..dim).for_each(|c| self.full[to + c] += self.load_force[from + c].abs());
+                (0..dim).for_each(|c| self.full[to + c] += self.forces.of_loads[from + c].abs());
             }
             first += load.nodes.len() * dim;
         }
         for (i, size) in self.full[..n].iter_mut().enumerate() {
-            *size = inertia * (*size + self.weight[i].abs()) + self.inertial[i];
+            *size = inertia * (*size + self.forces.weight[i].abs()) + self.inertial[i];
         }
         spread(dim, &mut self.full[..n]);
     }
@@ -94,7 +94,7 @@ impl Workspace {
         self.rows.fill(0.0);
         for slot in &system.slots.by_row {
             let (g, x) = (slot.slot as usize * system.dim, slot.node as usize * system.dim);
-            let (g, x) = (&self.at_end.gradient[g..g + system.dim], &self.x1[x..x + system.dim]);
+            let (g, x) = (&self.end.at.gradient[g..g + system.dim], &self.end.x[x..x + system.dim]);
             self.rows[slot.row as usize] += largest(g) * largest(x);
         }
         for (size, g) in self.rows.iter_mut().zip(&self.scales.gradient) {
@@ -102,7 +102,7 @@ impl Workspace {
         }
         for (size, row) in self.rows.iter_mut().zip(&system.rows) {
             // Angles are counted over turns.
-            *size += self.at_end.value[system.value_index(row.quantity)].abs();
+            *size += self.end.at.value[system.value_index(row.quantity)].abs();
         }
     }
 }
@@ -111,14 +111,14 @@ impl Workspace {
     /// Leaves the sizes of the terms of Φ̇ at the end of the step in `rows`: of gradients times velocities, and of their changes
     /// times positions.
     pub fn size_rates(&mut self, system: &System) {
-        let Self { at_end, x1, v1, half, turned_v, rows, .. } = self;
-        system.turn(at_end, x1, v1, 0.0, half, turned_v);
+        let Self { end, turned, rows, .. } = self;
+        system.turn(&end.at, &end.x, &end.v, 0.0, &mut turned.half, &mut turned.v);
         rows.fill(0.0);
         for slot in &system.slots.by_row {
             let (g, x) = (slot.slot as usize * system.dim, slot.node as usize * system.dim);
             let size = |g: &[f64], x: &[f64]| largest(g) * largest(x);
             let (g, x) = (g..g + system.dim, x..x + system.dim);
-            rows[slot.row as usize] += size(&at_end.gradient[g.clone()], &v1[x.clone()]) + size(&turned_v[g], &x1[x]);
+            rows[slot.row as usize] += size(&end.at.gradient[g.clone()], &end.v[x.clone()]) + size(&turned.v[g], &end.x[x]);
         }
     }
 }

@@ -32,8 +32,9 @@ pub struct Scales {
     pub massless: Vec<f64>,
     /// 1 over the mass of each free node or, where it is light, of the heaviest of its mechanism, 1/kg.
     pub held: Vec<f64>,
-    /// Whether a row has a light node (r).
+    /// Whether a row has a light node (r), and whether any has.
     pub has_light: Vec<bool>,
+    pub are_light: bool,
     /// Size of each row of G M⁻¹ Gᵀ with the masses of `held` (r), 1/kg in the row's units.
     pub softness: Vec<f64>,
     /// Length of each row's gradient (r), 1 in the row's units over m.
@@ -62,6 +63,7 @@ impl Scales {
                 .collect(),
             massless: (0..free).map(|node| if own[node] <= LEAST_SHARE * around[node] { around[node] } else { 0.0 }).collect(),
             has_light: vec![false; rows],
+            are_light: false,
             softness: vec![0.0; rows],
             gradient: vec![0.0; rows],
             reach: vec![0.0; rows],
@@ -93,6 +95,7 @@ impl Scales {
                 self.shortest = self.shortest.min(size / self.length);
             }
         }
+        self.are_light = self.has_light.contains(&true);
         // A row of known nodes alone holds nothing.
         self.softness.iter_mut().filter(|s| **s == 0.0).for_each(|s| *s = 1.0 / self.heaviest.max(f64::MIN_POSITIVE));
         self.gradient.iter_mut().for_each(|g| *g = if *g > 0.0 { g.sqrt() } else { 1.0 });

@@ -13,9 +13,9 @@
 
 use super::coupled::Coupled;
 use super::failure::Failure;
-use super::iteration::{Multipliers, OneStage, SolveSettings, predict, restart};
+use super::iteration::{Multipliers, OneStage, predict, restart};
 use super::kkt::{ALL, Block, Kkt};
-use super::newton::{Change, Equations, RESTARTS, newton};
+use super::newton::{Change, Equations, Newton, RESTARTS, iterate};
 use super::round_off::{are_forces_round_off, are_rows_round_off};
 use super::scales::Scales;
 use super::stage::Stage;
@@ -106,41 +106,41 @@ impl Stabilized {
         self.coupled.get_or_insert_with(|| Box::new(Coupled::new(system)));
     }
 
-    fn factor_coupled(&mut self, system: &System, stage: &Stage, work: &mut Workspace) -> Result<(), Failure> {
+    fn factor_coupled(&mut self, system: &System, stage: &Stage, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
         let mut coupled = self.coupled.take().unwrap_or_else(|| Box::new(Coupled::new(system)));
-        let outcome = coupled.factor(self, system, stage, work);
+        let outcome = coupled.factor(self, system, stage, newton, work);
         self.coupled = Some(coupled);
         outcome
     }
 
     /// Replaces both residuals by increments; nothing is left.
-    fn solve_coupled(&mut self, system: &System, work: &mut Workspace) -> f64 {
+    fn solve_coupled(&mut self, system: &System, newton: &mut Newton) -> f64 {
         if let Some(coupled) = &mut self.coupled {
-            coupled.solve(system.coordinates(), system.dim, &mut work.unknowns, &mut self.unknowns);
+            coupled.solve(system.coordinates(), system.dim, &mut newton.unknowns, &mut self.unknowns);
         }
         0.0
     }
 
     /// Newton on increments, velocities and both multipliers from the values in the workspaces.
-    pub fn solve(&mut self, system: &System, stage: &Stage, settings: &SolveSettings, work: &mut Workspace) -> Result<(), Failure> {
-        system.invariants.curvature(&work.v0, &mut work.half, &mut self.turned_start);
-        newton(&mut BothLevels { own: self, system, stage, settings, is_near: false }, settings, work)
+    pub fn solve(&mut self, system: &System, stage: &Stage, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
+        system.invariants.curvature(&work.start.v, &mut work.turned.half, &mut self.turned_start);
+        iterate(&mut BothLevels { own: self, system, stage, is_near: false }, newton, work)
     }
 
     /// w, and H times w and u.
     pub fn turn(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
         let half = 0.5 * stage.step;
-        self.w.iter_mut().zip(&self.u).zip(&work.v0).for_each(|((w, u), v)| *w = u + half * v);
-        system.turn(&work.at_end, &work.x1, &self.u, stage.end(), &mut work.half, &mut self.turned_u);
+        self.w.iter_mut().zip(&self.u).zip(&work.start.v).for_each(|((w, u), v)| *w = u + half * v);
+        system.turn(&work.end.at, &work.end.x, &self.u, stage.end(), &mut work.turned.half, &mut self.turned_u);
         // The Hessians of invariants are constant; the slots of functions come later.
         let turned = self.turned_u.iter().zip(&self.turned_start);
         self.turned_w.iter_mut().zip(turned).for_each(|(w, (u, start))| *w = u + half * start);
-        system.turn_custom(&work.xs, &self.w, stage.time(), &mut self.turned_w);
-        self.velocity_gradient.copy_from_slice(&work.sampled.gradient);
+        system.turn_custom(&work.sampled.x, &self.w, stage.time(), &mut self.turned_w);
+        self.velocity_gradient.copy_from_slice(&work.sampled.at.gradient);
         self.turn_functions(system, stage.step, work);
         self.pull.iter_mut().zip(&self.turned_w).for_each(|(pull, turned)| *pull = 0.5 * turned);
         if !system.functions.is_empty() {
-            for ((pull, position), velocity) in self.pull.iter_mut().zip(&work.sampled.gradient).zip(&self.velocity_gradient) {
+            for ((pull, position), velocity) in self.pull.iter_mut().zip(&work.sampled.at.gradient).zip(&self.velocity_gradient) {
                 *pull += position - velocity;
             }
         }
@@ -156,14 +156,14 @@ impl Stabilized {
         if system.functions.is_empty() {
             return;
         }
-        let (from, to) = (&work.at_start, &work.at_end);
+        let (from, to) = (&work.start.at, &work.end.at);
         let mean = |k: usize| -> [f64; MAX_ARGUMENTS] {
             let (a, b) = (&from.functions.local[k], &to.functions.local[k]);
             std::array::from_fn(|i| 0.5 * (a.gradient[i] + b.gradient[i]))
         };
-        system.turn_functions(&work.sampled, &mut self.velocity_gradient, |k, _| mean(k).map(|factor| [factor, 0.0]));
-        let (v0, u) = (&work.v0, &self.u);
-        system.turn_functions(&work.sampled, &mut self.turned_w, |k, base| {
+        system.turn_functions(&work.sampled.at, &mut self.velocity_gradient, |k, _| mean(k).map(|factor| [factor, 0.0]));
+        let (v0, u) = (&work.start.v, &self.u);
+        system.turn_functions(&work.sampled.at, &mut self.turned_w, |k, base| {
             let (start, end) = (system.rates(base, from, v0), system.rates(base, to, u));
             let rates: [f64; MAX_ARGUMENTS] = std::array::from_fn(|j| end[j] + 0.5 * step * start[j]);
             let (a, b) = (&from.functions.local[k], &to.functions.local[k]);
@@ -183,59 +183,59 @@ impl Stabilized {
         });
     }
 
-    fn residual(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
+    fn residual(&mut self, system: &System, stage: &Stage, newton: &mut Newton, work: &mut Workspace) {
         let (n, dim) = (system.coordinates(), system.dim);
-        work.residual(system, stage);
+        work.residual(system, stage, &mut newton.unknowns);
         self.force.fill(0.0);
-        self.kkt.add_forces(&self.gamma, &self.pull, &mut self.force);
-        work.unknowns.iter_mut().zip(&self.force[..n]).for_each(|(unknown, force)| *unknown -= force);
+        system.slots.add_forces(dim, &self.gamma, &self.pull, &mut self.force);
+        newton.unknowns.iter_mut().zip(&self.force[..n]).for_each(|(unknown, force)| *unknown -= force);
         // The second equation takes the same path through the mass matrix, over all nodes.
         for i in 0..work.full.len() {
-            let increment = if i < n { work.d[i] } else { work.x1[i] - work.x0[i] };
+            let increment = if i < n { work.d[i] } else { work.end.x[i] - work.start.x[i] };
             work.full[i] = self.w[i] - increment;
         }
         system.mass.times(dim, &work.full, &mut work.inertial);
         self.force.fill(0.0);
-        self.kkt.add_forces(&self.gamma, &self.velocity_gradient, &mut self.force);
+        system.slots.add_forces(dim, &self.gamma, &self.velocity_gradient, &mut self.force);
         for (i, unknown) in self.unknowns[..n].iter_mut().enumerate() {
             *unknown = -work.inertial[i] - self.force[i];
         }
         for row in 0..self.rate.len() {
-            self.rate[row] = 0.5 * stage.step * system.explicit_rate(row, &work.at_end, stage.end());
+            self.rate[row] = 0.5 * stage.step * system.explicit_rate(row, &work.end.at, stage.end());
         }
-        self.kkt.add_along(1.0, &work.at_end.gradient, &self.u, &mut self.rate);
+        system.slots.add_along(dim, 1.0, &work.end.at.gradient, &self.u, &mut self.rate);
         self.unknowns[n..].iter_mut().zip(&self.rate).for_each(|(unknown, rate)| *unknown = -rate);
     }
 
-    fn tangent(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
+    fn tangent(&mut self, system: &System, stage: &Stage, newton: &mut Newton, work: &mut Workspace) {
         let block = Block(0, 0);
-        work.expected_tangent(system, stage);
+        work.expected_tangent(system, stage, &mut newton.kkt);
         self.kkt.clear();
         self.kkt.start_with_mass(1.0);
         self.kkt.write_sum(block);
         self.kkt.add_columns(block, &self.velocity_gradient, 1.0);
-        self.kkt.add_rows(block, &work.at_end.gradient, 1.0);
-        self.kkt.regularise(0, &work.delta);
+        self.kkt.add_rows(block, &work.end.at.gradient, 1.0);
+        self.kkt.regularise(0, &newton.delta);
     }
 
     /// Adds the solution to the unknowns; the largest increment over the size of the mechanism.
-    fn advance(&mut self, system: &System, work: &mut Workspace) -> f64 {
+    fn advance(&mut self, system: &System, newton: &Newton, work: &mut Workspace) -> f64 {
         let n = system.coordinates();
-        work.d.iter_mut().zip(&work.unknowns).for_each(|(d, step)| *d += step);
+        work.d.iter_mut().zip(&newton.unknowns).for_each(|(d, step)| *d += step);
         self.u.iter_mut().zip(&self.unknowns[..n]).for_each(|(u, turn)| *u += turn);
-        self.mu.iter_mut().zip(&work.unknowns[n..]).for_each(|(mu, step)| *mu += step);
+        self.mu.iter_mut().zip(&newton.unknowns[n..]).for_each(|(mu, step)| *mu += step);
         self.gamma.iter_mut().zip(&self.unknowns[n..]).for_each(|(gamma, step)| *gamma += step);
-        largest(&work.unknowns[..n]).max(largest(&self.unknowns[..n])) / work.scales.length
+        largest(&newton.unknowns[..n]).max(largest(&self.unknowns[..n])) / work.scales.length
     }
 
     /// Whether the residuals of both levels are round-off.
-    fn is_met(&mut self, system: &System, stage: &Stage, moves: bool, work: &mut Workspace) -> bool {
+    fn is_met(&mut self, system: &System, stage: &Stage, moves: bool, newton: &Newton, work: &mut Workspace) -> bool {
         let (n, dim) = (system.coordinates(), system.dim);
         // γ' pulls at the first level, too, as μ does.
         for (lambda, (mu, gamma)) in work.lambda.iter_mut().zip(self.mu.iter().zip(&self.gamma)) {
             *lambda = (mu.abs() + gamma.abs()) / stage.inertia;
         }
-        if !work.is_met(system, stage, moves) || (moves && !are_forces_round_off(&self.unknowns[..n], &work.full[..n])) {
+        if !work.is_met(system, stage, moves, &newton.unknowns) || (moves && !are_forces_round_off(&self.unknowns[..n], &work.full[..n])) {
             return false;
         }
         let nothing = work.nothing();
@@ -244,8 +244,8 @@ impl Stabilized {
             let (g, x) = (slot.slot as usize * dim, slot.node as usize * dim);
             let size = |g: &[f64], x: &[f64]| largest(g) * largest(x);
             let (g, x) = (g..g + dim, x..x + dim);
-            let own = size(&work.at_end.gradient[g.clone()], &self.u[x.clone()]);
-            work.rows[slot.row as usize] += own + size(&self.turned_u[g], &work.x1[x]);
+            let own = size(&work.end.at.gradient[g.clone()], &self.u[x.clone()]);
+            work.rows[slot.row as usize] += own + size(&self.turned_u[g], &work.end.x[x]);
         }
         are_rows_round_off(&self.unknowns[n..], &work.rows)
     }
@@ -260,22 +260,22 @@ impl Stabilized {
                 let [mut push, mut slip, mut lag, mut pull] = [[0.0; 3]; 4];
                 for c in 0..dim {
                     let (k, i) = (known * dim + c, node * dim + c);
-                    push[c] = work.v1[k] - work.v0[k];
+                    push[c] = work.end.v[k] - work.start.v[k];
                     slip[c] = (self.w[i] - work.d[i]) / h;
-                    lag[c] = (work.x1[k] - work.x0[k]) / h - 0.5 * (work.v0[k] + work.v1[k]);
-                    pull[c] = work.v1[i] - work.v0[i];
+                    lag[c] = (work.end.x[k] - work.start.x[k]) / h - 0.5 * (work.start.v[k] + work.end.v[k]);
+                    pull[c] = work.end.v[i] - work.start.v[i];
                 }
                 sum += mass.product(&push, &slip) + mass.product(&lag, &pull);
             }
         }
         for (row, slots) in system.slots.rows.iter().enumerate() {
-            let rate_change = system.explicit_rate(row, &work.at_end, stage.end()) - system.explicit_rate(row, &work.at_start, stage.start);
+            let rate_change = system.explicit_rate(row, &work.end.at, stage.end()) - system.explicit_rate(row, &work.start.at, stage.start);
             let mut along = rate_change;
             for s in slots.clone().filter(|&s| system.slots.nodes[s] as usize >= system.free) {
                 let node = system.slots.nodes[s] as usize * dim;
                 for c in 0..dim {
                     let (g, turned) = (self.velocity_gradient[s * dim + c], self.turned_w[s * dim + c] / h);
-                    along += g * (work.v1[node + c] - work.v0[node + c]) + turned * (work.x1[node + c] - work.x0[node + c]);
+                    along += g * (work.end.v[node + c] - work.start.v[node + c]) + turned * (work.end.x[node + c] - work.start.x[node + c]);
                 }
             }
             sum += self.gamma[row] / h * along;
@@ -289,40 +289,39 @@ struct BothLevels<'a> {
     own: &'a mut Stabilized,
     system: &'a System,
     stage: &'a Stage,
-    settings: &'a SolveSettings,
     /// Whether the attempt began at the solution without velocity rows.
     is_near: bool,
 }
 
 impl BothLevels<'_> {
     /// Solves the step with the rows at position level alone; whether that worked.
-    fn start_from_positions(&mut self, work: &mut Workspace) -> bool {
+    fn start_from_positions(&mut self, newton: &mut Newton, work: &mut Workspace) -> bool {
         predict(self.stage, work);
         work.lambda.copy_from_slice(&self.own.lambda_start);
         let mut positions = OneStage { system: self.system, stage: self.stage, multipliers: Multipliers::Augmented(None) };
-        newton(&mut positions, self.settings, work).is_ok()
+        iterate(&mut positions, newton, work).is_ok()
     }
 }
 
 impl Equations for BothLevels<'_> {
-    fn begin(&mut self, work: &mut Workspace) {
-        work.proximal_of_redundant();
+    fn begin(&mut self, newton: &mut Newton, work: &mut Workspace) {
+        newton.proximal_of_redundant(&work.scales);
         work.expect_multipliers();
     }
 
     /// From the solution without velocity rows. If that leads nowhere, the step is too long for rows at both levels, and shares of
     /// the free flight do no better.
-    fn restart(&mut self, again: usize, work: &mut Workspace) -> bool {
+    fn restart(&mut self, again: usize, newton: &mut Newton, work: &mut Workspace) -> bool {
         let place = again.checked_sub(1);
         match place {
-            None => self.is_near = self.start_from_positions(work),
+            None => self.is_near = self.start_from_positions(newton, work),
             Some(place) => match RESTARTS.get(place) {
                 Some(&share) if !self.is_near => restart(share, work),
                 _ => return false,
             },
         }
         for i in 0..self.system.coordinates() {
-            self.own.u[i] = work.d[i] - 0.5 * self.stage.step * work.v0[i];
+            self.own.u[i] = work.d[i] - 0.5 * self.stage.step * work.start.v[i];
         }
         self.own.mu.fill(0.0);
         self.own.gamma.fill(0.0);
@@ -330,49 +329,53 @@ impl Equations for BothLevels<'_> {
         true
     }
 
-    fn evaluate(&mut self, _is_new: bool, work: &mut Workspace) {
+    fn evaluate(&mut self, _is_new: bool, newton: &mut Newton, work: &mut Workspace) {
         let Self { own, system, stage, .. } = self;
         work.lambda.iter_mut().zip(&own.mu).for_each(|(lambda, mu)| *lambda = mu / stage.inertia);
         work.place(stage);
         work.evaluate(system, stage);
         own.turn(system, stage, work);
-        own.residual(system, stage, work);
+        own.residual(system, stage, newton, work);
     }
 
-    fn is_met(&mut self, moves: bool, work: &mut Workspace) -> bool {
-        self.own.is_met(self.system, self.stage, moves, work)
+    fn is_met(&mut self, moves: bool, newton: &mut Newton, work: &mut Workspace) -> bool {
+        self.own.is_met(self.system, self.stage, moves, newton, work)
     }
 
-    fn factor(&mut self, _is_first: bool, work: &mut Workspace) -> Result<(), Failure> {
+    fn factor(&mut self, _is_first: bool, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
         if self.own.is_coupled() {
-            return self.own.factor_coupled(self.system, self.stage, work);
+            return self.own.factor_coupled(self.system, self.stage, newton, work);
         }
-        self.own.tangent(self.system, self.stage, work);
-        work.factor()?;
+        self.own.tangent(self.system, self.stage, newton, work);
+        newton.factor(&work.scales)?;
         self.own.kkt.factor()
     }
 
-    fn advance(&mut self, is_first: bool, work: &mut Workspace) -> Result<Change, Failure> {
-        let Self { own, system, stage, settings, .. } = self;
+    fn guards_rank(&mut self, newton: &mut Newton, work: &Workspace) -> bool {
+        newton.guards_rank(&work.scales)
+    }
+
+    fn advance(&mut self, is_first: bool, newton: &mut Newton, work: &mut Workspace) -> Result<Change, Failure> {
+        let Self { own, system, stage, .. } = self;
         let left = match own.is_coupled() {
-            true => own.solve_coupled(system, work),
-            false => match own.sweep(system, settings, is_first, work)? {
+            true => own.solve_coupled(system, newton),
+            false => match own.sweep(system, is_first, newton, work)? {
                 Some(left) => left,
                 None => {
                     own.couple(system);
-                    own.residual(system, stage, work);
-                    own.factor_coupled(system, stage, work)?;
-                    own.solve_coupled(system, work)
+                    own.residual(system, stage, newton, work);
+                    own.factor_coupled(system, stage, newton, work)?;
+                    own.solve_coupled(system, newton)
                 }
             },
         };
-        if !own.unknowns.iter().chain(&work.unknowns).all(|unknown| unknown.is_finite()) {
+        if !own.unknowns.iter().chain(&newton.unknowns).all(|unknown| unknown.is_finite()) {
             return Err(Failure::NotFinite);
         }
-        let increment = own.advance(system, work);
+        let increment = own.advance(system, newton, work);
         let n = system.coordinates();
         let steps = own.unknowns[n..].iter().zip(&own.gamma_change).map(|(step, change)| step - change);
-        let multipliers = work.turned(stage.inertia, n).max(work.scaled_multipliers(steps));
+        let multipliers = work.turned(stage.inertia, &newton.unknowns[n..]).max(work.scaled_multipliers(steps));
         own.gamma_change.fill(0.0);
         Ok(Change { increment, multipliers, left })
     }

@@ -42,11 +42,6 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// A moment: forces at a state, nothing to solve for.
-    pub(super) fn moment(t: f64) -> Self {
-        Self { sampling: Sampling::End, rows: RowsAt::End, start: t, step: 0.0, inertia: 1.0, rate: 0.0 }
-    }
-
     /// Share of the increment that the position of evaluation moves by.
     pub fn share(&self) -> f64 {
         match self.sampling {

@@ -5,7 +5,7 @@
 //! both levels are solved in one matrix.
 
 use super::failure::Failure;
-use super::iteration::SolveSettings;
+use super::newton::Newton;
 use super::stabilized::Stabilized;
 use super::workspace::Workspace;
 use crate::linalg::largest;
@@ -36,14 +36,14 @@ impl Sweeps {
 }
 
 impl Stabilized {
-    /// Replaces the residuals, of d and μ in the workspace's unknowns and of u and γ' in its own, by increments; the share
+    /// Replaces the residuals, of d and μ in the unknowns of `newton` and of u and γ' in its own, by increments; the share
     /// of them that the sweeps leave, or none where they do not contract. What `starts` a step takes the second level first, at
     /// the increment that was predicted.
     pub(super) fn sweep(
         &mut self,
         system: &System,
-        settings: &SolveSettings,
         starts: bool,
+        newton: &mut Newton,
         work: &mut Workspace,
     ) -> Result<Option<f64>, Failure> {
         let n = system.coordinates();
@@ -61,13 +61,13 @@ impl Stabilized {
         if starts {
             self.kkt.solve(&mut sweeps.second);
             std::mem::swap(&mut unknowns, &mut sweeps.second);
-            self.pull(n, &unknowns);
-            add(-1.0, &self.force[..n], &mut work.unknowns);
+            self.pull(system, &unknowns);
+            add(-1.0, &self.force[..n], &mut newton.unknowns);
         }
-        let solved = work.solve();
-        sweeps.first.copy_from_slice(&work.unknowns);
-        work.unknowns.fill(0.0);
-        let left = solved.map(|()| self.add_sweeps(system, settings, &mut sweeps, &mut unknowns, work));
+        let solved = newton.solve();
+        sweeps.first.copy_from_slice(&newton.unknowns);
+        newton.unknowns.fill(0.0);
+        let left = solved.map(|()| self.add_sweeps(system, &mut sweeps, &mut unknowns, newton, work));
         (self.sweeps, self.unknowns) = (sweeps, unknowns);
         left
     }
@@ -76,31 +76,31 @@ impl Stabilized {
     fn add_sweeps(
         &mut self,
         system: &System,
-        settings: &SolveSettings,
         sweeps: &mut Sweeps,
         unknowns: &mut [f64],
+        newton: &mut Newton,
         work: &mut Workspace,
     ) -> Option<f64> {
         let n = system.coordinates();
         let Sweeps { first, second } = sweeps;
-        let tolerance = settings.tolerance * work.scales.length;
+        let tolerance = newton.settings.tolerance * work.scales.length;
         let mut whole = largest(&first[..n]).max(tolerance);
         let mut last = f64::INFINITY;
         for sweep in 1..=SWEEPS {
-            add(1.0, first, &mut work.unknowns);
+            add(1.0, first, &mut newton.unknowns);
             self.follow(system, &first[..n], second, &mut work.full, &mut work.inertial);
             self.kkt.solve(second);
             add(1.0, second, unknowns);
-            self.pull(n, second);
+            self.pull(system, second);
             let left = work.farthest(system, &self.force);
             let least = (SWEPT * whole).max(tolerance);
-            if left <= least || (settings.iterations.is_some() && sweep >= FEW) {
+            if left <= least || (newton.settings.iterations.is_some() && sweep >= FEW) {
                 return Some(left / whole);
             }
             second.fill(0.0);
             first.fill(0.0);
             add(-1.0, &self.force[..n], first);
-            work.kkt.solve(first);
+            newton.kkt.solve(first);
             let change = largest(&first[..n]);
             if change > last {
                 break;
@@ -108,7 +108,7 @@ impl Stabilized {
             // The first may be smaller than what the residual of the second level leads to.
             (whole, last) = (whole.max(change), change);
             if change <= least {
-                add(1.0, first, &mut work.unknowns);
+                add(1.0, first, &mut newton.unknowns);
                 return Some(change / whole);
             }
         }
@@ -126,13 +126,14 @@ impl Stabilized {
         if self.curves {
             self.kkt.add_sum_times(-0.5, change, right);
         }
-        self.kkt.add_along(-1.0, &self.turned_u, full, &mut right[n..]);
+        system.slots.add_along(system.dim, -1.0, &self.turned_u, full, &mut right[n..]);
     }
 
     /// Leaves in `force` what a change of u and γ' brings to the first equation.
-    fn pull(&mut self, n: usize, change: &[f64]) {
+    fn pull(&mut self, system: &System, change: &[f64]) {
+        let n = system.coordinates();
         self.force.fill(0.0);
-        self.kkt.add_forces(&change[n..], &self.pull, &mut self.force);
+        system.slots.add_forces(system.dim, &change[n..], &self.pull, &mut self.force);
         if self.curves {
             self.kkt.add_sum_times(0.5, &change[..n], &mut self.force);
         }

@@ -1,34 +1,33 @@
 //! The terms of a stage: rows, laws, loads and inertia, their residual and their tangent.
 
-use super::kkt::{Block, LawFactors};
+use super::kkt::{Block, Kkt, LawFactors};
 use super::level::Level;
 use super::stage::{RowsAt, Sampling, Stage};
 use super::workspace::Workspace;
 use crate::system::{Between, LoadEntry, MAX_ARGUMENTS, Quantity, Reach, Response, SIZE, System, gather, scatter};
 
 impl Workspace {
-    /// Evaluates rows, laws and loads of a stage; leaves Φ in `phi` and the sum of forces in `force`.
+    /// Evaluates rows, laws and loads of a stage; leaves Φ in `phi` and the sum of forces in `forces`.
     pub fn evaluate(&mut self, system: &System, stage: &Stage) {
-        let Self { at_start, at_end, sampled, .. } = self;
-        let near = &*at_start;
+        let Self { start, end, sampled, .. } = self;
+        if stage.sampling != Sampling::Middle {
+            system.evaluate(&end.x, stage.end(), &start.at, &mut end.at);
+        }
         match stage.sampling {
-            Sampling::End => {
-                system.evaluate(&self.x1, stage.end(), near, at_end);
-                sampled.copy_from(at_end);
-            }
-            Sampling::Middle => system.evaluate(&self.xs, stage.time(), near, sampled),
-            Sampling::Start => {
-                system.evaluate(&self.x1, stage.end(), near, at_end);
-                sampled.copy_from(at_start);
-            }
+            Sampling::End => sampled.at.copy_from(&end.at),
+            Sampling::Middle => system.evaluate(&sampled.x, stage.time(), &start.at, &mut sampled.at),
+            Sampling::Start => sampled.at.copy_from(&start.at),
             Sampling::Between => {
-                system.evaluate(&self.x1, stage.end(), near, at_end);
-                let span = Between { from: &self.x0, to: &self.x1, start: stage.start, step: stage.step };
-                system.evaluate_between(span, at_start, at_end, sampled);
+                let span = Between { from: &start.x, to: &end.x, start: stage.start, step: stage.step };
+                system.evaluate_between(span, &start.at, &end.at, &mut sampled.at);
             }
         }
         self.violate(system, stage);
-        self.sum_forces(system, stage);
+        match stage.sampling {
+            Sampling::Between => self.respond_between(system, stage),
+            _ => self.respond(system, stage.time()),
+        }
+        self.sum_forces(system, stage.time());
     }
 
     /// Leaves what the rows of the stage stand for in `phi`, in the units of Φ.
@@ -38,23 +37,23 @@ impl Workspace {
             return;
         }
         match stage.rows {
-            RowsAt::Middle => system.constraint_values(&self.sampled, stage.time(), &mut self.phi),
-            RowsAt::End => system.constraint_values(&self.at_end, stage.end(), &mut self.phi),
+            RowsAt::Middle => system.constraint_values(&self.sampled.at, stage.time(), &mut self.phi),
+            RowsAt::End => system.constraint_values(&self.end.at, stage.end(), &mut self.phi),
             RowsAt::Mean => {
-                system.constraint_values(&self.at_end, stage.end(), &mut self.phi);
+                system.constraint_values(&self.end.at, stage.end(), &mut self.phi);
                 self.phi.iter_mut().zip(&self.phi_start).for_each(|(phi, start)| *phi = 0.5 * (*phi + start));
             }
         }
         self.violate_velocity_rows(system, stage);
     }
 
-    /// Leaves the weighted sum of Φ̈, Φ̇ and Φ at the sampled state, with the accelerations `a1`, times `scale` in `phi`.
+    /// Leaves the weighted sum of Φ̈, Φ̇ and Φ at the sampled state, with the accelerations `a`, times `scale` in `phi`.
     pub fn weigh_levels(&mut self, system: &System, t: f64, scale: f64) {
         let level = self.level;
-        system.constraint_values(&self.sampled, t, &mut self.phi);
+        system.constraint_values(&self.sampled.at, t, &mut self.phi);
         self.phi.iter_mut().for_each(|phi| *phi *= scale * level.position);
         if level.velocity != 0.0 {
-            system.constraint_rates(&system.slots.by_row, &self.sampled, &self.vs, t, &mut self.rows);
+            system.constraint_rates(&system.slots.by_row, &self.sampled.at, &self.sampled.v, t, &mut self.rows);
             self.phi.iter_mut().zip(&self.rows).for_each(|(phi, rate)| *phi += scale * level.velocity * rate);
         }
         if level.acceleration != 0.0 {
@@ -65,109 +64,111 @@ impl Workspace {
 
     /// H v and H a of all rows at the sampled state.
     pub fn turn(&mut self, system: &System, t: f64) {
-        let Self { sampled, half, turned_v, turned_a, xs, vs, a1, .. } = self;
-        system.turn(sampled, xs, vs, t, half, turned_v);
+        let Self { sampled, turned, a, .. } = self;
+        system.turn(&sampled.at, &sampled.x, &sampled.v, t, &mut turned.half, &mut turned.v);
         if self.level.acceleration != 0.0 {
-            system.turn(sampled, xs, a1, t, half, turned_a);
+            system.turn(&sampled.at, &sampled.x, a, t, &mut turned.half, &mut turned.a);
         }
     }
 
-    /// Sums gravity, laws, loads and λᵀG at the sampled state into `force`.
-    fn sum_forces(&mut self, system: &System, stage: &Stage) {
+    /// Sums gravity, laws as they have responded, loads and λᵀG at the sampled state.
+    fn sum_forces(&mut self, system: &System, t: f64) {
         let dim = system.dim;
-        self.force.copy_from_slice(&self.weight);
-        self.respond(system, stage);
-        for (law, response) in system.laws.iter().zip(&self.responses) {
+        self.forces.sum.copy_from_slice(&self.forces.weight);
+        for (law, response) in system.laws.iter().zip(&self.forces.responses) {
             for (k, &id) in law.invariants.iter().enumerate() {
                 let slots = system.invariants.slots_of(id);
-                let gradient = &self.sampled.gradient[slots.start * dim..slots.end * dim];
-                scatter(dim, &system.slots.nodes[slots], response.force[k], gradient, &mut self.force);
+                let gradient = &self.sampled.at.gradient[slots.start * dim..slots.end * dim];
+                scatter(dim, &system.slots.nodes[slots], response.force[k], gradient, &mut self.forces.sum);
             }
         }
         let mut first = 0;
         for load in &system.loads {
             let width = load.nodes.len() * dim;
             let (x, v) = self.load_arguments(system, load);
-            load.load.force(&x[..width], &v[..width], stage.time(), &mut self.load_force[first..first + width]);
+            load.load.force(&x[..width], &v[..width], t, &mut self.forces.of_loads[first..first + width]);
             for (k, node) in load.nodes.iter().enumerate().filter(|(_, node)| node.index() < system.free) {
                 for c in 0..dim {
-                    self.force[node.index() * dim + c] -= self.load_force[first + k * dim + c];
+                    self.forces.sum[node.index() * dim + c] -= self.forces.of_loads[first + k * dim + c];
                 }
             }
             first += width;
         }
-        self.kkt.add_forces(&self.lambda, &self.sampled.gradient, &mut self.force);
+        system.slots.add_forces(dim, &self.lambda, &self.sampled.at.gradient, &mut self.forces.sum);
     }
 
     /// Responses of all laws at the sampled state.
-    fn respond(&mut self, system: &System, stage: &Stage) {
-        let between = stage.sampling == Sampling::Between;
-        if self.dissipative && !between {
-            system.turn(&self.sampled, &self.xs, &self.vs, stage.time(), &mut self.half, &mut self.motion);
+    fn respond(&mut self, system: &System, t: f64) {
+        let Self { sampled, turned, forces, .. } = self;
+        if forces.dissipative {
+            system.turn(&sampled.at, &sampled.x, &sampled.v, t, &mut turned.half, &mut forces.motion);
         }
-        for (law, response) in system.laws.iter().zip(&mut self.responses) {
-            let mut own = Response::default();
-            let m = law.arguments.len();
-            if between {
-                let (from, to) = (system.arguments(law, &self.at_start), system.arguments(law, &self.at_end));
-                let reach = Reach { from: &from[..m], to: &to[..m], step: stage.step, middle: stage.time() };
-                law.law.between(reach, &mut own);
-            } else {
-                let value = system.arguments(law, &self.sampled);
-                let mut rate = [0.0; MAX_ARGUMENTS];
-                if !law.law.conservative() {
-                    for (rate, &quantity) in rate.iter_mut().zip(&law.arguments) {
-                        *rate = system.along(&system.slots_of(quantity), &system.slots.nodes, &self.sampled, &self.vs);
-                    }
+        for (law, response) in system.laws.iter().zip(&mut forces.responses) {
+            let value = system.arguments(law, &sampled.at);
+            let mut rate = [0.0; MAX_ARGUMENTS];
+            if !law.law.conservative() {
+                for (rate, &quantity) in rate.iter_mut().zip(&law.arguments) {
+                    *rate = system.along(&system.slots_of(quantity), &system.slots.nodes, &sampled.at, &sampled.v);
                 }
-                law.law.at(&value[..m], &rate[..m], stage.time(), &mut own);
             }
-            let end = if between { &self.at_end } else { &self.sampled };
-            *response = system.by_invariants(law, own, &self.sampled, end, &self.vs);
+            let (m, mut own) = (law.arguments.len(), Response::default());
+            law.law.at(&value[..m], &rate[..m], t, &mut own);
+            *response = system.by_invariants(law, own, &sampled.at, &sampled.at, &sampled.v);
+        }
+    }
+
+    /// The same between both ends of a stage, by discrete gradients.
+    fn respond_between(&mut self, system: &System, stage: &Stage) {
+        let Self { start, end, sampled, forces, .. } = self;
+        for (law, response) in system.laws.iter().zip(&mut forces.responses) {
+            let (from, to) = (system.arguments(law, &start.at), system.arguments(law, &end.at));
+            let (m, mut own) = (law.arguments.len(), Response::default());
+            law.law.between(Reach { from: &from[..m], to: &to[..m], step: stage.step, middle: stage.time() }, &mut own);
+            *response = system.by_invariants(law, own, &sampled.at, &end.at, &sampled.v);
         }
     }
 
     /// Sampled positions and velocities of a load's nodes.
     fn load_arguments(&self, system: &System, load: &LoadEntry) -> ([f64; SIZE], [f64; SIZE]) {
         let (mut x, mut v) = ([0.0; SIZE], [0.0; SIZE]);
-        gather(system.dim, &load.nodes, &self.xs, &mut x);
+        gather(system.dim, &load.nodes, &self.sampled.x, &mut x);
         for (x, _) in x.chunks_exact_mut(system.dim).zip(&load.nodes).filter(|(_, node)| system.is_point[node.index()]) {
             x.iter_mut().zip(system.origin).for_each(|(x, origin)| *x += origin);
         }
-        gather(system.dim, &load.nodes, &self.vs, &mut v);
+        gather(system.dim, &load.nodes, &self.sampled.v, &mut v);
         (x, v)
     }
 
     /// Writes minus the residual of the stage to `unknowns`: ϖ(M a + f) for the coordinates, Φ for the rows.
-    pub fn residual(&mut self, system: &System, stage: &Stage) {
+    pub fn residual(&mut self, system: &System, stage: &Stage, unknowns: &mut [f64]) {
         let n = system.coordinates();
         let (free, known) = self.full.split_at_mut(n);
-        free.iter_mut().zip(self.d.iter().zip(&self.drift)).for_each(|(full, (d, drift))| *full = d - drift);
-        known.iter_mut().zip(&self.a1[n..]).for_each(|(full, a)| *full = stage.inertia * a);
-        let (forces, rows) = self.unknowns.split_at_mut(n);
+        free.iter_mut().zip(self.d.iter().zip(&self.prediction.drift)).for_each(|(full, (d, drift))| *full = d - drift);
+        known.iter_mut().zip(&self.a[n..]).for_each(|(full, a)| *full = stage.inertia * a);
+        let (forces, rows) = unknowns.split_at_mut(n);
         system.mass.times(system.dim, &self.full, forces);
-        forces.iter_mut().zip(&self.force).for_each(|(unknown, force)| *unknown = -(*unknown + stage.inertia * force));
+        forces.iter_mut().zip(&self.forces.sum).for_each(|(unknown, force)| *unknown = -(*unknown + stage.inertia * force));
         rows.iter_mut().zip(&self.phi).for_each(|(unknown, phi)| *unknown = -phi);
     }
 
     /// Assembles the tangent of the stage without its proximal term. `geometric` is 1 for the full tangent and 0 for
     /// that of Gauss and Newton, which leaves out the curvature of the rows.
-    pub fn tangent(&mut self, system: &System, stage: &Stage, geometric: f64) {
+    pub fn tangent(&mut self, system: &System, stage: &Stage, geometric: f64, kkt: &mut Kkt) {
         let share = stage.share();
         let weight = stage.inertia * share;
-        self.kkt.clear();
-        self.kkt.start_with_mass(1.0);
+        kkt.clear();
+        kkt.start_with_mass(1.0);
         if geometric != 0.0 {
-            self.kkt.add_row_hessians(&self.lambda, geometric * weight);
-            self.add_function_rows(system, stage, Block(0, 0));
-            self.add_custom_hessians(system, stage.time(), Block(0, 0), geometric * weight);
+            kkt.add_row_hessians(&self.lambda, geometric * weight);
+            self.add_function_rows(system, stage, Block(0, 0), kkt);
+            self.add_custom_hessians(system, stage.time(), Block(0, 0), geometric * weight, kkt);
         }
-        self.add_laws(system, stage, Block(0, 0));
-        self.add_loads(system, stage, Block(0, 0));
-        self.kkt.write_sum(Block(0, 0));
-        self.kkt.add_columns(Block(0, 0), &self.sampled.gradient, 1.0);
+        self.add_laws(system, stage, Block(0, 0), kkt);
+        self.add_loads(system, stage, Block(0, 0), kkt);
+        kkt.write_sum(Block(0, 0));
+        kkt.add_columns(Block(0, 0), &self.sampled.at.gradient, 1.0);
         if self.level != Level::POSITION {
-            self.level_rows(system, stage);
+            self.level_rows(system, stage, kkt);
             return;
         }
         let (at_end, factor) = match stage.rows {
@@ -176,32 +177,31 @@ impl Workspace {
             RowsAt::Middle => (false, 0.5),
         };
         self.differentiate_rows(system, stage, at_end, factor);
-        let Self { kkt, row_gradient, at_end: end, sampled, .. } = self;
         let gradient = match (system.is_nonholonomic(), at_end) {
-            (true, _) => row_gradient,
-            (false, true) => &end.gradient,
-            (false, false) => &sampled.gradient,
+            (true, _) => &self.turned.rows,
+            (false, true) => &self.end.at.gradient,
+            (false, false) => &self.sampled.at.gradient,
         };
         kkt.add_rows(Block(0, 0), gradient, factor);
     }
 
     /// Adds the rows of the tangent for conditions on velocity or acceleration. The dependence of H on positions is left
     /// out: it is none for quadratic rows.
-    fn level_rows(&mut self, system: &System, stage: &Stage) {
+    fn level_rows(&mut self, system: &System, stage: &Stage, kkt: &mut Kkt) {
         self.turn(system, stage.time());
         let (level, share, rate) = (self.level, stage.share(), stage.rate);
         let scale = level.scale(rate, stage.inertia);
         let gradient = level.position * share + level.velocity * rate + level.acceleration / stage.inertia;
         let block = Block(0, 0);
-        self.kkt.add_rows(block, &self.sampled.gradient, scale * gradient);
-        self.kkt.add_rows(block, &self.turned_v, scale * (level.velocity * share + 2.0 * level.acceleration * rate));
+        kkt.add_rows(block, &self.sampled.at.gradient, scale * gradient);
+        kkt.add_rows(block, &self.turned.v, scale * (level.velocity * share + 2.0 * level.acceleration * rate));
         if level.acceleration != 0.0 {
-            self.kkt.add_rows(block, &self.turned_a, scale * level.acceleration * share);
+            kkt.add_rows(block, &self.turned.a, scale * level.acceleration * share);
         }
     }
 
     /// Adds the tangents of all laws, times ϖ.
-    pub fn add_laws(&mut self, system: &System, stage: &Stage, block: Block) {
+    pub fn add_laws(&self, system: &System, stage: &Stage, block: Block, kkt: &mut Kkt) {
         let between = stage.sampling == Sampling::Between;
         let share = stage.inertia * stage.share();
         for (law, entry) in system.laws.iter().enumerate() {
@@ -212,120 +212,117 @@ impl Workspace {
                 rate: if dissipates { stage.inertia * stage.rate } else { 0.0 },
                 motion: if dissipates { share } else { 0.0 },
             };
-            let right = if between { &self.at_end.gradient } else { &self.sampled.gradient };
-            self.kkt.add_law(block, law, &self.responses[law], factors, &self.sampled.gradient, right, &self.motion);
+            let right = if between { &self.end.at.gradient } else { &self.sampled.at.gradient };
+            kkt.add_law(block, law, &self.forces.responses[law], factors, &self.sampled.at.gradient, right, &self.forces.motion);
         }
     }
 
     /// Adds Σ λ_k times the change of the derivatives of the rows that are functions of invariants, times ϖ.
-    pub fn add_function_rows(&mut self, system: &System, stage: &Stage, block: Block) {
+    pub fn add_function_rows(&mut self, system: &System, stage: &Stage, block: Block, kkt: &mut Kkt) {
         let between = stage.sampling == Sampling::Between;
         let share = stage.inertia * stage.share();
         let factors = LawFactors { force: share, value: if between { stage.inertia } else { share }, rate: 0.0, motion: 0.0 };
-        for (&row, response) in system.function_rows.iter().zip(&mut self.responses[system.laws.len()..]) {
+        for (&row, response) in system.function_rows.iter().zip(&mut self.forces.responses[system.laws.len()..]) {
             let Quantity::Function(id) = system.rows[row as usize].quantity else { unreachable!("a row of a function") };
-            let (local, lambda) = (&self.sampled.functions.local[id.0 as usize], self.lambda[row as usize]);
+            let (local, lambda) = (&self.sampled.at.functions.local[id.0 as usize], self.lambda[row as usize]);
             *response = Response { force: local.gradient.map(|g| lambda * g), ..Response::default() };
             for (out, line) in response.by_value.iter_mut().zip(&local.hessian) {
                 *out = line.map(|h| lambda * h);
             }
         }
-        let right = if between { &self.at_end.gradient } else { &self.sampled.gradient };
-        for k in system.laws.len()..self.responses.len() {
-            self.kkt.add_law(block, k, &self.responses[k], factors, &self.sampled.gradient, right, &self.motion);
+        let right = if between { &self.end.at.gradient } else { &self.sampled.at.gradient };
+        for k in system.laws.len()..self.forces.responses.len() {
+            kkt.add_law(block, k, &self.forces.responses[k], factors, &self.sampled.at.gradient, right, &self.forces.motion);
         }
     }
 
     /// Adds the tangents of all loads, times ϖ.
-    pub fn add_loads(&mut self, system: &System, stage: &Stage, block: Block) {
+    pub fn add_loads(&mut self, system: &System, stage: &Stage, block: Block, kkt: &mut Kkt) {
         for (k, load) in system.loads.iter().enumerate() {
             let width = load.nodes.len() * system.dim;
             let (x, v) = self.load_arguments(system, load);
-            let (by_position, by_velocity) = self.dense.split_at_mut(SIZE * SIZE);
+            let (by_position, by_velocity) = self.forces.dense.split_at_mut(SIZE * SIZE);
             let (by_position, by_velocity) = (&mut by_position[..width * width], &mut by_velocity[..width * width]);
             by_position.fill(0.0);
             by_velocity.fill(0.0);
             load.load.tangent(&x[..width], &v[..width], stage.time(), by_position, by_velocity);
-            self.kkt.add_load(block, k, by_position, -stage.inertia * stage.share());
-            self.kkt.add_load(block, k, by_velocity, -stage.inertia * stage.rate);
+            kkt.add_load(block, k, by_position, -stage.inertia * stage.share());
+            kkt.add_load(block, k, by_velocity, -stage.inertia * stage.rate);
         }
     }
 
     /// Adds what forces change by with velocity, times `factor`.
-    pub fn add_damping(&mut self, system: &System, t: f64, block: Block, factor: f64) {
+    pub fn add_damping(&mut self, system: &System, t: f64, block: Block, factor: f64, kkt: &mut Kkt) {
         for (law, _) in system.laws.iter().enumerate().filter(|(_, entry)| !entry.law.conservative()) {
             let factors = LawFactors { force: 0.0, value: 0.0, rate: factor, motion: 0.0 };
-            let gradient = &self.sampled.gradient;
-            self.kkt.add_law(block, law, &self.responses[law], factors, gradient, gradient, &self.motion);
+            let gradient = &self.sampled.at.gradient;
+            kkt.add_law(block, law, &self.forces.responses[law], factors, gradient, gradient, &self.forces.motion);
         }
         for (k, load) in system.loads.iter().enumerate() {
             let width = load.nodes.len() * system.dim;
             let (x, v) = self.load_arguments(system, load);
-            let (by_position, by_velocity) = self.dense.split_at_mut(SIZE * SIZE);
+            let (by_position, by_velocity) = self.forces.dense.split_at_mut(SIZE * SIZE);
             let (by_position, by_velocity) = (&mut by_position[..width * width], &mut by_velocity[..width * width]);
             by_position.fill(0.0);
             by_velocity.fill(0.0);
             load.load.tangent(&x[..width], &v[..width], t, by_position, by_velocity);
-            self.kkt.add_load(block, k, by_velocity, -factor);
+            kkt.add_load(block, k, by_velocity, -factor);
         }
     }
 
     /// Adds Σ λ_k H_k of the custom rows at the sampled position, times `factor`.
-    pub fn add_custom_hessians(&mut self, system: &System, t: f64, block: Block, factor: f64) {
+    pub fn add_custom_hessians(&mut self, system: &System, t: f64, block: Block, factor: f64, kkt: &mut Kkt) {
         let mut first = system.rows.len();
         for (k, entry) in system.custom.iter().enumerate() {
             let rows = entry.rows.rows();
             let mut x = [0.0; SIZE];
-            let width = gather(system.dim, &entry.nodes, &self.xs, &mut x);
-            let hessian = &mut self.dense[..width * width];
+            let width = gather(system.dim, &entry.nodes, &self.sampled.x, &mut x);
+            let hessian = &mut self.forces.dense[..width * width];
             entry.rows.hessian(&x[..width], t, &self.lambda[first..first + rows], hessian);
-            self.kkt.add_custom(block, k, hessian, factor);
+            kkt.add_custom(block, k, hessian, factor);
             first += rows;
         }
     }
 
     /// Responses of all laws at the end of the step, whatever was sampled before.
-    pub fn respond_at_end(&mut self, system: &System, stage: &Stage) {
-        self.xs.copy_from_slice(&self.x1);
-        self.vs.copy_from_slice(&self.v1);
-        self.sampled.copy_from(&self.at_end);
-        self.respond(system, stage);
+    pub fn respond_at_end(&mut self, system: &System, t: f64) {
+        self.sampled.copy_from(&self.end);
+        self.respond(system, t);
     }
 
     /// Samples forces at the end position with the multipliers as they are, and evaluates there.
     pub fn sample_end(&mut self, system: &System, t: f64) {
-        system.evaluate(&self.x1, t, &self.at_start, &mut self.at_end);
-        self.sampled.copy_from(&self.at_end);
-        self.xs.copy_from_slice(&self.x1);
-        self.vs.copy_from_slice(&self.v1);
-        self.sum_forces(system, &Stage::moment(t));
+        system.evaluate(&self.end.x, t, &self.start.at, &mut self.end.at);
+        self.respond_at_end(system, t);
+        self.sum_forces(system, t);
     }
 
-    /// Samples forces at the position `xs` and velocity `vs`, with the multipliers as they are, and evaluates there.
+    /// Samples forces at the sampled position and velocity, with the multipliers as they are, and evaluates there.
     pub fn sample(&mut self, system: &System, t: f64) {
-        system.evaluate(&self.xs, t, &self.at_start, &mut self.sampled);
-        self.sum_forces(system, &Stage::moment(t));
+        system.evaluate(&self.sampled.x, t, &self.start.at, &mut self.sampled.at);
+        self.respond(system, t);
+        self.sum_forces(system, t);
     }
 
     /// Samples forces at the end again with other multipliers, where nothing moved since.
     pub(super) fn resample_end(&mut self, system: &System, t: f64) {
-        self.sum_forces(system, &Stage::moment(t));
+        self.sum_forces(system, t);
     }
 
-    /// Leaves Φ̈ at the sampled position, with the accelerations `a1`, in `rows`.
+    /// Leaves Φ̈ at the sampled position, with the accelerations `a`, in `rows`.
     pub fn sampled_acceleration_violation(&mut self, system: &System, time: f64) {
-        system.constraint_curvatures(&self.sampled, &self.xs, &self.vs, time, &mut self.half, &mut self.rows);
-        self.kkt.add_along(1.0, &self.sampled.gradient, &self.a1, &mut self.rows);
+        system.constraint_curvatures(&self.sampled.at, &self.sampled.x, &self.sampled.v, time, &mut self.turned.half, &mut self.rows);
+        system.slots.add_along(system.dim, 1.0, &self.sampled.at.gradient, &self.a, &mut self.rows);
     }
 
     /// Leaves Φ̇ at the end of the step in `rows`.
     pub fn rate_violation(&mut self, system: &System, time: f64) {
-        system.constraint_rates(&system.slots.by_row, &self.at_end, &self.v1, time, &mut self.rows);
+        system.constraint_rates(&system.slots.by_row, &self.end.at, &self.end.v, time, &mut self.rows);
     }
 
     /// Leaves Φ̈ at the end of the step in `rows`.
     pub fn acceleration_violation(&mut self, system: &System, time: f64) {
-        system.constraint_curvatures(&self.at_end, &self.x1, &self.v1, time, &mut self.half, &mut self.rows);
-        self.kkt.add_along(1.0, &self.at_end.gradient, &self.a1, &mut self.rows);
+        system.constraint_curvatures(&self.end.at, &self.end.x, &self.end.v, time, &mut self.turned.half, &mut self.rows);
+        system.slots.add_along(system.dim, 1.0, &self.end.at.gradient, &self.a, &mut self.rows);
     }
 }

@@ -4,7 +4,7 @@
 //! are of the size of an increment: B Δq between two positions, Ψ over ∂v/∂Δq at a state.
 
 use super::stage::{Sampling, Stage};
-use super::workspace::Workspace;
+use super::workspace::{Turned, Workspace};
 use crate::system::{InvariantId, MAX_ARGUMENTS, System};
 
 impl Workspace {
@@ -13,62 +13,64 @@ impl Workspace {
         if system.velocity_rows.is_empty() {
             return;
         }
-        for (way, (x1, x0)) in self.full.iter_mut().zip(self.x1.iter().zip(&self.x0)) {
+        for (way, (x1, x0)) in self.full.iter_mut().zip(self.end.x.iter().zip(&self.start.x)) {
             *way = x1 - x0;
         }
         for &row in &system.velocity_rows {
             let slots = &system.slots.rows[row as usize];
             let along = |at, v| system.along(slots, &system.slots.nodes, at, v);
             self.phi[row as usize] = match stage.sampling {
-                Sampling::Between => along(&self.sampled, &self.full),
-                Sampling::Start => 0.5 * (along(&self.at_start, &self.full) + along(&self.at_end, &self.full)),
-                Sampling::End | Sampling::Middle => along(&self.sampled, &self.vs) / stage.rate,
+                Sampling::Between => along(&self.sampled.at, &self.full),
+                Sampling::Start => 0.5 * (along(&self.start.at, &self.full) + along(&self.end.at, &self.full)),
+                Sampling::End | Sampling::Middle => along(&self.sampled.at, &self.sampled.v) / stage.rate,
             };
         }
     }
 
-    /// Fills `row_gradient` with the gradients of all rows by the increment, where those of the positions are that at the
+    /// Fills `turned.rows` with the gradients of all rows by the increment, where those of the positions are that at the
     /// end or the one sampled, times `factor`: the velocity rows' are divided by it. Without velocity rows nothing is
     /// filled.
     pub(super) fn differentiate_rows(&mut self, system: &System, stage: &Stage, at_end: bool, factor: f64) {
         if system.velocity_rows.is_empty() {
             return;
         }
-        let Self { row_gradient, turned_v, half, at_start, at_end: end, sampled, xs, vs, x0, x1, full, .. } = self;
-        row_gradient.copy_from_slice(if at_end { &end.gradient } else { &sampled.gradient });
-        for (way, (x1, x0)) in full.iter_mut().zip(x1.iter().zip(&*x0)) {
+        let Self { turned, start, end, sampled, full, .. } = self;
+        turned.rows.copy_from_slice(if at_end { &end.at.gradient } else { &sampled.at.gradient });
+        for (way, (x1, x0)) in full.iter_mut().zip(end.x.iter().zip(&start.x)) {
             *way = x1 - x0;
         }
         match stage.sampling {
             Sampling::Between => {
-                let change = |id: InvariantId| end.value[id.0 as usize] - at_start.value[id.0 as usize];
-                system.turn_functions(end, turned_v, |k, base| {
+                let change = |id: InvariantId| end.at.value[id.0 as usize] - start.at.value[id.0 as usize];
+                system.turn_functions(&end.at, &mut turned.v, |k, base| {
                     let rise: [f64; MAX_ARGUMENTS] = std::array::from_fn(|i| base.get(i).map_or(0.0, |&id| change(id)));
-                    let (mean, there) = (&sampled.functions.local[k], &end.functions.local[k]);
+                    let (mean, there) = (&sampled.at.functions.local[k], &end.at.functions.local[k]);
                     std::array::from_fn(|i| [0.0, mean.gradient[i] + 0.5 * there.bend(i, &rise)])
                 });
             }
-            Sampling::Start => system.turn(end, x1, full, stage.end(), half, turned_v),
-            Sampling::End | Sampling::Middle => system.turn(sampled, xs, vs, stage.time(), half, turned_v),
+            Sampling::Start => system.turn(&end.at, &end.x, full, stage.end(), &mut turned.half, &mut turned.v),
+            Sampling::End | Sampling::Middle => {
+                system.turn(&sampled.at, &sampled.x, &sampled.v, stage.time(), &mut turned.half, &mut turned.v)
+            }
         }
         let share = stage.share() / stage.rate;
         for &row in &system.velocity_rows {
             let slots = &system.slots.rows[row as usize];
             for i in slots.start * system.dim..slots.end * system.dim {
-                row_gradient[i] = match stage.sampling {
-                    Sampling::Between => turned_v[i],
-                    Sampling::Start => 0.5 * (at_start.gradient[i] + end.gradient[i] + turned_v[i]),
-                    Sampling::End | Sampling::Middle => sampled.gradient[i] + share * turned_v[i],
+                turned.rows[i] = match stage.sampling {
+                    Sampling::Between => turned.v[i],
+                    Sampling::Start => 0.5 * (start.at.gradient[i] + end.at.gradient[i] + turned.v[i]),
+                    Sampling::End | Sampling::Middle => sampled.at.gradient[i] + share * turned.v[i],
                 } / factor;
             }
         }
     }
 
-    /// Fills `row_gradient` with those of the velocity rows alone, or of all others; zero elsewhere.
+    /// Fills `turned.rows` with those of the velocity rows alone, or of all others; zero elsewhere.
     pub(super) fn part_of_rows(&mut self, system: &System, gradient: Source, velocity: bool) {
-        let Self { row_gradient, sampled, turned_v, .. } = self;
+        let Turned { rows: row_gradient, v: turned_v, .. } = &mut self.turned;
         let from = match gradient {
-            Source::Sampled => &sampled.gradient,
+            Source::Sampled => &self.sampled.at.gradient,
             Source::Turned => turned_v,
         };
         if velocity {

@@ -4,7 +4,7 @@
 
 use super::runge_kutta::{RungeKutta, Tableau};
 use super::{Integrator, Step, Work};
-use crate::formulation::{Collocation, Failure, RowsAt, Sampling, SolveSettings, Stage, Timing, Workspace};
+use crate::formulation::{Collocation, Failure, Newton, RowsAt, Sampling, SolveSettings, Stage, Timing, Workspace};
 use crate::system::System;
 
 /// States before the present one that are kept: what order 5 and its error estimate need.
@@ -82,12 +82,12 @@ impl Integrator for Bdf {
         2 + KEPT * (2 * system.coordinates() + 1)
     }
 
-    fn step(&mut self, system: &System, start: f64, h: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
+    fn step(&mut self, system: &System, start: f64, h: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
         let n = system.coordinates();
         let mut memory = std::mem::take(&mut work.memory);
         let mut history = History { n, numbers: &mut memory };
-        history.push(start, &work.x0, &work.v0);
-        let outcome = self.advance(system, start, h, settings, &mut history, work);
+        history.push(start, &work.start.x, &work.start.v);
+        let outcome = self.advance(system, start, h, newton, &mut history, work);
         work.memory = memory;
         outcome
     }
@@ -99,14 +99,14 @@ impl Bdf {
         system: &System,
         start: f64,
         h: f64,
-        settings: &SolveSettings,
+        newton: &mut Newton,
         history: &mut History<'_>,
         work: &mut Workspace,
     ) -> Result<Step, Failure> {
         let n = system.coordinates();
         let order = self.order_in_use(history);
         if history.count() < self.order + usize::from(self.varies) {
-            return self.starter.step(system, start, h, settings, work);
+            return self.starter.step(system, start, h, newton, work);
         }
         let t = start + h;
         let weights = Self::weights(history, t, order);
@@ -115,22 +115,22 @@ impl Bdf {
             let (mut p, mut r) = (0.0, 0.0);
             for j in 1..=order {
                 let state = history.state(j - 1);
-                p += h * weights[j] * (state[k] - work.x0[k]);
+                p += h * weights[j] * (state[k] - work.start.x[k]);
                 r += h * h * weights[j] * state[n + k];
             }
             (self.stage.p[k], self.stage.r[k]) = (p, r);
-            let (v, a) = (work.v0[k], work.a1[k] + work.a_change[k] / 3.0);
+            let (v, a) = (work.start.v[k], work.a[k] + work.prediction.a_change[k] / 3.0);
             self.stage.d[k] = h * (v + 0.5 * h * a);
             self.stage.u[k] = h * (v + h * a);
         }
         let timing = Timing { start, step: h, nodes: &[1.0] };
-        self.stage.solve(system, timing, settings, work)?;
+        self.stage.solve(system, timing, newton, work)?;
         self.stage.place(system, timing, 0, work);
         if work.is_worked_on() {
             work.sample(system, t);
         }
-        work.x1[n..].copy_from_slice(&work.xs[n..]);
-        work.v1.copy_from_slice(&work.vs);
+        work.end.x[n..].copy_from_slice(&work.sampled.x[n..]);
+        work.end.v.copy_from_slice(&work.sampled.v);
         work.d.copy_from_slice(&self.stage.d);
         if self.varies {
             self.choose(order, t, history, work);
@@ -149,7 +149,7 @@ impl Bdf {
     /// Estimates the local error at the order in use, and takes the neighbour that allows longer steps for the next one.
     fn choose(&self, order: usize, t: f64, history: &mut History<'_>, work: &mut Workspace) {
         // By how much a step of an order could be longer: its error over what is allowed.
-        let allowed = work.allowed * work.scales.length * (t - history.time(0));
+        let allowed = work.estimate.allowed * work.scales.length * (t - history.time(0));
         let room = |order: usize, error: f64| (error / allowed).max(1e-10).powf(-1.0 / order as f64);
         let mut next = order;
         let mut best = 0.0;
@@ -184,7 +184,7 @@ fn local_error(order: usize, t: f64, history: &History<'_>, work: &mut Workspace
     let mut largest = 0.0_f64;
     for k in 0..2 * n {
         let mut differences = [0.0; KEPT + 1];
-        differences[0] = if k < n { work.x0[k] + work.d[k] } else { work.v1[k - n] };
+        differences[0] = if k < n { work.start.x[k] + work.d[k] } else { work.end.v[k - n] };
         for j in 1..=order + 1 {
             differences[j] = history.state(j - 1)[k];
         }
@@ -195,10 +195,10 @@ fn local_error(order: usize, t: f64, history: &History<'_>, work: &mut Workspace
         }
         let error = product * differences[0] / leading;
         if k < n {
-            work.error_q[k] = error;
+            work.estimate.q[k] = error;
             largest = largest.max(error.abs());
         } else {
-            work.error_v[k - n] = error;
+            work.estimate.v[k - n] = error;
         }
     }
     largest

@@ -4,7 +4,7 @@
 use super::history::{History, is_same_length, take_over};
 use super::{Integrator, Step, Work};
 use crate::energy;
-use crate::formulation::{Failure, SolveSettings, Workspace};
+use crate::formulation::{Failure, Newton, Workspace};
 use crate::system::System;
 
 /// Suzuki 1990: five steps, 1/(4 − 4^⅓) = 0.4145, the middle one backwards; order 4.
@@ -63,15 +63,15 @@ impl Integrator for Composed {
         1 + self.shares.len() * (History::SIZE * system.coordinates() + 2 * system.constraints() + self.memory.len())
     }
 
-    fn step(&mut self, system: &System, start: f64, h: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
-        self.start.copy_from_slice(&work.x0);
+    fn step(&mut self, system: &System, start: f64, h: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
+        self.start.copy_from_slice(&work.start.x);
         // What was predicted over the whole step says nothing of its parts.
-        work.a_change.fill(0.0);
-        work.lambda_change.fill(0.0);
+        work.prediction.a_change.fill(0.0);
+        work.prediction.lambda_change.fill(0.0);
         let mut memory = std::mem::take(&mut work.memory);
-        let outcome = self.steps(system, start, h, settings, &mut memory, work);
+        let outcome = self.steps(system, start, h, &mut memory, newton, work);
         work.memory = memory;
-        work.x0.copy_from_slice(&self.start);
+        work.start.x.copy_from_slice(&self.start);
         outcome
     }
 }
@@ -82,8 +82,8 @@ impl Composed {
         system: &System,
         start: f64,
         h: f64,
-        settings: &SolveSettings,
         memory: &mut [f64],
+        newton: &mut Newton,
         work: &mut Workspace,
     ) -> Result<Step, Failure> {
         let n = system.coordinates();
@@ -95,34 +95,34 @@ impl Composed {
         for (k, (share, memory)) in self.shares.iter().zip(memory.chunks_exact_mut(each)).enumerate() {
             if k > 0 {
                 for i in 0..n {
-                    work.x1[i] = work.x0[i] + work.d[i];
+                    work.end.x[i] = work.start.x[i] + work.d[i];
                 }
-                work.x0.copy_from_slice(&work.x1);
-                work.v0.copy_from_slice(&work.v1);
+                work.start.x.copy_from_slice(&work.end.x);
+                work.start.v.copy_from_slice(&work.end.v);
                 let t = start + passed * h;
-                system.evaluate_again(&work.x0, t, &mut work.at_start);
-                system.constraint_values(&work.at_start, t, &mut work.phi_start);
+                system.evaluate_again(&work.start.x, t, &mut work.start.at);
+                system.constraint_values(&work.start.at, t, &mut work.phi_start);
             }
             let mut memory = Memory::of(system, memory);
             if follows {
-                work.a1[..n].copy_from_slice(memory.acceleration.value);
-                work.a_change[..n].copy_from_slice(memory.acceleration.change);
+                work.a[..n].copy_from_slice(memory.acceleration.value);
+                work.prediction.a_change[..n].copy_from_slice(memory.acceleration.change);
                 work.lambda.copy_from_slice(memory.lambda);
-                work.lambda_change.copy_from_slice(memory.lambda_change);
+                work.prediction.lambda_change.copy_from_slice(memory.lambda_change);
             }
             self.memory.copy_from_slice(memory.inner);
             std::mem::swap(&mut self.memory, &mut work.memory);
-            let outcome = self.inner.step(system, start + passed * h, share * h, settings, work);
+            let outcome = self.inner.step(system, start + passed * h, share * h, newton, work);
             std::mem::swap(&mut self.memory, &mut work.memory);
             let step = match outcome {
                 Ok(step) => step,
                 Err(failure) => {
-                    system.evaluate_again(&self.start, start, &mut work.at_start);
+                    system.evaluate_again(&self.start, start, &mut work.start.at);
                     return Err(failure);
                 }
             };
             memory.inner.copy_from_slice(&self.memory);
-            memory.acceleration.remember(follows, |i| work.a1[i]);
+            memory.acceleration.remember(follows, |i| work.a[i]);
             take_over(memory.lambda, memory.lambda_change, follows, &work.lambda);
             if let Work::Between(extra) = step.work {
                 done += energy::work_between(system, &step.stage, work) + extra;
@@ -133,7 +133,7 @@ impl Composed {
         *last_step = h;
         let step = last.expect("a composition has steps");
         for i in 0..n {
-            let end = work.x0[i] + work.d[i];
+            let end = work.start.x[i] + work.d[i];
             work.d[i] = end - self.start[i];
         }
         Ok(Step { stage: step.stage, work: Work::Sum(done), estimate: None })

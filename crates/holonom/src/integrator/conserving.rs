@@ -1,7 +1,7 @@
 //! The energy-momentum conserving scheme (14)–(18): midpoint kinematics with discrete gradients (methods §2.1).
 
 use super::{Integrator, Step, Work};
-use crate::formulation::{Failure, Multipliers, RowsAt, Sampling, SolveSettings, Stage, Workspace, predict, solve};
+use crate::formulation::{Failure, Multipliers, Newton, RowsAt, Sampling, Stage, Workspace, predict, solve};
 use crate::system::System;
 
 pub(super) struct Conserving {
@@ -9,11 +9,11 @@ pub(super) struct Conserving {
 }
 
 impl Integrator for Conserving {
-    fn step(&mut self, system: &System, start: f64, step: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
+    fn step(&mut self, system: &System, start: f64, step: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
         // λ = αΦ̄ in the penalty formulation: its energy ½αΦ² is then kept (14).
-        let rows = if matches!(settings.multipliers, Multipliers::Penalty(_)) { RowsAt::Mean } else { self.rows };
+        let rows = if matches!(newton.settings.multipliers, Multipliers::Penalty(_)) { RowsAt::Mean } else { self.rows };
         let stage = midpoint_kinematics(system, start, step, Sampling::Between, rows, work);
-        solve(system, &stage, settings, work)?;
+        solve(system, &stage, newton, work)?;
         finish(system, step, work);
         work.settle(system, &stage);
         Ok(Step { stage, work: Work::Between(0.0), estimate: None })
@@ -26,15 +26,15 @@ pub(super) fn midpoint_kinematics(system: &System, start: f64, h: f64, sampling:
     let n = system.coordinates();
     let stage = Stage { sampling, rows, start, step: h, inertia: 0.5 * h * h, rate: 1.0 / h };
     for i in 0..n {
-        work.drift[i] = h * work.v0[i];
-        work.offset[i] = 0.0;
+        work.prediction.drift[i] = h * work.start.v[i];
+        work.prediction.offset[i] = 0.0;
     }
     predict(&stage, work);
-    system.place_known(stage.end(), &mut work.x1, &mut work.v1, &mut work.a1);
-    for i in n..work.x1.len() {
-        work.xs[i] = 0.5 * (work.x0[i] + work.x1[i]);
-        work.vs[i] = (work.x1[i] - work.x0[i]) / h;
-        work.a1[i] = (work.v1[i] - work.v0[i]) / h;
+    system.place_known(stage.end(), &mut work.end.x, &mut work.end.v, &mut work.a);
+    for i in n..work.end.x.len() {
+        work.sampled.x[i] = 0.5 * (work.start.x[i] + work.end.x[i]);
+        work.sampled.v[i] = (work.end.x[i] - work.start.x[i]) / h;
+        work.a[i] = (work.end.v[i] - work.start.v[i]) / h;
     }
     stage
 }
@@ -43,7 +43,7 @@ pub(super) fn midpoint_kinematics(system: &System, start: f64, h: f64, sampling:
 /// of the whole velocity would be the same in each step and the energy drift with it.
 pub(super) fn finish(system: &System, h: f64, work: &mut Workspace) {
     for i in 0..system.coordinates() {
-        work.v1[i] = work.v0[i] + 2.0 / h * (work.d[i] - work.drift[i]);
-        work.a1[i] = (work.v1[i] - work.v0[i]) / h;
+        work.end.v[i] = work.start.v[i] + 2.0 / h * (work.d[i] - work.prediction.drift[i]);
+        work.a[i] = (work.end.v[i] - work.start.v[i]) / h;
     }
 }

@@ -3,7 +3,7 @@
 use super::conserving::midpoint_kinematics;
 use super::history::{History, is_same_length, take_over};
 use super::{Integrator, Step, Work};
-use crate::formulation::{Failure, RowsAt, Sampling, SolveSettings, Stabilized, Workspace};
+use crate::formulation::{Failure, Newton, RowsAt, Sampling, Stabilized, Workspace};
 use crate::system::System;
 
 pub(super) struct ConservingGgl {
@@ -43,20 +43,20 @@ impl Integrator for ConservingGgl {
         2 + 2 * system.constraints() + History::SIZE * system.coordinates()
     }
 
-    fn step(&mut self, system: &System, start: f64, step: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
+    fn step(&mut self, system: &System, start: f64, step: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
         let (n, h) = (system.coordinates(), step);
         let stage = midpoint_kinematics(system, start, h, Sampling::Between, RowsAt::End, work);
         let both = &mut self.stabilized;
         let memory = Memory::of(system, &mut work.memory);
         let follows = is_same_length(h, *memory.step);
         both.coupled_steps = *memory.coupled as u32;
-        for i in 0..work.x1.len() {
+        for i in 0..work.end.x.len() {
             if i < n {
-                both.u[i] = work.d[i] - 0.5 * h * work.v0[i];
+                both.u[i] = work.d[i] - 0.5 * h * work.start.v[i];
                 work.d[i] += if follows { memory.slip.value[i] + memory.slip.change[i] } else { 0.0 };
             } else {
-                both.u[i] = 0.5 * h * work.v1[i];
-                work.a1[i] = (work.x1[i] - work.x0[i] - h * work.v0[i]) / stage.inertia;
+                both.u[i] = 0.5 * h * work.end.v[i];
+                work.a[i] = (work.end.x[i] - work.start.x[i] - h * work.start.v[i]) / stage.inertia;
             }
         }
         both.lambda_start.copy_from_slice(&work.lambda);
@@ -66,12 +66,12 @@ impl Integrator for ConservingGgl {
             (both.gamma[row], both.mu[row], both.gamma_change[row]) = (0.0, 0.0, expected);
             work.lambda[row] -= expected / stage.inertia;
         }
-        both.solve(system, &stage, settings, work)?;
-        for i in 0..work.x1.len() {
+        both.solve(system, &stage, newton, work)?;
+        for i in 0..work.end.x.len() {
             if i < n {
-                work.v1[i] = work.v0[i] + 2.0 / h * (both.u[i] - 0.5 * work.drift[i]);
+                work.end.v[i] = work.start.v[i] + 2.0 / h * (both.u[i] - 0.5 * work.prediction.drift[i]);
             }
-            work.a1[i] = (work.v1[i] - work.v0[i]) / h;
+            work.a[i] = (work.end.v[i] - work.start.v[i]) / h;
         }
         for row in 0..both.mu.len() {
             work.lambda[row] = (both.mu[row] + both.gamma[row]) / stage.inertia;
@@ -79,7 +79,7 @@ impl Integrator for ConservingGgl {
         let mut memory = Memory::of(system, &mut work.memory);
         *memory.step = h;
         *memory.coupled = f64::from(both.coupled_steps.saturating_sub(1));
-        memory.slip.remember(follows, |i| work.d[i] - both.u[i] - 0.5 * work.drift[i]);
+        memory.slip.remember(follows, |i| work.d[i] - both.u[i] - 0.5 * work.prediction.drift[i]);
         take_over(memory.gamma, memory.gamma_change, follows, &both.gamma);
         let mut extra_work = 0.0;
         work.settle(system, &stage);

@@ -4,7 +4,7 @@
 use super::dop853;
 use super::{Integrator, Step, Work};
 use crate::energy;
-use crate::formulation::{Failure, RowsAt, Sampling, SolveSettings, Stage, Workspace};
+use crate::formulation::{Failure, Newton, RowsAt, Sampling, Stage, Workspace};
 use crate::system::System;
 
 /// An explicit method: the row after the last stage is that of the end of the step.
@@ -106,12 +106,12 @@ impl Explicit {
         (i, row): (usize, &[f64]),
         t: f64,
         h: f64,
-        settings: &SolveSettings,
+        newton: &mut Newton,
         work: &mut Workspace,
     ) -> Result<f64, Failure> {
         let n = system.coordinates();
-        let Workspace { x1, v1, a1, .. } = work;
-        system.place_known(t, x1, v1, a1);
+        let Workspace { end, a, .. } = work;
+        system.place_known(t, &mut end.x, &mut end.v, a);
         for k in 0..n {
             let (mut x, mut v) = (0.0, 0.0);
             for (j, weight) in row.iter().enumerate() {
@@ -119,14 +119,14 @@ impl Explicit {
                 v += weight * self.slopes[j * n + k];
             }
             work.d[k] = h * x;
-            work.x1[k] = work.x0[k] + work.d[k];
-            work.v1[k] = work.v0[k] + h * v;
+            work.end.x[k] = work.start.x[k] + work.d[k];
+            work.end.v[k] = work.start.v[k] + h * v;
         }
-        work.accelerate(system, t, settings)?;
-        self.rates[i * n..(i + 1) * n].copy_from_slice(&work.v1[..n]);
-        self.slopes[i * n..(i + 1) * n].copy_from_slice(&work.a1[..n]);
+        newton.accelerate(system, t, work)?;
+        self.rates[i * n..(i + 1) * n].copy_from_slice(&work.end.v[..n]);
+        self.slopes[i * n..(i + 1) * n].copy_from_slice(&work.a[..n]);
         match work.is_worked_on() {
-            true => Ok(energy::power(system, t, &work.v1, &work.a1, work)),
+            true => Ok(energy::power(system, t, &work.end.v, &work.a, work)),
             false => Ok(0.0),
         }
     }
@@ -168,29 +168,29 @@ impl Explicit {
         let (mut size, mut tempering) = (0.0, 0.0);
         for k in 0..n {
             let [q, v] = self.error(self.tableau.error, n, h, k);
-            (work.error_q[k], work.error_v[k]) = (q, v);
+            (work.estimate.q[k], work.estimate.v[k]) = (q, v);
             let [q3, v3] = self.error(self.tableau.tempering, n, h, k);
             size += q * q + h * h * v * v;
             tempering += q3 * q3 + h * h * v3 * v3;
         }
         if !self.tableau.tempering.is_empty() && size > 0.0 {
             let factor = (size / (size + 0.01 * tempering)).sqrt();
-            work.error_q.iter_mut().chain(&mut work.error_v).for_each(|error| *error *= factor);
+            work.estimate.q.iter_mut().chain(&mut work.estimate.v).for_each(|error| *error *= factor);
         }
     }
 }
 
 impl Integrator for Explicit {
-    fn step(&mut self, system: &System, start: f64, h: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
+    fn step(&mut self, system: &System, start: f64, h: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
         let (n, stages) = (system.coordinates(), self.tableau.nodes.len());
         let mut done = 0.0;
         for i in 0..stages {
-            let power = self.take(system, (i, self.tableau.rows[i]), start + self.tableau.nodes[i] * h, h, settings, work)?;
+            let power = self.take(system, (i, self.tableau.rows[i]), start + self.tableau.nodes[i] * h, h, newton, work)?;
             done += h * self.tableau.rows[stages].get(i).unwrap_or(&0.0) * power;
         }
-        self.take(system, (stages, self.tableau.rows[stages]), start + h, h, settings, work)?;
+        self.take(system, (stages, self.tableau.rows[stages]), start + h, h, newton, work)?;
         self.extended = false;
-        work.iterations += stages as u64 + 1;
+        newton.iterations += stages as u64 + 1;
         self.estimate(n, h, work);
         let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start, step: h, inertia: h * h, rate: 1.0 / h };
         Ok(Step { stage, work: Work::Sum(done), estimate: self.tableau.orders })
@@ -202,7 +202,7 @@ impl Integrator for Explicit {
         start: f64,
         h: f64,
         share: f64,
-        settings: &SolveSettings,
+        newton: &mut Newton,
         work: &mut Workspace,
     ) -> Result<(), Failure> {
         let n = system.coordinates();
@@ -210,17 +210,17 @@ impl Integrator for Explicit {
             && !self.extended
         {
             for (k, (node, row)) in nodes.iter().zip(rows).enumerate() {
-                self.take(system, (self.tableau.rows.len() + k, row), start + node * h, h, settings, work)?;
+                self.take(system, (self.tableau.rows.len() + k, row), start + node * h, h, newton, work)?;
             }
             self.extended = true;
         }
-        let Workspace { x1, v1, a1, .. } = work;
-        system.place_known(start + share * h, x1, v1, a1);
+        let Workspace { end, a, .. } = work;
+        system.place_known(start + share * h, &mut end.x, &mut end.v, a);
         for k in 0..n {
             work.d[k] = h * self.through(&self.rates, n, k, share);
-            work.x1[k] = work.x0[k] + work.d[k];
-            work.v1[k] = work.v0[k] + h * self.through(&self.slopes, n, k, share);
+            work.end.x[k] = work.start.x[k] + work.d[k];
+            work.end.v[k] = work.start.v[k] + h * self.through(&self.slopes, n, k, share);
         }
-        work.accelerate(system, start + share * h, settings)
+        newton.accelerate(system, start + share * h, work)
     }
 }

@@ -4,7 +4,7 @@
 
 use super::newmark::newmark_stage;
 use super::{Integrator, Step, Work};
-use crate::formulation::{Failure, SolveSettings, Workspace, solve};
+use crate::formulation::{Failure, Newton, Workspace, solve};
 use crate::system::System;
 
 pub(super) struct GeneralizedAlpha {
@@ -31,7 +31,7 @@ impl GeneralizedAlpha {
     }
 
     /// One step from the auxiliary acceleration a_n = v̇_n + h `lag`.
-    fn attempt(&self, system: &System, start: f64, h: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
+    fn attempt(&self, system: &System, start: f64, h: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
         let n = system.coordinates();
         let Self { alpha_m, alpha_f, beta, gamma } = *self;
         // a_{n+1} = σ v̇_{n+1} + known
@@ -39,30 +39,30 @@ impl GeneralizedAlpha {
         let mut stage = newmark_stage(start, h, beta, gamma);
         stage.inertia *= sigma;
         for i in 0..n {
-            let (v, dv) = (work.v0[i], work.a1[i]);
+            let (v, dv) = (work.start.v[i], work.a[i]);
             let a = dv + h * work.memory[i];
             let known = (alpha_f * dv - alpha_m * a) / (1.0 - alpha_m);
             let free = h * v + h * h * (0.5 - beta) * a;
-            work.drift[i] = free + beta * h * h * known;
-            work.offset[i] = v + h * (1.0 - gamma) * a - stage.rate * free;
-            work.d[i] = h * v + h * h * (0.5 * dv + beta * work.a_change[i]);
+            work.prediction.drift[i] = free + beta * h * h * known;
+            work.prediction.offset[i] = v + h * (1.0 - gamma) * a - stage.rate * free;
+            work.d[i] = h * v + h * h * (0.5 * dv + beta * work.prediction.a_change[i]);
         }
-        system.place_known(stage.end(), &mut work.x1, &mut work.v1, &mut work.a1);
-        work.xs[n..].copy_from_slice(&work.x1[n..]);
-        work.vs[n..].copy_from_slice(&work.v1[n..]);
+        system.place_known(stage.end(), &mut work.end.x, &mut work.end.v, &mut work.a);
+        work.sampled.x[n..].copy_from_slice(&work.end.x[n..]);
+        work.sampled.v[n..].copy_from_slice(&work.end.v[n..]);
         let (before, after) = work.memory.split_at_mut(n);
         for i in 0..n {
-            after[i] = work.a1[i];
-            before[i] = work.a1[i] + h * before[i];
+            after[i] = work.a[i];
+            before[i] = work.a[i] + h * before[i];
         }
-        solve(system, &stage, settings, work)?;
+        solve(system, &stage, newton, work)?;
         work.place(&stage);
         for i in 0..n {
             let (a, dv) = (work.memory[i], work.memory[n + i]);
-            let new = (work.d[i] - work.drift[i]) / stage.inertia;
+            let new = (work.d[i] - work.prediction.drift[i]) / stage.inertia;
             let auxiliary = ((1.0 - alpha_f) * new + alpha_f * dv - alpha_m * a) / (1.0 - alpha_m);
-            work.a1[i] = new;
-            work.v1[i] = work.vs[i];
+            work.a[i] = new;
+            work.end.v[i] = work.sampled.v[i];
             work.memory[i] = (auxiliary - new) / h;
         }
         Ok(Step { stage, work: Work::AtEnds, estimate: None })
@@ -75,21 +75,21 @@ impl Integrator for GeneralizedAlpha {
         2 * system.coordinates() + 1
     }
 
-    fn step(&mut self, system: &System, start: f64, h: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
+    fn step(&mut self, system: &System, start: f64, h: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
         let n = system.coordinates();
         if work.memory[2 * n] == 0.0 {
             // Without (a_0 − v̇_0)/h = (α_m − α_f) d v̇/dt the multipliers begin with an error of first order: a trial step
             // shows the derivative.
             work.memory.fill(0.0);
-            work.error_q.copy_from_slice(&work.a1[..n]);
-            self.attempt(system, start, h, settings, work)?;
+            work.estimate.q.copy_from_slice(&work.a[..n]);
+            self.attempt(system, start, h, newton, work)?;
             for i in 0..n {
-                work.memory[i] = (self.alpha_m - self.alpha_f) * (work.a1[i] - work.error_q[i]) / h;
-                work.a1[i] = work.error_q[i];
+                work.memory[i] = (self.alpha_m - self.alpha_f) * (work.a[i] - work.estimate.q[i]) / h;
+                work.a[i] = work.estimate.q[i];
             }
             work.memory[2 * n] = 1.0;
         }
-        let step = self.attempt(system, start, h, settings, work)?;
+        let step = self.attempt(system, start, h, newton, work)?;
         work.settle(system, &step.stage);
         Ok(step)
     }

@@ -14,13 +14,13 @@ mod rattle;
 mod runge_kutta;
 mod table;
 
-use crate::formulation::{Failure, RowsAt, SolveSettings, Stage, Workspace};
+use crate::formulation::{Failure, Newton, RowsAt, Stage, Workspace};
 use crate::system::System;
 
 pub(crate) use history::{Differences, extrapolate, is_same_length};
 pub use table::{Entry, Estimate, INTEGRATORS};
 
-/// Time stepping from the start values in a workspace (x0, v0, a0 in `a1`, λ) to its end values (d, v1, a1, λ).
+/// Time stepping from the start values in a workspace (position, velocity, acceleration, λ) to its end values.
 pub trait Integrator: Send {
     /// Numbers to keep from step to step; all zero at the start, and kept with the state.
     fn memory(&self, _system: &System) -> usize {
@@ -29,7 +29,7 @@ pub trait Integrator: Send {
 
     /// Takes one step; says where the work done in it is booked from. An estimate of the
     /// local errors, where the table promises one, is left in the workspace.
-    fn step(&mut self, system: &System, start: f64, step: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure>;
+    fn step(&mut self, system: &System, start: f64, step: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure>;
 
     /// Dense output: leaves in the workspace, put at the start of the last step again, what a step would leave that ended
     /// after the share `share` of it. Only called where the table says that there is one.
@@ -39,7 +39,7 @@ pub trait Integrator: Send {
         _start: f64,
         _step: f64,
         _share: f64,
-        _settings: &SolveSettings,
+        _newton: &mut Newton,
         _work: &mut Workspace,
     ) -> Result<(), Failure> {
         unreachable!("the table promises no dense output")

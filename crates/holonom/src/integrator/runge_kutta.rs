@@ -3,7 +3,7 @@
 
 use super::{Integrator, Step, Work};
 use crate::energy;
-use crate::formulation::{Collocation, Failure, RowsAt, Sampling, SolveSettings, Stage, Timing, Workspace};
+use crate::formulation::{Collocation, Failure, Newton, RowsAt, Sampling, SolveSettings, Stage, Timing, Workspace};
 use crate::system::System;
 
 /// Nodes c, weights b, and B = A⁻¹ of a collocation method.
@@ -137,7 +137,7 @@ impl RungeKutta {
             let c = self.tableau.nodes[i];
             let row: f64 = self.tableau.inverse[i * s..(i + 1) * s].iter().sum();
             for k in 0..n {
-                let (v, a, change) = (work.v0[k], work.a1[k], work.a_change[k]);
+                let (v, a, change) = (work.start.v[k], work.a[k], work.prediction.a_change[k]);
                 let at = i * n + k;
                 self.stages.d[at] = c * h * (v + c * h * (0.5 * a + c * change / 6.0));
                 self.stages.u[at] = h * (v + c * h * (a + 0.5 * c * change));
@@ -152,37 +152,37 @@ impl RungeKutta {
         let Some((slope, weights)) = &self.tableau.error else { return };
         let n = self.slopes.len();
         for k in 0..n {
-            let (mut q, mut v) = (slope * h * work.v0[k], slope * h * self.slopes[k]);
+            let (mut q, mut v) = (slope * h * work.start.v[k], slope * h * self.slopes[k]);
             for (i, weight) in weights.iter().enumerate() {
                 q -= weight * self.stages.d[i * n + k];
-                v -= weight * (self.stages.u[i * n + k] / h - work.v0[k]);
+                v -= weight * (self.stages.u[i * n + k] / h - work.start.v[k]);
             }
-            work.error_q[k] = q;
-            work.error_v[k] = v;
+            work.estimate.q[k] = q;
+            work.estimate.v[k] = v;
         }
     }
 }
 
 impl Integrator for RungeKutta {
-    fn step(&mut self, system: &System, start: f64, h: f64, settings: &SolveSettings, work: &mut Workspace) -> Result<Step, Failure> {
+    fn step(&mut self, system: &System, start: f64, h: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
         let (s, n, r) = (self.tableau.stages(), system.coordinates(), system.constraints());
         self.predict(system, h, work);
-        self.slopes.copy_from_slice(&work.a1[..n]);
+        self.slopes.copy_from_slice(&work.a[..n]);
         let timing = Timing { start, step: h, nodes: &self.tableau.nodes };
-        self.stages.solve(system, timing, settings, work)?;
+        self.stages.solve(system, timing, newton, work)?;
         let mut done = 0.0;
         if work.is_worked_on() {
             for i in 0..s {
                 let t = self.stages.place(system, timing, i, work);
                 work.sample(system, t);
-                let Workspace { vs, a1, .. } = &*work;
-                done += h * self.tableau.weights[i] * energy::power(system, t, vs, a1, work);
+
+                done += h * self.tableau.weights[i] * energy::power(system, t, &work.sampled.v, &work.a, work);
             }
         }
-        let Workspace { x1, v1, a1, .. } = work;
-        system.place_known(start + h, x1, v1, a1);
+        let Workspace { end, a, .. } = work;
+        system.place_known(start + h, &mut end.x, &mut end.v, a);
         for k in 0..n {
-            let v0 = work.v0[k];
+            let v0 = work.start.v[k];
             let (mut d, mut v, mut a) = (0.0, v0, 0.0);
             for i in 0..s {
                 d += self.end[i] * self.stages.d[i * n + k];
@@ -190,8 +190,8 @@ impl Integrator for RungeKutta {
                 a += self.extrapolated[i] * self.stages.a[i * n + k] / (h * h);
             }
             let last = (s - 1) * n + k;
-            (work.d[k], work.v1[k]) = if self.tableau.ends_at_stage() { (self.stages.d[last], self.stages.u[last] / h) } else { (d, v) };
-            work.a1[k] = a;
+            (work.d[k], work.end.v[k]) = if self.tableau.ends_at_stage() { (self.stages.d[last], self.stages.u[last] / h) } else { (d, v) };
+            work.a[k] = a;
         }
         for k in 0..r {
             work.lambda[k] = (0..s).map(|i| self.extrapolated[i] * self.stages.lambda[i * r + k] / (h * h)).sum();

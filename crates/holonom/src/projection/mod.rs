@@ -1,6 +1,6 @@
 //! Coordinate projections of velocity and acceleration (10)–(13): the nearest ones that satisfy the rows, in a metric A.
 
-use crate::formulation::{Block, Failure, RowsAt, Sampling, Stage, Workspace};
+use crate::formulation::{Block, Failure, Kkt, Newton, RowsAt, Sampling, Stage, Workspace};
 use crate::linalg::largest;
 use crate::system::System;
 
@@ -65,50 +65,49 @@ enum Level {
 }
 
 impl Projection {
-    /// Projects the velocities `v1` and the accelerations `a1` of a workspace at its end position. Where the rows are
-    /// evaluated is `at_end`.
-    pub fn apply(&self, system: &System, time: f64, step: f64, work: &mut Workspace) -> Result<(), Failure> {
+    /// Projects velocities and accelerations of a workspace at the end of its step, where the rows are evaluated.
+    pub fn apply(&self, system: &System, time: f64, step: f64, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
         if !(self.velocity || self.acceleration) {
             return Ok(());
         }
-        let scale = self.assemble(system, time, step, work);
+        let scale = self.assemble(system, time, step, &mut newton.kkt, work);
         match self.solve {
-            Solve::Exact => work.proximal(1.0, None),
-            Solve::Penalty(alpha) => work.delta.fill(1.0 / alpha),
+            Solve::Exact => newton.proximal(1.0, None, &work.scales),
+            Solve::Penalty(alpha) => newton.delta.fill(1.0 / alpha),
         }
         if self.solve == Solve::Exact {
-            work.delta.iter_mut().for_each(|delta| *delta *= scale);
+            newton.delta.iter_mut().for_each(|delta| *delta *= scale);
         }
-        work.kkt.regularise(0, &work.delta);
-        work.factorizations += 1;
-        work.kkt.factor()?;
+        newton.kkt.regularise(0, &newton.delta);
+        newton.factorizations += 1;
+        newton.kkt.factor()?;
         if self.velocity {
-            self.project(system, time, Level::Velocity, work);
+            self.project(system, time, Level::Velocity, newton, work);
         }
         if self.acceleration {
-            self.project(system, time, Level::Acceleration, work);
+            self.project(system, time, Level::Acceleration, newton, work);
         }
-        let is_finite = work.v1.iter().chain(&work.a1).all(|value| value.is_finite());
+        let is_finite = work.end.v.iter().chain(&work.a).all(|value| value.is_finite());
         if is_finite { Ok(()) } else { Err(Failure::NotFinite) }
     }
 
     /// Writes [A Gᵀ; G 0]; says how much softer than M the metric lets the rows be.
-    pub(crate) fn assemble(&self, system: &System, time: f64, step: f64, work: &mut Workspace) -> f64 {
+    pub(crate) fn assemble(&self, system: &System, time: f64, step: f64, kkt: &mut Kkt, work: &mut Workspace) -> f64 {
         let block = Block(0, 0);
-        work.kkt.clear();
+        kkt.clear();
         let mut scale = 1.0;
         match &self.metric {
-            Metric::Mass => work.kkt.start_with_mass(1.0),
+            Metric::Mass => kkt.start_with_mass(1.0),
             Metric::Identity => {
-                work.kkt.start_with_weights(std::iter::repeat(&1.0));
+                kkt.start_with_weights(std::iter::repeat(&1.0));
                 scale = work.scales.heaviest;
             }
             Metric::Custom(weights) => {
-                work.kkt.start_with_weights(weights);
+                kkt.start_with_weights(weights);
                 scale = work.scales.heaviest / weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
             }
             Metric::Tangent => {
-                work.kkt.start_with_mass(1.0);
+                kkt.start_with_mass(1.0);
                 let stage = Stage {
                     sampling: Sampling::End,
                     rows: RowsAt::End,
@@ -117,41 +116,41 @@ impl Projection {
                     inertia: 0.25 * step * step,
                     rate: 2.0 / step,
                 };
-                work.respond_at_end(system, &stage);
-                work.add_laws(system, &stage, block);
-                work.add_loads(system, &stage, block);
+                work.respond_at_end(system, time);
+                work.add_laws(system, &stage, block, kkt);
+                work.add_loads(system, &stage, block, kkt);
             }
         }
-        work.kkt.write_sum(block);
-        work.kkt.add_columns(block, &work.at_end.gradient, 1.0);
-        work.kkt.add_rows(block, &work.at_end.gradient, 1.0);
+        kkt.write_sum(block);
+        kkt.add_columns(block, &work.end.at.gradient, 1.0);
+        kkt.add_rows(block, &work.end.at.gradient, 1.0);
         scale
     }
 
-    fn project(&self, system: &System, time: f64, level: Level, work: &mut Workspace) {
+    fn project(&self, system: &System, time: f64, level: Level, newton: &mut Newton, work: &mut Workspace) {
         let n = system.coordinates();
         work.full[..n].fill(0.0);
         let passes = if self.solve == Solve::Exact { PASSES } else { 1 };
         for _ in 0..passes {
             let violation = self.violation(system, time, level, work);
-            let values = if level == Level::Velocity { &work.v1 } else { &work.a1 };
+            let values = if level == Level::Velocity { &work.end.v } else { &work.a };
             let size = largest(values);
             if violation <= ROUND_OFF * size {
                 break;
             }
-            work.unknowns[..n].fill(0.0);
-            for (unknown, row) in work.unknowns[n..].iter_mut().zip(&work.rows) {
+            newton.unknowns[..n].fill(0.0);
+            for (unknown, row) in newton.unknowns[n..].iter_mut().zip(&work.rows) {
                 *unknown = -row;
             }
-            work.kkt.solve(&mut work.unknowns);
-            let values = if level == Level::Velocity { &mut work.v1 } else { &mut work.a1 };
+            newton.kkt.solve(&mut newton.unknowns);
+            let values = if level == Level::Velocity { &mut work.end.v } else { &mut work.a };
             for i in 0..n {
-                values[i] += work.unknowns[i];
-                work.full[i] += work.unknowns[i];
+                values[i] += newton.unknowns[i];
+                work.full[i] += newton.unknowns[i];
             }
         }
         if self.strength != 1.0 {
-            let values = if level == Level::Velocity { &mut work.v1 } else { &mut work.a1 };
+            let values = if level == Level::Velocity { &mut work.end.v } else { &mut work.a };
             for i in 0..n {
                 values[i] += (self.strength - 1.0) * work.full[i];
             }

@@ -33,8 +33,8 @@ impl Moment {
         simulation.shown_a.copy_from_slice(&self.a);
         simulation.audit.clone_from(&self.audit);
         let work = &mut simulation.work;
-        work.at_start.functions.angle.copy_from_slice(&self.state.angle);
-        simulation.system.evaluate_again(&self.state.x, self.state.t, &mut work.at_start);
+        work.start.at.functions.angle.copy_from_slice(&self.state.angle);
+        simulation.system.evaluate_again(&self.state.x, self.state.t, &mut work.start.at);
     }
 }
 
@@ -81,7 +81,7 @@ impl Simulation<'_> {
         pilot.v.copy_from_slice(&self.shown_v);
         pilot.control.begin(&self.state, &pilot.v, end - self.state.t, self.work.scales.length);
         pilot.front.keep(self);
-        self.work.allowed = pilot.control.allowed();
+        self.work.estimate.allowed = pilot.control.allowed();
         self.pilot = Some(pilot);
     }
 
@@ -124,7 +124,7 @@ impl Simulation<'_> {
         let (system, start) = (self.system, self.state.t);
         let share = (target - start) / length;
         self.state.load(&mut self.work);
-        self.integrator.interpolate(system, start, length, share, &self.method.settings, &mut self.work)?;
+        self.integrator.interpolate(system, start, length, share, &mut self.newton, &mut self.work)?;
         let work = match taken.work {
             Work::Sum(done) => Work::Sum(share * done),
             other => other,
@@ -153,7 +153,7 @@ impl Simulation<'_> {
             return Ok(());
         }
         pilot.before.restore(self);
-        self.audit.reject(&self.work);
+        self.audit.reject(&self.newton);
         pilot.control.reject(step, ratio);
         Ok(())
     }
@@ -165,9 +165,9 @@ impl Simulation<'_> {
         let Some(projection) = &pilot.smooth else { return Ok(()) };
         // The end of the step is the start of the next already.
         let work = &mut self.work;
-        work.at_end.copy_from(&work.at_start);
-        projection.apply(self.system, self.state.t, step, work)?;
-        pilot.v.copy_from_slice(&work.v1);
+        work.end.at.copy_from(&work.start.at);
+        projection.apply(self.system, self.state.t, step, &mut self.newton, work)?;
+        pilot.v.copy_from_slice(&work.end.v);
         Ok(())
     }
 }

@@ -3,7 +3,7 @@
 use super::{EnergySummary, MomentumSummary, ViolationSummary, WorkSummary};
 use super::{Method, State};
 use crate::energy;
-use crate::formulation::{Level, Multipliers, Sampling, Workspace};
+use crate::formulation::{Level, Multipliers, Newton, Sampling, Workspace};
 use crate::integrator::{Step, Work};
 use crate::system::System;
 
@@ -74,10 +74,11 @@ impl Audit {
         };
         work.sample_end(system, state.t);
         let power = energy::power(system, state.t, &state.v, &state.a, work);
-        system.constraint_values(&work.at_end, state.t, &mut work.phi);
-        let potential = energy::potential(system, &work.weight, &state.x, &work.at_end, penalty.map(|alpha| (alpha, work.phi.as_slice())));
+        system.constraint_values(&work.end.at, state.t, &mut work.phi);
+        let potential =
+            energy::potential(system, &work.forces.weight, &state.x, &work.end.at, penalty.map(|alpha| (alpha, work.phi.as_slice())));
         let kinetic = energy::kinetic(system, &state.v);
-        let nodes = work.weight.chunks_exact(system.dim).zip(&system.is_point).filter(|(_, is_point)| **is_point);
+        let nodes = work.forces.weight.chunks_exact(system.dim).zip(&system.is_point).filter(|(_, is_point)| **is_point);
         let lift = nodes.flat_map(|(weight, _)| weight.iter().zip(system.origin).map(|(weight, origin)| weight * origin)).sum();
         let momenta = energy::momenta(system, &state.x, &state.v, &mut work.full);
         let mut kept_momenta = [true; 6];
@@ -152,18 +153,21 @@ impl Audit {
     }
 
     /// Books a step that was taken back, and the iterations that it took.
-    pub(super) fn reject(&mut self, work: &Workspace) {
+    pub(super) fn reject(&mut self, newton: &Newton) {
         self.rejected += 1;
-        (self.total_iterations, self.factorizations) = (work.iterations, work.factorizations);
+        self.count(newton);
+    }
+
+    fn count(&mut self, newton: &Newton) {
+        (self.total_iterations, self.factorizations) = (newton.iterations, newton.factorizations);
     }
 
     /// Books what the integrator did: ΔE_i is the change of energy that no work accounts for (21).
     pub(super) fn integrated(&mut self, system: &System, taken: &Step, t: f64, work: &mut Workspace) -> Accounts {
-        self.total_iterations = work.iterations;
         self.taken += 1;
         let done = match taken.work {
             Work::AtEnds => {
-                let power = energy::power(system, t, &work.v1, &work.a1, work);
+                let power = energy::power(system, t, &work.end.v, &work.a, work);
                 let done = 0.5 * taken.stage.step * (self.power + power);
                 self.power = power;
                 done
@@ -171,11 +175,11 @@ impl Audit {
             Work::Between(extra) => energy::work_between(system, &taken.stage, work) + extra,
             Work::Sum(done) => done,
         };
-        system.constraint_values(&work.at_end, t, &mut work.phi);
+        system.constraint_values(&work.end.at, t, &mut work.phi);
         self.phi = norm(&work.phi);
         let penalty = self.penalty.map(|alpha| (alpha, work.phi.as_slice()));
-        let potential = energy::potential(system, &work.weight, &work.x1, &work.at_end, penalty);
-        let kinetic = energy::kinetic(system, &work.v1);
+        let potential = energy::potential(system, &work.forces.weight, &work.end.x, &work.end.at, penalty);
+        let kinetic = energy::kinetic(system, &work.end.v);
         let change = (kinetic - self.kinetic) + (potential - self.potential);
         self.integrator_total += change - done;
         self.work += done;
@@ -207,10 +211,10 @@ impl Audit {
     ) {
         self.potential = accounts.potential;
         if method.projection.velocity {
-            let change = energy::kinetic_difference(system, &work.v1, before, &mut work.full);
+            let change = energy::kinetic_difference(system, &work.end.v, before, &mut work.full);
             if !method.projection.shadow {
                 self.projection_total += change;
-                self.kinetic = energy::kinetic(system, &work.v1);
+                self.kinetic = energy::kinetic(system, &work.end.v);
             }
         }
         work.rate_violation(system, target);
@@ -218,12 +222,12 @@ impl Audit {
     }
 
     /// Books the violation of projected accelerations, and what the step took.
-    pub(super) fn closed(&mut self, system: &System, method: &Method, target: f64, work: &mut Workspace) {
+    pub(super) fn closed(&mut self, system: &System, method: &Method, target: f64, newton: &Newton, work: &mut Workspace) {
         if method.projection.acceleration {
             work.acceleration_violation(system, target);
             self.phi_ddot = norm(&work.rows);
         }
-        self.factorizations = work.factorizations;
+        self.count(newton);
         self.keep_violations();
     }
 

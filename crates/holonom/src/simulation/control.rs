@@ -101,8 +101,8 @@ impl Control {
             self.look_back(h, t, v, work);
         }
         let error = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::INFINITY } else { m.max(x.abs()) });
-        let position = error(&work.error_q) / work.scales.length;
-        let velocity = error(&work.error_v) / self.speed;
+        let position = error(&work.estimate.q) / work.scales.length;
+        let velocity = error(&work.estimate.v) / self.speed;
         let is_noise = position <= ROUND_OFF && velocity <= ROUND_OFF * (work.scales.length / (h * self.speed)).max(1.0);
         // The estimate of a lower order shows how many times shorter than the motion's own time the step is; the error is
         // that to a higher power.
@@ -126,8 +126,8 @@ impl Control {
                 2 => (second(0), 0.0),
                 _ => (second(0), (second(0) - second(1)) / (t(0) - t(3))),
             };
-            work.error_q[i] = h * h * h * bend / 6.0;
-            work.error_v[i] = h * h * h * twist / 2.0;
+            work.estimate.q[i] = h * h * h * bend / 6.0;
+            work.estimate.v[i] = h * h * h * twist / 2.0;
         }
     }
 

@@ -22,7 +22,7 @@ pub use start::{Start, StartError};
 pub use state::State;
 pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, ProjectionSummary, Summary, ViolationSummary, WorkSummary};
 
-use crate::formulation::{Failure, Iteration, SolveSettings, Workspace};
+use crate::formulation::{Failure, Iteration, Newton, Workspace};
 use crate::integrator::{Integrator, Step};
 use crate::system::{GaugeValues, System};
 use adapt::Pilot;
@@ -79,6 +79,7 @@ pub struct Simulation<'a> {
     system: &'a System,
     method: Method,
     integrator: Box<dyn Integrator>,
+    newton: Newton,
     work: Workspace,
     state: State,
     /// Velocities and accelerations to show: those of the state, or their projections.
@@ -105,11 +106,12 @@ impl<'a> Simulation<'a> {
     pub fn new(system: &'a System, method: Method, step: f64) -> Result<Self, StartError> {
         let mut work = Workspace::new(system);
         work.level = method.settings.level;
-        let start = start::prepare(system, &method, &mut work)?;
+        let mut newton = Newton::new(system, method.settings);
+        let start = start::prepare(system, &method, &mut newton, &mut work)?;
         let integrator = (method.integrator.make)(system, &method.settings, method.parameters);
         work.memory = vec![0.0; integrator.memory(system)];
         let state = State::new(&work);
-        Ok(Self::assemble(system, method, integrator, step, work, state, start))
+        Ok(Self { start, ..Self::assemble(system, method, integrator, step, newton, work, state) })
     }
 
     /// Goes on from a state of an earlier run of the same system. `None` when the state is of another size.
@@ -122,8 +124,9 @@ impl<'a> Simulation<'a> {
         work.level = method.settings.level;
         work.memory = state.memory.clone();
         state.load(&mut work);
-        system.evaluate_again(&state.x, state.t, &mut work.at_start);
-        Some(Self::assemble(system, method, integrator, step, work, state, Start::default()))
+        system.evaluate_again(&state.x, state.t, &mut work.start.at);
+        let newton = Newton::new(system, method.settings);
+        Some(Self::assemble(system, method, integrator, step, newton, work, state))
     }
 
     fn assemble(
@@ -131,9 +134,9 @@ impl<'a> Simulation<'a> {
         method: Method,
         integrator: Box<dyn Integrator>,
         step: f64,
+        newton: Newton,
         mut work: Workspace,
         state: State,
-        start: Start,
     ) -> Self {
         let audit = Audit::new(system, &method, &mut work, &state);
         let mut gauges = system.gauge_values();
@@ -148,10 +151,11 @@ impl<'a> Simulation<'a> {
             judge: Judge::new(system, &method, &work),
             system,
             method,
+            newton,
             work,
             state,
             audit,
-            start,
+            start: Start::default(),
             step,
             steps: 0,
             pilot,
@@ -220,7 +224,7 @@ impl<'a> Simulation<'a> {
                 Err(failure) if !self.method.subdivide || step <= smallest => return Err(failure),
                 Err(_) => {
                     part = 0.5 * step;
-                    self.audit.reject(&self.work);
+                    self.audit.reject(&self.newton);
                 }
             }
         }
@@ -229,19 +233,21 @@ impl<'a> Simulation<'a> {
 
     /// One step of the method. Where its result breaks a promise it is iterated until nothing but round-off is left.
     fn substep(&mut self, step: f64, target: f64) -> Result<Step, Failure> {
-        let settings = self.method.settings;
-        match self.try_step(step, target, &settings) {
-            Err(Failure::Broken { .. }) => self.try_step(step, target, &SolveSettings { tolerance: 0.0, ..settings }),
-            outcome => outcome,
+        let mut outcome = self.try_step(step, target);
+        if let Err(Failure::Broken { .. }) = outcome {
+            let tolerance = std::mem::take(&mut self.newton.settings.tolerance);
+            outcome = self.try_step(step, target);
+            self.newton.settings.tolerance = tolerance;
         }
+        outcome
     }
 
-    /// Integrates and finishes a step with these settings.
-    fn try_step(&mut self, step: f64, target: f64, settings: &SolveSettings) -> Result<Step, Failure> {
+    /// Integrates and finishes a step.
+    fn try_step(&mut self, step: f64, target: f64) -> Result<Step, Failure> {
         let (system, work) = (self.system, &mut self.work);
         self.state.load(work);
-        system.constraint_values(&work.at_start, self.state.t, &mut work.phi_start);
-        let taken = self.integrator.step(system, self.state.t, step, settings, work)?;
+        system.constraint_values(&work.start.at, self.state.t, &mut work.phi_start);
+        let taken = self.integrator.step(system, self.state.t, step, &mut self.newton, work)?;
         self.finish(taken, step, target)
     }
 
@@ -249,19 +255,19 @@ impl<'a> Simulation<'a> {
     fn finish(&mut self, taken: Step, step: f64, target: f64) -> Result<Step, Failure> {
         let (system, work, method) = (self.system, &mut self.work, &self.method);
         for i in 0..system.coordinates() {
-            work.x1[i] = work.x0[i] + work.d[i];
+            work.end.x[i] = work.start.x[i] + work.d[i];
         }
-        system.evaluate(&work.x1, target, &work.at_start, &mut work.at_end);
+        system.evaluate(&work.end.x, target, &work.start.at, &mut work.end.at);
         let mut audit = self.audit.clone();
         let accounts = audit.integrated(system, &taken, target, work);
         self.judge.positions(system, work)?;
         audit.violate_acceleration(system, method, &taken, target, work);
-        self.found_v.copy_from_slice(&work.v1);
-        self.found_a.copy_from_slice(&work.a1);
-        method.projection.apply(system, target, step, work)?;
+        self.found_v.copy_from_slice(&work.end.v);
+        self.found_a.copy_from_slice(&work.a);
+        method.projection.apply(system, target, step, &mut self.newton, work)?;
         audit.projected(system, method, &self.found_v, accounts, target, work);
         self.judge.velocities(system, step, work)?;
-        audit.closed(system, method, target, work);
+        audit.closed(system, method, target, &self.newton, work);
         self.judge.accelerations(step, work)?;
         self.judge.energy(system, step, &self.audit, &audit, work)?;
         self.commit(audit, step, target);
@@ -277,14 +283,14 @@ impl<'a> Simulation<'a> {
             self.state.remember(step, &self.found_a, work);
         }
         self.state.land(target, &self.found_a, work);
-        self.shown_v.copy_from_slice(&work.v1);
-        self.shown_a.copy_from_slice(&work.a1);
+        self.shown_v.copy_from_slice(&work.end.v);
+        self.shown_a.copy_from_slice(&work.a);
         let goes_on = !self.method.projection.shadow;
-        self.state.v.copy_from_slice(if goes_on { &work.v1 } else { &self.found_v });
+        self.state.v.copy_from_slice(if goes_on { &work.end.v } else { &self.found_v });
         if goes_on {
-            self.state.a.copy_from_slice(&work.a1);
+            self.state.a.copy_from_slice(&work.a);
         }
-        std::mem::swap(&mut work.at_start, &mut work.at_end);
+        std::mem::swap(&mut work.start.at, &mut work.end.at);
         self.system.measure(&self.state.x, &self.shown_v, &mut self.gauges);
     }
 

@@ -146,7 +146,7 @@ impl Judge {
     /// Energy that is nothing beside the energies after a nominal step of length `h` (s), J; `more` are others beside them.
     fn nothing(&self, h: f64, more: f64, after: &Audit, work: &Workspace) -> f64 {
         let length = work.scales.length;
-        let weight = work.weight.iter().map(|w| w.abs()).sum::<f64>() * length;
+        let weight = work.forces.weight.iter().map(|w| w.abs()).sum::<f64>() * length;
         let trembling = self.mass * (ROUNDED * length * 2.0 / h).powi(2);
         WHOLE * (after.kinetic + after.potential.abs() + weight + more) + trembling
     }
@@ -166,7 +166,7 @@ impl Judge {
         let scales = &work.scales;
         let kinetic = before.kinetic.abs() + after.kinetic.abs();
         let rows = work.lambda.iter().zip(&scales.gradient).map(|(lambda, g)| (lambda * g).abs()).sum::<f64>() * scales.length;
-        let sizes = kinetic + energy::size(system, work, &work.x1) + (after.work - before.work).abs() + rows;
+        let sizes = kinetic + energy::size(system, work, &work.end.x) + (after.work - before.work).abs() + rows;
         // Cauchy and Schwarz: Σ m |v| is at most √(2 T Σ m).
         let momentum = (2.0 * kinetic * self.mass).sqrt();
         ROUND_OFF * sizes + momentum * scales.length * 2.0 / h.abs() * (ROUNDED + self.tolerance)
@@ -184,7 +184,7 @@ impl Judge {
 
     /// Looks at Φ̇ at the end of a step of length `h` (s), in `rows`.
     pub(super) fn velocities(&self, system: &System, h: f64, work: &mut Workspace) -> Result<(), Failure> {
-        let speed = largest(&work.v1);
+        let speed = largest(&work.end.v);
         let reach = ROUND_OFF * speed + self.tolerance * work.scales.length / h.abs();
         if !self.promises(Promise::Velocity) || work.rows.iter().zip(&work.scales.gradient).all(|(rate, g)| rate.abs() <= g * reach) {
             return Ok(());
@@ -200,9 +200,9 @@ impl Judge {
             return Ok(());
         }
         let scales = &work.scales;
-        let speed = largest(&work.v1);
+        let speed = largest(&work.end.v);
         let centripetal = speed * speed / (scales.shortest * scales.length);
-        let reach = ROUND_OFF * (largest(&work.a1) / scales.shortest + centripetal) + self.tolerance * scales.length / (h * h);
+        let reach = ROUND_OFF * (largest(&work.a) / scales.shortest + centripetal) + self.tolerance * scales.length / (h * h);
         let worst = work.rows.iter().zip(&scales.gradient).enumerate().find(|(_, (value, g))| !is_within(**value, *g * reach));
         match worst {
             None => Ok(()),

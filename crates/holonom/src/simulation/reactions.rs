@@ -3,7 +3,6 @@
 use super::Simulation;
 use std::ops::Range;
 
-use crate::formulation::Workspace;
 use crate::system::{NodeId, System};
 
 /// Forces of the constraints at a state, of the order of its positions and velocities.
@@ -34,7 +33,7 @@ impl Simulation<'_> {
     /// and N·m; zero unless forces of the constraints were asked for.
     pub fn wrench(&self, rows: Range<usize>, nodes: &[(NodeId, bool)], about: [f64; 3]) -> ([f64; 3], [f64; 3]) {
         let Some(reactions) = &self.reactions else { return ([0.0; 3], [0.0; 3]) };
-        let gradient = &self.work.at_start.gradient;
+        let gradient = &self.work.start.at.gradient;
         let about = self.system.of_world(about);
         wrench(self.system, rows, &reactions.lambda, gradient, nodes, about, &self.state.x)
     }
@@ -42,24 +41,23 @@ impl Simulation<'_> {
     /// Finds the forces of the constraints at the present state, where they are wanted.
     pub(super) fn react(&mut self) {
         let Some(reactions) = &mut self.reactions else { return };
-        let (system, work, state) = (self.system, &mut self.work, &self.state);
-        work.x1.copy_from_slice(&state.x);
-        work.v1.copy_from_slice(&self.shown_v);
-        work.a1.copy_from_slice(&state.a);
+        let (system, newton, work, state) = (self.system, &mut self.newton, &mut self.work, &self.state);
+        work.end.x.copy_from_slice(&state.x);
+        work.end.v.copy_from_slice(&self.shown_v);
+        work.a.copy_from_slice(&state.a);
         work.lambda.copy_from_slice(&reactions.lambda);
-        let Workspace { x1, v1, a1, .. } = work;
-        system.place_known(state.t, x1, v1, a1);
+        system.place_known(state.t, &mut work.end.x, &mut work.end.v, &mut work.a);
         // A penalty's force is its own; that of every other formulation errs, and the constraints' is meant.
         let outcome = match self.method.formulation.soft {
-            true => work.accelerate(system, state.t, &self.method.settings),
-            false => work.react(system, state.t),
+            true => newton.accelerate(system, state.t, work),
+            false => newton.react(system, state.t, work),
         };
         if outcome.is_err() {
             work.lambda.fill(f64::NAN);
         }
         reactions.lambda.copy_from_slice(&work.lambda);
-        reactions.a.copy_from_slice(&work.a1);
-        work.constraint_forces(&mut reactions.force);
+        reactions.a.copy_from_slice(&work.a);
+        work.constraint_forces(system, &mut reactions.force);
     }
 }
 

@@ -38,16 +38,16 @@ impl State {
     pub(super) fn new(work: &Workspace) -> Self {
         Self {
             t: 0.0,
-            x: work.x1.clone(),
-            v: work.v1.clone(),
-            a: work.a1.clone(),
+            x: work.end.x.clone(),
+            v: work.end.v.clone(),
+            a: work.a.clone(),
             lambda: work.lambda.clone(),
-            a_change: vec![0.0; work.a1.len()],
-            a_differences: vec![Differences::default(); work.a1.len()],
+            a_change: vec![0.0; work.a.len()],
+            a_differences: vec![Differences::default(); work.a.len()],
             lambda_change: vec![0.0; work.lambda.len()],
             last_step: 0.0,
             memory: work.memory.clone(),
-            angle: work.at_start.functions.angle.clone(),
+            angle: work.start.at.functions.angle.clone(),
         }
     }
 
@@ -77,16 +77,16 @@ impl State {
 
     /// Copies the start of a step into a workspace.
     pub(super) fn load(&self, work: &mut Workspace) {
-        work.x0.copy_from_slice(&self.x);
-        work.v0.copy_from_slice(&self.v);
-        work.x1.copy_from_slice(&self.x);
-        work.v1.copy_from_slice(&self.v);
-        work.a1.copy_from_slice(&self.a);
+        work.start.x.copy_from_slice(&self.x);
+        work.start.v.copy_from_slice(&self.v);
+        work.end.x.copy_from_slice(&self.x);
+        work.end.v.copy_from_slice(&self.v);
+        work.a.copy_from_slice(&self.a);
         work.lambda.copy_from_slice(&self.lambda);
-        work.a_change.copy_from_slice(&self.a_change);
-        work.lambda_change.copy_from_slice(&self.lambda_change);
+        work.prediction.a_change.copy_from_slice(&self.a_change);
+        work.prediction.lambda_change.copy_from_slice(&self.lambda_change);
         work.memory.copy_from_slice(&self.memory);
-        work.at_start.functions.angle.copy_from_slice(&self.angle);
+        work.start.at.functions.angle.copy_from_slice(&self.angle);
     }
 
     /// Remembers how accelerations, `a` at the end, and multipliers changed in a step, for the prediction of the next.
@@ -101,9 +101,9 @@ impl State {
 
     /// Takes over the end of a step: its position, evaluated there, its acceleration `a` and multipliers.
     pub(super) fn land(&mut self, target: f64, a: &[f64], work: &Workspace) {
-        self.angle.copy_from_slice(&work.at_end.functions.angle);
+        self.angle.copy_from_slice(&work.end.at.functions.angle);
         self.t = target;
-        self.x.copy_from_slice(&work.x1);
+        self.x.copy_from_slice(&work.end.x);
         self.a.copy_from_slice(a);
         self.lambda.copy_from_slice(&work.lambda);
         self.memory.copy_from_slice(&work.memory);

@@ -60,6 +60,21 @@ impl Slots {
     }
 }
 
+impl Slots {
+    /// Adds Σ factor_k g_k of all rows to forces on all nodes.
+    pub fn add_forces(&self, dim: usize, factors: &[f64], gradient: &[f64], force: &mut [f64]) {
+        // Newton starts every step without multipliers.
+        if factors.iter().any(|factor| *factor != 0.0) {
+            scatter_rows(dim, &self.by_row, factors, gradient, force);
+        }
+    }
+
+    /// Adds `factor` g_k·x of all rows (r), `x` over all nodes.
+    pub fn add_along(&self, dim: usize, factor: f64, gradient: &[f64], x: &[f64], out: &mut [f64]) {
+        add_along_rows(dim, &self.by_row, factor, gradient, x, out);
+    }
+}
+
 /// Adds `factor` Σ g_s·v over the slots of each row to the rows, `v` over all nodes.
 #[inline]
 pub(crate) fn add_along_rows(dim: usize, slots: &[RowSlot], factor: f64, gradient: &[f64], v: &[f64], out: &mut [f64]) {

@@ -1,13 +1,13 @@
 //! Coupled stages as Newton's iteration sees them.
 
-use super::{Collocation, Timing};
+use super::{Collocation, Timing, stage};
 use crate::formulation::failure::Failure;
 use crate::formulation::iteration::Multipliers;
 use crate::formulation::level::Level;
-use crate::formulation::newton::{Change, Equations, RESTARTS};
+use crate::formulation::newton::{Change, Equations, Newton, RESTARTS};
+use crate::formulation::rank::{RHO, SINGULAR};
 use crate::formulation::round_off::{are_forces_round_off, are_rows_round_off};
-use crate::formulation::stage::{RowsAt, Sampling, Stage};
-use crate::formulation::workspace::{RHO, SINGULAR, Workspace};
+use crate::formulation::workspace::Workspace;
 use crate::system::System;
 
 /// Share of a row's own stiffness below which its pivot is that of a row that nothing moves, and ρ of such rows and of all others.
@@ -22,14 +22,13 @@ impl Collocation {
         for i in 0..s {
             let t = self.place(system, timing, i, work);
             work.sample(system, t);
-            work.at_end.copy_from(&work.sampled);
-            let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start: t - h, step: h, inertia: h * h, rate: 1.0 / h };
-            work.drift.fill(0.0);
+            work.end.at.copy_from(&work.sampled.at);
+            work.prediction.drift.fill(0.0);
             for k in 0..n {
-                work.x1[k] = work.x0[k] + self.d[i * n + k];
+                work.end.x[k] = work.start.x[k] + self.d[i * n + k];
                 work.d[k] = self.size_of_sum(i, k, &self.u, &self.r);
             }
-            work.size_forces(system, &stage);
+            work.size_forces(system, &stage(t, h, h * h, 1.0 / h));
             work.size_rows(system);
             let momenta = self.kkt.fields - s + i;
             self.write_sizes(momenta, dim, work);
@@ -70,25 +69,17 @@ pub(super) struct Stages<'a> {
     pub own: &'a mut Collocation,
     pub system: &'a System,
     pub timing: Timing<'a>,
-    pub multipliers: Multipliers,
+}
+
+/// Whether positions stay on the rows: where they drift off, redundant ones become independent.
+fn lets_go(newton: &Newton, work: &Workspace) -> bool {
+    newton.settings.multipliers == Multipliers::Augmented(None) && work.level == Level::POSITION
 }
 
 impl Stages<'_> {
-    fn soft(&self) -> Option<f64> {
-        if let Multipliers::Penalty(alpha) = self.multipliers { Some(alpha) } else { None }
-    }
-
-    /// Whether positions stay on the rows: where they drift off, redundant ones become independent.
-    fn lets_go(&self, work: &Workspace) -> bool {
-        self.multipliers == Multipliers::Augmented(None) && work.level == Level::POSITION
-    }
-
     /// Gives rows that nothing moves a δ of their own: their multipliers are round-off over δ, and more than light nodes weigh.
     /// All others have hardly any, as redundant rows have their part of it.
     fn let_go(&mut self, work: &Workspace) {
-        if !self.lets_go(work) {
-            return;
-        }
         let (softness, is_singular) = (work.scales.softness.iter().cycle(), self.own.singular > 0);
         for ((delta, softness), &idle) in self.own.delta.iter_mut().zip(softness).zip(&self.own.idle) {
             let rho = match (is_singular, idle) {
@@ -102,24 +93,26 @@ impl Stages<'_> {
 }
 
 impl Equations for Stages<'_> {
-    fn begin(&mut self, work: &mut Workspace) {
+    fn begin(&mut self, newton: &mut Newton, work: &mut Workspace) {
         let (h, own) = (self.timing.step, &mut *self.own);
-        match self.multipliers {
-            Multipliers::Penalty(alpha) => work.delta.fill(work.level.scale(1.0 / h, h * h) / (h * h * alpha)),
-            Multipliers::Augmented(penalty) => work.proximal(h * h, penalty),
+        match newton.settings.multipliers {
+            Multipliers::Penalty(alpha) => newton.delta.fill(work.level.scale(1.0 / h, h * h) / (h * h * alpha)),
+            Multipliers::Augmented(penalty) => newton.proximal(h * h, penalty, &work.scales),
         }
-        own.delta.chunks_exact_mut(work.delta.len().max(1)).for_each(|delta| delta.copy_from_slice(&work.delta));
-        self.let_go(work);
+        own.delta.chunks_exact_mut(newton.delta.len().max(1)).for_each(|delta| delta.copy_from_slice(&newton.delta));
+        if lets_go(newton, work) {
+            self.let_go(work);
+        }
         self.own.singular = self.own.singular.saturating_sub(1);
     }
 
-    fn restart(&mut self, again: usize, work: &mut Workspace) -> bool {
+    fn restart(&mut self, again: usize, _newton: &mut Newton, work: &mut Workspace) -> bool {
         let Some(share) = RESTARTS.get(again) else { return false };
         let (n, h, own) = (self.system.coordinates(), self.timing.step, &mut *self.own);
         for (i, node) in self.timing.nodes.iter().enumerate() {
             for k in 0..n {
-                own.d[i * n + k] = share * node * h * work.v0[k];
-                own.u[i * n + k] = h * work.v0[k];
+                own.d[i * n + k] = share * node * h * work.start.v[k];
+                own.u[i * n + k] = h * work.start.v[k];
             }
         }
         own.lambda.fill(0.0);
@@ -127,45 +120,51 @@ impl Equations for Stages<'_> {
         true
     }
 
-    fn evaluate(&mut self, is_new: bool, work: &mut Workspace) {
+    fn evaluate(&mut self, is_new: bool, newton: &mut Newton, work: &mut Workspace) {
         if is_new {
             self.own.kkt.clear();
         }
-        let soft = self.soft();
+        let soft = if let Multipliers::Penalty(alpha) = newton.settings.multipliers { Some(alpha) } else { None };
         self.own.assemble(self.system, self.timing, soft, is_new, work);
     }
 
-    fn is_met(&mut self, _moves: bool, work: &mut Workspace) -> bool {
+    fn is_met(&mut self, _moves: bool, _newton: &mut Newton, work: &mut Workspace) -> bool {
         self.own.size(self.system, self.timing, work);
         let first = self.own.kkt.multiplier(0, 0);
         let ((forces, rows), (of_forces, of_rows)) = (self.own.unknowns.split_at(first), self.own.sizes.split_at(first));
         are_forces_round_off(forces, of_forces) && are_rows_round_off(rows, of_rows)
     }
 
-    fn factor(&mut self, _is_first: bool, work: &mut Workspace) -> Result<(), Failure> {
-        let (rows, lets_go, own) = (work.delta.len(), self.lets_go(work), &mut *self.own);
+    fn factor(&mut self, _is_first: bool, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
+        let (rows, own) = (newton.delta.len(), &mut *self.own);
         let field = |k: usize| k / rows.max(1) * own.stages;
         for field in 0..own.kkt.fields {
             own.kkt.regularise(field, &own.delta[field / own.stages * rows..][..rows]);
         }
-        work.factorizations += 1;
+        newton.factorizations += 1;
         own.kkt.factor()?;
-        let mut changes = false;
+        own.changes_rank = false;
         for (k, idle) in own.idle.iter_mut().enumerate() {
             let pivot = own.kkt.solver.pivot(own.kkt.multiplier(k % rows, field(k))) - own.delta[k];
             let is = pivot < IDLE * work.scales.softness[k % rows];
-            changes |= std::mem::replace(idle, is) != is;
-        }
-        if lets_go {
-            // Near a singular position redundancy passes from row to row, and all have the δ of redundant ones.
-            own.singular = if changes && std::mem::replace(&mut own.is_known, true) { SINGULAR } else { own.singular };
-            work.note_rank(changes);
-            self.let_go(work);
+            own.changes_rank |= std::mem::replace(idle, is) != is;
         }
         Ok(())
     }
 
-    fn advance(&mut self, _is_first: bool, work: &mut Workspace) -> Result<Change, Failure> {
+    /// Near a singular position redundancy passes from row to row, and all have the δ of redundant ones.
+    fn guards_rank(&mut self, newton: &mut Newton, work: &Workspace) -> bool {
+        if !self.own.changes_rank || !lets_go(newton, work) {
+            return false;
+        }
+        if std::mem::replace(&mut self.own.is_known, true) {
+            self.own.singular = SINGULAR;
+        }
+        self.let_go(work);
+        true
+    }
+
+    fn advance(&mut self, _is_first: bool, _newton: &mut Newton, work: &mut Workspace) -> Result<Change, Failure> {
         let own = &mut *self.own;
         own.kkt.solve(&mut own.unknowns);
         let increment = own.advance(self.system, work);

@@ -1,0 +1,90 @@
+//! Which rows are redundant, by the pivots of the matrix, and the proximal term δ that each row has for it.
+
+use super::failure::Failure;
+use super::kkt::Kkt;
+use super::newton::Newton;
+use super::scales::Scales;
+
+/// Share of the rows' own stiffness that the proximal term may soften: δ = (G M⁻¹ Gᵀ)/ρ (methods §1.2, §11). With redundant
+/// rows round-off grows with ρ to multipliers that mean nothing.
+pub const RHO: f64 = 1e10;
+
+/// Attempts after a change of the rank that are near a singular position.
+pub(super) const SINGULAR: u32 = 32;
+
+/// The same of rows that are not redundant. What they miss in an iteration falls with ρ; it comes to N²/ρ in a chain of N
+/// links.
+const RHO_REGULAR: f64 = 1e16;
+
+/// Pivots of rows that are smaller over the rows' own stiffness belong to redundant ones.
+const REDUNDANT: f64 = 1e-9;
+
+/// What the last factorisations said of the rows.
+pub(super) struct Rank {
+    /// Rows whose pivot was no redundant one's (r).
+    regular: Vec<bool>,
+    /// How many they leave, if any were counted, and whether that has changed then.
+    redundant: Option<usize>,
+    changes: bool,
+    /// Attempts to come that are near a singular position.
+    singular: u32,
+    /// Whether rows that were regular have hardly any proximal term in this attempt.
+    pub(super) spares_regular: bool,
+}
+
+impl Rank {
+    pub(super) fn new(rows: usize) -> Self {
+        Self { regular: vec![false; rows], redundant: None, changes: false, singular: 0, spares_regular: false }
+    }
+
+    /// Takes note of which rows are redundant by their pivots in the first field, and whether that are as many as before.
+    pub(super) fn classify(&mut self, outcome: &Result<(), Failure>, kkt: &Kkt, delta: &[f64], scales: &Scales) {
+        if outcome.is_err() {
+            self.regular.fill(false);
+            return;
+        }
+        let mut redundant = 0;
+        for (row, regular) in self.regular.iter_mut().enumerate() {
+            *regular = kkt.solver.pivot(kkt.multiplier(row, 0)) - delta[row] > REDUNDANT * scales.softness[row];
+            redundant += usize::from(!*regular);
+        }
+        self.changes = self.redundant.replace(redundant).is_some_and(|before| before != redundant);
+        if self.changes {
+            self.singular = SINGULAR;
+        }
+    }
+}
+
+impl Newton {
+    /// Fills δ for the proximal term: ρ = [`RHO`], or what a penalty α in the paper's sense comes to, 1/(ϖα), kept
+    /// where it neither softens the rows nor spoils the digits.
+    pub fn proximal(&mut self, inertia: f64, penalty: Option<f64>, scales: &Scales) {
+        for (delta, &softness) in self.delta.iter_mut().zip(&scales.softness) {
+            *delta = match penalty {
+                None => softness / RHO,
+                Some(alpha) => (1.0 / (inertia * alpha)).clamp(softness / 1e12, softness / 1e8),
+            };
+        }
+    }
+
+    /// The same for iterations that begin without multipliers: hardly any δ for rows that were regular when last factored. Near a
+    /// singular position, where the rank changes, redundancy passes from row to row and all have the δ of redundant ones.
+    pub(super) fn proximal_of_redundant(&mut self, scales: &Scales) {
+        let rank = &mut self.rank;
+        rank.spares_regular = true;
+        let is_singular = rank.singular > 0;
+        rank.singular = rank.singular.saturating_sub(1);
+        for ((delta, &softness), &regular) in self.delta.iter_mut().zip(&scales.softness).zip(&rank.regular) {
+            *delta = softness / if regular && !is_singular { RHO_REGULAR } else { RHO };
+        }
+    }
+
+    /// Where the rank changed in the last factorisation and rows have hardly any proximal term, gives them one.
+    pub(super) fn guards_rank(&mut self, scales: &Scales) -> bool {
+        let guards = std::mem::take(&mut self.rank.changes) && self.rank.spares_regular;
+        if guards {
+            self.proximal_of_redundant(scales);
+        }
+        guards
+    }
+}
