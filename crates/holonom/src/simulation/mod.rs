@@ -74,6 +74,9 @@ impl<F: FnMut(&Simulation<'_>) -> Verdict> Observer for F {
 /// Halvings of a step before a run gives up.
 const MOST_HALVINGS: u32 = 12;
 
+/// Units that the parts of a nominal step are counted in: what is left may be three quarters of it, and halved as often.
+const PARTS: u32 = 1 << 24;
+
 /// A method at work on a system. Everything a step needs is allocated when it is made.
 pub struct Simulation<'a> {
     system: &'a System,
@@ -210,20 +213,21 @@ impl<'a> Simulation<'a> {
         Ok(())
     }
 
-    /// In parts where it fails as a whole.
+    /// In parts where it fails as a whole. Parts are counted, and their ends reckoned from the start: the sum of their rounded
+    /// lengths may miss the target by a rounding of time, and over so short a part a rounding of positions is any velocity.
     fn halve(&mut self, target: f64) -> Result<(), Failure> {
-        let whole = target - self.state.t;
-        let smallest = whole / f64::from(1u32 << MOST_HALVINGS);
-        let mut part = whole;
-        while self.state.t < target {
-            let left = target - self.state.t;
-            let is_last = part >= left * (1.0 - 1e-12);
-            let step = if is_last { left } else { part };
-            match self.substep(step, if is_last { target } else { self.state.t + step }) {
-                Ok(_) => part = 2.0 * step,
-                Err(failure) if !self.method.subdivide || step <= smallest => return Err(failure),
+        let from = self.state.t;
+        let whole = target - from;
+        let (mut done, mut part) = (0, PARTS);
+        while done < PARTS {
+            part = part.min(PARTS - done);
+            let end = done + part;
+            let until = if end == PARTS { target } else { from + whole * f64::from(end) / f64::from(PARTS) };
+            match self.substep(whole * f64::from(part) / f64::from(PARTS), until) {
+                Ok(_) => (done, part) = (end, 2 * part),
+                Err(failure) if !self.method.subdivide || part <= PARTS >> MOST_HALVINGS => return Err(failure),
                 Err(_) => {
-                    part = 0.5 * step;
+                    part /= 2;
                     self.audit.reject(&self.newton);
                 }
             }
