@@ -119,7 +119,8 @@ pub(super) fn iterate(equations: &mut impl Equations, newton: &mut Newton, work:
     outcome
 }
 
-fn attempt(equations: &mut impl Equations, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
+/// One attempt from where the unknowns are.
+pub(super) fn attempt(equations: &mut impl Equations, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
     let settings = newton.settings;
     newton.rank.spares_regular = false;
     equations.begin(newton, work);

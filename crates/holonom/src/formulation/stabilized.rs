@@ -15,7 +15,7 @@ use super::coupled::Coupled;
 use super::failure::Failure;
 use super::iteration::{Multipliers, OneStage, predict, restart};
 use super::kkt::{ALL, Block, Kkt};
-use super::newton::{Change, Equations, Newton, RESTARTS, iterate};
+use super::newton::{Change, Equations, Newton, RESTARTS, attempt, iterate};
 use super::round_off::{are_forces_round_off, are_rows_round_off};
 use super::scales::Scales;
 use super::stage::Stage;
@@ -294,12 +294,12 @@ struct BothLevels<'a> {
 }
 
 impl BothLevels<'_> {
-    /// Solves the step with the rows at position level alone; whether that worked.
+    /// Solves the step with the rows at position level alone, in one attempt; whether that worked.
     fn start_from_positions(&mut self, newton: &mut Newton, work: &mut Workspace) -> bool {
         predict(self.stage, work);
         work.lambda.copy_from_slice(&self.own.lambda_start);
         let mut positions = OneStage { system: self.system, stage: self.stage, multipliers: Multipliers::Augmented(None) };
-        iterate(&mut positions, newton, work).is_ok()
+        attempt(&mut positions, newton, work).is_ok()
     }
 }
 
@@ -310,15 +310,16 @@ impl Equations for BothLevels<'_> {
     }
 
     /// From the solution without velocity rows. If that leads nowhere, the step is too long for rows at both levels, and shares of
-    /// the free flight do no better.
+    /// the free flight do no better. If there is none at hand, from these: what is left of looking for it says nothing.
     fn restart(&mut self, again: usize, newton: &mut Newton, work: &mut Workspace) -> bool {
-        let place = again.checked_sub(1);
-        match place {
-            None => self.is_near = self.start_from_positions(newton, work),
-            Some(place) => match RESTARTS.get(place) {
-                Some(&share) if !self.is_near => restart(share, work),
-                _ => return false,
-            },
+        if again == 0 {
+            self.is_near = self.start_from_positions(newton, work);
+        } else if self.is_near {
+            return false;
+        }
+        if !self.is_near {
+            let Some(&share) = RESTARTS.get(again) else { return false };
+            restart(share, work);
         }
         for i in 0..self.system.coordinates() {
             self.own.u[i] = work.d[i] - 0.5 * self.stage.step * work.start.v[i];
