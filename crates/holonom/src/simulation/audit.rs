@@ -138,6 +138,11 @@ impl Audit {
         };
     }
 
+    /// Energy and work at the start of the nominal step, J.
+    pub(super) fn start_of_step(&self) -> [f64; 2] {
+        [self.before.energy, self.before.work]
+    }
+
     /// Takes over from what was booked up to the last nominal time what a step that passed it does not know.
     pub(super) fn follow(&mut self, shown: &Self) {
         self.before = shown.before;

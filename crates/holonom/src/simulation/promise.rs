@@ -128,9 +128,10 @@ impl Judge {
         self.hold_energy([before.energy(), before.work], after, || self.energy_bound(system, h, before, after, work))
     }
 
-    /// Looks at the energy after a nominal step of length `h` (s) that began with the energy and the work `before` (J): parts of it
+    /// Looks at the energy after a nominal step of length `h` (s) so far: parts of it
     /// may each be round-off and add up to more.
-    pub(super) fn whole(&self, h: f64, before: [f64; 2], after: &Audit, work: &Workspace) -> Result<(), Failure> {
+    pub(super) fn whole(&self, h: f64, after: &Audit, work: &Workspace) -> Result<(), Failure> {
+        let before = after.start_of_step();
         self.hold_energy(before, after, || self.nothing(h, before[0].abs() + (after.work - before[1]).abs(), after, work))?;
         if !self.promises(Promise::SuppliedEnergy) {
             return Ok(());
