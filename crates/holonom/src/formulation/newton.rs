@@ -67,6 +67,11 @@ pub(super) trait Equations {
     /// Puts the unknowns where another attempt may begin, the `again`th after the first; no where there is no such place left.
     fn restart(&mut self, again: usize, newton: &mut Newton, work: &mut Workspace) -> bool;
 
+    /// Where the prediction, evaluated, misses the rows by far: puts the unknowns where a better one may be. Whether it did.
+    fn reconsider(&mut self, _newton: &mut Newton, _work: &mut Workspace) -> bool {
+        false
+    }
+
     /// Evaluates the residual at the unknowns; `is_new` says that the tangent is asked for next.
     fn evaluate(&mut self, is_new: bool, newton: &mut Newton, work: &mut Workspace);
 
@@ -110,17 +115,22 @@ pub(super) const RESTARTS: [f64; 3] = [1.0, 0.5, 0.0];
 /// Solves the equations from the prediction, and from where they can be started again while that fails. With a fixed number
 /// of iterations there is one attempt.
 pub(super) fn iterate(equations: &mut impl Equations, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
-    let mut outcome = attempt(equations, newton, work);
+    let mut outcome = attempt(equations, true, newton, work);
     let mut again = 0;
     while outcome.is_err() && newton.settings.iterations.is_none() && equations.restart(again, newton, work) {
-        outcome = attempt(equations, newton, work);
+        outcome = attempt(equations, false, newton, work);
         again += 1;
     }
     outcome
 }
 
-/// One attempt from where the unknowns are.
-pub(super) fn attempt(equations: &mut impl Equations, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
+/// One attempt from where the unknowns are, which `is_predicted` says are expected to be near the solution.
+pub(super) fn attempt(
+    equations: &mut impl Equations,
+    is_predicted: bool,
+    newton: &mut Newton,
+    work: &mut Workspace,
+) -> Result<(), Failure> {
     let settings = newton.settings;
     newton.rank.spares_regular = false;
     equations.begin(newton, work);
@@ -128,6 +138,10 @@ pub(super) fn attempt(equations: &mut impl Equations, newton: &mut Newton, work:
     for iteration in 1..=settings.max_iterations {
         let keeps = convergence.keeps_factors();
         equations.evaluate(!keeps, newton, work);
+        let is_astray = || work.scaled_violation() > ASTRAY * work.scales.shortest;
+        if iteration == 1 && is_predicted && settings.iterations.is_none() && is_astray() && equations.reconsider(newton, work) {
+            equations.evaluate(!keeps, newton, work);
+        }
         if convergence.may_be_met(work.scales.are_light) && equations.is_met(convergence.moves(), newton, work) {
             return Ok(());
         }
@@ -156,6 +170,9 @@ const ROUNDED: f64 = 2.0 * f64::EPSILON;
 /// Round-off moves light nodes by up to this share of the mechanism: their residual says sooner than their increments that
 /// nothing else is left.
 const NEAR: f64 = 1e-11;
+
+/// A prediction that misses a row by more than this share of the shortest one is a guess like others.
+const ASTRAY: f64 = 0.1;
 
 /// An attempt whose increments have not halved in so many iterations leads nowhere.
 const PATIENCE: usize = 10;

@@ -299,7 +299,7 @@ impl BothLevels<'_> {
         predict(self.stage, work);
         work.lambda.copy_from_slice(&self.own.lambda_start);
         let mut positions = OneStage { system: self.system, stage: self.stage, multipliers: Multipliers::Augmented(None) };
-        attempt(&mut positions, newton, work).is_ok()
+        attempt(&mut positions, false, newton, work).is_ok()
     }
 }
 
