@@ -104,6 +104,8 @@ pub(super) struct Judge {
     tolerance: f64,
     /// All mass, kg.
     mass: f64,
+    /// All weight, N.
+    weight: f64,
 }
 
 impl Judge {
@@ -111,12 +113,13 @@ impl Judge {
         let is_absolute = method.settings.iteration != Iteration::Newton;
         let tolerance = method.settings.tolerance / if is_absolute { work.scales.length } else { 1.0 };
         let mass = (0..system.free).map(|node| system.mass.diagonal(node)).sum();
+        let weight = work.forces.weight.iter().map(|w| w.abs()).sum();
         let mut promises = method.promises();
         // Where rows move, the impulse that projects velocities does work.
         for promise in promises.iter_mut().filter(|promise| **promise == Promise::FallingEnergy && system.is_driven()) {
             *promise = Promise::SuppliedEnergy;
         }
-        Self { promises, tolerance: TOLERANCES * tolerance, mass }
+        Self { promises, tolerance: TOLERANCES * tolerance, mass, weight }
     }
 
     fn promises(&self, promise: Promise) -> bool {
@@ -147,9 +150,8 @@ impl Judge {
     /// Energy that is nothing beside the energies after a nominal step of length `h` (s), J; `more` are others beside them.
     fn nothing(&self, h: f64, more: f64, after: &Audit, work: &Workspace) -> f64 {
         let length = work.scales.length;
-        let weight = work.forces.weight.iter().map(|w| w.abs()).sum::<f64>() * length;
         let trembling = self.mass * (ROUNDED * length * 2.0 / h).powi(2);
-        WHOLE * (after.kinetic + after.potential.abs() + weight + more) + trembling
+        WHOLE * (after.kinetic + after.potential.abs() + self.weight * length + more) + trembling
     }
 
     /// Compares what the energy changes by without work, from the energy and the work `before` (J), with a bound (J).
