@@ -3,13 +3,13 @@
 use pulp::{Simd, WithSimd};
 
 use super::Singular;
-use super::fronts::{Front, Fronts, Sources};
-use super::multifrontal::{Numbers, OneFront, with_blocks};
-use super::tile::{Block, Factors, LANES, TILE, Tile, above_tiny, add_product, lower, of_columns, packed, product, raise};
+use super::fronts::{Front, Fronts};
+use super::multifrontal::{Numbers, OneFront, Parts, with_blocks};
+use super::tile::{Block, Factors, LANES, TILE, Tile, above_tiny, add_product, diagonal, lower, of_columns, packed, product, raise};
 
 pub(super) struct Factor<'a> {
     pub(super) plan: &'a Fronts,
-    pub(super) tiles: &'a mut [Tile],
+    pub(super) parts: &'a mut Parts,
     pub(super) values: &'a [f64],
     pub(super) numbers: &'a mut Numbers,
 }
@@ -22,30 +22,37 @@ impl WithSimd for Factor<'_> {
         if let Some(blocks) = self.plan.one_front() {
             return with_blocks(self, simd, blocks);
         }
-        let (plan, Numbers { stale, exchange, exchanged, rows, units, own_units, spread, .. }) = (self.plan, self.numbers);
+        let Numbers { stale, exchange, exchanged, reciprocal, rows, units, own_units, spread, .. } = self.numbers;
+        let (plan, Parts { lower, upper, rest }) = (self.plan, self.parts);
         for (k, (front, exchanged)) in plan.fronts.iter().zip(exchanged).enumerate() {
             if !std::mem::take(&mut stale[k]) {
                 continue;
             }
-            let Sources { entries: [first, last], children: [eldest, end], parent } = plan.sources[k];
-            if let Some(parent) = parent {
+            let sources = &plan.sources[k];
+            if let Some(parent) = sources.parent {
                 stale[parent] = true;
             }
-            let (done, own) = self.tiles.split_at_mut(front.tile);
-            let own = &mut own[..front.size * front.size];
-            own.fill([0.0; TILE]);
-            for (&place, value) in plan.entries[first..last].iter().zip(&self.values[first..last]) {
-                own.as_flattened_mut()[place as usize - front.tile * TILE] = *value;
-            }
-            for &child in &plan.children[eldest..end] {
+            let (done, rest) = rest.split_at_mut(sources.rest);
+            let mut square = Square {
+                columns: &mut lower[front.columns()],
+                beside: &mut upper[front.upper..][..front.head * front.tail()],
+                rest: &mut rest[..front.tail() * front.tail()],
+            };
+            square.rest.fill([0.0; TILE]);
+            fill(square.columns, plan, sources.lower, front.lower, self.values);
+            fill(square.beside, plan, sources.upper, plan.tiles.lower + front.upper, self.values);
+            for &child in &plan.children[sources.children[0]..sources.children[1]] {
+                let left = &done[plan.sources[child as usize].rest..];
                 let child = &plan.fronts[child as usize];
-                take_over(child, &done[child.tile..], &plan.in_parent[child.range()], front.size, own.as_flattened_mut());
+                take_over(child, left, &plan.in_parent[child.range()], front, &mut square);
             }
             let exchange = &mut exchange[front.block * LANES..front.block * LANES + front.pivots];
             let own_units = &mut own_units[..front.head];
-            own_units.copy_from_slice(&units[front.block..front.block + front.head]);
-            *exchanged = eliminate(simd, front, own, exchange, rows, own_units, spread[k])
+            own_units.copy_from_slice(&units[front.blocks()]);
+            *exchanged = eliminate(simd, front, &mut square, exchange, rows, own_units, spread[k])
                 .map_err(|pivot| Singular { pivot: plan.row[front.block * LANES + pivot] as usize })?;
+            let diagonals = square.columns.iter().step_by(front.size + 1);
+            reciprocal[front.blocks()].iter_mut().zip(diagonals).for_each(|(out, tile)| *out = diagonal(tile));
         }
         Ok(())
     }
@@ -56,10 +63,13 @@ impl OneFront for Factor<'_> {
     #[inline(always)]
     fn one<S: Simd, const B: usize>(self, simd: S) -> Self::Output {
         let front = Front { head: B, size: B, ..self.plan.fronts[0] };
-        let (Numbers { exchange, exchanged, rows, units, spread, .. }, tiles) = (self.numbers, &mut self.tiles[..B * B]);
+        let Numbers { exchange, exchanged, reciprocal, rows, units, spread, .. } = self.numbers;
+        let tiles = &mut self.parts.lower[..B * B];
         let mut own_units: [Block; B] = std::array::from_fn(|k| units[k]);
-        exchanged[0] = eliminate(simd, &front, tiles, &mut exchange[..front.pivots], rows, &mut own_units, spread[0])
+        let mut square = Square { columns: &mut *tiles, beside: &mut [], rest: &mut [] };
+        exchanged[0] = eliminate(simd, &front, &mut square, &mut exchange[..front.pivots], rows, &mut own_units, spread[0])
             .map_err(|pivot| Singular { pivot: self.plan.row[pivot] as usize })?;
+        (0..B).for_each(|k| reciprocal[k] = diagonal(&tiles[k * (B + 1)]));
         let inverse: [Tile; B] = std::array::from_fn(|k| lower(&tiles[k * (B + 1)]));
         for k in 0..B {
             for i in k + 1..B {
@@ -74,6 +84,22 @@ impl OneFront for Factor<'_> {
     }
 }
 
+/// The parts of a front where they are kept: the columns of its pivots, their rows beside these, and what is left to its parent.
+struct Square<'a> {
+    columns: &'a mut [Tile],
+    beside: &'a mut [Tile],
+    rest: &'a mut [Tile],
+}
+
+/// Puts the entries of a part of a front, whose first tile is `first`, into it.
+#[inline(always)]
+fn fill(tiles: &mut [Tile], plan: &Fronts, [from, to]: [usize; 2], first: usize, values: &[f64]) {
+    tiles.fill([0.0; TILE]);
+    for (&place, value) in plan.entries[from..to].iter().zip(&values[from..to]) {
+        tiles.as_flattened_mut()[place as usize - first * TILE] = *value;
+    }
+}
+
 /// A pivot this far below the largest number under it, each in the unit of its row, is exchanged.
 const SMALL: f64 = 1e-3;
 
@@ -82,43 +108,47 @@ const SMALL: f64 = 1e-3;
 fn eliminate<S: Simd>(
     simd: S,
     front: &Front,
-    tiles: &mut [Tile],
+    square: &mut Square,
     exchange: &mut [u32],
     rows: &mut [Block],
     units: &mut [Block],
     spread: f64,
 ) -> Result<bool, usize> {
-    let size = front.size;
-    for k in front.pivots..front.head * LANES {
-        tiles[k / LANES * (size + 1)][k % LANES * (LANES + 1)] = 1.0;
+    let Square { columns, beside, rest } = square;
+    let (head, size, tail) = (front.head, front.size, front.tail());
+    for k in front.pivots..head * LANES {
+        columns[k / LANES * (size + 1)][k % LANES * (LANES + 1)] = 1.0;
     }
     let mut exchanged = false;
-    for block in 0..front.head {
-        let pivots = block * (size + 1)..block * size + front.head;
-        let factors = match in_order(simd, &tiles[pivots.clone()], &units[block..], spread, 1.0 / SMALL) {
+    for block in 0..head {
+        let pivots = block * (size + 1)..block * size + head;
+        let factors = match in_order(simd, &columns[pivots.clone()], &units[block..], spread, 1.0 / SMALL) {
             Some(factors) => factors,
             None => {
                 if !exchanged {
                     exchange.iter_mut().enumerate().for_each(|(k, row)| *row = k as u32);
                 }
                 exchanged = true;
-                exchange_rows(block, front, tiles, exchange, rows, units)?;
+                exchange_rows(block, front, [columns, beside], exchange, rows, units)?;
                 // Round-off may put what was exchanged a little above.
-                in_order(simd, &tiles[pivots], &units[block..], spread, 2.0 / SMALL).ok_or(block * LANES)?
+                in_order(simd, &columns[pivots], &units[block..], spread, 2.0 / SMALL).ok_or(block * LANES)?
             }
         };
         let inverse = factors.lower_inverse();
-        tiles[block * (size + 1)] = packed(&inverse, &factors.upper_inverse(simd));
-        let (done, rest) = tiles.split_at_mut((block + 1) * size);
+        columns[block * (size + 1)] = packed(&inverse, &factors.upper_inverse(simd));
+        let (done, after) = columns.split_at_mut((block + 1) * size);
         let panel = &mut done[block * (size + 1) + 1..];
         for l in panel.iter_mut() {
             *l = above_tiny(of_columns(&factors.over_upper(simd, l)));
         }
-        for column in rest.chunks_exact_mut(size) {
-            let (head, tail) = column[block..].split_first_mut().expect("a column has all rows");
-            *head = above_tiny(product(simd, &inverse, head));
-            for (l, target) in panel.iter().zip(tail) {
-                add_product(simd, target, l, head, -1.0);
+        let (pivots, below) = panel.split_at(head - block - 1);
+        let columns = after.chunks_exact_mut(size).map(|column| column[block..].split_at_mut(head - block));
+        let others = beside.chunks_exact_mut(head).map(|column| &mut column[block..]).zip(rest.chunks_exact_mut(tail.max(1)));
+        for (column, rest) in columns.chain(others) {
+            let (row, column) = column.split_first_mut().expect("a column has all rows");
+            *row = above_tiny(product(simd, &inverse, row));
+            for (l, target) in pivots.iter().zip(column).chain(below.iter().zip(rest)) {
+                add_product(simd, target, l, row, -1.0);
             }
         }
     }
@@ -162,18 +192,19 @@ fn in_units<S: Simd>(simd: S, panel: &[Tile], units: &[Block], most: f64) -> boo
 fn exchange_rows(
     block: usize,
     front: &Front,
-    tiles: &mut [Tile],
+    [columns, beside]: [&mut [Tile]; 2],
     exchange: &mut [u32],
     rows: &mut [Block],
     units: &mut [Block],
 ) -> Result<(), usize> {
     let first = block * LANES;
-    let place = |row: usize, column: usize| (column / LANES * front.size + row / LANES, column % LANES * LANES + row % LANES);
+    let place = |row: usize, column: usize| (row / LANES, column % LANES * LANES + row % LANES);
+    let own = block * front.size..(block + 1) * front.size;
     let (rows, units) = (&mut rows[..front.pivots - first], &mut units.as_flattened_mut()[first..]);
     for (row, numbers) in rows.iter_mut().enumerate() {
         *numbers = std::array::from_fn(|k| {
             let (tile, at) = place(first + row, first + k);
-            tiles[tile][at]
+            columns[own.clone()][tile][at]
         });
     }
     for k in 0..rows.len().min(LANES) {
@@ -188,11 +219,13 @@ fn exchange_rows(
             rows.swap(k, largest);
             units.swap(k, largest);
             exchange[first + k] = (first + largest) as u32;
-            for column in 0..front.size * LANES {
-                let (from, to) = (place(first + k, column), place(first + largest, column));
-                let kept = tiles[from.0][from.1];
-                tiles[from.0][from.1] = tiles[to.0][to.1];
-                tiles[to.0][to.1] = kept;
+            for column in columns.chunks_exact_mut(front.size).chain(beside.chunks_exact_mut(front.head)) {
+                for lane in 0..LANES {
+                    let (from, to) = (place(first + k, lane), place(first + largest, lane));
+                    let kept = column[from.0][from.1];
+                    column[from.0][from.1] = column[to.0][to.1];
+                    column[to.0][to.1] = kept;
+                }
             }
         }
         let pivot = rows[k];
@@ -204,16 +237,25 @@ fn exchange_rows(
     Ok(())
 }
 
-/// Adds what a front left to the rows below its pivots to the front of its parent, whose columns have `size` tiles.
+/// Adds what a front left to the rows below its pivots to the front of its parent.
 #[inline(always)]
-fn take_over(front: &Front, tiles: &[Tile], in_parent: &[u32], size: usize, square: &mut [f64]) {
+fn take_over(front: &Front, left: &[Tile], in_parent: &[u32], parent: &Front, square: &mut Square) {
+    let (head, size, tail) = (parent.head, parent.size, parent.tail());
     for (k, &to) in in_parent.iter().enumerate() {
-        let (to, lane) = (to as usize, k % LANES);
-        let target = &mut square[to / TILE * size * TILE + to % LANES * LANES..];
-        let column = &tiles[(front.head + k / LANES) * front.size + front.head..];
+        let (to, lane, own_lane) = (to as usize / TILE, to as usize % TILE * LANES, k % LANES * LANES);
+        let (pivots, below) = match to.checked_sub(head) {
+            None => square.columns[to * size..][..size].split_at_mut(head),
+            Some(to) => (&mut square.beside[to * head..][..head], &mut square.rest[to * tail..][..tail]),
+        };
+        let (pivots, below) = (pivots.as_flattened_mut(), below.as_flattened_mut());
+        let column = &left[k / LANES * front.tail()..][..front.tail()];
         for (rows, tile) in in_parent.chunks(LANES).zip(column) {
-            let values = &tile[lane * LANES..(lane + 1) * LANES];
-            rows.iter().zip(values).for_each(|(&row, value)| target[row as usize] += value);
+            for (&row, value) in rows.iter().zip(&tile[own_lane..own_lane + LANES]) {
+                match (row as usize + lane).checked_sub(head * TILE) {
+                    None => pivots[row as usize + lane] += value,
+                    Some(row) => below[row] += value,
+                }
+            }
         }
     }
 }

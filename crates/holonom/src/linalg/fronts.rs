@@ -17,17 +17,27 @@ pub(super) struct Fronts {
     pub in_parent: Vec<u32>,
     /// The children of each front, one front after the other.
     pub children: Vec<u32>,
-    /// Places of the entries of the pattern among the numbers of all tiles, ascending: those of one front after the other.
+    /// Places of the entries of the pattern among the numbers of all tiles that have any, ascending: those in the pivots' columns
+    /// of one front after the other, then those in the rows beside.
     pub entries: Vec<u32>,
     /// Front of each block.
     of_block: Vec<u32>,
     /// Tiles of all fronts together.
-    pub tiles: usize,
+    pub tiles: Tiles,
+}
+
+/// Numbers of tiles: of the pivots' columns, of the pivots' rows beside these, and of what is left to the parents.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Tiles {
+    pub lower: usize,
+    pub upper: usize,
+    pub rest: usize,
 }
 
 /// A dense square of the elimination: its pivots, and the rows below that they fill, each filled up to whole blocks of
 /// [`LANES`]. It is stored in tiles, by columns of tiles and in each by columns. Pivots that only fill up are 1, and
-/// everything else that fills up is 0.
+/// everything else that fills up is 0. Its parts are kept apart, each right after that of the front before, as solutions read
+/// the first two only, one after the other.
 #[derive(Clone, Copy)]
 pub(super) struct Front {
     pub pivots: usize,
@@ -41,17 +51,21 @@ pub(super) struct Front {
     pub block: usize,
     /// First of the rows below among those of all fronts.
     pub below: usize,
-    /// First of its tiles.
-    pub tile: usize,
+    /// First of its tiles in the pivots' columns, and in the pivots' rows beside these.
+    pub lower: usize,
+    pub upper: usize,
 }
 
 /// What a front is put together from. Solutions go through the fronts without it.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Sources {
-    /// Its entries among those of all fronts: the first, and the one after the last.
-    pub entries: [usize; 2],
+    /// Its entries among those of all fronts, in its columns and in its rows beside: the first, and the one after the last.
+    pub lower: [usize; 2],
+    pub upper: [usize; 2],
     /// Its children among those of all fronts, likewise.
     pub children: [usize; 2],
+    /// First of the tiles that it leaves to the parent.
+    pub rest: usize,
     /// The front that takes what the pivots add to the rows below; a root has none.
     pub parent: Option<usize>,
 }
@@ -74,7 +88,7 @@ impl Fronts {
             children: Vec::new(),
             entries: Vec::new(),
             of_block: Vec::new(),
-            tiles: 0,
+            tiles: Tiles::default(),
         };
         let tops = groups.children_first();
         for &top in &tops {
@@ -86,9 +100,11 @@ impl Fronts {
             let head = pivots.div_ceil(LANES);
             let size = head + rows.div_ceil(LANES);
             fronts.of_block.extend(std::iter::repeat_n(fronts.fronts.len() as u32, head));
-            let tile = fronts.tiles;
-            fronts.fronts.push(Front { pivots, rows, head, size, block, tile, below: 0 });
-            fronts.tiles += size * size;
+            let Tiles { lower, upper, rest } = fronts.tiles;
+            fronts.fronts.push(Front { pivots, rows, head, size, block, lower, upper, below: 0 });
+            fronts.sources.push(Sources { rest, ..Sources::default() });
+            let tail = size - head;
+            fronts.tiles = Tiles { lower: lower + head * size, upper: upper + tail * head, rest: rest + tail * tail };
         }
         fronts.row = vec![0; fronts.of_block.len() * LANES];
         fronts.place.iter().enumerate().for_each(|(row, &place)| fronts.row[place as usize] = row as u32);
@@ -98,7 +114,7 @@ impl Fronts {
             fronts.below[first..].sort_unstable();
             fronts.fronts[k].below = first;
             let parent = fronts.below.get(first).map(|&place| fronts.of_block[place as usize / LANES] as usize);
-            fronts.sources.push(Sources { parent, ..Sources::default() });
+            fronts.sources[k].parent = parent;
         }
         fronts.in_parent = (0..fronts.fronts.len()).flat_map(|k| fronts.rows_in_parent(k)).collect();
         fronts.place_children();
@@ -127,7 +143,9 @@ impl Fronts {
         places.dedup();
         let before = |tile: usize| places.partition_point(|&place| (place as usize) < tile * TILE);
         for (front, sources) in self.fronts.iter().zip(&mut self.sources) {
-            sources.entries = [before(front.tile), before(front.tile + front.size * front.size)];
+            let upper = self.tiles.lower + front.upper;
+            sources.lower = [front.lower, front.columns().end].map(before);
+            sources.upper = [upper, upper + front.head * front.tail()].map(before);
         }
         self.entries = places;
     }
@@ -150,12 +168,6 @@ impl Fronts {
         self.of_block[self.place[row] as usize / LANES] as usize
     }
 
-    /// The tile on the diagonal of a block, among all tiles.
-    pub fn diagonal(&self, block: usize) -> usize {
-        let front = &self.fronts[self.of_block[block] as usize];
-        front.tile + (block - front.block) * (front.size + 1)
-    }
-
     fn rows_in_parent(&self, front: usize) -> Vec<u32> {
         let Some(parent) = self.sources[front].parent else { return Vec::new() };
         let parent = &self.fronts[parent];
@@ -176,7 +188,11 @@ impl Fronts {
         let (row, column) = (self.place[row], self.place[column]);
         let front = &self.fronts[self.of_block[row.min(column) as usize / LANES] as usize];
         let (row, column) = (self.row_in(front, row)?, self.row_in(front, column)?);
-        Some(front.tile * TILE + column / LANES * front.size * TILE + column % LANES * LANES + in_column(row))
+        let tile = match (column / LANES).checked_sub(front.head) {
+            None => front.lower + column / LANES * front.size,
+            Some(column) => self.tiles.lower + front.upper + column * front.head,
+        };
+        Some(tile * TILE + column % LANES * LANES + in_column(row))
     }
 }
 
@@ -189,5 +205,20 @@ impl Front {
     /// The rows below the pivots, among those of all fronts.
     pub fn range(&self) -> std::ops::Range<usize> {
         self.below..self.below + self.rows
+    }
+
+    /// Blocks of the rows below the pivots.
+    pub fn tail(&self) -> usize {
+        self.size - self.head
+    }
+
+    /// Its blocks among those of all fronts.
+    pub fn blocks(&self) -> std::ops::Range<usize> {
+        self.block..self.block + self.head
+    }
+
+    /// The tiles of the pivots' columns among those of all fronts.
+    pub fn columns(&self) -> std::ops::Range<usize> {
+        self.lower..self.lower + self.head * self.size
     }
 }

@@ -16,13 +16,21 @@ use super::tile::{Block, LANES, TILE, Tile};
 
 pub(super) struct Multifrontal {
     pub(super) plan: Arc<Fronts>,
-    /// The tiles of all fronts; after the factorisation L (below the diagonal, which is 1) and U, on the diagonal their inverses.
-    tiles: Vec<Tile>,
+    parts: Parts,
     /// The entries of the matrix where there is more than one front: each is put together right before it is factored. A single
     /// front has its entries in its tiles.
     values: Vec<f64>,
     numbers: Numbers,
     arch: Arch,
+}
+
+/// The tiles of all fronts: after the factorisation L (below the diagonal, which is 1) and U, on the diagonal their inverses.
+pub(super) struct Parts {
+    /// The columns of the pivots, and their rows beside these.
+    pub(super) lower: Vec<Tile>,
+    pub(super) upper: Vec<Tile>,
+    /// What is left to the parents.
+    pub(super) rest: Vec<Tile>,
 }
 
 /// Scratch of factorisations and solutions, and how rows changed places.
@@ -32,6 +40,8 @@ pub(super) struct Numbers {
     /// Row of its front that came to each pivot, and whether any of a front did.
     pub(super) exchange: Vec<u32>,
     pub(super) exchanged: Vec<bool>,
+    /// 1 over the pivots of all fronts.
+    pub(super) reciprocal: Vec<Block>,
     /// A right side in the blocks of all fronts, and in the rows below one front.
     pub(super) y: Vec<Block>,
     pub(super) local: Vec<Block>,
@@ -46,13 +56,14 @@ pub(super) struct Numbers {
 
 impl Multifrontal {
     pub(super) fn new(plan: Arc<Fronts>) -> Self {
-        let most = plan.fronts.iter().map(|front| front.size - front.head).max().unwrap_or(0);
+        let most = plan.fronts.iter().map(|front| front.tail()).max().unwrap_or(0);
         let pivots = plan.fronts.iter().map(|front| front.pivots).max().unwrap_or(0);
         let blocks = plan.blocks();
         let numbers = Numbers {
             stale: vec![true; plan.fronts.len()],
             exchange: vec![0; blocks * LANES],
             exchanged: vec![false; plan.fronts.len()],
+            reciprocal: vec![[0.0; LANES]; blocks],
             y: vec![[0.0; LANES]; blocks],
             local: vec![[0.0; LANES]; most],
             rows: vec![[0.0; LANES]; pivots],
@@ -61,7 +72,8 @@ impl Multifrontal {
             spread: vec![1.0; plan.fronts.len()],
         };
         let values = if plan.one_front().is_some() { Vec::new() } else { vec![0.0; plan.entries.len()] };
-        Self { tiles: vec![[0.0; TILE]; plan.tiles], values, plan, numbers, arch: Arch::new() }
+        let [lower, upper, rest] = [plan.tiles.lower, plan.tiles.upper, plan.tiles.rest].map(|tiles| vec![[0.0; TILE]; tiles]);
+        Self { parts: Parts { lower, upper, rest }, values, plan, numbers, arch: Arch::new() }
     }
 
     /// Where an entry of the matrix is among the values; none outside the pattern.
@@ -71,11 +83,11 @@ impl Multifrontal {
     }
 
     pub(super) fn values(&self) -> &[f64] {
-        if self.plan.one_front().is_some() { self.tiles.as_flattened() } else { &self.values }
+        if self.plan.one_front().is_some() { self.parts.lower.as_flattened() } else { &self.values }
     }
 
     pub(super) fn values_mut(&mut self) -> &mut [f64] {
-        if self.plan.one_front().is_some() { self.tiles.as_flattened_mut() } else { &mut self.values }
+        if self.plan.one_front().is_some() { self.parts.lower.as_flattened_mut() } else { &mut self.values }
     }
 
     /// Sets what the rows are multiplied by when numbers of different ones are compared.
@@ -104,18 +116,17 @@ impl Multifrontal {
     }
 
     fn factor_stale(&mut self) -> Result<(), Singular> {
-        let Self { plan, tiles, values, numbers, arch } = self;
-        arch.dispatch(Factor { plan, tiles, values, numbers })
+        let Self { plan, parts, values, numbers, arch } = self;
+        arch.dispatch(Factor { plan, parts, values, numbers })
     }
 
     pub(super) fn solve(&mut self, b: &mut [f64]) {
-        self.arch.dispatch(Solve { plan: &self.plan, tiles: &self.tiles, numbers: &mut self.numbers, b });
+        self.arch.dispatch(Solve { plan: &self.plan, parts: &self.parts, numbers: &mut self.numbers, b });
     }
 
     /// Size of the pivot met at a row of the matrix.
     pub(super) fn pivot(&self, row: usize) -> f64 {
-        let place = self.plan.place[row] as usize;
-        1.0 / self.tiles[self.plan.diagonal(place / LANES)][place % LANES * (LANES + 1)].abs()
+        1.0 / self.numbers.reciprocal.as_flattened()[self.plan.place[row] as usize].abs()
     }
 }
 

@@ -3,12 +3,12 @@
 use pulp::{Simd, WithSimd};
 
 use super::fronts::{Front, Fronts};
-use super::multifrontal::{Numbers, OneFront, with_blocks};
+use super::multifrontal::{Numbers, OneFront, Parts, with_blocks};
 use super::tile::{Block, LANES, Tile, above_tiny, lower, shortly_times, subtract_times, upper};
 
 pub(super) struct Solve<'a> {
     pub(super) plan: &'a Fronts,
-    pub(super) tiles: &'a [Tile],
+    pub(super) parts: &'a Parts,
     pub(super) numbers: &'a mut Numbers,
     pub(super) b: &'a mut [f64],
 }
@@ -21,7 +21,7 @@ impl WithSimd for Solve<'_> {
         if let Some(blocks) = self.plan.one_front() {
             return with_blocks(self, simd, blocks);
         }
-        let Numbers { exchange, exchanged, y, local, .. } = self.numbers;
+        let (Numbers { exchange, exchanged, y, local, .. }, Parts { lower, upper, .. }) = (self.numbers, self.parts);
         for front in self.plan.fronts.iter().filter(|front| front.pivots < front.head * LANES) {
             y[front.block + front.head - 1] = [0.0; LANES];
         }
@@ -29,27 +29,25 @@ impl WithSimd for Solve<'_> {
             y.as_flattened_mut()[place as usize] = b;
         }
         for (front, &exchanged) in self.plan.fronts.iter().zip(&*exchanged) {
-            let (tiles, local) = (&self.tiles[front.tile..], &mut local[..front.size - front.head]);
-            let blocks = front.block..front.block + front.head;
-            let own = &mut y[blocks];
+            let (columns, local) = (&lower[front.columns()], &mut local[..front.tail()]);
+            let own = &mut y[front.blocks()];
             if exchanged {
                 let rows = &exchange[front.block * LANES..front.block * LANES + front.pivots];
                 rows.iter().enumerate().for_each(|(k, &row)| own.as_flattened_mut().swap(k, row as usize));
             }
             local.fill([0.0; LANES]);
-            solve_lower(simd, front, tiles, own, local);
+            solve_lower(simd, front, columns, own, local);
             for (&place, value) in self.plan.below[front.range()].iter().zip(local.as_flattened()) {
                 y.as_flattened_mut()[place as usize] += value;
             }
         }
         for front in self.plan.fronts.iter().rev() {
-            let (tiles, local) = (&self.tiles[front.tile..], &mut local[..front.size - front.head]);
-            let blocks = front.block..front.block + front.head;
+            let local = &mut local[..front.tail()];
             local.fill([0.0; LANES]);
             for (&place, value) in self.plan.below[front.range()].iter().zip(local.as_flattened_mut()) {
                 *value = y.as_flattened()[place as usize];
             }
-            solve_upper(simd, front, tiles, &mut y[blocks], local);
+            solve_upper(simd, front, &lower[front.columns()], &upper[front.upper..], &mut y[front.blocks()], local);
         }
         for (&place, b) in self.plan.place.iter().zip(self.b) {
             *b = y.as_flattened()[place as usize];
@@ -60,7 +58,7 @@ impl WithSimd for Solve<'_> {
 impl OneFront for Solve<'_> {
     #[inline(always)]
     fn one<S: Simd, const B: usize>(self, simd: S) {
-        let (Numbers { exchange, exchanged, .. }, tiles) = (self.numbers, &self.tiles[..B * B]);
+        let (Numbers { exchange, exchanged, .. }, tiles) = (self.numbers, &self.parts.lower[..B * B]);
         let mut b = [[0.0; LANES]; B];
         for (&place, &value) in self.plan.place.iter().zip(&*self.b) {
             b.as_flattened_mut()[place as usize] = value;
@@ -91,8 +89,8 @@ impl OneFront for Solve<'_> {
 
 /// Solves with the pivots' columns of L; leaves in `below` what they take off the rows below.
 #[inline(always)]
-fn solve_lower<S: Simd>(simd: S, front: &Front, tiles: &[Tile], own: &mut [Block], below: &mut [Block]) {
-    for (block, column) in tiles.chunks_exact(front.size).take(front.head).enumerate() {
+fn solve_lower<S: Simd>(simd: S, front: &Front, columns: &[Tile], own: &mut [Block], below: &mut [Block]) {
+    for (block, column) in columns.chunks_exact(front.size).enumerate() {
         let (head, tail) = own[block..].split_first_mut().expect("a block for each tile on the diagonal");
         let (pivots, rows) = column.split_at(front.head);
         *head = above_tiny(shortly_times(simd, &[0.0; LANES], &lower(&pivots[block]), head));
@@ -107,9 +105,8 @@ fn solve_lower<S: Simd>(simd: S, front: &Front, tiles: &[Tile], own: &mut [Block
 
 /// Solves with the pivots' rows of U, where the rows below are known.
 #[inline(always)]
-fn solve_upper<S: Simd>(simd: S, front: &Front, tiles: &[Tile], own: &mut [Block], below: &[Block]) {
-    let (pivots, rows) = tiles.split_at(front.head * front.size);
-    for (column, x) in rows.chunks_exact(front.size).zip(below) {
+fn solve_upper<S: Simd>(simd: S, front: &Front, pivots: &[Tile], rows: &[Tile], own: &mut [Block], below: &[Block]) {
+    for (column, x) in rows.chunks_exact(front.head).zip(below) {
         for (target, tile) in own.iter_mut().zip(column) {
             subtract_times(simd, target, tile, x);
         }

@@ -148,6 +148,11 @@ pub(super) fn upper(tile: &Tile) -> Tile {
     std::array::from_fn(|k| if k % LANES > k / LANES { 0.0 } else { tile[k] })
 }
 
+#[inline(always)]
+pub(super) fn diagonal(tile: &Tile) -> Block {
+    std::array::from_fn(|k| tile[k * (LANES + 1)])
+}
+
 /// Column `k` of a tile.
 #[inline(always)]
 fn column(tile: &Tile, k: usize) -> &Block {
