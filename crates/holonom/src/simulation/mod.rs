@@ -206,7 +206,9 @@ impl<'a> Simulation<'a> {
                 outcome?;
             }
         }
-        self.judge.whole(self.state.t - from, &self.audit, &self.work)?;
+        let h = self.state.t - from;
+        self.judge.whole(h, &self.audit, &self.work)?;
+        self.judge.supply(h, &self.audit, &self.work)?;
         self.steps += 1;
         self.audit.end_step(self.system, &mut self.work, &self.state, self.steps);
         self.react();

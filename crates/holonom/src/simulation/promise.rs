@@ -131,17 +131,17 @@ impl Judge {
         self.hold_energy([before.energy(), before.work], after, || self.energy_bound(system, h, before, after, work))
     }
 
-    /// Looks at the energy after a nominal step of length `h` (s) so far: parts of it
-    /// may each be round-off and add up to more.
+    /// Looks at the energy after a nominal step, or so far, of length `h` (s): parts of it may each be round-off and add up to more.
     pub(super) fn whole(&self, h: f64, after: &Audit, work: &Workspace) -> Result<(), Failure> {
         let before = after.start_of_step();
-        self.hold_energy(before, after, || self.nothing(h, before[0].abs() + (after.work - before[1]).abs(), after, work))?;
-        if !self.promises(Promise::SuppliedEnergy) {
-            return Ok(());
-        }
+        self.hold_energy(before, after, || self.nothing(h, before[0].abs() + (after.work - before[1]).abs(), after, work))
+    }
+
+    /// Looks after a nominal step of length `h` (s) at what energy nothing supplied. Shorter steps would only add more slowly to it.
+    pub(super) fn supply(&self, h: f64, after: &Audit, work: &Workspace) -> Result<(), Failure> {
         let [excess, supply] = after.supply();
         // What is no number is no energy.
-        match excess <= supply + self.nothing(h, 0.0, after, work) {
+        match !self.promises(Promise::SuppliedEnergy) || excess <= supply + self.nothing(h, 0.0, after, work) {
             true => Ok(()),
             false => Err(Failure::Unsupplied { excess, supply }),
         }
