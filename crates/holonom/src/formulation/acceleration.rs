@@ -7,6 +7,7 @@
 //! does, leaves (G M⁻¹Gᵀ) λ = … of the paper's (4), which redundant rows do not upset.
 
 use super::failure::Failure;
+use super::independence::{INDEPENDENT, independence};
 use super::iteration::Multipliers;
 use super::kkt::Block;
 use super::level::Level;
@@ -22,6 +23,14 @@ impl Newton {
     /// Writes [M Gᵀ; G −δ] at the evaluation of the end, with the proximal δ, and factors it. False when it cannot be.
     pub fn factor_inertia(&mut self, work: &Workspace) -> bool {
         self.proximal(1.0, None, &work.scales);
+        self.assemble_inertia(work);
+        self.factor(&work.scales).is_ok()
+    }
+
+    /// The same with hardly any δ for rows that are independent by their geometry.
+    pub fn factor_inertia_of_independent(&mut self, system: &System, t: f64, work: &Workspace) -> bool {
+        self.rank.set(independence(system, &work.end.x, t).into_iter().map(|share| share > INDEPENDENT));
+        self.proximal_of_redundant(&work.scales);
         self.assemble_inertia(work);
         self.factor(&work.scales).is_ok()
     }

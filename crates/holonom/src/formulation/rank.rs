@@ -37,6 +37,12 @@ impl Rank {
         Self { regular: vec![false; rows], redundant: None, changes: false, singular: 0, spares_regular: false }
     }
 
+    /// Has the rows as they are known to be, whatever the last factorisations said.
+    pub(super) fn set(&mut self, regular: impl Iterator<Item = bool>) {
+        self.regular.iter_mut().zip(regular).for_each(|(own, regular)| *own = regular);
+        self.singular = 0;
+    }
+
     /// Takes note of which rows are redundant by their pivots in the first field, and whether that are as many as before.
     pub(super) fn classify(&mut self, outcome: &Result<(), Failure>, kkt: &Kkt, delta: &[f64], scales: &Scales) {
         if outcome.is_err() {
