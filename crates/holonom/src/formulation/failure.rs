@@ -15,7 +15,7 @@ pub enum Failure {
     TooSmall,
     /// A step whose result misses what the method promises: what, by how much, by how much it may, and which row.
     Broken { promise: &'static str, by: f64, bound: f64, row: Option<usize> },
-    /// Energy that nothing supplied, J, is more than all there was to move: the error of the method is all that is left.
+    /// Energy that nothing supplied, J, is several times all there was to move: the error of the method is all that is left.
     Unsupplied { excess: f64, supply: f64 },
 }
 
@@ -50,8 +50,7 @@ impl Failure {
                 format!("the step breaks a promise of the method: {promise}{of} is off by {by:.1e}, where round-off explains {bound:.1e}")
             }
             Self::Unsupplied { excess, supply } => format!(
-                "the energy is {excess:.1e} J above that of the start and all work done, more than the {supply:.1e} J that there were to \
-                 move: this method needs smaller steps here"
+                "the energy is {excess:.1e} J above that of the start and all work done, where {supply:.1e} J were there to move: this method needs smaller steps here"
             ),
             Self::TooSmall => "no step is short enough for the accuracy".into(),
         }

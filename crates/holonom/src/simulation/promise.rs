@@ -94,6 +94,9 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 /// Share of the energies of the mechanism that a nominal step may be off by, however many parts it was taken in.
 const WHOLE: f64 = 1e-9;
 
+/// Energy of nothing over all there was to move from which on nothing is left of a motion: its speeds are more than twice what they can be.
+const SUPPLY: f64 = 4.0;
+
 /// How much farther from the solution than the iteration's tolerance a step may end: that is an estimate.
 const TOLERANCES: f64 = 16.0;
 
@@ -141,7 +144,7 @@ impl Judge {
     pub(super) fn supply(&self, h: f64, after: &Audit, work: &Workspace) -> Result<(), Failure> {
         let [excess, supply] = after.supply();
         // What is no number is no energy.
-        match !self.promises(Promise::SuppliedEnergy) || excess <= supply + self.nothing(h, 0.0, after, work) {
+        match !self.promises(Promise::SuppliedEnergy) || excess <= SUPPLY * supply + self.nothing(h, 0.0, after, work) {
             true => Ok(()),
             false => Err(Failure::Unsupplied { excess, supply }),
         }
