@@ -23,10 +23,6 @@ pub const BOUND: f64 = 1e-10;
 const LOOSER: &[(&str, f64)] = &[
     // A place is rounded to 1e-16 m: over the 0.1 mm of the smallest body and the 0.1 ms of a step that is 1e-8 rad/s.
     ("small-on-large", 1e-8),
-    // Forces between the heavy ones go through bodies that are accelerated by a millionth of them.
-    ("masses-apart", 1e-9),
-    // One row is redundant, and the others are only just not, as the light rods have no inertia about themselves.
-    ("bricard-rods", 3e-9),
 ];
 
 /// Freedom of the hard models, by counting.
