@@ -50,7 +50,7 @@ impl Failure {
                 format!("the step breaks a promise of the method: {promise}{of} is off by {by:.1e}, where round-off explains {bound:.1e}")
             }
             Self::Unsupplied { excess, supply } => format!(
-                "the energy is {excess:.1e} J above that of the start and all work done, where {supply:.1e} J were there to move: this method needs smaller steps here"
+                "{excess:.1e} J of energy came from nothing where {supply:.1e} J could move (shorter steps help, or a method that keeps the energy)"
             ),
             Self::TooSmall => "no step is short enough for the accuracy".into(),
         }

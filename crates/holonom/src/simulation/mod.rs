@@ -74,6 +74,9 @@ impl<F: FnMut(&Simulation<'_>) -> Verdict> Observer for F {
 /// Halvings of a step before a run gives up.
 const MOST_HALVINGS: u32 = 12;
 
+/// A row that is missed by less than this share of the mechanism's size is not to blame for a step that fails.
+const BLAMED: f64 = 1e-10;
+
 /// Units that the parts of a nominal step are counted in: what is left may be three quarters of it, and halved as often.
 const PARTS: u32 = 1 << 24;
 
@@ -303,10 +306,12 @@ impl<'a> Simulation<'a> {
     }
 
     fn reason(&mut self, failure: Failure) -> String {
-        let worst = self.work.phi.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        let Workspace { phi, scales, .. } = &self.work;
+        let missed = phi.iter().zip(&scales.gradient).map(|(phi, g)| phi.abs() / (g * scales.length));
+        let worst = missed.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
         // A row at round-off is not to blame.
-        let worst = worst.filter(|(_, phi)| phi.is_nan() || phi.abs() >= 1e-9);
-        let row = worst.map_or(String::new(), |(k, phi)| format!("; the worst row is `{}` with {phi:.1e}", self.system.row_names[k]));
+        let worst = worst.filter(|(_, missed)| missed.is_nan() || *missed >= BLAMED);
+        let row = worst.map_or(String::new(), |(k, _)| format!("; the worst row is `{}` with {:.1e}", self.system.row_names[k], phi[k]));
         format!("{} at t = {:.6} s{row}", failure.describe(self.system), self.state.t)
     }
 
