@@ -163,7 +163,7 @@ impl System {
     }
 
     /// Whether there is nothing but masses, weight and rows that are quadratic.
-    pub(crate) fn has_only_quadratic_rows(&self) -> bool {
+    pub fn has_only_quadratic_rows(&self) -> bool {
         self.laws.is_empty() && self.loads.is_empty() && self.custom.is_empty() && self.function_rows.is_empty()
     }
 
