@@ -1,9 +1,10 @@
 //! Derivatives are never trusted: the assembled tangent of every registered kind against differences of its residual.
 
 use holonom::formulation::{
-    ALL, Collocation, Iteration, Kkt, Level, Multipliers, RowsAt, Sampling, SolveSettings, Stage, Timing, Workspace,
+    ALL, Collocation, Iteration, Kkt, Level, Multipliers, Newton, RowsAt, Sampling, SolveSettings, Stabilized, Stage, Timing, Workspace,
 };
 use holonom::model::{Model, constraints, drives, forces, joints};
+use holonom::simulation::{Choice, Method};
 use holonom_io::Source;
 
 /// Step of the central differences, m.
@@ -141,12 +142,66 @@ fn check_coupled(name: &str, text: &str) {
     }
 }
 
+/// Rows at position and velocity level of the conserving scheme, with nothing zero.
+fn check_both_levels(name: &str, text: &str) {
+    let source = Source::read(name, text.as_bytes()).unwrap_or_else(|message| panic!("{message}"));
+    let model = source.model().unwrap_or_else(|message| panic!("{message}"));
+    let system = &model.system;
+    // The curvature of rows that are functions is left out beside γ.
+    if !system.has_only_quadratic_rows() {
+        return;
+    }
+    let (n, r, step) = (system.coordinates(), system.constraints(), 0.1);
+    let stage = Stage { sampling: Sampling::Between, rows: RowsAt::End, start: 0.3, step, inertia: 0.5 * step * step, rate: 1.0 / step };
+    let settings = Method::resolve(&Choice::default()).expect("the default goes together").settings;
+    let (mut newton, mut work, mut both) = (Newton::new(system, settings), Workspace::new(system), Stabilized::new(system));
+    let Workspace { start, end, a, .. } = &mut work;
+    system.place_known(stage.start, &mut start.x, &mut start.v, a);
+    system.place_known(stage.end(), &mut end.x, &mut end.v, a);
+    system.evaluate_again(&start.x, stage.start, &mut start.at);
+    (0..n).for_each(|i| start.v[i] = noise(i + 11));
+    (n..both.u.len()).for_each(|i| both.u[i] = 0.5 * step * end.v[i]);
+    let size = 2 * (n + r);
+    let add = |increments: &[f64], both: &mut Stabilized, work: &mut Workspace| {
+        let (first, second) = increments.split_at(n + r);
+        for (values, steps) in [(&mut work.d, &first[..n]), (&mut both.mu, &first[n..]), (&mut both.gamma, &second[n..])] {
+            values.iter_mut().zip(steps).for_each(|(value, step)| *value += step);
+        }
+        both.u.iter_mut().zip(&second[..n]).for_each(|(u, step)| *u += step);
+    };
+    add(&(0..size).map(|k| 0.05 * noise(k)).collect::<Vec<_>>(), &mut both, &mut work);
+    both.linearise(system, &stage, &mut newton, &mut work);
+    let assembled: Vec<Vec<f64>> = (0..size).map(|i| (0..size).map(|j| both.entry(system, i, j)).collect()).collect();
+    let mut at = |column: usize, by: f64| {
+        let mut nudge = vec![0.0; size];
+        nudge[column] = by;
+        add(&nudge, &mut both, &mut work);
+        let residual = both.linearise(system, &stage, &mut newton, &mut work);
+        nudge[column] = -by;
+        add(&nudge, &mut both, &mut work);
+        residual
+    };
+    for column in 0..size {
+        let (after, before) = (at(column, NUDGE), at(column, -NUDGE));
+        for row in 0..size {
+            let difference = (after[row] - before[row]) / (2.0 * NUDGE);
+            let error = (assembled[row][column] - difference).abs();
+            assert!(
+                error <= TOLERANCE * (1.0 + difference.abs()),
+                "{name}, both levels: entry ({row}, {column}) is {} and should be {difference}",
+                assembled[row][column]
+            );
+        }
+    }
+}
+
 #[test]
 fn every_kind_has_the_tangent_of_its_residual() {
     let mut kinds = 0;
     for kind in constraints::KINDS.iter().chain(forces::KINDS).chain(joints::kinds()).chain(drives::KINDS) {
         check(kind.name, kind.example);
         check_coupled(kind.name, kind.example);
+        check_both_levels(kind.name, kind.example);
         kinds += 1;
     }
     println!("{kinds} kinds");

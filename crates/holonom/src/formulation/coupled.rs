@@ -29,7 +29,7 @@ impl Coupled {
         Self { unknowns: vec![0.0; kkt.size()], kkt }
     }
 
-    /// Assembles and factors the tangent at the unknowns and the multipliers that are expected.
+    /// Assembles and factors the tangent at the unknowns and the multipliers that are expected, with its proximal term.
     pub(super) fn factor(
         &mut self,
         both: &Stabilized,
@@ -38,6 +38,17 @@ impl Coupled {
         newton: &mut Newton,
         work: &mut Workspace,
     ) -> Result<(), Failure> {
+        self.assemble(both, system, stage, work);
+        let kkt = &mut self.kkt;
+        (0..2).for_each(|field| kkt.regularise(field, &newton.delta));
+        newton.factorizations += 1;
+        let outcome = kkt.factor();
+        newton.rank.classify(&outcome, kkt, &newton.delta, &work.scales);
+        outcome
+    }
+
+    /// Assembles it without the proximal term.
+    pub(super) fn assemble(&mut self, both: &Stabilized, system: &System, stage: &Stage, work: &mut Workspace) {
         let kkt = &mut self.kkt;
         work.expected_tangent(system, stage, kkt);
         let mut curve = |mass: f64, block: Block| {
@@ -54,28 +65,31 @@ impl Coupled {
         kkt.add_columns(Block(1, 1), &both.velocity_gradient, 1.0);
         kkt.add_rows(Block(1, 0), &both.turned_u, 1.0);
         kkt.add_rows(Block(1, 1), &work.end.at.gradient, 1.0);
-        (0..2).for_each(|field| kkt.regularise(field, &newton.delta));
-        newton.factorizations += 1;
-        let outcome = kkt.factor();
-        newton.rank.classify(&outcome, kkt, &newton.delta, &work.scales);
-        outcome
+    }
+
+    /// Place of the k-th number (coordinates, then rows) of a level among the unknowns.
+    fn place(&self, n: usize, dim: usize, k: usize, field: usize) -> usize {
+        if k < n { self.kkt.coordinate(k / dim, field, k % dim) } else { self.kkt.multiplier(k - n, field) }
+    }
+
+    /// The tangent's derivative of a residual by an unknown, those of d and μ first.
+    pub(super) fn entry(&self, system: &System, residual: usize, unknown: usize) -> f64 {
+        let (n, each) = (system.coordinates(), system.coordinates() + system.constraints());
+        let place = |k: usize| self.place(n, system.dim, k % each, k / each);
+        self.kkt.solver.entry(place(residual), place(unknown))
     }
 
     /// Replaces the residuals, of d and μ in `first` and of u and γ' in `second` (n + r each), by increments.
     pub(super) fn solve(&mut self, n: usize, dim: usize, first: &mut [f64], second: &mut [f64]) {
-        let (kkt, rows) = (&self.kkt, first.len() - n);
-        let place = |k: usize, field| if k < n { kkt.coordinate(k / dim, field, k % dim) } else { kkt.multiplier(k - n, field) };
-        for k in 0..n + rows {
-            self.unknowns[place(k, 0)] = first[k];
-            self.unknowns[place(k, 1)] = second[k];
-        }
         let mut unknowns = std::mem::take(&mut self.unknowns);
+        for (k, (first, second)) in first.iter().zip(&*second).enumerate() {
+            unknowns[self.place(n, dim, k, 0)] = *first;
+            unknowns[self.place(n, dim, k, 1)] = *second;
+        }
         self.kkt.solve(&mut unknowns);
-        let kkt = &self.kkt;
-        let place = |k: usize, field| if k < n { kkt.coordinate(k / dim, field, k % dim) } else { kkt.multiplier(k - n, field) };
-        for k in 0..n + rows {
-            first[k] = unknowns[place(k, 0)];
-            second[k] = unknowns[place(k, 1)];
+        for (k, (first, second)) in first.iter_mut().zip(second).enumerate() {
+            *first = unknowns[self.place(n, dim, k, 0)];
+            *second = unknowns[self.place(n, dim, k, 1)];
         }
         self.unknowns = unknowns;
     }

@@ -127,6 +127,21 @@ impl Stabilized {
         iterate(&mut BothLevels { own: self, system, stage, is_near: false }, newton, work)
     }
 
+    /// Residual of both levels at the unknowns (of d and μ, then of u and γ'), and their tangent for [`Self::entry`].
+    pub fn linearise(&mut self, system: &System, stage: &Stage, newton: &mut Newton, work: &mut Workspace) -> Vec<f64> {
+        system.invariants.curvature(&work.start.v, &mut work.turned.half, &mut self.turned_start);
+        BothLevels { own: self, system, stage, is_near: false }.evaluate(true, newton, work);
+        let mut coupled = self.coupled.take().unwrap_or_else(|| Box::new(Coupled::new(system)));
+        coupled.assemble(self, system, stage, work);
+        self.coupled = Some(coupled);
+        newton.unknowns.iter().chain(&self.unknowns).map(|unknown| -unknown).collect()
+    }
+
+    /// The tangent's derivative of a residual by an unknown, without the proximal term.
+    pub fn entry(&self, system: &System, residual: usize, unknown: usize) -> f64 {
+        self.coupled.as_ref().map_or(0.0, |coupled| coupled.entry(system, residual, unknown))
+    }
+
     /// w, and H times w and u.
     pub fn turn(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
         let half = 0.5 * stage.step;
