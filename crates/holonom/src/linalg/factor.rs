@@ -147,7 +147,10 @@ fn eliminate<S: Simd>(
         for (column, rest) in columns.chain(others) {
             let (row, column) = column.split_first_mut().expect("a column has all rows");
             *row = above_tiny(product(simd, &inverse, row));
-            for (l, target) in pivots.iter().zip(column).chain(below.iter().zip(rest)) {
+            for (l, target) in pivots.iter().zip(column) {
+                add_product(simd, target, l, row, -1.0);
+            }
+            for (l, target) in below.iter().zip(rest) {
                 add_product(simd, target, l, row, -1.0);
             }
         }
