@@ -10,6 +10,7 @@ use holonom_io::Source;
 use crate::judge::{self, Ending, Run};
 use crate::mechanism::Mechanism;
 use crate::rank::{self, Agreement};
+use crate::start;
 
 /// What became of a mechanism.
 pub struct Case {
@@ -19,6 +20,7 @@ pub struct Case {
     /// Why there is no model.
     pub refused: Option<Ending>,
     pub rank: Option<Agreement>,
+    pub start: Option<Agreement>,
     /// A run for each method.
     pub runs: Vec<Run>,
 }
@@ -51,7 +53,7 @@ fn caught<T>(function: impl FnOnce() -> T) -> Result<T, String> {
 
 /// Reads, ranks and runs a mechanism.
 pub fn judge(seed: u64, mechanism: &Mechanism, demand: &Demand) -> Case {
-    let without_model = |ending| Case { seed, size: None, refused: Some(ending), rank: None, runs: Vec::new() };
+    let without_model = |ending| Case { seed, size: None, refused: Some(ending), rank: None, start: None, runs: Vec::new() };
     let text = mechanism.toml();
     let model = match caught(|| Source::read("model.toml", text.as_bytes())?.model()) {
         Ok(Ok(model)) => model,
@@ -59,8 +61,16 @@ pub fn judge(seed: u64, mechanism: &Mechanism, demand: &Demand) -> Case {
         Err(panic) => return without_model(Ending::Panicked(panic)),
     };
     let rank = caught(|| rank::compare(&model, mechanism.size)).unwrap_or_else(|panic| Agreement::Differ("panicked", panic));
+    let start = caught(|| start::compare(seed, mechanism, &model)).unwrap_or_else(|panic| Agreement::Differ("panicked", panic));
     let runs = demand.methods.iter().map(|named| run(mechanism, &model, named, demand.limit)).collect();
-    Case { seed, size: Some([model.system.coordinates(), model.system.constraints()]), refused: None, rank: Some(rank), runs }
+    Case {
+        seed,
+        size: Some([model.system.coordinates(), model.system.constraints()]),
+        refused: None,
+        rank: Some(rank),
+        start: Some(start),
+        runs,
+    }
 }
 
 fn run(mechanism: &Mechanism, model: &Model, named: &Named, limit: f64) -> Run {
@@ -99,12 +109,13 @@ impl Case {
     /// What was asked and went wrong, each in a line that begins with its sort.
     pub fn failures(&self, demand: &Demand) -> Vec<String> {
         let model = self.refused.iter().filter(|ending| ending.is_failure()).map(|ending| line("model", ending));
-        let rank = self.rank.iter().filter_map(|rank| match rank {
-            Agreement::Differ(sort, how) => Some(format!("rank {sort}: {how}")),
+        let differ = |what: &str, found: &Option<Agreement>| match found {
+            Some(Agreement::Differ(sort, how)) => Some(format!("{what} {sort}: {how}")),
             _ => None,
-        });
+        };
+        let starts = [differ("rank", &self.rank), differ("difference", &self.start)].into_iter().flatten();
         let runs = demand.methods.iter().zip(&self.runs).filter(|(_, run)| run.ending.is_failure());
-        model.chain(rank).chain(runs.map(|(named, run)| line(named.name, &run.ending))).collect()
+        model.chain(starts).chain(runs.map(|(named, run)| line(named.name, &run.ending))).collect()
     }
 }
 

@@ -15,6 +15,7 @@ mod random;
 mod rank;
 mod report;
 mod shrink;
+mod start;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -96,6 +97,7 @@ fn comments(case: &Case, demand: &Demand) -> Vec<String> {
     }
     lines.extend(case.refused.iter().flat_map(|ending| case::line("model", ending).lines().map(str::to_string).collect::<Vec<_>>()));
     lines.extend(case.rank.iter().map(|rank| format!("rank: {rank:?}")));
+    lines.extend(case.start.iter().map(|start| format!("start: {start:?}")));
     for (named, run) in demand.methods.iter().zip(&case.runs) {
         lines.push(format!("{}, {:.1} ms", case::line(named.name, &run.ending), 1e3 * run.seconds));
         if let Some(figures) = run.figures {
@@ -162,6 +164,21 @@ mod tests {
             })
             .collect();
         assert!(failures.is_empty(), "{}", failures.join("\n"));
+    }
+
+    #[test]
+    fn starts_are_the_same_however_they_are_written() {
+        let differ = |seed: u64| {
+            let mechanism = generate::mechanism(seed);
+            let source = holonom_io::Source::read("model.toml", mechanism.toml().as_bytes());
+            let model = source.and_then(|source| source.model()).unwrap_or_else(|message| panic!("seed {seed}: {message}"));
+            match start::compare(seed, &mechanism, &model) {
+                rank::Agreement::Differ(sort, how) => Some(format!("seed {seed}: {sort}: {how}")),
+                _ => None,
+            }
+        };
+        let differences: Vec<String> = (1_u64..=200).into_par_iter().filter_map(differ).collect();
+        assert!(differences.is_empty(), "{}", differences.join("\n"));
     }
 
     /// Starts whose velocities could not be put on the rows, or to six digits only: δ was much beside the lightest parts.

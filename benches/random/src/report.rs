@@ -28,7 +28,8 @@ pub struct Report {
     cases: usize,
     /// Counts of endings for each method, by word.
     endings: BTreeMap<(usize, &'static str), usize>,
-    ranks: BTreeMap<&'static str, usize>,
+    /// Of rank and start.
+    agreements: BTreeMap<(&'static str, &'static str), usize>,
     /// Worst figure of each promise of each method among runs that kept all, and its seed.
     worst: BTreeMap<(usize, usize), (f64, u64)>,
     /// Seeds by sort of what happened.
@@ -45,16 +46,18 @@ impl Report {
         if let Some(ending) = &case.refused {
             self.sort("model", ending, case.seed);
         }
-        let word = match &case.rank {
-            Some(Agreement::Agree) => "agrees",
-            Some(Agreement::Unclear) => "unclear",
-            Some(Agreement::Differ(sort, _)) => {
-                self.failed.entry(format!("rank {sort}")).or_default().push(case.seed);
-                "differs"
-            }
-            None => "no model",
-        };
-        *self.ranks.entry(word).or_default() += 1;
+        for (what, found) in [("rank", &case.rank), ("start", &case.start)] {
+            let word = match found {
+                Some(Agreement::Agree) => "agrees",
+                Some(Agreement::Unclear) => "unclear",
+                Some(Agreement::Differ(sort, _)) => {
+                    self.failed.entry(format!("{what}: difference {sort}")).or_default().push(case.seed);
+                    "differs"
+                }
+                None => "no model",
+            };
+            *self.agreements.entry((what, word)).or_default() += 1;
+        }
         for (method, (named, run)) in demand.methods.iter().zip(&case.runs).enumerate() {
             *self.endings.entry((method, run.ending.word())).or_default() += 1;
             self.sort(named.name, &run.ending, case.seed);
@@ -107,8 +110,11 @@ impl Report {
     /// Prints everything.
     pub fn print(&self, demand: &Demand) {
         println!("{} mechanisms", self.cases);
-        let ranks: Vec<String> = self.ranks.iter().map(|(word, count)| format!("{word} {count}")).collect();
-        println!("{:24} {}", "rank", ranks.join(", "));
+        for what in ["rank", "start"] {
+            let of = self.agreements.iter().filter(|((of, _), _)| *of == what);
+            let counts: Vec<String> = of.map(|((_, word), count)| format!("{word} {count}")).collect();
+            println!("{what:24} {}", counts.join(", "));
+        }
         for (method, named) in demand.methods.iter().enumerate() {
             let of = self.endings.iter().filter(|((of, _), _)| *of == method);
             let counts: Vec<String> = of.map(|((_, word), count)| format!("{word} {count}")).collect();

@@ -4,10 +4,11 @@ use std::io::Read;
 use std::path::Path;
 
 use holonom::model::{Model, ProjectionSettings};
-use holonom::simulation::{Choice, Method, MethodError, ProjectionChoice, StartError, State};
+use holonom::record::RecorderMark;
+use holonom::simulation::{Checkpoint, Choice, Method, MethodError, ProjectionChoice, StartError};
 use holonom::system::Place;
 use holonom_io::Source;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
 use crate::table::short;
@@ -258,31 +259,18 @@ pub fn start_failure(error: StartError) -> Failure {
     Failure::usage(error.to_string(), cure)
 }
 
-/// A state as it is kept in `checkpoint.json`.
-pub fn checkpoint_value(state: &State) -> Value {
-    json!({ "t": state.t, "x": state.x, "v": state.v, "a": state.a, "lambda": state.lambda, "a_change": state.a_change, "a_differences": state.a_differences, "lambda_change": state.lambda_change, "last_step": state.last_step, "memory": state.memory, "angle": state.angle })
+/// What is kept in `checkpoint.json`.
+#[derive(Serialize, Deserialize)]
+pub struct Kept {
+    #[serde(flatten)]
+    pub run: Checkpoint,
+    pub recorder: RecorderMark,
 }
 
 /// Reads a `checkpoint.json`.
-pub fn checkpoint(path: &Path) -> Result<State, Failure> {
+pub fn checkpoint(path: &Path) -> Result<Kept, Failure> {
     let bytes = std::fs::read(path).map_err(|source| Failure::File { doing: "read", path: path.into(), source })?;
-    let value: Option<Value> = serde_json::from_slice(&bytes).ok();
-    let numbers =
-        |value: &Value, key: &str| value[key].as_array().and_then(|items| items.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>());
-    let state = value.and_then(|value| {
-        Some(State {
-            t: value["t"].as_f64()?,
-            x: numbers(&value, "x")?,
-            v: numbers(&value, "v")?,
-            a: numbers(&value, "a")?,
-            lambda: numbers(&value, "lambda")?,
-            a_change: numbers(&value, "a_change")?,
-            a_differences: serde_json::from_value(value["a_differences"].clone()).ok()?,
-            lambda_change: numbers(&value, "lambda_change")?,
-            last_step: value["last_step"].as_f64()?,
-            memory: numbers(&value, "memory")?,
-            angle: numbers(&value, "angle")?,
-        })
-    });
-    state.ok_or_else(|| Failure::usage(format!("{} is no checkpoint", path.display()), "give the checkpoint.json of an earlier run"))
+    serde_json::from_slice(&bytes).map_err(|error| {
+        Failure::usage(format!("{} is no checkpoint: {error}", path.display()), "give the checkpoint.json of an earlier run")
+    })
 }

@@ -9,16 +9,16 @@ use std::sync::atomic::AtomicBool;
 
 use cpu_time::ProcessTime;
 use holonom::analysis;
-use holonom::model::Model;
+use holonom::model::{Model, StartChange};
 use holonom::record::{COLUMNS, Recorder, Recording};
-use holonom::simulation::{Method, Simulation, State, Status};
+use holonom::simulation::{Method, Simulation, Status};
 use holonom_io::{WriteTable, Writer};
 use holonom_report::{Report, Run};
 use serde_json::{Value, json};
 
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::load::{self, Loaded};
+use crate::load::{self, Kept, Loaded};
 use crate::progress::Watched;
 use crate::table::short;
 
@@ -29,7 +29,7 @@ pub struct Finished {
     /// Content of `summary.json`.
     pub summary: Value,
     pub completed: bool,
-    pub state: State,
+    pub kept: Kept,
 }
 
 /// What a run is asked to do.
@@ -39,7 +39,7 @@ pub struct Order {
     pub end: f64,
     pub every: u64,
     pub quiet: bool,
-    pub resume: Option<State>,
+    pub resume: Option<Kept>,
 }
 
 /// Simulates a model by a method.
@@ -47,18 +47,19 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
     let model = &loaded.model;
     let Order { method, step, end, every, quiet, resume } = order;
     let name = method.name.clone();
-    if let Some(state) = resume.as_ref().filter(|state| state.t >= end) {
-        let message = format!("the checkpoint is at {} s, and the run ends at {} s", short(state.t), short(end));
+    let (resume, mark) = resume.map_or((None, None), |kept| (Some(kept.run), Some(kept.recorder)));
+    if let Some(t) = resume.as_ref().map(|run| run.state.t).filter(|t| *t >= end) {
+        let message = format!("the checkpoint is at {} s, and the run ends at {} s", short(t), short(end));
         return Err(Failure::usage(message, "give a later --end"));
     }
     let mut simulation = match resume {
-        Some(state) => Simulation::resume(&model.system, method, step, state).ok_or_else(|| {
+        Some(run) => Simulation::resume(&model.system, method, step, run).ok_or_else(|| {
             Failure::usage("the checkpoint is of another model", "resume with the model and the --set options that made it")
         })?,
         None => Simulation::new(&model.system, method, step).map_err(load::start_failure)?,
     };
-    if !quiet {
-        announce_corrections(&simulation);
+    if !quiet && mark.is_none() {
+        announce_corrections(model, &simulation);
     }
     let rank = analysis::rank(&model.system, &simulation.state().x, simulation.state().t);
     let reactions = model.output.reactions.unwrap_or(false);
@@ -66,6 +67,7 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
         simulation.find_reactions();
     }
     let recorder = Recorder::new(&model.channels, &model.system, every, reactions);
+    let recorder = if let Some(mark) = &mark { recorder.resume(mark) } else { recorder };
     let mut watched = Watched::new(recorder, end, quiet, interrupted.clone());
     let (wall, cpu) = (std::time::Instant::now(), ProcessTime::now());
     let (status, step_us) = match simulation.method().settings.iterations {
@@ -86,25 +88,37 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
     if !step_us.is_null() {
         value["time"]["step_us"] = step_us;
     }
-    Ok(Finished {
-        method: name,
-        recording: watched.finish(),
-        summary: value,
-        completed: status == Status::Completed,
-        state: simulation.state().clone(),
-    })
+    let kept = Kept { run: simulation.checkpoint(), recorder: watched.recorder.mark() };
+    Ok(Finished { method: name, recording: watched.finish(), summary: value, completed: status == Status::Completed, kept })
 }
 
 /// Says on standard error what was put right before the start.
-fn announce_corrections(simulation: &Simulation<'_>) {
+fn announce_corrections(model: &Model, simulation: &Simulation<'_>) {
     let start = simulation.start();
     if start.moved > 1e-12 {
         eprintln!("note: positions were moved by up to {:.2e} m onto their constraints", start.moved);
     }
-    if start.turned > 1e-12 {
-        eprintln!("note: velocities were changed by up to {:.2e} m/s onto their constraints", start.turned);
+    let changes = model.start_changes(&simulation.state().x, simulation.velocities());
+    if !changes.is_empty() {
+        eprintln!("note: to meet the constraints, start velocities were changed: {}", changes_in_words(&changes));
     }
 }
+
+/// Bodies and points with the change of their velocities at the start, at most [`NAMED_CHANGES`].
+pub fn changes_in_words(changes: &[StartChange]) -> String {
+    let words = changes.iter().take(NAMED_CHANGES).map(|change| match change.angular_velocity > 0.0 {
+        true => format!("`{}` by {} m/s and {} rad/s", change.name, short(change.velocity), short(change.angular_velocity)),
+        false => format!("`{}` by {} m/s", change.name, short(change.velocity)),
+    });
+    let words: Vec<String> = words.collect();
+    match changes.len().saturating_sub(NAMED_CHANGES) {
+        0 => words.join(", "),
+        more => format!("{}, and {more} more", words.join(", ")),
+    }
+}
+
+/// Changes of velocities that are said by name.
+const NAMED_CHANGES: usize = 5;
 
 /// The writers of the formats asked for.
 pub fn writers(formats: &[String]) -> Result<Vec<&'static Writer>, Failure> {

@@ -31,7 +31,7 @@ fn run_leaves_what_is_documented() {
     assert_eq!(&rows[0][11..17], [1.0, 0.0, 0.0, 0.0, 0.5, 0.0]);
     assert_eq!(rows[20][0], 0.5);
 
-    let checkpoint = read_json(results.join("checkpoint.json"));
+    let checkpoint = &read_json(results.join("checkpoint.json"))["state"];
     assert_eq!(checkpoint["t"], 0.5);
     for (key, size) in [("x", 6), ("v", 6), ("a", 6), ("lambda", 5)] {
         assert_eq!(checkpoint[key].as_array().unwrap().len(), size, "{key}");
@@ -127,7 +127,7 @@ fn a_resumed_run_ends_where_one_long_run_does() {
         run("--end 1 --out half");
         run("--end 2 --out rest --resume half/checkpoint.json");
         run("--end 2 --out whole");
-        let state = |name: &str| read_json(folder.path().join(name).join("checkpoint.json"));
+        let state = |name: &str| read_json(folder.path().join(name).join("checkpoint.json"))["state"].clone();
         let (rest, whole) = (state("rest"), state("whole"));
         assert_eq!(rest["t"], 2.0);
         for key in ["x", "v"] {

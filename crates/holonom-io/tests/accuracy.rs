@@ -3,8 +3,14 @@
 mod common;
 
 use common::example;
+use holonom::model::Model;
 use holonom::simulation::{Choice, Method, Simulation, Status, Summary, Verdict};
 use holonom::system::Place;
+use holonom_io::Source;
+
+fn model(text: &str) -> Model {
+    Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}"))
+}
 
 struct Reference {
     model: &'static str,
@@ -130,5 +136,60 @@ fn integrators_without_estimate_are_refused() {
         let choice = Choice { method: Some(method.into()), accuracy: Some(1e-6), ..Choice::default() };
         let message = Method::resolve(&choice).err().expect("it is refused").to_string();
         assert!(message.contains(word), "{message}");
+    }
+}
+
+/// A millisecond's pulse that is written in the model is not stepped over: 1 kg has 1 m/s afterwards.
+#[test]
+fn pulses_in_formulas_are_seen() {
+    let text = "gravity = [0, 0, 0]\n[point.m]\nmass = 1\nposition = [0, 0, 0]\n[force.kick]\ntype = \"expression\"\npoint = \"m\"\n\
+                force = [\"1000*(step(t - START) - step(t - START - 1e-3))\", 0, 0]\n";
+    for method in ["conserving-ggl", "conserving", "trapezoidal-projected", "generalized-alpha", "radau", "lagrange-3/bdf", "ode/dop853"] {
+        // At a nominal step, and between two.
+        for start in [0.5, 0.537] {
+            let model = model(&text.replace("START", &start.to_string()));
+            let choice = Choice { method: Some(method.into()), accuracy: Some(1e-4), ..Choice::default() };
+            let mut simulation = Simulation::new(&model.system, Method::resolve(&choice).unwrap(), 0.1).unwrap();
+            let status = simulation.run(1.0, &mut |_: &Simulation<'_>| Verdict::GoOn);
+            assert_eq!(status, Status::Completed, "{method}");
+            let (state, audit) = (simulation.state(), simulation.audit());
+            let expected = [1.0 - start - 0.5e-3, 1.0];
+            let off = (state.x[0] - expected[0]).abs().max((simulation.velocities()[0] - expected[1]).abs());
+            assert!(off < 1e-10, "{method}: {} and {}", state.x[0], simulation.velocities()[0]);
+            assert!((audit.work - 0.5).abs() < 1e-6, "{method}: work {}", audit.work);
+            assert_eq!(state.t, 1.0);
+        }
+    }
+}
+
+/// Windows of bars that come to lie in a line, where a second way opens and the motion goes on all the same.
+#[test]
+fn steps_by_accuracy_pass_singular_positions() {
+    for windows in 1..=3 {
+        let mut text = "plane = \"xy\"\ngravity = [0, -9.81]\n".to_string();
+        for k in 0..=windows {
+            text += &format!("[point.b{k}]\nposition = [{k}, 0]\nfixed = true\n[point.t{k}]\nposition = [{k}, 1]\nvelocity = [1, 0]\n");
+            text += &format!("[bar.v{k}]\nbetween = [\"b{k}\", \"t{k}\"]\nmass = 1\n");
+        }
+        for k in 0..windows {
+            text += &format!("[bar.h{k}]\nbetween = [\"t{k}\", \"t{}\"]\nmass = 1\n", k + 1);
+        }
+        let model = model(&text);
+        let place = |method: &str, accuracy: f64| {
+            let choice = Choice { method: Some(method.into()), accuracy: Some(accuracy), ..Choice::default() };
+            let mut simulation = Simulation::new(&model.system, Method::resolve(&choice).unwrap(), 0.05).unwrap();
+            let status = simulation.run(2.0, &mut |_: &Simulation<'_>| Verdict::GoOn);
+            assert_eq!(status, Status::Completed, "{windows} windows, {method} at {accuracy}");
+            simulation.state().x.clone()
+        };
+        let reference = place("radau", 1e-9);
+        for method in ["conserving-ggl", "conserving", "trapezoidal-projected", "generalized-alpha", "radau"] {
+            for accuracy in [1e-3, 1e-5, 1e-6] {
+                let found = place(method, accuracy);
+                let off = found.iter().zip(&reference).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                println!("{windows} windows, {method:22} {accuracy:7.0e}: off by {off:.1e} m");
+                assert!(off < 10.0 * accuracy * (1.0 + windows as f64), "{windows} windows, {method} at {accuracy}: off by {off:e} m");
+            }
+        }
     }
 }

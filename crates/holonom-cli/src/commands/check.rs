@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use holonom::analysis::{Rank, projection_form, rank, undetermined};
-use holonom::model::Model;
+use holonom::model::{Model, StartChange};
 use holonom::projection::Solve;
 use holonom::record::RecordedJoint;
 use holonom::simulation::{Method, ModelSize, PENALTY, Simulation};
@@ -12,6 +12,7 @@ use serde_json::json;
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
 use crate::options::CheckArguments;
+use crate::output::changes_in_words;
 use crate::table::{list, short};
 
 /// Independence of a row below which the model is said to be near a singular configuration.
@@ -43,12 +44,19 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
         }
         false => None,
     };
+    let changes = loaded.model.start_changes(&simulation.state().x, simulation.velocities());
     if arguments.json {
+        let change = |change: &StartChange| {
+            json!({
+                "name": change.name, "velocity": change.velocity, "angular_velocity": change.angular_velocity,
+            })
+        };
+        let changed: Vec<_> = changes.iter().map(change).collect();
         let mut value = json!({
             "model": loaded.name, "method": name, "coordinates": size.coordinates, "constraints": size.constraints,
             "rank": size.rank, "redundant": size.redundant, "dof": size.dof, "redundant_rows": found.redundant,
             "rows_in_redundancies": held.involved, "reactions_not_unique": held.not_unique, "notes": held.notes,
-            "near_singular": near, "moved": start.moved, "turned": start.turned,
+            "near_singular": near, "moved": start.moved, "start_changes": changed,
             "residual": { "position": audit.phi, "velocity": audit.phi_dot, "acceleration": audit.phi_ddot },
             "energy": { "kinetic": audit.kinetic, "potential": audit.potential + audit.lift },
         });
@@ -75,13 +83,15 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
         (None, Some((row, independence))) => format!("no: the weakest row is `{row}` with {}", short(*independence)),
         (None, None) => "no constraints".to_string(),
     };
+    let velocities = if changes.is_empty() { "none".to_string() } else { changes_in_words(&changes) };
+    let corrected = format!("positions by {} m; velocities: {velocities}", short(start.moved));
     let items = [
         ("size", sizes(&size, &held.size)),
         ("freedom", format!("{} degrees of freedom", size.dof)),
         ("redundant", redundant),
         ("reactions", reactions),
         ("singular", singular),
-        ("corrected", format!("positions by {} m, velocities by {} m/s", short(start.moved), short(start.turned))),
+        ("corrected", corrected),
         ("residual", format!("position {}, velocity {}, acceleration {}", short(audit.phi), short(audit.phi_dot), short(audit.phi_ddot))),
         ("energy", format!("kinetic {} J, potential {} J", short(audit.kinetic), short(audit.potential + audit.lift))),
         ("gravity", loaded.gravity()),

@@ -44,7 +44,8 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
 
 fn write(folder: &Folder, loaded: &Loaded, finished: &Finished, writers: &[&Writer], output: &OutputArguments) -> Result<(), Failure> {
     folder.write("summary.json", |out| holonom_io::write_json(&finished.summary, out))?;
-    folder.write("checkpoint.json", |out| holonom_io::write_json(&load::checkpoint_value(&finished.state), out))?;
+    let kept = serde_json::to_value(&finished.kept).expect("a checkpoint is plain data");
+    folder.write("checkpoint.json", |out| holonom_io::write_json(&kept, out))?;
     folder.write_trajectory("trajectory", writers, loaded, &finished.recording)?;
     if !output.no_report {
         let runs =

@@ -70,6 +70,19 @@ pub struct Collocation {
 }
 
 impl Collocation {
+    /// What the last factorisations said of the rows, as numbers.
+    pub fn carried(&self) -> Vec<f64> {
+        let flags = self.idle.iter().map(|&idle| f64::from(u8::from(idle)));
+        [f64::from(u8::from(self.is_known)), f64::from(self.singular)].into_iter().chain(flags).collect()
+    }
+
+    /// Takes that over.
+    pub fn carry_on(&mut self, carried: &[f64]) {
+        let [is_known, singular, flags @ ..] = carried else { return };
+        (self.is_known, self.singular) = (*is_known != 0.0, *singular as u32);
+        self.idle.iter_mut().zip(flags).for_each(|(idle, flag)| *idle = *flag != 0.0);
+    }
+
     /// Room for `stages` stages of a system under a formulation.
     pub fn new(system: &System, stages: usize, settings: &SolveSettings) -> Self {
         let doubled = settings.doubled;

@@ -17,6 +17,8 @@ pub enum Failure {
     Broken { promise: &'static str, by: f64, bound: f64, row: Option<usize> },
     /// Energy that nothing supplied, J, is several times all there was to move: the error of the method is all that is left.
     Unsupplied { excess: f64, supply: f64 },
+    /// A recorded angle turns so far in a step, rad, that its turns are not counted for sure.
+    Turned { gauge: usize, by: f64 },
 }
 
 /// An unknown of a step.
@@ -52,6 +54,9 @@ impl Failure {
             Self::Unsupplied { excess, supply } => format!(
                 "{excess:.1e} J of energy came from nothing where {supply:.1e} J could move (shorter steps help, or a method that keeps the energy)"
             ),
+            Self::Turned { gauge, by } => {
+                format!("`{}` turns by {by:.2} rad in a step, too far for turns to be counted: give a shorter step", system.gauges()[gauge])
+            }
             Self::TooSmall => "no step is short enough for the accuracy".into(),
         }
     }

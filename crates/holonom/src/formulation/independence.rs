@@ -17,29 +17,62 @@ const PROXIMAL: f64 = 1e-15;
 /// others. Directions are nodes with a length, so that all coordinates are lengths and weigh alike; rows are scaled to unit
 /// gradients (methods §12). The pivots of [1 Gᵀ; G −δ] are minus these numbers.
 pub fn independence(system: &System, x: &[f64], t: f64) -> Vec<f64> {
-    let ones = Mass::ones(system.nodes());
-    let mut kkt = Kkt::with_mass(system, &ones, &[], 1, ALL);
-    let mut at = system.evaluation();
-    system.evaluate_again(x, t, &mut at);
-    let natural = natural_sizes(system, &at);
-    let rows = system.slots.rows.len();
-    for (row, natural) in natural.iter().enumerate() {
-        let free = system.slots.rows[row].clone().filter(|&slot| kkt.is_free(slot));
-        let square: f64 = free.flat_map(|slot| &at.gradient[slot * kkt.dim..(slot + 1) * kkt.dim]).map(|g| g * g).sum();
-        let size = square.sqrt();
-        let factor = if size > VANISHED * natural { 1.0 / size } else { 0.0 };
-        at.gradient[kkt.gradient_of(row)].iter_mut().for_each(|g| *g *= factor);
+    let mut independence = Independence::new(system);
+    independence.measure(system, x, t);
+    independence.shares
+}
+
+/// Room for finding that at many positions.
+pub struct Independence {
+    kkt: Kkt,
+    at: Evaluation,
+    natural: Vec<f64>,
+    delta: Vec<f64>,
+    /// Of each row (r), when last measured.
+    shares: Vec<f64>,
+}
+
+impl Independence {
+    /// Plans the matrix of a system.
+    pub fn new(system: &System) -> Self {
+        let rows = system.slots.rows.len();
+        let mut at = system.evaluation();
+        system.evaluate_again(&system.start_position, 0.0, &mut at);
+        let natural = natural_sizes(system, &at);
+        let kkt = Kkt::with_mass(system, &Mass::ones(system.nodes()), &[], 1, ALL);
+        Self { kkt, at, natural, delta: vec![PROXIMAL; rows], shares: vec![0.0; rows] }
     }
-    let block = Block(0, 0);
-    kkt.clear();
-    kkt.start_with_mass(1.0);
-    kkt.write_sum(block);
-    kkt.add_columns(block, &at.gradient, 1.0);
-    kkt.add_rows(block, &at.gradient, 1.0);
-    kkt.regularise(0, &vec![PROXIMAL; rows]);
-    match kkt.factor() {
-        Ok(()) => (0..rows).map(|row| kkt.solver.pivot(kkt.multiplier(row, 0))).collect(),
-        Err(_) => vec![0.0; rows],
+
+    /// Measures at the positions `x` and the time `t`.
+    pub fn measure(&mut self, system: &System, x: &[f64], t: f64) -> &[f64] {
+        let Self { kkt, at, natural, delta, shares } = self;
+        system.evaluate_again(x, t, at);
+        for (row, natural) in natural.iter().enumerate() {
+            let free = system.slots.rows[row].clone().filter(|&slot| kkt.is_free(slot));
+            let square: f64 = free.flat_map(|slot| &at.gradient[slot * kkt.dim..(slot + 1) * kkt.dim]).map(|g| g * g).sum();
+            let size = square.sqrt();
+            let factor = if size > VANISHED * natural { 1.0 / size } else { 0.0 };
+            at.gradient[kkt.gradient_of(row)].iter_mut().for_each(|g| *g *= factor);
+        }
+        let block = Block(0, 0);
+        kkt.clear();
+        kkt.start_with_mass(1.0);
+        kkt.write_sum(block);
+        kkt.add_columns(block, &at.gradient, 1.0);
+        kkt.add_rows(block, &at.gradient, 1.0);
+        kkt.regularise(0, delta);
+        let is_factored = kkt.factor().is_ok();
+        for (row, share) in shares.iter_mut().enumerate() {
+            *share = if is_factored { kkt.solver.pivot(kkt.multiplier(row, 0)) } else { 0.0 };
+        }
+        shares
+    }
+
+    /// The least share of a row, without as many of the least as are `redundant`; 1 where there is no other. The shares are in no
+    /// order then.
+    pub fn weakest(&mut self, redundant: usize) -> f64 {
+        self.shares.sort_unstable_by(f64::total_cmp);
+        self.shares.get(redundant).copied().unwrap_or(1.0)
     }
 }
 

@@ -157,9 +157,14 @@ impl Equations for OneStage<'_> {
     }
 }
 
-/// Puts the increment where the velocity at the start and the accelerations that are expected lead, with v̄ = Δq/h.
+/// Puts the increment where the velocity at the start and the accelerations that are expected lead, with v̄ = Δq/h. Where these
+/// lead farther than the mechanism is large, something stiff is not at rest: they will not last, and the velocity is the better guess.
 pub fn predict(stage: &Stage, work: &mut Workspace) {
-    let Workspace { d, a, prediction, .. } = work;
+    let Workspace { d, a, prediction, scales, .. } = work;
+    if stage.inertia.abs() * largest(&a[..d.len()]) > scales.length {
+        d.copy_from_slice(&prediction.drift);
+        return;
+    }
     for (((d, drift), a), change) in d.iter_mut().zip(&prediction.drift).zip(a).zip(&prediction.a_change) {
         *d = *drift + stage.inertia * (*a + *change);
     }

@@ -19,7 +19,7 @@ pub struct Newton {
     /// δ of the proximal term (r).
     pub delta: Vec<f64>,
     /// Which rows are redundant.
-    pub(super) rank: Rank,
+    pub rank: Rank,
     /// What the factors were last made of.
     pub(super) kept: Kept,
     /// Newton iterations and factorisations so far, those of failed attempts included.

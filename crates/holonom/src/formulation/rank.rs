@@ -1,5 +1,7 @@
 //! Which rows are redundant, by the pivots of the matrix, and the proximal term δ that each row has for it.
 
+use serde::{Deserialize, Serialize};
+
 use super::failure::Failure;
 use super::kkt::Kkt;
 use super::newton::Newton;
@@ -20,7 +22,8 @@ const RHO_REGULAR: f64 = 1e16;
 const REDUNDANT: f64 = 1e-9;
 
 /// What the last factorisations said of the rows.
-pub(super) struct Rank {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rank {
     /// Rows whose pivot was no redundant one's (r).
     regular: Vec<bool>,
     /// How many they leave, if any were counted, and whether that has changed then.

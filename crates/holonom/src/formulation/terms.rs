@@ -120,10 +120,11 @@ impl Workspace {
     /// The same between both ends of a stage, by discrete gradients.
     fn respond_between(&mut self, system: &System, stage: &Stage) {
         let Self { start, end, sampled, forces, .. } = self;
-        for (law, response) in system.laws.iter().zip(&mut forces.responses) {
+        for ((law, response), damping) in system.laws.iter().zip(&mut forces.responses).zip(&forces.damping) {
             let (from, to) = (system.arguments(law, &start.at), system.arguments(law, &end.at));
-            let (m, mut own) = (law.arguments.len(), Response::default());
-            law.law.between(Reach { from: &from[..m], to: &to[..m], step: stage.step, middle: stage.time() }, &mut own);
+            let m = law.arguments.len();
+            let reach = Reach { from: &from[..m], to: &to[..m], step: stage.step, middle: stage.time() };
+            let own = damping.respond(law.law.as_ref(), reach);
             *response = system.by_invariants(law, own, &sampled.at, &end.at, &sampled.v);
         }
     }

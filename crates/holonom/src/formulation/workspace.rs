@@ -1,5 +1,6 @@
 //! Everything of a step but its matrix: states, rows and forces, allocated once.
 
+use super::dampers::Damping;
 use super::kkt::Kkt;
 use super::level::Level;
 use super::scales::Scales;
@@ -56,6 +57,8 @@ pub struct Forces {
     pub motion: Vec<f64>,
     pub(super) dense: Vec<f64>,
     pub(super) dissipative: bool,
+    /// Of each law, where it is dissipative.
+    pub(super) damping: Vec<Damping>,
 }
 
 /// How gradients turn with a motion, D a slot.
@@ -147,6 +150,7 @@ impl Workspace {
                 of_loads: vec![0.0; loads],
                 motion: vec![0.0; slots],
                 dense: vec![0.0; 2 * SIZE * SIZE],
+                damping: vec![Damping::default(); system.laws.len()],
                 dissipative: system.laws.iter().any(|law| !law.law.conservative()),
             },
             turned: Turned { v: vec![0.0; slots], a: vec![0.0; slots], rows: vec![0.0; slots], half: vec![0.0; system.invariants.len()] },

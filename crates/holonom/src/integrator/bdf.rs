@@ -78,6 +78,14 @@ impl Bdf {
 }
 
 impl Integrator for Bdf {
+    fn carried(&self) -> Vec<f64> {
+        self.stage.carried()
+    }
+
+    fn carry_on(&mut self, carried: &[f64]) {
+        self.stage.carry_on(carried);
+    }
+
     fn memory(&self, system: &System) -> usize {
         2 + KEPT * (2 * system.coordinates() + 1)
     }

@@ -89,13 +89,15 @@ pub(super) struct Explicit {
     slopes: Vec<f64>,
     /// Whether the further stages of the dense output are those of the last step.
     extended: bool,
+    /// Multipliers at the start (r).
+    lambda: Vec<f64>,
 }
 
 impl Explicit {
     pub(super) fn new(system: &System, tableau: Tableau) -> Self {
         let further = if let Dense::Stages { nodes, .. } = tableau.dense { nodes.len() } else { 0 };
         let room = vec![0.0; (tableau.nodes.len() + 1 + further) * system.coordinates()];
-        Self { tableau, rates: room.clone(), slopes: room, extended: false }
+        Self { tableau, rates: room.clone(), slopes: room, extended: false, lambda: vec![0.0; system.constraints()] }
     }
 
     /// Puts the workspace at stage `i` (the one after the last is the end of the step), with the weights `row` of the
@@ -181,6 +183,14 @@ impl Explicit {
 }
 
 impl Integrator for Explicit {
+    fn carried(&self) -> Vec<f64> {
+        vec![f64::from(u8::from(self.extended))]
+    }
+
+    fn carry_on(&mut self, carried: &[f64]) {
+        self.extended = carried == [1.0];
+    }
+
     fn step(&mut self, system: &System, start: f64, h: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
         let (n, stages) = (system.coordinates(), self.tableau.nodes.len());
         let mut done = 0.0;
@@ -209,10 +219,13 @@ impl Integrator for Explicit {
         if let Dense::Stages { nodes, rows, .. } = self.tableau.dense
             && !self.extended
         {
+            // Multipliers are found from those at the start, the first time and later.
+            self.lambda.copy_from_slice(&work.lambda);
             for (k, (node, row)) in nodes.iter().zip(rows).enumerate() {
                 self.take(system, (self.tableau.rows.len() + k, row), start + node * h, h, newton, work)?;
             }
             self.extended = true;
+            work.lambda.copy_from_slice(&self.lambda);
         }
         let Workspace { end, a, .. } = work;
         system.place_known(start + share * h, &mut end.x, &mut end.v, a);

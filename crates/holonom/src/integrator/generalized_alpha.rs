@@ -69,6 +69,31 @@ impl GeneralizedAlpha {
     }
 }
 
+/// An acceleration at the start that is so many times that of an implicit step lasts for no step.
+const SHORT: f64 = 3.0;
+
+impl GeneralizedAlpha {
+    /// Leaves the acceleration to start with in `estimate.q` and `a`. Where something stiff is not at rest, the true one is far
+    /// larger than any that lasts for a step, and would throw the mechanism; then that of x₁ = x₀ + h v₀ + ½ h² a₁, v₁ = v₀ + h a₁
+    /// takes its place. It errs by the first order of a step once, which leaves the order of the scheme.
+    fn calm(&self, system: &System, start: f64, h: f64, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
+        let n = system.coordinates();
+        let implicit = Self { alpha_m: 0.0, alpha_f: 0.0, beta: 0.5, gamma: 1.0 };
+        implicit.attempt(system, start, h, newton, work)?;
+        let [true_one, lasting] = [&work.estimate.q, &work.a[..n]].map(|a| {
+            work.full.fill(0.0);
+            work.full[..n].copy_from_slice(a);
+            system.mass.half_product(system.dim, &work.full, &work.full)
+        });
+        if true_one > SHORT * SHORT * lasting {
+            work.estimate.q.copy_from_slice(&work.a[..n]);
+        }
+        work.a[..n].copy_from_slice(&work.estimate.q);
+        work.memory.fill(0.0);
+        Ok(())
+    }
+}
+
 impl Integrator for GeneralizedAlpha {
     /// (a_n − v̇_n)/h, scratch for v̇_n, and whether a step was taken.
     fn memory(&self, system: &System) -> usize {
@@ -82,6 +107,7 @@ impl Integrator for GeneralizedAlpha {
             // shows the derivative.
             work.memory.fill(0.0);
             work.estimate.q.copy_from_slice(&work.a[..n]);
+            self.calm(system, start, h, newton, work)?;
             self.attempt(system, start, h, newton, work)?;
             for i in 0..n {
                 work.memory[i] = (self.alpha_m - self.alpha_f) * (work.a[i] - work.estimate.q[i]) / h;

@@ -27,6 +27,14 @@ pub trait Integrator: Send {
         0
     }
 
+    /// What else it knows from the steps before, failed ones included, of which the next step is made; not part of the state.
+    fn carried(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Goes on with what was [`carried`](Self::carried).
+    fn carry_on(&mut self, _carried: &[f64]) {}
+
     /// Takes one step; says where the work done in it is booked from. An estimate of the
     /// local errors, where the table promises one, is left in the workspace.
     fn step(&mut self, system: &System, start: f64, step: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure>;

@@ -164,6 +164,14 @@ impl RungeKutta {
 }
 
 impl Integrator for RungeKutta {
+    fn carried(&self) -> Vec<f64> {
+        self.stages.carried()
+    }
+
+    fn carry_on(&mut self, carried: &[f64]) {
+        self.stages.carry_on(carried);
+    }
+
     fn step(&mut self, system: &System, start: f64, h: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
         let (s, n, r) = (self.tableau.stages(), system.coordinates(), system.constraints());
         self.predict(system, h, work);

@@ -1,5 +1,7 @@
 //! The integrators, one line each: what they go with, their order, and how they are made.
 
+use serde::{Deserialize, Serialize};
+
 use super::composed::Composed;
 use super::explicit::{DOP853, DOPRI5, Explicit, RK4};
 use super::generalized_alpha::GeneralizedAlpha;
@@ -9,7 +11,7 @@ use crate::formulation::{Formulation, SolveSettings};
 use crate::system::System;
 
 /// Where the estimate of a step's local error comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Estimate {
     /// Third derivatives of positions and velocities, from the steps before: schemes of order 2 (methods §7).
     History,

@@ -64,6 +64,8 @@ pub struct Point {
     pub end: End,
     /// Its own mass, kg.
     pub mass: f64,
+    /// At the start, where it is free, m/s.
+    pub velocity: Option<[f64; 3]>,
     /// Whether a bar with mass is attached.
     pub carries_bar: bool,
 }

@@ -304,7 +304,12 @@ impl<'a> Entry<'a> {
                 let program = Program::parse(text, variables, &self.scope).map_err(|mistake| self.mistaken(spot, mistake))?;
                 match program.as_constant() {
                     Some(_) => self.number_in(spot, value).map(Program::constant),
-                    None => Ok(program),
+                    None => {
+                        if let Some(t) = variables.iter().position(|name| *name == "t") {
+                            self.sink.switches.borrow_mut().extend(program.switches(t));
+                        }
+                        Ok(program)
+                    }
                 }
             }
             _ => self.number_in(spot, value).map(Program::constant),

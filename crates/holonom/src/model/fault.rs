@@ -3,6 +3,8 @@
 use std::cell::{Cell, RefCell};
 use std::fmt;
 
+use super::expression::Program;
+
 /// One thing that is wrong, where it is, and how to put it right.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
@@ -70,6 +72,8 @@ const MOST: usize = 100;
 pub struct Sink {
     faults: RefCell<Vec<Fault>>,
     dropped: Cell<usize>,
+    /// Functions of time at whose zeros something of the model changes abruptly, found while formulas are read.
+    pub switches: RefCell<Vec<Program>>,
 }
 
 impl Sink {

@@ -34,7 +34,7 @@ pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, 
     let bodies: Vec<BodyInfo> = bodies.iter().zip(&frames).map(|(body, frame)| BodyInfo::new(body, frame, axes, &mut builder)).collect();
     let points = points
         .into_iter()
-        .map(|point| PointInfo { kind: kind(&point), place: place(&point), name: point.name, mass: point.mass })
+        .map(|point| PointInfo { kind: kind(&point), place: place(&point), name: point.name, mass: point.mass, velocity: point.velocity })
         .collect();
     Model {
         title,
@@ -68,19 +68,20 @@ fn channels(axes: Axes, points: &[assembly::Point], bodies: &[Body], frames: &[F
         body.points.iter().map(move |(name, at)| RecordedPoint { name: format!("{}.{name}", body.name), terms: frame.point(*at) })
     });
     let joint = |joint: &joints::Joint| {
-        // The second side, unless only the first has nodes.
-        let side = if matches!(joint.geometry.members[1], Member::Ground) { 0 } else { 1 };
-        let frame = match joint.geometry.members[side] {
+        let [first, second] = joint.geometry.members.map(|member| match member {
             Member::Ground => Frame::Ground,
             Member::Point(k) => Frame::Particle(points[k].end.place().expect("a point is a node")),
             Member::Body(k) => frames[k].clone(),
-        };
+        });
+        // The force on the ground is that on the other side, the other way.
+        let is_second = !matches!(second, Frame::Ground);
         RecordedJoint {
             name: joint.name.clone(),
             rows: joint.rows.clone(),
-            nodes: frame.nodes(),
-            sign: if side == 1 { 1.0 } else { -1.0 },
-            at: frame.point(joint.geometry.at[side]),
+            is_known: !joint.is_shared,
+            nodes: if is_second { second.nodes() } else { first.nodes() },
+            sign: if is_second { 1.0 } else { -1.0 },
+            at: second.point(joint.geometry.at[1]),
         }
     };
     Channels {

@@ -29,6 +29,7 @@ mod spline;
 #[cfg(test)]
 mod tests;
 mod value;
+mod written;
 
 pub use assembly::{Axes, GROUND};
 pub use bars::{BarInfo, KEYS as BAR_KEYS};
@@ -41,6 +42,7 @@ pub use settings::{
     OUTPUT as OUTPUT_KEYS, Output, PROJECTION as PROJECTION_KEYS, ProjectionSettings, SIMULATION as SIMULATION_KEYS, Settings,
 };
 pub use value::{Table, Value, item_path, key_path};
+pub use written::StartChange;
 
 use std::collections::{HashMap, HashSet};
 
@@ -84,6 +86,8 @@ pub struct PointInfo {
     pub place: Place,
     /// Its own mass, kg.
     pub mass: f64,
+    /// Velocity at the start as it was written, m/s; `None` where it is fixed or driven.
+    pub velocity: Option<[f64; 3]>,
     pub kind: PointKind,
 }
 
@@ -186,6 +190,9 @@ fn read(value: &Value, sink: &Sink, meshes: &dyn Meshes) -> Read<Model> {
     let output = settings::output(&root, &assembly).unwrap_or_default();
     if sink.count() > 0 {
         return Err(Refused);
+    }
+    for program in sink.switches.take() {
+        assembly.builder.switch(std::sync::Arc::new(expression::TimeProgram(program)));
     }
     Ok(finish::finish(assembly, title, settings, output, bars))
 }

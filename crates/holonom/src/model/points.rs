@@ -114,7 +114,9 @@ pub fn add(assembly: &mut Assembly<'_>, specs: &[Spec]) {
             _ => super::ends::End { point: Some(k), ..fixed(spec.start, spec.name.clone()) },
         };
         assembly.by_name.insert(spec.name.clone(), k);
-        assembly.points.push(Point { name: spec.name.clone(), path: spec.path.clone(), end, mass: spec.mass, carries_bar: false });
+        let velocity = if let Motion::Free { velocity } = spec.motion { Some(velocity) } else { None };
+        let (name, path) = (spec.name.clone(), spec.path.clone());
+        assembly.points.push(Point { name, path, end, mass: spec.mass, velocity, carries_bar: false });
     }
 }
 

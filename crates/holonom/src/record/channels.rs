@@ -21,7 +21,7 @@ pub struct RecordedBody {
     pub name: String,
     /// Its centre of mass.
     pub centre: Vec<Term>,
-    /// Orthogonal unit vectors in body axes, with their nodes: three, two of a plate, one of a rod, none in the plane.
+    /// Orthogonal unit vectors in body axes, with their nodes: three, two of a plate, one of a rod and in the plane.
     pub directions: Vec<([f64; 3], Vec<Term>)>,
     /// From body axes to the world's at the start, which says how a rod is turned about itself.
     pub start: Matrix3<f64>,
@@ -33,11 +33,13 @@ pub struct RecordedJoint {
     pub name: String,
     /// Its rows among those of the system.
     pub rows: std::ops::Range<usize>,
-    /// The nodes of one of its bodies, and whether they are points.
+    /// Whether these rows are all that holds it: where its bodies share nodes, its force is not known.
+    pub is_known: bool,
+    /// The nodes of its second body, or of the first where the second is the ground, and whether they are points.
     pub nodes: Vec<(NodeId, bool)>,
-    /// 1 when that is the second body, −1 when it is the first.
+    /// 1 when they are those of the second body, −1 when of the first.
     pub sign: f64,
-    /// Its place on that body.
+    /// Its place on the second body.
     pub at: Vec<Term>,
 }
 
@@ -121,7 +123,8 @@ impl Channels {
     }
 
     /// Names of the columns of forces: the multiplier of each row of the system, the force of the constraints on each
-    /// point that is a free node, and force and moment of each joint on its second body.
+    /// point that is a free node, and force and moment of each joint on its second body, about its place there; no numbers where
+    /// bodies share nodes at the joint.
     pub fn reaction_columns(&self, rows: &[String]) -> Vec<String> {
         let mut names: Vec<String> = rows.iter().map(|row| format!("{row}.lambda")).collect();
         for point in self.points.iter().filter(|point| node(point).is_some()) {
@@ -170,7 +173,8 @@ impl Channels {
             let about = joint.place(&x, dim);
             let (force, moment) = simulation.wrench(joint.rows.clone(), &joint.nodes, about);
             let components = [force[0], force[1], force[2], moment[0], moment[1], moment[2]];
-            row.extend(RecordedJoint::components(dim).iter().map(|&k| joint.sign * components[k]));
+            let sign = if joint.is_known { joint.sign } else { f64::NAN };
+            row.extend(RecordedJoint::components(dim).iter().map(|&k| sign * components[k]));
         }
     }
 }
@@ -204,11 +208,31 @@ fn at(terms: &[Term], x: &[f64], dim: usize) -> [f64; 3] {
 }
 
 /// How fast a sum of nodes moves.
-fn rate(terms: &[Term], v: &[f64], dim: usize) -> [f64; 3] {
+pub(crate) fn rate(terms: &[Term], v: &[f64], dim: usize) -> [f64; 3] {
     sum(terms, v, dim, 0.0)
 }
 
 impl RecordedBody {
+    /// Velocity of the centre (m/s) and angular velocity (rad/s, of a rod that across it) at positions `x` and velocities `v` of all
+    /// nodes.
+    pub fn velocity(&self, x: &[f64], v: &[f64], dim: usize) -> [Vector3<f64>; 2] {
+        let spin = match (&self.directions[..], dim) {
+            ([(_, terms)], _) => Vector3::from(at(terms, x, dim)).cross(&Vector3::from(rate(terms, v, dim))),
+            _ => self.turned(x, v).1,
+        };
+        [rate(&self.centre, v, dim).into(), spin]
+    }
+
+    /// Where its centre is at the positions `x` of all nodes in the world, in space, m.
+    pub fn place(&self, x: &[f64]) -> Vector3<f64> {
+        at(&self.centre, x, 3).into()
+    }
+
+    /// From body axes to the world's at the positions `x` of all nodes, in space.
+    pub fn orientation(&self, x: &[f64]) -> Matrix3<f64> {
+        self.turned(x, &vec![0.0; x.len()]).0.to_rotation_matrix().into_inner()
+    }
+
     /// Orientation and angular velocity in space.
     fn turned(&self, x: &[f64], v: &[f64]) -> (UnitQuaternion<f64>, Vector3<f64>) {
         let world: Vec<Vector3<f64>> = self.directions.iter().map(|(_, terms)| at(terms, x, 3).into()).collect();

@@ -1,11 +1,11 @@
 //! What is kept of a run: named columns in memory, one row per recorded step, and how the mechanism is drawn.
 
-mod channels;
+pub(crate) mod channels;
 mod recorder;
 mod scene;
 
 pub use channels::{Channels, RecordedBody, RecordedEffort, RecordedJoint, RecordedPoint};
-pub use recorder::{COLUMNS, Recorder};
+pub use recorder::{COLUMNS, Recorder, RecorderMark};
 pub use scene::{Anchor, Line, LineKind, PointKind, Scene, SceneBody, SceneJoint, ScenePoint, SceneShape};
 
 /// A table of columns of equal length; row 0 is the start.

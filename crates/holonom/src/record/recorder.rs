@@ -1,6 +1,7 @@
 //! An observer that records a run: the columns of `trajectory.csv`.
 
-use nalgebra::UnitQuaternion;
+use nalgebra::{Quaternion, UnitQuaternion};
+use serde::{Deserialize, Serialize};
 
 use super::{Channels, Recording};
 use crate::simulation::{Observer, Simulation, Verdict};
@@ -10,6 +11,18 @@ use crate::system::System;
 pub const COLUMNS: [&str; 11] =
     ["t", "energy", "kinetic", "potential", "work", "dE_integrator", "dE_projection", "phi", "phi_dot", "phi_ddot", "iterations"];
 
+/// What a recording goes on from when a run is resumed.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RecorderMark {
+    /// Steps seen, the start included.
+    seen: u64,
+    /// ΔE_i and ΔE_p since the last row, J, and those in it.
+    since: [f64; 2],
+    last: [f64; 2],
+    /// Quaternions (w, x, y, z) of the bodies in the last row, of two signs the one near the row before.
+    orientations: Vec<[f64; 4]>,
+}
+
 /// Records the start, every `every`-th step and nothing else. ΔE_i and ΔE_p of the steps between are summed into the
 /// row that follows them, so that the columns add up whatever is left out.
 pub struct Recorder<'a> {
@@ -18,6 +31,8 @@ pub struct Recorder<'a> {
     seen: u64,
     /// ΔE_i and ΔE_p since the last row, J.
     since: [f64; 2],
+    last: [f64; 2],
+    resumed: bool,
     has_reactions: bool,
     orientations: Vec<UnitQuaternion<f64>>,
     row: Vec<f64>,
@@ -40,9 +55,26 @@ impl<'a> Recorder<'a> {
             every: every.max(1),
             seen: 0,
             since: [0.0; 2],
+            last: [0.0; 2],
+            resumed: false,
             has_reactions: reactions,
             recording,
         }
+    }
+
+    /// Goes on from an earlier recording of the same model, where the run is resumed.
+    pub fn resume(mut self, mark: &RecorderMark) -> Self {
+        (self.seen, self.since, self.last, self.resumed) = (mark.seen, mark.since, mark.last, true);
+        for (own, [w, x, y, z]) in self.orientations.iter_mut().zip(&mark.orientations) {
+            *own = UnitQuaternion::new_unchecked(Quaternion::new(*w, *x, *y, *z));
+        }
+        self
+    }
+
+    /// What a resumed recording goes on from.
+    pub fn mark(&self) -> RecorderMark {
+        let orientations = self.orientations.iter().map(|q| [q.w, q.i, q.j, q.k]).collect();
+        RecorderMark { seen: self.seen, since: self.since, last: self.last, orientations }
     }
 
     /// What was recorded so far.
@@ -59,8 +91,8 @@ impl<'a> Recorder<'a> {
         let (audit, state) = (simulation.audit(), simulation.state());
         self.row.clear();
         let lift = audit.lift;
-        self.row.extend([state.t, audit.energy() + lift, audit.kinetic, audit.potential + lift, audit.work, self.since[0], self.since[1]]);
-        self.since = [0.0; 2];
+        let [integrator, projection] = self.last;
+        self.row.extend([state.t, audit.energy() + lift, audit.kinetic, audit.potential + lift, audit.work, integrator, projection]);
         self.row.extend([audit.phi, audit.phi_dot, audit.phi_ddot, audit.iterations as f64]);
         self.channels.motion(simulation, &mut self.orientations, &mut self.row);
         let gauges = simulation.gauges();
@@ -75,9 +107,17 @@ impl<'a> Recorder<'a> {
 
 impl Observer for Recorder<'_> {
     fn after_step(&mut self, simulation: &Simulation<'_>) -> Verdict {
+        if std::mem::take(&mut self.resumed) {
+            // Where the run was left, that row is the first once more.
+            if (self.seen.max(1) - 1).is_multiple_of(self.every) {
+                self.record(simulation);
+            }
+            return Verdict::GoOn;
+        }
         self.since[0] += simulation.audit().integrator;
         self.since[1] += simulation.audit().projection;
         if self.seen.is_multiple_of(self.every) {
+            self.last = std::mem::take(&mut self.since);
             self.record(simulation);
         }
         self.seen += 1;

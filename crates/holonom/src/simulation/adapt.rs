@@ -1,20 +1,28 @@
 //! Steps by accuracy at work: attempts, rejected ones taken back, and results between the steps of integrators with dense
 //! output.
 
+use serde::{Deserialize, Serialize};
+
 use super::control::Control;
-use super::{Audit, Method, Simulation, State};
-use crate::formulation::Failure;
+use super::{Audit, Method, Simulation, State, start};
+use crate::formulation::{Failure, INDEPENDENT, Independence};
 use crate::integrator::{Estimate, Step, Work};
 use crate::projection::{Metric, Projection, Solve};
+use crate::system::{GaugeValues, Measured, System};
 
 /// Smallest step over the length of the run that an accuracy may ask for: below it times no longer tell steps apart.
 const SMALLEST_SHARE: f64 = 1e-13;
 
-/// A state, the velocities and accelerations shown of it, and what is booked of the run up to it.
-struct Moment {
+/// Share of itself that a row adds to the others below which it adds nothing.
+const LEAST_SHARE: f64 = 1e-10;
+
+/// A state, what is shown and measured of it, and what is booked of the run up to it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Moment {
     state: State,
     v: Vec<f64>,
     a: Vec<f64>,
+    measured: Measured,
     audit: Audit,
 }
 
@@ -23,6 +31,7 @@ impl Moment {
         self.state.copy_from(&simulation.state);
         self.v.copy_from_slice(&simulation.shown_v);
         self.a.copy_from_slice(&simulation.shown_a);
+        self.measured.keep(&simulation.gauges);
         self.audit.clone_from(&simulation.audit);
     }
 
@@ -31,6 +40,7 @@ impl Moment {
         simulation.state.copy_from(&self.state);
         simulation.shown_v.copy_from_slice(&self.v);
         simulation.shown_a.copy_from_slice(&self.a);
+        simulation.gauges.restore(&self.measured);
         simulation.audit.clone_from(&self.audit);
         let work = &mut simulation.work;
         work.start.at.functions.angle.copy_from_slice(&self.state.angle);
@@ -50,14 +60,140 @@ pub(super) struct Pilot {
     before: Moment,
     front: Moment,
     last: Option<(Step, f64)>,
+    /// How independent rows are, and how many are redundant at the start.
+    independence: Independence,
+    redundant: usize,
+    patience: Patience,
+    /// Times at which steps end, as something changes abruptly there, s.
+    switches: Vec<f64>,
+}
+
+/// How attempts at steps have gone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Patience {
+    /// Rejected one after the other.
+    rejected: u32,
+    /// Attempts since `since` (s).
+    attempts: u32,
+    since: f64,
+}
+
+/// So many steps rejected one after the other are no matter of length: the motion is another one, and what was kept of the steps
+/// before says nothing.
+const RESTART: u32 = 3;
+
+/// Attempts between looks at how far they have come, and the share of the run that each must come on average.
+const LOOK: u32 = 2000;
+const CRAWL: f64 = 1e-9;
+
+impl Pilot {
+    pub(super) fn new(system: &System, method: &Method, state: &State, gauges: &GaugeValues, audit: &Audit) -> Option<Box<Self>> {
+        let mut measured = Measured::default();
+        measured.keep(gauges);
+        let moment =
+            || Moment { state: state.clone(), v: state.v.clone(), a: state.a.clone(), measured: measured.clone(), audit: audit.clone() };
+        let control = Control::new(method.accuracy?, method.order(), method.integrator.estimate, system.coordinates());
+        let mut independence = Independence::new(system);
+        let redundant = independence.measure(system, &state.x, state.t).iter().filter(|share| **share <= INDEPENDENT).count();
+        let smooth = smoothing(method);
+        Some(Box::new(Self {
+            control,
+            end: state.t,
+            smooth,
+            v: state.v.clone(),
+            before: moment(),
+            front: moment(),
+            last: None,
+            independence,
+            redundant,
+            patience: Patience::default(),
+            switches: Vec::new(),
+        }))
+    }
+}
+
+/// What a pilot goes on from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Flight {
+    control: Control,
+    end: f64,
+    v: Vec<f64>,
+    before: Moment,
+    front: Moment,
+    /// Length of the last step, where one was taken, s.
+    length: Option<f64>,
+    redundant: usize,
+    patience: Patience,
 }
 
 impl Pilot {
-    pub(super) fn new(method: &Method, state: &State, audit: &Audit, coordinates: usize) -> Option<Box<Self>> {
-        let moment = || Moment { state: state.clone(), v: state.v.clone(), a: state.a.clone(), audit: audit.clone() };
-        let control = Control::new(method.accuracy?, method.order(), method.integrator.estimate, coordinates);
-        let smooth = smoothing(method);
-        Some(Box::new(Self { control, end: state.t, smooth, v: state.v.clone(), before: moment(), front: moment(), last: None }))
+    /// The next time after `t` at which something changes abruptly.
+    fn next_switch(&self, t: f64) -> Option<f64> {
+        self.switches.get(self.switches.partition_point(|switch| *switch <= t)).copied()
+    }
+
+    /// The error of the last step over what is allowed. Where it is too large it is looked at once more: rows that hardly differ
+    /// from others, but for those that are redundant anyway, make more of round-off, and shorter steps all the more.
+    fn ratio(&mut self, simulation: &mut Simulation<'_>, taken: &Step, step: f64) -> f64 {
+        let (t, work) = (simulation.state.t, &mut simulation.work);
+        let ratio = self.control.ratio(taken, step, t, &self.v, 1.0, work);
+        // Errors of explicit schemes grow there, too.
+        if ratio <= 1.0 || simulation.method.integrator.is_explicit() {
+            return ratio;
+        }
+        self.independence.measure(simulation.system, &simulation.state.x, t);
+        let weakest = self.independence.weakest(self.redundant).max(LEAST_SHARE);
+        self.control.ratio(taken, step, t, &self.v, 1.0 / weakest.sqrt(), work)
+    }
+
+    /// All energy there was to move up to where integration has come, J.
+    pub(super) fn supply(&self) -> f64 {
+        self.front.audit.supply()[1]
+    }
+
+    /// Whether attempts have come nowhere: at this pace the run never ends.
+    fn crawls(&mut self, t: f64) -> bool {
+        let Patience { attempts, since, .. } = &mut self.patience;
+        *attempts += 1;
+        if *attempts % LOOK != 0 {
+            return false;
+        }
+        let crawls = t - *since < f64::from(LOOK) * CRAWL * self.control.span;
+        *since = t;
+        crawls
+    }
+
+    pub(super) fn flight(&self) -> Flight {
+        let length = self.last.map(|(_, length)| length);
+        let (control, v) = (self.control.clone(), self.v.clone());
+        Flight {
+            control,
+            end: self.end,
+            v,
+            before: self.before.clone(),
+            front: self.front.clone(),
+            length,
+            redundant: self.redundant,
+            patience: self.patience,
+        }
+    }
+
+    /// Goes on from there. An integrator with dense output takes the last step once more, to know what is inside it.
+    pub(super) fn take_over(&mut self, flight: Flight, simulation: &mut Simulation<'_>) {
+        let Flight { control, end, v, before, front, length, redundant, patience } = flight;
+        (self.redundant, self.patience) = (redundant, patience);
+        (self.control, self.end, self.v, self.before, self.front) = (control, end, v, before, front);
+        simulation.work.estimate.allowed = self.control.allowed();
+        if let (Some(length), true) = (length, simulation.method.integrator.dense) {
+            self.before.restore(simulation);
+            self.last = simulation.substep(length, self.front.state.t).ok().map(|taken| (taken, length));
+            if let Some((taken, length)) = self.last {
+                self.before.restore(simulation);
+                // What is inside the step is known then, as it is where something was read there.
+                let middle = self.before.state.t + 0.5 * length;
+                let _ = simulation.interpolate(middle, taken, length);
+            }
+        }
     }
 }
 
@@ -77,6 +213,12 @@ impl Simulation<'_> {
     /// Begins to choose steps for a run to `end` (s).
     pub(super) fn begin_adapting(&mut self, end: f64) {
         let Some(mut pilot) = self.pilot.take() else { return };
+        pilot.switches = self.system.switch_times(end);
+        if pilot.end == end {
+            self.work.estimate.allowed = pilot.control.allowed();
+            self.pilot = Some(pilot);
+            return;
+        }
         pilot.end = end;
         pilot.v.copy_from_slice(&self.shown_v);
         pilot.control.begin(&self.state, &pilot.v, end - self.state.t, self.work.scales.length);
@@ -88,11 +230,13 @@ impl Simulation<'_> {
     /// Goes to `target` in equal steps no longer than the accuracy allows.
     pub(super) fn land(&mut self, target: f64, pilot: &mut Pilot) -> Result<(), Failure> {
         while self.state.t < target {
-            let left = target - self.state.t;
+            let stop = pilot.next_switch(self.state.t).map_or(target, |switch| switch.min(target));
+            let left = stop - self.state.t;
             let parts = (left / pilot.control.step - 1e-9).ceil().max(1.0);
             let step = left / parts;
-            self.attempt(step, if parts == 1.0 { target } else { self.state.t + step }, pilot)?;
+            self.attempt(step, if parts == 1.0 { stop } else { self.state.t + step }, pilot)?;
         }
+        self.state.t = target;
         Ok(())
     }
 
@@ -103,10 +247,11 @@ impl Simulation<'_> {
         let mut outcome = Ok(());
         while self.state.t < target && outcome.is_ok() {
             // The last two steps are alike.
-            let left = pilot.end - self.state.t;
+            let stop = pilot.next_switch(self.state.t).map_or(pilot.end, |switch| switch.min(pilot.end));
+            let left = stop - self.state.t;
             let parts = (left / pilot.control.step - 1e-9).ceil().max(1.0);
             let step = if parts <= 2.0 { left / parts } else { pilot.control.step };
-            outcome = self.attempt(step, if parts == 1.0 { pilot.end } else { self.state.t + step }, pilot);
+            outcome = self.attempt(step, if parts == 1.0 { stop } else { self.state.t + step }, pilot);
         }
         pilot.front.keep(self);
         if self.state.t > target
@@ -134,7 +279,7 @@ impl Simulation<'_> {
 
     /// One attempt at a step; a step whose error is too large, or that fails, is taken back and the next one shorter.
     fn attempt(&mut self, step: f64, target: f64, pilot: &mut Pilot) -> Result<(), Failure> {
-        if step < SMALLEST_SHARE * pilot.control.span {
+        if step < SMALLEST_SHARE * pilot.control.span || pilot.crawls(self.state.t) {
             return Err(Failure::TooSmall);
         }
         pilot.before.keep(self);
@@ -142,20 +287,42 @@ impl Simulation<'_> {
             self.smooth(step, pilot)?;
             Ok(taken)
         });
-        let ratio = match &outcome {
-            Ok(taken) => pilot.control.ratio(taken, step, self.state.t, &pilot.v, &mut self.work),
-            Err(_) => f64::INFINITY,
-        };
+        let ratio = outcome.as_ref().map_or(f64::INFINITY, |taken| pilot.ratio(self, taken, step));
         if let (Ok(taken), true) = (outcome, ratio <= 1.0) {
             pilot.control.remember(self.state.t, &pilot.v);
             pilot.control.accept(step, ratio);
             pilot.last = Some((taken, step));
+            pilot.patience.rejected = 0;
+            if pilot.switches.contains(&self.state.t) {
+                self.pass_switch();
+                pilot.control.begin_anew(&self.state, &pilot.v);
+            }
             return Ok(());
         }
         pilot.before.restore(self);
         self.audit.reject(&self.newton);
         pilot.control.reject(step, ratio);
+        pilot.patience.rejected += 1;
+        if pilot.patience.rejected == RESTART {
+            self.state.memory.fill(0.0);
+        }
         Ok(())
+    }
+
+    /// Goes to just behind a time where something changes abruptly, with the accelerations there, and without what was kept of the
+    /// steps before.
+    fn pass_switch(&mut self) {
+        self.state.t = self.state.t.next_up().next_up();
+        self.state.memory.fill(0.0);
+        let (system, work, t) = (self.system, &mut self.work, self.state.t);
+        self.state.load(work);
+        system.place_known(t, &mut work.end.x, &mut work.end.v, &mut work.a);
+        system.evaluate(&self.state.x, t, &work.start.at, &mut work.end.at);
+        if start::accelerate(system, &self.method, t, &mut self.newton, work).is_ok() {
+            self.state.a.copy_from_slice(&work.a);
+            self.state.lambda.copy_from_slice(&work.lambda);
+            self.audit.change_power(system, &self.state, work);
+        }
     }
 
     /// The velocities that errors are estimated from: those shown, or where the method leaves them off the constraints

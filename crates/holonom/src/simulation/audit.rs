@@ -1,5 +1,7 @@
 //! The energy balance of every step (20)–(30), violations, momenta and work counters.
 
+use serde::{Deserialize, Serialize};
+
 use super::{EnergySummary, MomentumSummary, ViolationSummary, WorkSummary};
 use super::{Method, State};
 use crate::energy;
@@ -8,7 +10,7 @@ use crate::integrator::{Step, Work};
 use crate::system::System;
 
 /// Everything that is booked of a run. Energies in J; sums over parts of a step where it was taken in parts.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Audit {
     /// T and V at the present state.
     pub kinetic: f64,
@@ -51,7 +53,7 @@ pub struct Audit {
 }
 
 /// What was booked at the start of a nominal step.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Mark {
     energy: f64,
     work: f64,
@@ -79,7 +81,8 @@ impl Audit {
             energy::potential(system, &work.forces.weight, &state.x, &work.end.at, penalty.map(|alpha| (alpha, work.phi.as_slice())));
         let kinetic = energy::kinetic(system, &state.v);
         let nodes = work.forces.weight.chunks_exact(system.dim).zip(&system.is_point).filter(|(_, is_point)| **is_point);
-        let lift = nodes.flat_map(|(weight, _)| weight.iter().zip(system.origin).map(|(weight, origin)| weight * origin)).sum();
+        let lift: f64 = nodes.flat_map(|(weight, _)| weight.iter().zip(system.origin).map(|(weight, origin)| weight * origin)).sum();
+        let lift = lift + system.fixed_energy;
         let momenta = energy::momenta(system, &state.x, &state.v, &mut work.full);
         let mut kept_momenta = [true; 6];
         energy::drop_driven_momenta(system, work, &state.x, &mut kept_momenta);
@@ -155,6 +158,11 @@ impl Audit {
         own.position = own.position.max(other.position);
         own.velocity = own.velocity.max(other.velocity);
         own.acceleration = own.acceleration.max(other.acceleration);
+    }
+
+    /// Goes on with the power at a state where forces have changed abruptly; `work` has them.
+    pub(super) fn change_power(&mut self, system: &System, state: &State, work: &mut Workspace) {
+        self.power = energy::power(system, state.t, &state.v, &state.a, work);
     }
 
     /// Books a step that was taken back, and the iterations that it took.

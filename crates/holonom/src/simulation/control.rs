@@ -1,5 +1,7 @@
 //! Steps from an accuracy: local errors are kept so small that over the run they add up to it (methods §7).
 
+use serde::{Deserialize, Serialize};
+
 use super::State;
 use crate::formulation::Workspace;
 use crate::integrator::{Estimate, Step};
@@ -25,6 +27,7 @@ const LEAST: f64 = 1e-6;
 const WORTH: f64 = 1.2;
 
 /// What decides on the length of steps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Control {
     accuracy: f64,
     /// Order of the method, and that of the last step.
@@ -78,6 +81,17 @@ impl Control {
         }
     }
 
+    /// Begins anew at a state with velocities `v`, where something changes abruptly: of what came before nothing tells what comes,
+    /// and a step of a tenth asks.
+    pub(super) fn begin_anew(&mut self, state: &State, v: &[f64]) {
+        let n = self.start.len();
+        self.start.copy_from_slice(&state.a[..n]);
+        self.count = 0;
+        self.remember(state.t, v);
+        self.step *= 0.1;
+        self.last_ratio = 1.0;
+    }
+
     /// Local errors that are allowed, over the size of the mechanism and the step, 1/s.
     pub(super) fn allowed(&self) -> f64 {
         self.accuracy / self.span
@@ -94,16 +108,23 @@ impl Control {
         self.speed = largest(v).max(self.speed);
     }
 
-    /// The error of a step of length `h` to the time `t` and velocities `v` over what is allowed.
-    pub(super) fn ratio(&mut self, taken: &Step, h: f64, t: f64, v: &[f64], work: &mut Workspace) -> f64 {
+    /// The error of a step of length `h` to the time `t` and velocities `v` over what is allowed. `amplified` says how many times
+    /// larger round-off is than that of a number: near a singular position.
+    pub(super) fn ratio(&mut self, taken: &Step, h: f64, t: f64, v: &[f64], amplified: f64, work: &mut Workspace) -> f64 {
         let [order, estimated] = taken.estimate.unwrap_or([2; 2]);
         if self.estimate == Estimate::History {
             self.look_back(h, t, v, work);
         }
         let error = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::INFINITY } else { m.max(x.abs()) });
-        let position = error(&work.estimate.q) / work.scales.length;
-        let velocity = error(&work.estimate.v) / self.speed;
-        let is_noise = position <= ROUND_OFF && velocity <= ROUND_OFF * (work.scales.length / (h * self.speed)).max(1.0);
+        let noise = ROUND_OFF * amplified;
+        let above = |error: f64, noise: f64| if error > noise { error } else { 0.0 };
+        let mut position = error(&work.estimate.q) / work.scales.length;
+        let mut velocity = error(&work.estimate.v) / self.speed;
+        let of_velocity = noise * (work.scales.length / (h * self.speed)).max(1.0);
+        let is_noise = position <= noise && velocity <= of_velocity;
+        if amplified > 1.0 {
+            (position, velocity) = (above(position, noise), above(velocity, of_velocity));
+        }
         // The estimate of a lower order shows how many times shorter than the motion's own time the step is; the error is
         // that to a higher power.
         let order = order.min(self.order);

@@ -2,6 +2,7 @@
 
 mod adapt;
 mod audit;
+mod checkpoint;
 mod control;
 mod method;
 mod promise;
@@ -12,6 +13,7 @@ mod summary;
 mod words;
 
 pub use audit::Audit;
+pub use checkpoint::Checkpoint;
 pub use method::{
     Choice, LEVELS, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, OMEGA, PENALTY, ProjectionChoice, TOLERANCE, XI, combinations,
 };
@@ -26,6 +28,7 @@ use crate::formulation::{Failure, Iteration, Newton, Workspace};
 use crate::integrator::{Integrator, Step};
 use crate::system::{GaugeValues, System};
 use adapt::Pilot;
+use checkpoint::Grid;
 use promise::Judge;
 
 /// Why words do not make a method.
@@ -98,10 +101,13 @@ pub struct Simulation<'a> {
     judge: Judge,
     start: Start,
     step: f64,
+    grid: Grid,
     steps: u64,
     /// What chooses the steps by accuracy.
     pilot: Option<Box<Pilot>>,
+    /// Measured at the present state, and at the end of the step that is tried.
     gauges: GaugeValues,
+    next_gauges: GaugeValues,
     /// Multipliers (r) and accelerations (D × nodes) of the index-1 system at the present state, where they are wanted.
     reactions: Option<Reactions>,
 }
@@ -120,21 +126,6 @@ impl<'a> Simulation<'a> {
         Ok(Self { start, ..Self::assemble(system, method, integrator, step, newton, work, state) })
     }
 
-    /// Goes on from a state of an earlier run of the same system. `None` when the state is of another size.
-    pub fn resume(system: &'a System, method: Method, step: f64, state: State) -> Option<Self> {
-        let integrator = (method.integrator.make)(system, &method.settings, method.parameters);
-        if !state.fits(system) || state.memory.len() != integrator.memory(system) {
-            return None;
-        }
-        let mut work = Workspace::new(system);
-        work.level = method.settings.level;
-        work.memory = state.memory.clone();
-        state.load(&mut work);
-        system.evaluate_again(&state.x, state.t, &mut work.start.at);
-        let newton = Newton::new(system, method.settings);
-        Some(Self::assemble(system, method, integrator, step, newton, work, state))
-    }
-
     fn assemble(
         system: &'a System,
         method: Method,
@@ -147,8 +138,9 @@ impl<'a> Simulation<'a> {
         let audit = Audit::new(system, &method, &mut work, &state);
         let mut gauges = system.gauge_values();
         system.measure(&state.x, &state.v, &mut gauges);
-        let pilot = Pilot::new(&method, &state, &audit, system.coordinates());
+        let pilot = Pilot::new(system, &method, &state, &gauges, &audit);
         Self {
+            grid: Grid::new(state.t, step),
             integrator,
             shown_v: state.v.clone(),
             shown_a: state.a.clone(),
@@ -165,6 +157,7 @@ impl<'a> Simulation<'a> {
             step,
             steps: 0,
             pilot,
+            next_gauges: gauges.clone(),
             gauges,
             reactions: None,
         }
@@ -175,12 +168,11 @@ impl<'a> Simulation<'a> {
         if observer.after_step(self) == Verdict::Stop {
             return self.interrupted();
         }
-        let first = self.state.t;
         self.begin_adapting(end);
-        let count = ((end - first) / self.step - 1e-9).ceil().max(0.0) as u64;
-        for k in 1..=count {
-            let target = if k == count { end } else { first + k as f64 * self.step };
+        while self.state.t < end {
+            let target = self.grid.next(self.state.t, end);
             if let Err(failure) = self.advance(target) {
+                self.grid.back();
                 return Status::Stopped { at: self.state.t, reason: self.reason(failure) };
             }
             if observer.after_step(self) == Verdict::Stop {
@@ -210,8 +202,9 @@ impl<'a> Simulation<'a> {
             }
         }
         let h = self.state.t - from;
-        self.judge.whole(h, &self.audit, &self.work)?;
-        self.judge.supply(h, &self.audit, &self.work)?;
+        self.judge.whole(self.system, h, &self.audit, &self.work)?;
+        let known = self.pilot.as_ref().map_or(0.0, |pilot| pilot.supply());
+        self.judge.supply(h, known, &self.audit, &self.work)?;
         self.steps += 1;
         self.audit.end_step(self.system, &mut self.work, &self.state, self.steps);
         self.react();
@@ -280,7 +273,10 @@ impl<'a> Simulation<'a> {
         self.judge.accelerations(step, work)?;
         self.judge.energy(system, step, &self.audit, &audit, work)?;
         // A part that takes the nominal step out of its bound can be taken again.
-        self.judge.whole(step, &audit, work)?;
+        self.judge.whole(system, step, &audit, work)?;
+        self.next_gauges.copy_from(&self.gauges);
+        system.measure(&work.end.x, &work.end.v, &mut self.next_gauges);
+        self.judge.turns(system, step, &self.gauges, &self.next_gauges)?;
         self.commit(audit, step, target);
         Ok(taken)
     }
@@ -302,7 +298,7 @@ impl<'a> Simulation<'a> {
             self.state.a.copy_from_slice(&work.a);
         }
         std::mem::swap(&mut work.start.at, &mut work.end.at);
-        self.system.measure(&self.state.x, &self.shown_v, &mut self.gauges);
+        std::mem::swap(&mut self.gauges, &mut self.next_gauges);
     }
 
     fn reason(&mut self, failure: Failure) -> String {

@@ -1,12 +1,15 @@
 //! Forces of the constraints, by the index-1 system (3) at the states shown (methods §1.5).
 
-use super::Simulation;
 use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+use super::Simulation;
 
 use crate::system::{NodeId, System};
 
 /// Forces of the constraints at a state, of the order of its positions and velocities.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Reactions {
     /// Multipliers λ (r).
     pub lambda: Vec<f64>,
@@ -17,8 +20,12 @@ pub struct Reactions {
 }
 
 impl Simulation<'_> {
-    /// Has the forces of the constraints found at the start and at every nominal step.
+    /// Has the forces of the constraints found at the start and at every nominal step. A run that is resumed has them already
+    /// where the one before had them.
     pub fn find_reactions(&mut self) {
+        if self.reactions.is_some() {
+            return;
+        }
         let (r, all) = (self.system.constraints(), self.state.x.len());
         self.reactions = Some(Reactions { lambda: vec![0.0; r], a: vec![0.0; all], force: vec![0.0; all] });
         self.react();

@@ -10,7 +10,7 @@ use crate::system::System;
 pub struct Start {
     /// Largest move of a coordinate, m; zero when the model met its constraints.
     pub moved: f64,
-    /// Largest change of a velocity, m/s.
+    /// Largest change of the velocity of a node, m/s.
     pub turned: f64,
 }
 
@@ -55,7 +55,8 @@ pub(super) fn prepare(system: &System, method: &Method, newton: &mut Newton, wor
     let mut start = Start::default();
     correct_positions(system, newton, work, &mut start)?;
     correct_velocities(system, newton, work, &mut start)?;
-    accelerate(system, method, newton, work)?;
+    work.lambda.fill(0.0);
+    accelerate(system, method, 0.0, newton, work)?;
     work.start.at.copy_from(&work.end.at);
     Ok(start)
 }
@@ -86,7 +87,8 @@ fn correct_positions(system: &System, newton: &mut Newton, work: &mut Workspace,
     }
 }
 
-/// Velocity projection with A = M (10).
+/// The velocities on their constraints that change those of all parts as written least, in the metric of the mass: a velocity
+/// projection with A = M (10), of what parts that share nodes have as well.
 fn correct_velocities(system: &System, newton: &mut Newton, work: &mut Workspace, start: &mut Start) -> Result<(), StartError> {
     let n = system.coordinates();
     if !newton.factor_inertia(work) {
@@ -99,7 +101,8 @@ fn correct_velocities(system: &System, newton: &mut Newton, work: &mut Workspace
         violation = work.rows.iter().zip(&work.scales.gradient).fold(0.0, |m, (row, scale)| f64::max(m, row.abs() / scale));
         // What rows ask for that move is a velocity, too.
         size = size.max(violation);
-        if violation <= ROUND_OFF * size {
+        let differ = before.is_infinite() && system.start_impulse.iter().any(|impulse| *impulse != 0.0);
+        if violation <= ROUND_OFF * size && !differ {
             break;
         }
         if violation > SLOW * before {
@@ -110,6 +113,9 @@ fn correct_velocities(system: &System, newton: &mut Newton, work: &mut Workspace
             is_sharp = true;
         }
         newton.unknowns[..n].fill(0.0);
+        if differ {
+            newton.unknowns[..n].copy_from_slice(&system.start_impulse);
+        }
         newton.unknowns[n..].iter_mut().zip(&work.rows).for_each(|(unknown, rate)| *unknown = -rate);
         newton.kkt.solve(&mut newton.unknowns);
         work.end.v[..n].iter_mut().zip(&newton.unknowns).for_each(|(v, step)| *v += step);
@@ -122,11 +128,10 @@ fn correct_velocities(system: &System, newton: &mut Newton, work: &mut Workspace
 }
 
 /// Accelerations and multipliers by the formulation, or where it gives none by the index-1 system (3).
-fn accelerate(system: &System, method: &Method, newton: &mut Newton, work: &mut Workspace) -> Result<(), StartError> {
-    work.lambda.fill(0.0);
+pub(super) fn accelerate(system: &System, method: &Method, t: f64, newton: &mut Newton, work: &mut Workspace) -> Result<(), StartError> {
     let outcome = match method.formulation.gives_accelerations() {
-        true => newton.accelerate(system, 0.0, work),
-        false => newton.react(system, 0.0, work),
+        true => newton.accelerate(system, t, work),
+        false => newton.react(system, t, work),
     };
     outcome.map_err(|_| StartError::Acceleration)
 }

@@ -1,11 +1,13 @@
 //! Numbers of a moment: what a step starts from and leaves.
 
+use serde::{Deserialize, Serialize};
+
 use crate::formulation::Workspace;
 use crate::integrator::{Differences, extrapolate, is_same_length};
 use crate::system::System;
 
-/// Numbers of a moment. A clone is a checkpoint.
-#[derive(Clone, Debug, PartialEq)]
+/// Numbers of a moment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// s
     pub t: f64,

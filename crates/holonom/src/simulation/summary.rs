@@ -1,6 +1,6 @@
 //! The summary of a run: the keys of `summary.json`.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Everything a run is judged by. Keys are stable; additions are allowed.
 #[derive(Clone, Debug, Serialize)]
@@ -83,7 +83,7 @@ pub struct MomentumSummary {
 }
 
 /// Largest 2-norm over the run.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ViolationSummary {
     pub position: f64,
     pub velocity: f64,

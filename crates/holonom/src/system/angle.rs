@@ -1,12 +1,15 @@
 //! Angles by their cosine and sine, counted over any number of turns.
 
+use std::f64::consts::TAU;
+
 use super::Derivatives;
 
-/// θ with (c, s) = ρ (cos θ, sin θ), nearest to `near`, and its derivatives by c and s.
+/// θ with (c, s) = ρ (cos θ, sin θ), nearest to `near`, and its derivatives by c and s. Of `near` only the turns are in the
+/// result, so that it is the same to the bit from wherever they are counted on.
 pub(super) fn angle_at(c: f64, s: f64, near: f64) -> Derivatives {
-    let (sin, cos) = near.sin_cos();
-    let square = c * c + s * s;
-    let mut out = Derivatives { value: near + (s * cos - c * sin).atan2(c * cos + s * sin), ..Derivatives::default() };
+    let (angle, square) = (s.atan2(c), c * c + s * s);
+    let turns = ((near - angle) / TAU).round();
+    let mut out = Derivatives { value: angle + turns * TAU, ..Derivatives::default() };
     out.gradient[..2].copy_from_slice(&[-s / square, c / square]);
     let (twist, bend) = (2.0 * c * s / (square * square), (s * s - c * c) / (square * square));
     out.hessian[0][..2].copy_from_slice(&[twist, bend]);

@@ -64,10 +64,47 @@ pub struct SystemBuilder {
     laws: Vec<LawEntry>,
     loads: Vec<LoadEntry>,
     motions: Vec<[Arc<dyn Signal>; 3]>,
+    switches: Vec<Arc<dyn Signal>>,
     directions: Vec<u32>,
     position: Vec<f64>,
     velocity: Vec<f64>,
+    /// Parts that are written with velocities of their own.
+    moving: Vec<Moving>,
+    /// Σ m x of what has weight at places that never move, kg·m.
+    fixed_moment: [f64; 3],
     size: f64,
+}
+
+/// A part of the mass matrix with the velocity of its second node as it is written for this part.
+struct Moving {
+    a: u32,
+    b: Place,
+    block: MassBlock,
+    /// m/s
+    velocity: [f64; 3],
+}
+
+/// Gives each of the `free` nodes the velocity of the heaviest part there, beside which the momenta of light ones are not rounded
+/// away, and finds what the momentum of all parts is more than that of the nodes then, N·s.
+fn share_velocities(dim: usize, free: usize, moving: &[Moving], velocities: &mut [f64]) -> Vec<f64> {
+    let mut heaviest = vec![0.0; free];
+    for Moving { a, b, block, velocity } in moving {
+        let node = *a as usize;
+        if *b == Place::Node(NodeId(*a)) && node < free && block.m > heaviest[node] {
+            heaviest[node] = block.m;
+            velocities[node * dim..(node + 1) * dim].copy_from_slice(&velocity[..dim]);
+        }
+    }
+    let mut impulse = vec![0.0; free * dim];
+    for Moving { a, b, block, velocity } in moving.iter().filter(|part| (part.a as usize) < free) {
+        let mut more = *velocity;
+        if let Place::Node(b) = b {
+            more.iter_mut().zip(&velocities[b.index() * dim..(b.index() + 1) * dim]).for_each(|(more, own)| *more -= own);
+        }
+        let push = [block.m * more[0] - block.s * more[1], block.m * more[1] + block.s * more[0], block.m * more[2]];
+        impulse[*a as usize * dim..].iter_mut().zip(push).take(dim).for_each(|(sum, push)| *sum += push);
+    }
+    impulse
 }
 
 /// So many times farther away than large, a mechanism is counted from its own middle.
@@ -92,9 +129,12 @@ impl SystemBuilder {
             laws: Vec::new(),
             loads: Vec::new(),
             motions: Vec::new(),
+            switches: Vec::new(),
             directions: Vec::new(),
             position: Vec::new(),
             velocity: Vec::new(),
+            moving: Vec::new(),
+            fixed_moment: [0.0; 3],
             size: 0.0,
         }
     }
@@ -143,11 +183,22 @@ impl SystemBuilder {
     }
 
     /// Adds `m` (kg) of points to the entries (a, b) and (b, a) of the mass matrix, once when a = b, and its weight to
-    /// both. What belongs to a fixed place never moves; only its share of the weight of the other is kept.
+    /// both. What belongs to a fixed place never moves: of it only the weight is kept.
     pub fn mass(&mut self, a: Place, b: Place, m: f64) {
         self.inertia(a, b, m, 0.0);
-        let ends = if a == b { vec![a] } else { vec![a, b] };
-        ends.into_iter().for_each(|end| self.weight((end, 1.0).into(), m));
+        let pairs = if a == b { vec![(a, b)] } else { vec![(a, b), (b, a)] };
+        for (a, b) in pairs {
+            self.weight((a, 1.0).into(), m);
+            self.moves(a, b, m, 0.0, self.velocity_of(b));
+        }
+    }
+
+    fn velocity_of(&self, place: Place) -> [f64; 3] {
+        let mut velocity = [0.0; 3];
+        if let Place::Node(node) = place {
+            velocity[..self.dim].copy_from_slice(&self.velocity[node.index() * self.dim..(node.index() + 1) * self.dim]);
+        }
+        velocity
     }
 
     /// Adds the block m 1 + s J (kg) to (a, b) of the mass matrix, and its transpose to (b, a), without weight. In space
@@ -161,10 +212,24 @@ impl SystemBuilder {
         }
     }
 
-    /// Adds the weight of `m` (kg) at f x + g J x to the forces on a node.
+    /// Says that at the start the part that has the block m 1 + s J (kg) between `a` and `b` in the mass matrix moves as if the
+    /// velocity of `b` were `velocity`, m/s. Where parts that share `b` are written with different velocities, the start changes
+    /// all of them as little as possible, in the metric of their masses.
+    pub fn moves(&mut self, a: Place, b: Place, m: f64, s: f64, velocity: [f64; 3]) {
+        if let Place::Node(a) = a {
+            self.moving.push(Moving { a: a.0, b, block: MassBlock { m, s }, velocity });
+        }
+    }
+
+    /// Adds the weight of `m` (kg) at f x + g J x to the forces on a node; at a place that never moves it only has an energy.
     pub fn weight(&mut self, term: Term, m: f64) {
-        if let Place::Node(node) = term.place {
-            self.weight.push((node.0, [m * term.factor, m * term.turn]));
+        match term.place {
+            Place::Node(node) => self.weight.push((node.0, [m * term.factor, m * term.turn])),
+            Place::Fixed(x) => {
+                let [f, g] = [m * term.factor, m * term.turn];
+                let parts = [f * x[0] - g * x[1], f * x[1] + g * x[0], f * x[2]];
+                self.fixed_moment.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
+            }
         }
     }
 
@@ -249,6 +314,11 @@ impl SystemBuilder {
         }
     }
 
+    /// Adds a function of time at whose zeros forces or motions change abruptly: steps by accuracy end there.
+    pub fn switch(&mut self, of_time: Arc<dyn Signal>) {
+        self.switches.push(of_time);
+    }
+
     /// Adds a load on nodes.
     pub fn load(&mut self, name: impl Into<String>, nodes: &[NodeId], load: Arc<dyn Load>) {
         self.loads.push(LoadEntry { name: name.into(), nodes: nodes.to_vec(), load });
@@ -307,6 +377,7 @@ impl SystemBuilder {
         let velocity_rows = (0..self.rows.len() as u32).filter(|&k| is_pfaffian(&self.rows[k as usize])).collect();
         let function_rows =
             (0..self.rows.len() as u32).filter(|&k| matches!(self.rows[k as usize].quantity, Quantity::Function(_))).collect();
+        let start_impulse = share_velocities(self.dim, self.free, &self.moving, &mut self.velocity);
         let mut system = System {
             weighing,
             is_point,
@@ -325,9 +396,12 @@ impl SystemBuilder {
             laws: self.laws,
             loads: self.loads,
             motions: self.motions,
+            switches: self.switches,
             row_names,
             start_position: self.position,
             start_velocity: self.velocity,
+            start_impulse,
+            fixed_energy: -(0..self.dim).map(|c| self.gravity[c] * self.fixed_moment[c]).sum::<f64>(),
             size: self.size,
             slots: Arc::default(),
             plans: Arc::default(),

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::Followed;
 use super::function::Part;
 use super::{FunctionValues, Functions, Invariants, System, SystemBuilder, Term};
@@ -37,6 +39,7 @@ pub(crate) struct Gauges {
     invariants: Invariants,
     functions: Functions,
     names: Vec<String>,
+    is_angle: Vec<bool>,
 }
 
 /// Values and rates of what a system measures.
@@ -51,9 +54,42 @@ pub struct GaugeValues {
     pub rate: Vec<f64>,
 }
 
+/// What is kept of measured values: from these measuring goes on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Measured {
+    value: Vec<f64>,
+    rate: Vec<f64>,
+    /// Angles with the turns they have been counted to, rad.
+    counted: Vec<f64>,
+}
+
+impl Measured {
+    pub fn keep(&mut self, values: &GaugeValues) {
+        self.value.clone_from(&values.value);
+        self.rate.clone_from(&values.rate);
+        self.counted.clone_from(&values.functions.angle);
+    }
+}
+
+impl GaugeValues {
+    /// Takes over what was measured before of the same system.
+    pub(crate) fn restore(&mut self, measured: &Measured) {
+        self.value.copy_from_slice(&measured.value);
+        self.rate.copy_from_slice(&measured.rate);
+        self.functions.angle.copy_from_slice(&measured.counted);
+    }
+
+    /// The same, of what was measured elsewhere.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.value.copy_from_slice(&other.value);
+        self.rate.copy_from_slice(&other.rate);
+        self.functions.angle.copy_from_slice(&other.functions.angle);
+    }
+}
+
 impl Gauges {
     pub fn new(dim: usize) -> Self {
-        Self { invariants: Invariants::new(dim), functions: Functions::default(), names: Vec::new() }
+        Self { invariants: Invariants::new(dim), functions: Functions::default(), names: Vec::new(), is_angle: Vec::new() }
     }
 
     pub fn move_origin(&mut self, is_point: &[bool], origin: [f64; 3]) {
@@ -64,6 +100,7 @@ impl Gauges {
         let part = form.part(&mut self.invariants);
         self.functions.add(&self.invariants, &[(part, 1.0)]);
         self.names.push(name);
+        self.is_angle.push(matches!(form, Form::Angle { .. }));
     }
 }
 
@@ -82,7 +119,7 @@ impl System {
 
     /// Room for what is measured; angles start between −π and π.
     pub fn gauge_values(&self) -> GaugeValues {
-        let Gauges { invariants, functions, names } = &self.gauges;
+        let Gauges { invariants, functions, names, .. } = &self.gauges;
         GaugeValues {
             invariants: vec![0.0; invariants.len()],
             gradient: vec![0.0; invariants.slots() * self.dim],
@@ -95,7 +132,7 @@ impl System {
     /// Measures at positions `x` and velocities `v` of all nodes. Angles are counted on from those measured last, less
     /// than half a turn away.
     pub fn measure(&self, x: &[f64], v: &[f64], out: &mut GaugeValues) {
-        let Gauges { invariants, functions, names } = &self.gauges;
+        let Gauges { invariants, functions, names, .. } = &self.gauges;
         if names.is_empty() {
             return;
         }
@@ -106,6 +143,17 @@ impl System {
             out.value[k] = local.value;
             out.rate[k] = functions.base_of(k).iter().zip(&local.gradient).map(|(&id, g)| g * self.slope(&out.gradient, id, v)).sum();
         }
+    }
+
+    /// The angle that turns most between two measurements `h` (s) apart, by its rates or by what was counted: its name, and by
+    /// how much, rad.
+    pub(crate) fn largest_turn(&self, h: f64, from: &GaugeValues, to: &GaugeValues) -> Option<(usize, f64)> {
+        let turn = |k: usize| {
+            let rates = from.rate[k].abs().max(to.rate[k].abs());
+            (k, (rates * h.abs()).max((to.value[k] - from.value[k]).abs()))
+        };
+        let angles = (0..self.gauges.names.len()).filter(|&k| self.gauges.is_angle[k]);
+        angles.map(turn).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     fn slope(&self, gradient: &[f64], id: super::InvariantId, v: &[f64]) -> f64 {

@@ -18,6 +18,7 @@ mod motion;
 mod potential;
 mod respond;
 mod slots;
+mod switches;
 
 pub use builder::{NodeId, Place, SystemBuilder, Term};
 pub use custom::{ConstraintFunction, CustomRows, Differentiated, ForceFunction, Number, SIZE};
@@ -28,6 +29,7 @@ pub use evaluate::{Between, Evaluation};
 pub use function::{FunctionId, Part, Quantity};
 pub(crate) use function::{FunctionValues, Functions};
 pub(crate) use gauge::Gauges;
+pub(crate) use gauge::Measured;
 pub use gauge::{Form, GaugeValues};
 pub(crate) use invariant::{HessianBlock, cross, skew};
 pub use invariant::{InvariantId, Invariants};
@@ -120,9 +122,16 @@ pub struct System {
     pub(crate) laws: Vec<LawEntry>,
     pub(crate) loads: Vec<LoadEntry>,
     pub(crate) motions: Vec<[Arc<dyn Signal>; 3]>,
+    /// Functions of time at whose zeros forces or motions change abruptly.
+    pub(crate) switches: Vec<Arc<dyn Signal>>,
     pub(crate) row_names: Vec<String>,
     pub(crate) start_position: Vec<f64>,
     pub(crate) start_velocity: Vec<f64>,
+    /// What the momentum of all parts as written is more than that of the nodes with the start velocity, N·s; zero where no node
+    /// is shared by parts that are written to move differently.
+    pub(crate) start_impulse: Vec<f64>,
+    /// Potential energy of what has weight and never moves, J.
+    pub(crate) fixed_energy: f64,
     /// Size of the mechanism as far as its nodes do not show it, m.
     pub(crate) size: f64,
     pub(crate) slots: Arc<Slots>,

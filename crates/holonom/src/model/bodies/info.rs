@@ -17,6 +17,10 @@ pub struct BodyInfo {
     pub mass: f64,
     /// Inertia tensor about the centre of mass in the axes of the model at the start, kg·m².
     pub inertia: Matrix3<f64>,
+    /// Velocity of the centre of mass at the start as it was written, in the axes of the model, m/s.
+    pub velocity: [f64; 3],
+    /// Angular velocity at the start as it was written, in the axes of the model, rad/s; in the plane its last number.
+    pub angular_velocity: [f64; 3],
     /// How it is recorded.
     pub recorded: RecordedBody,
 }
@@ -29,16 +33,26 @@ impl BodyInfo {
             let product = |k| [vec![(Place::Fixed(unit(k)), 1.0).into()], moving.clone()];
             builder.measure(format!("{}.angle", body.name), &Form::Angle { cosine: product(0), sine: product(1) });
         }
-        let directions = if axes.dimension() == 2 { Vec::new() } else { directions(body, frame) };
+        let directions = directions(axes.dimension(), body, frame);
         let recorded =
             RecordedBody { name: body.name.clone(), centre: frame.point(body.position), directions, start: body.world_from_body };
-        Self { name: body.name.clone(), mass: body.mass, inertia: body.inertia, recorded }
+        Self {
+            name: body.name.clone(),
+            mass: body.mass,
+            inertia: body.inertia,
+            velocity: body.velocity,
+            angular_velocity: body.angular_velocity,
+            recorded,
+        }
     }
 }
 
-/// Orthogonal directions that the nodes of a body span, in body axes and as nodes.
-fn directions(body: &Body, frame: &Frame) -> Vec<([f64; 3], Vec<crate::system::Term>)> {
+/// Orthogonal directions that the nodes of a body span, in body axes and as nodes; in the plane the first axis.
+fn directions(dim: usize, body: &Body, frame: &Frame) -> Vec<([f64; 3], Vec<crate::system::Term>)> {
     let with_nodes = |local: [f64; 3]| (local, frame.vector(body.direction(local)));
+    if dim == 2 {
+        return vec![with_nodes(unit(0))];
+    }
     if (0..3).all(|k| frame.holds(body.direction(unit(k)))) {
         return (0..3).map(|k| with_nodes(unit(k))).collect();
     }

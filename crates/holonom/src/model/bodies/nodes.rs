@@ -68,7 +68,7 @@ pub fn make(builder: &mut SystemBuilder, wanted: &Wanted<'_>) -> Vec<Frame> {
         let basis = group.basis(builder, &mut places);
         sharing.spread(wanted, sharing.beside(root), &mut places);
         let frame = Frame::new(builder.dimension(), basis.clone());
-        group.add_mass(builder, &frame, basis[0].at);
+        group.add_mass(builder, &frame, &basis);
         keep_rigid(builder, &group.lead.name, &basis, &mut kept);
         members.iter().for_each(|&body| frames[body] = Some(frame.clone()));
     }
@@ -286,36 +286,50 @@ impl Group<'_> {
 
     fn inertia_about(&self, place: Vec3) -> Matrix3<f64> {
         let bodies = self.members.iter().map(|&k| &self.wanted.bodies[k]);
-        bodies.fold(Matrix3::zeros(), |sum, body| {
-            let x = Vector3::from(body.position) - Vector3::from(place);
-            sum + body.inertia + body.mass * (Matrix3::identity() * x.norm_squared() - x * x.transpose())
-        })
+        bodies.fold(Matrix3::zeros(), |sum, body| sum + inertia_about(body, place))
     }
 
-    fn add_mass(&self, builder: &mut SystemBuilder, frame: &Frame, origin: Vec3) {
-        let tensor = self.inertia_about(origin);
-        let second = Matrix3::identity() * (0.5 * tensor.trace()) - tensor;
+    fn add_mass(&self, builder: &mut SystemBuilder, frame: &Frame, basis: &[Basis]) {
+        let (dim, origin) = (builder.dimension(), basis[0].at);
         let mass: f64 = self.members.iter().map(|&k| self.wanted.bodies[k].mass).sum();
-        let first = mass * (Vector3::from(self.centre()) - Vector3::from(origin));
-        let mut pseudo = PseudoInertia::zeros();
-        pseudo[(0, 0)] = mass;
-        for i in 0..3 {
-            (pseudo[(0, i + 1)], pseudo[(i + 1, 0)]) = (first[i], first[i]);
-            (0..3).for_each(|j| pseudo[(i + 1, j + 1)] = second[(i, j)]);
-        }
-        if builder.dimension() == 2 {
-            // Of the polar moment any split will do.
-            (pseudo[(1, 1)], pseudo[(2, 2)]) = (0.5 * tensor[(2, 2)], 0.5 * tensor[(2, 2)]);
-        }
-        let blocks = mass_blocks(frame, &pseudo);
-        let count = blocks.len().isqrt();
+        let blocks = mass_blocks(frame, &pseudo_inertia(dim, mass, self.centre(), self.inertia_about(origin), origin));
         for (k, (a, b, m, s)) in blocks.into_iter().enumerate() {
-            if k / count <= k % count {
+            if k / basis.len() <= k % basis.len() {
                 builder.inertia(a, b, m, s);
             }
         }
         frame.point(self.centre()).into_iter().for_each(|term| builder.weight(term, mass));
+        for body in self.members.iter().map(|&k| &self.wanted.bodies[k]) {
+            let inertia = pseudo_inertia(dim, body.mass, body.position, inertia_about(body, origin), origin);
+            for (k, (a, b, m, s)) in mass_blocks(frame, &inertia).into_iter().enumerate() {
+                let node = &basis[k % basis.len()];
+                builder.moves(a, b, m, s, if node.is_point { body.velocity_at(node.at) } else { body.rate_of(node.at) });
+            }
+        }
     }
+}
+
+/// Inertia tensor of a body about a place, kg·m².
+fn inertia_about(body: &Body, place: Vec3) -> Matrix3<f64> {
+    let x = Vector3::from(body.position) - Vector3::from(place);
+    body.inertia + body.mass * (Matrix3::identity() * x.norm_squared() - x * x.transpose())
+}
+
+/// Second moments about `origin` of what has its centre of mass at `centre` and this inertia tensor about `origin`.
+fn pseudo_inertia(dim: usize, mass: f64, centre: Vec3, tensor: Matrix3<f64>, origin: Vec3) -> PseudoInertia {
+    let second = Matrix3::identity() * (0.5 * tensor.trace()) - tensor;
+    let first = mass * (Vector3::from(centre) - Vector3::from(origin));
+    let mut pseudo = PseudoInertia::zeros();
+    pseudo[(0, 0)] = mass;
+    for i in 0..3 {
+        (pseudo[(0, i + 1)], pseudo[(i + 1, 0)]) = (first[i], first[i]);
+        (0..3).for_each(|j| pseudo[(i + 1, j + 1)] = second[(i, j)]);
+    }
+    if dim == 2 {
+        // Of the polar moment any split will do.
+        (pseudo[(1, 1)], pseudo[(2, 2)]) = (0.5 * tensor[(2, 2)], 0.5 * tensor[(2, 2)]);
+    }
+    pseudo
 }
 
 fn is_independent(spanned: &[Vec3], edge: Vec3) -> bool {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::model::entry::{Entry, Spot, all};
-use crate::model::expression::TimeProgram;
+use crate::model::expression::{Program, TimeProgram};
 use crate::model::fault::Read;
 use crate::model::key::{Key, Shape};
 use crate::model::spline::Spline;
@@ -64,6 +64,7 @@ fn table(entry: &Entry<'_>) -> Read<Spline> {
             let message = format!("the time {} comes after {}", rows[k][0], rows[k - 1][0]);
             return Err(inner.refuse(Spot { key: "table", item: Some(k) }, message, "let the times rise from row to row"));
         }
+        inner.sink.switches.borrow_mut().extend(rows.iter().map(|row| Program::since(row[0])));
         let (knots, values) = (rows.iter().map(|row| row[0]).collect(), rows.iter().map(|row| row[1]).collect());
         Ok(if ends? == Some("rest") { Spline::resting(knots, values) } else { Spline::natural(knots, values) })
     })

@@ -119,6 +119,45 @@ impl Program {
         }
     }
 
+    /// The expressions of the variable `t` alone, and of nothing else, at whose zeros this one jumps or has a kink, as programs of
+    /// one variable: the arguments of `step`, `sign` and `abs`, and the difference of those of `min` and `max`.
+    pub fn switches(&self, t: usize) -> Vec<Self> {
+        let mut found = Vec::new();
+        // Where the operations of each number on the stack begin.
+        let mut begins: Vec<usize> = Vec::new();
+        for (k, &op) in self.ops.iter().enumerate() {
+            match op {
+                Op::Constant(_) | Op::Variable(_) => begins.push(k),
+                Op::OfOne(Function::Step | Function::Sign | Function::Abs) => {
+                    found.extend(self.of_time(t, &self.ops[begins[begins.len() - 1]..k], None));
+                }
+                Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) => (),
+                _ => {
+                    begins.pop();
+                    if let Op::OfTwo(Function::Min | Function::Max) = op {
+                        found.extend(self.of_time(t, &self.ops[begins[begins.len() - 1]..k], Some(Op::Sub)));
+                    }
+                }
+            }
+        }
+        found
+    }
+
+    /// A program of these operations, where they depend on the variable `t` alone.
+    fn of_time(&self, t: usize, ops: &[Op], last: Option<Op>) -> Option<Self> {
+        let mut variables = ops.iter().filter_map(|op| if let Op::Variable(k) = op { Some(usize::from(*k)) } else { None }).peekable();
+        if variables.peek().is_none() || variables.any(|k| k != t) {
+            return None;
+        }
+        let of_one = ops.iter().map(|&op| if let Op::Variable(_) = op { Op::Variable(0) } else { op });
+        Some(Self { ops: of_one.chain(last).collect() })
+    }
+
+    /// The expression t − `time`.
+    pub fn since(time: f64) -> Self {
+        Self { ops: Box::new([Op::Variable(0), Op::Constant(time), Op::Sub]) }
+    }
+
     /// The value for values of the variables. Nothing is allocated.
     pub fn evaluate<N: Number>(&self, variables: &[N]) -> N {
         let mut stack = [N::from(0.0); STACK];

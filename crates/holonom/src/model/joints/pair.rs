@@ -34,6 +34,8 @@ pub struct Joint {
     pub coordinates: Vec<Coordinate>,
     /// Its rows among those of the system.
     pub rows: std::ops::Range<usize>,
+    /// Whether nodes that its sides share stand for some of its rows, so that these rows' forces are not known.
+    pub is_shared: bool,
 }
 
 /// Two bodies at a joint.
@@ -44,6 +46,7 @@ pub struct Pair<'a, 'b> {
     pub coordinates: Vec<Coordinate>,
     frames: [Frame; 2],
     names: usize,
+    is_shared: bool,
 }
 
 /// The first and the second body.
@@ -60,9 +63,9 @@ pub(super) fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> 
     let geometry = Geometry::read(assembly, entry, joint)?;
     let frames = [0, 1].map(|side| assembly.frame(geometry.members[side]));
     let first = assembly.builder.rows();
-    let mut pair = Pair { assembly, entry, geometry, coordinates: Vec::new(), frames, names: 0 };
+    let mut pair = Pair { assembly, entry, geometry, coordinates: Vec::new(), frames, names: 0, is_shared: false };
     (joint.rows)(&mut pair)?;
-    let Pair { geometry, coordinates, .. } = pair;
+    let Pair { geometry, coordinates, is_shared, .. } = pair;
     let rows = first..assembly.builder.rows();
     let has_axis = joint.axes[usize::from(assembly.dimension() == 2)] > 0;
     draw(assembly, entry, joint.kind.name, &geometry, has_axis);
@@ -72,7 +75,7 @@ pub(super) fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> 
         }
     }
     assembly.joint_names.insert(entry.name.to_string(), assembly.joints.len());
-    assembly.joints.push(Joint { name: entry.name.to_string(), kind: joint.kind.name, geometry, coordinates, rows });
+    assembly.joints.push(Joint { name: entry.name.to_string(), kind: joint.kind.name, geometry, coordinates, rows, is_shared });
     Ok(())
 }
 
@@ -175,6 +178,7 @@ impl Pair<'_, '_> {
     pub fn row(&mut self, invariant: InvariantId, target: f64, implied: bool) {
         let name = format!("{}[{}]", self.entry.name, self.names);
         self.names += 1;
+        self.is_shared |= implied;
         if !implied {
             self.assembly.builder.constant_row(name, invariant, target);
         }

@@ -1,0 +1,75 @@
+//! Dampers from weak to far stiffer than a step can follow: nothing rings, nothing is thrown, order two stays.
+
+use holonom::simulation::{Choice, Method, Simulation, Status, Verdict};
+use holonom_io::Source;
+
+/// 1 kg at 10 m/s on a damper along its way, and a spring where `stiffness` is above zero.
+fn text(damping: f64, stiffness: f64) -> String {
+    format!(
+        "gravity = [0, 0, 0]\n[point.wall]\nposition = [0, 0, 0]\nfixed = true\n\
+         [point.m]\nmass = 1\nposition = [5, 0, 0]\nvelocity = [10, 0, 0]\n\
+         [force.d]\ntype = \"spring\"\nbetween = [\"wall\", \"m\"]\ndamping = {damping:e}\nstiffness = {stiffness}\nrest_length = 5\n"
+    )
+}
+
+/// Way, velocity and booked work after a second, and the largest velocity against the first on the way.
+fn run(text: &str, method: &str, step: f64) -> [f64; 4] {
+    let model = Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}"));
+    let method = Method::resolve(&Choice { method: Some(method.into()), ..Choice::default() }).unwrap();
+    let mut simulation = Simulation::new(&model.system, method, step).unwrap();
+    let mut back = 0.0_f64;
+    let mut see = |simulation: &Simulation<'_>| {
+        back = back.max(-simulation.velocities()[0]);
+        Verdict::GoOn
+    };
+    assert_eq!(simulation.run(1.0, &mut see), Status::Completed);
+    let state = simulation.state();
+    [state.x[0] - 5.0, simulation.velocities()[0], simulation.audit().work, back]
+}
+
+/// With c = 1e-3 … 1e9 the mass goes v₀ m/c (1 − e^(−ct/m)), or stands after the first step where that is longer, and goes back
+/// by no more than a tenth of its velocity, in the first step of all.
+#[test]
+fn what_is_overdamped_stands_still() {
+    let h = 0.01;
+    for method in ["conserving-ggl", "conserving", "generalized-alpha", "lagrange-3/hht"] {
+        for decade in -3..=9 {
+            let c = 10.0_f64.powi(decade);
+            let [way, velocity, work, back] = run(&text(c, 0.0), method, h);
+            let exact = [10.0 / c * -(-c).exp_m1(), 10.0 * (-c).exp()];
+            println!(
+                "{method:18} c = {c:7.0e} way {way:9.6} ({:9.6}), velocity {velocity:9.2e}, back {back:8.1e}, work {work:9.2e}",
+                exact[0]
+            );
+            // A step of z = h c/m = 1 errs by a twelfth, and generalized-α by less than a third; the first step of what is stiffer is
+            // one of h v₀/2.
+            let z = (h * c).min(1.0);
+            let first = if h * c > 1.0 { 0.55 * h * 10.0 } else { 1e-9 };
+            assert!((way - exact[0]).abs() <= z * z / 3.0 * exact[0] + first, "{method}, c = {c}");
+            assert!((velocity - exact[1]).abs() <= 0.2 * z * z * c * exact[1] + 1e-8, "{method}, c = {c}: {velocity}");
+            assert!(back <= if h * c > 0.5 { 1.0 } else { 1e-9 }, "{method}, c = {c}: back with {back} m/s");
+            // Its kinetic energy has gone into the damper, but for what a rounded position is to it: 1e-15 m times c at a mean of 5 m/s.
+            if method.starts_with("conserving") {
+                assert!((work + 0.5 * (100.0 - velocity * velocity)).abs() < 1e-9 + 2e-14 * c, "{method}, c = {c}: {work}");
+            }
+        }
+    }
+}
+
+/// Errors fall by four where steps are halved, with a spring beside the damper.
+#[test]
+fn dampers_keep_order_two() {
+    for method in ["conserving-ggl", "conserving", "generalized-alpha", "lagrange-3/hht"] {
+        for c in [0.5, 5.0, 50.0] {
+            let model = text(c, 40.0);
+            let error = |step: f64| {
+                let (fine, coarse) = (run(&model, "radau", 1e-3), run(&model, method, step));
+                (fine[0] - coarse[0]).hypot(fine[1] - coarse[1])
+            };
+            let step = 0.005_f64.min(0.05 / c);
+            let order = (error(step) / error(0.5 * step)).log2();
+            println!("{method:18} c = {c:4} error {:8.1e} at {} s, order {order:.3}", error(0.5 * step), 0.5 * step);
+            assert!((order - 2.0).abs() < 0.15, "{method}, c = {c}: order {order}");
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Forces and moments of joints against Newton and Euler: on the second body, about the joint's place there, whichever side the
+//! ground is.
+
+use holonom::model::{BodyInfo, Model};
+use holonom::record::{Recorder, Recording};
+use holonom::simulation::{Choice, Method, Simulation, Status};
+use holonom_io::Source;
+use nalgebra::Vector3;
+
+/// Largest difference, of forces and moments of the order of ten, N and N·m.
+const AGREES: f64 = 1e-9;
+
+const AT: [f64; 3] = [0.3, -0.2, 0.5];
+const GRAVITY: [f64; 3] = [1.0, -2.0, -9.81];
+
+/// Keys of the joints beside `type` and `between`.
+const JOINTS: &[(&str, &str)] = &[
+    ("spherical", "at = AT"),
+    ("revolute", "at = AT\naxis = [1, 2, 3]"),
+    ("prismatic", "at = AT\naxis = [1, 2, 3]"),
+    ("cylindrical", "at = AT\naxis = [1, 2, 3]"),
+    ("planar", "at = AT\naxis = [1, 2, 3]"),
+    ("universal", "at = AT\naxes = [[1, 2, 3], [3, 0, -1]]"),
+    ("constant-velocity", "at = AT\naxes = [[1, 2, 3], [1, 2, 2]]"),
+    ("fixed", "at = AT"),
+    ("screw", "at = AT\naxis = [1, 2, 3]\npitch = 0.4"),
+    ("parallel", "at = AT\naxis = [1, 2, 3]"),
+    ("perpendicular", "at = AT\naxes = [[1, 2, 3], [3, 0, -1]]"),
+    ("orientation", "at = AT"),
+    ("point-on-line", "at = AT\naxis = [1, 2, 3]"),
+    ("point-on-plane", "at = AT\naxis = [1, 2, 3]"),
+    ("distance", "at = [AT, [1.1, 0.4, 0.9]]"),
+    ("generic", "at = AT\naxes = [[1, 2, 3], [3, 0, -1]]\nlocks = [\"x\", \"z\", \"ry\"]"),
+];
+
+fn text(kind: &str, keys: &str, between: [&str; 2], reactions: bool) -> String {
+    let body = |name: &str, x: f64, spin: &str| {
+        format!(
+            "[body.{name}]\nmass = 1.5\ninertia = [0.3, 0.4, 0.5, 0.02, -0.01, 0.03]\nposition = [{x}, 0.1, 0.8]\n\
+             velocity = [0.3, -0.5, 0.2]\nangular_velocity = {spin}\n"
+        )
+    };
+    let bodies = [("A", -0.4, "[0.5, -0.3, 0.7]"), ("B", 0.9, "[1.0, 2.0, -0.5]")];
+    let bodies = bodies.iter().filter(|(name, ..)| between.contains(name)).map(|(name, x, spin)| body(name, *x, spin));
+    format!(
+        "gravity = {GRAVITY:?}\n{}[joint.j]\ntype = \"{kind}\"\nbetween = {between:?}\n{}\n[output]\nreactions = {reactions}\n",
+        bodies.collect::<String>(),
+        keys.replace("AT", &format!("{AT:?}"))
+    )
+}
+
+fn model(text: &str) -> Model {
+    Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}\n{text}"))
+}
+
+fn run<'a>(model: &'a Model, method: &str) -> (Simulation<'a>, Recording) {
+    let method = Method::resolve(&Choice { method: Some(method.into()), ..Choice::default() }).unwrap();
+    let mut simulation = Simulation::new(&model.system, method, 0.005).unwrap();
+    simulation.find_reactions();
+    let mut recorder = Recorder::new(&model.channels, &model.system, 1, true);
+    assert_eq!(simulation.run(0.5, &mut recorder), Status::Completed);
+    (simulation, recorder.finish())
+}
+
+fn last(recording: &Recording, ending: &str) -> Vector3<f64> {
+    Vector3::from(["x", "y", "z"].map(|axis| *recording.column(&format!("j.{ending}{axis}")).unwrap().last().unwrap()))
+}
+
+/// What moves a body beside gravity: force, and moment about a place.
+fn balance(body: &BodyInfo, simulation: &Simulation<'_>, about: Vector3<f64>) -> [Vector3<f64>; 2] {
+    let x = simulation.system().in_world(&simulation.state().x);
+    let [_, spin] = body.recorded.velocity(&x, simulation.velocities(), 3);
+    // Of three orthogonal directions e, ½ Σ e × ë is the angular acceleration.
+    let [acceleration, twist] = body.recorded.velocity(&x, &simulation.reactions().unwrap().a, 3);
+    let turned = body.recorded.orientation(&x) * body.recorded.start.transpose();
+    let inertia = turned * body.inertia * turned.transpose();
+    let force = body.mass * (acceleration - Vector3::from(GRAVITY));
+    [force, inertia * twist + spin.cross(&(inertia * spin)) + (body.recorded.place(&x) - about).cross(&force)]
+}
+
+#[test]
+fn forces_of_joints_are_those_of_newton_and_euler() {
+    let (mut worst, mut cases) = (0.0_f64, 0);
+    for (kind, keys) in JOINTS {
+        for between in [["ground", "B"], ["B", "ground"], ["A", "B"], ["B", "A"]] {
+            let model = model(&text(kind, keys, between, true));
+            for method in ["conserving-ggl", "radau"] {
+                let (simulation, recording) = run(&model, method);
+                let joint = &model.channels.joints[0];
+                let x = simulation.system().in_world(&simulation.state().x);
+                let about = Vector3::from(joint.place(&x, 3));
+                let find = |name: &str| model.bodies.iter().find(|body| body.name == name);
+                let (body, sign) = match find(between[1]) {
+                    Some(body) => (body, 1.0),
+                    None => (find(between[0]).unwrap(), -1.0),
+                };
+                if between[1] == "ground" && *kind != "distance" {
+                    assert!((about - Vector3::from(AT)).norm() < 1e-12, "{kind}: the place on the ground stays");
+                }
+                let expected = balance(body, &simulation, about).map(|vector| sign * vector);
+                let off = [("f", expected[0]), ("t", expected[1])].map(|(ending, vector)| (last(&recording, ending) - vector).norm());
+                worst = off.iter().fold(worst, |worst, off| worst.max(*off));
+                cases += 1;
+                assert!(off.iter().all(|off| *off < AGREES), "{kind} between {between:?}, {method}: off by {off:?}");
+            }
+        }
+    }
+    println!("{cases} cases, worst {worst:.1e}");
+}
+
+/// Where bodies share nodes a joint's force is in no equation: it is not said to be zero.
+#[test]
+fn forces_that_are_not_known_are_no_numbers() {
+    for (kind, keys) in JOINTS {
+        let (shared, plain) = (model(&text(kind, keys, ["ground", "B"], false)), model(&text(kind, keys, ["ground", "B"], true)));
+        let (_, recording) = run(&shared, "conserving-ggl");
+        let shares = shared.system.constraints() < plain.system.constraints();
+        assert_eq!(last(&recording, "f")[0].is_nan(), shares, "{kind}");
+    }
+}

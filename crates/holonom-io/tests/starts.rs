@@ -1,0 +1,76 @@
+//! Velocities and energies at the start: those that were written, changed as little as the constraints ask for, whatever nodes
+//! bodies share and in whatever order they stand.
+
+use holonom::model::Model;
+use holonom::simulation::{Choice, Method, Simulation};
+use holonom_io::Source;
+use nalgebra::Vector3;
+
+fn model(text: &str) -> Model {
+    Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}\n{text}"))
+}
+
+fn start(model: &Model) -> Simulation<'_> {
+    Simulation::new(&model.system, Method::resolve(&Choice::default()).unwrap(), 1e-3).unwrap()
+}
+
+/// Angular velocity of a body.
+fn spin(model: &Model, name: &str) -> Vector3<f64> {
+    let (simulation, body) = (start(model), model.bodies.iter().find(|body| body.name == name).unwrap());
+    body.recorded.velocity(&simulation.state().x, simulation.velocities(), model.dimension)[1]
+}
+
+fn with_reactions(text: &str) -> [String; 2] {
+    [false, true].map(|reactions| format!("{text}\n[output]\nreactions = {reactions}\n"))
+}
+
+/// Pushed at its centre of mass a door takes the angular momentum about its hinge: ω = m v r/(J + m r²).
+#[test]
+fn a_pushed_door_swings() {
+    let text = "[body.door]\nmass = 20\nshape = { box = [1, 0.05, 2] }\nposition = [0.5, 0, 1]\nvelocity = [0, 100, 0]\n\
+                [joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"door\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n";
+    let expected = 100.0 * 0.5 / ((1.0 + 0.05 * 0.05) / 12.0 + 0.25);
+    for text in with_reactions(text) {
+        let model = model(&text);
+        let spin = spin(&model, "door");
+        assert!((spin - Vector3::new(0.0, 0.0, expected)).norm() < 1e-11 * expected, "{spin}");
+        let simulation = start(&model);
+        let changes = model.start_changes(&simulation.state().x, simulation.velocities());
+        let [change] = &changes[..] else { panic!("{changes:?}") };
+        assert_eq!(change.name, "door");
+        assert!((change.velocity - (100.0 - 0.5 * expected)).abs() < 1e-9, "{change:?}");
+        assert!((change.angular_velocity - expected).abs() < 1e-9, "{change:?}");
+    }
+}
+
+/// Two wheels on one axle, welded to each other: together they have the sum of their angular momenta.
+#[test]
+fn bodies_that_become_one_keep_their_momentum() {
+    let wheel = |name: &str, mass: f64, spin: f64| {
+        format!(
+            "[body.{name}]\nmass = {mass}\ninertia = [{mass}, {mass}, {mass}]\nposition = [0, 0, 0]\nangular_velocity = [0, 0, {spin}]\n"
+        )
+    };
+    let joints = "[joint.axle]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n\
+                  [joint.weld]\ntype = \"fixed\"\nbetween = [\"a\", \"b\"]\nat = [0, 0, 0]\n";
+    let wheels = [wheel("a", 1e-3, 7.0), wheel("b", 1e3, -0.4)];
+    let expected = (1e-3 * 7.0 - 1e3 * 0.4) / (1e-3 + 1e3);
+    for order in [[0, 1], [1, 0]] {
+        for text in with_reactions(&format!("{}{}{joints}", wheels[order[0]], wheels[order[1]])) {
+            let spin = spin(&model(&text), "a");
+            assert!((spin - Vector3::new(0.0, 0.0, expected)).norm() < 1e-12, "{spin} and {expected}");
+        }
+    }
+}
+
+/// What hangs on the ground has its weight there, too.
+#[test]
+fn potential_energy_counts_from_the_origin_whatever_is_shared() {
+    let text = "gravity = [0, 0, -9.81]\n[body.rod]\nmass = 1\ninertia = [0.1, 0.1, 0.01]\nposition = [0, 0, 0.5]\n\
+                [joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"rod\"]\nat = [0, 0, 1]\naxis = [0, 1, 0]\n";
+    for text in with_reactions(text) {
+        let model = model(&text);
+        let initial = start(&model).audit().energy_summary().initial;
+        assert!((initial - 4.905).abs() < 1e-12, "{initial}");
+    }
+}

@@ -1,0 +1,163 @@
+//! Dampers that do not ring: at which share of a step the rate is that a dissipative law takes.
+//!
+//! The mean rate of a step lets a damper c between masses m turn a motion round when z = h c/m is above 2: one step makes
+//! (2 − z)/(2 + z) of a velocity. At the rate θ ẋ₁ + (1 − θ) ẋ₀ it is (1 − (1 − θ) z)/(1 + θ z), which is never negative with
+//! θ = max(½, 1 − 1/z): then order 2 stays, as z falls with the step, and what is overdamped stands still.
+
+use super::newton::Newton;
+use super::workspace::Workspace;
+use crate::system::{Law, LawEntry, MAX_ARGUMENTS, Reach, Response, System};
+
+/// z by the masses of single nodes from which on it is found with what else holds these: that may make it larger, as a rod's end
+/// is lighter than the rod.
+const NOTICED: f64 = 0.02;
+
+/// Arguments of laws whose z is found together; of more it is taken by the masses of nodes.
+const MOST: usize = 64;
+
+/// How much less than the mass of a node the mass that a damper feels there may be, where it is not found.
+const LIGHTER: f64 = 4.0;
+
+/// What a dissipative law knows of the start of a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Damping {
+    /// Rates of its arguments.
+    rate: [f64; MAX_ARGUMENTS],
+    /// By how much the force on each argument changes with its own rate.
+    stiffness: [f64; MAX_ARGUMENTS],
+    /// z over the step, of the argument that rings most, 1/s.
+    speed: f64,
+    /// 2θ − 1
+    late: f64,
+}
+
+impl Damping {
+    /// Forces of a law between two positions, at the mean rate of the step or later, by values at its end.
+    pub(super) fn respond(&self, law: &dyn Law, reach: Reach<'_>) -> Response {
+        let mut out = Response::default();
+        if self.late == 0.0 {
+            law.between(reach, &mut out);
+            return out;
+        }
+        let Reach { from, to, step, middle } = reach;
+        let (mut value, mut rate) = ([0.0; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS]);
+        for i in 0..from.len() {
+            value[i] = 0.5 * (from[i] + to[i]);
+            // 2 Δx/h − ẋ₀ is the rate at the end.
+            rate[i] = (1.0 + self.late) * (to[i] - from[i]) / step - self.late * self.rate[i];
+        }
+        law.at(&value[..from.len()], &rate[..from.len()], middle, &mut out);
+        for i in 0..from.len() {
+            for j in 0..from.len() {
+                out.by_value[i][j] = 0.5 * out.by_value[i][j] + (1.0 + self.late) / step * out.by_rate[i][j];
+                out.by_rate[i][j] = 0.0;
+            }
+        }
+        out
+    }
+}
+
+impl Newton {
+    /// Finds for each dissipative law at which share of a step of length `h` (s) it takes its rates.
+    pub fn fit_dampers(&mut self, system: &System, start: f64, h: f64, work: &mut Workspace) {
+        if !work.forces.dissipative {
+            return;
+        }
+        let mut dampers = std::mem::take(&mut work.forces.damping);
+        let mut count = 0;
+        for (law, damping) in system.laws.iter().zip(&mut dampers).filter(|(law, _)| !law.law.conservative()) {
+            damping.begin(system, law, start, work);
+            count += law.arguments.len();
+        }
+        bound_by_nodes(system, &mut dampers, work);
+        // A composition goes back in some of its steps, where nothing rings.
+        let matters = dampers.iter().any(|damping| h * damping.speed > NOTICED);
+        // In real time every step does the same work.
+        let may_find = count <= MOST && self.settings.iterations.is_none();
+        if matters && !(may_find && self.find_with_rows(system, &mut dampers, work)) {
+            dampers.iter_mut().for_each(|damping| damping.speed *= LIGHTER);
+        }
+        for damping in &mut dampers {
+            let z = h * damping.speed;
+            damping.late = if z > 2.0 { 1.0 - 2.0 / z } else { 0.0 };
+        }
+        work.forces.damping = dampers;
+    }
+
+    /// z over the step with what rows and other masses hold there: Σ √(c_k c_l) |g_k w_l| with [M Gᵀ; G 0][w; μ] = [gᵀ; 0].
+    fn find_with_rows(&mut self, system: &System, dampers: &mut [Damping], work: &mut Workspace) -> bool {
+        let n = system.coordinates();
+        work.end.at.copy_from(&work.start.at);
+        if !self.factor_inertia(work) {
+            return false;
+        }
+        dampers.iter_mut().for_each(|damping| damping.speed = 0.0);
+        for k in 0..dampers.len() {
+            for (i, c) in dampers[k].stiffness.into_iter().enumerate().filter(|(_, c)| *c > 0.0) {
+                self.unknowns.fill(0.0);
+                each_slot(system, k, i, work, |node, g| {
+                    let at = &mut self.unknowns[node * system.dim..];
+                    at.iter_mut().zip(g).for_each(|(sum, g)| *sum += g);
+                });
+                self.kkt.solve(&mut self.unknowns);
+                let mut sum = 0.0;
+                for (l, other) in dampers.iter().enumerate() {
+                    for (j, d) in other.stiffness.into_iter().enumerate().filter(|(_, d)| *d > 0.0) {
+                        let mut product = 0.0;
+                        each_slot(system, l, j, work, |node, g| {
+                            product += g.iter().zip(&self.unknowns[node * system.dim..n]).map(|(g, w)| g * w).sum::<f64>();
+                        });
+                        sum += (c * d).sqrt() * product.abs();
+                    }
+                }
+                dampers[k].speed = dampers[k].speed.max(sum);
+            }
+        }
+        dampers.iter().all(|damping| damping.speed.is_finite())
+    }
+}
+
+impl Damping {
+    /// Takes rates and stiffness from the start of a step.
+    fn begin(&mut self, system: &System, law: &LawEntry, t: f64, work: &Workspace) {
+        let (at, v, m) = (&work.start.at, &work.start.v, law.arguments.len());
+        for (rate, &quantity) in self.rate.iter_mut().zip(&law.arguments) {
+            *rate = system.along(&system.slots_of(quantity), &system.slots.nodes, at, v);
+        }
+        let mut response = Response::default();
+        law.law.at(&system.arguments(law, at)[..m], &self.rate[..m], t, &mut response);
+        self.stiffness = std::array::from_fn(|i| response.by_rate[i][i].abs());
+    }
+}
+
+/// Bounds z over the step by Σ c |g| Σ |g| over the mass of each node: by Gershgorin no eigenvalue of M⁻¹ Gᵀ c G is larger where M
+/// is diagonal.
+fn bound_by_nodes(system: &System, dampers: &mut [Damping], work: &mut Workspace) {
+    let size = |g: &[f64]| g.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let mut pull = std::mem::take(&mut work.full);
+    pull.fill(0.0);
+    for (k, damping) in dampers.iter().enumerate() {
+        for (i, c) in damping.stiffness.into_iter().enumerate().filter(|(_, c)| *c > 0.0) {
+            let mut all = 0.0;
+            each_slot(system, k, i, work, |_, g| all += size(g));
+            each_slot(system, k, i, work, |node, g| pull[node] += c * size(g) * all);
+        }
+    }
+    for (k, damping) in dampers.iter_mut().enumerate() {
+        damping.speed = 0.0;
+        for i in (0..MAX_ARGUMENTS).filter(|&i| damping.stiffness[i] > 0.0) {
+            each_slot(system, k, i, work, |node, _| damping.speed = damping.speed.max(pull[node] * work.scales.agility[node]));
+        }
+    }
+    work.full = pull;
+}
+
+/// Shows the gradient of an argument of a law at the start of a step, free node by free node.
+fn each_slot(system: &System, law: usize, argument: usize, work: &Workspace, mut see: impl FnMut(usize, &[f64])) {
+    for slot in system.slots_of(system.laws[law].arguments[argument]) {
+        let node = system.slots.nodes[slot] as usize;
+        if node < system.free {
+            see(node, &work.start.at.gradient[slot * system.dim..(slot + 1) * system.dim]);
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! What became of the velocities that were written.
+
+use nalgebra::Vector3;
+
+use super::Model;
+use crate::record::channels::rate;
+use crate::system::Place;
+
+/// By how much the start has changed the velocity that was written of a body or point, so that constraints are met.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StartChange {
+    pub name: String,
+    /// Of the centre of mass, or of the point, m/s.
+    pub velocity: f64,
+    /// rad/s; 0 of a point. That of a rod about itself, which moves nothing, does not count.
+    pub angular_velocity: f64,
+}
+
+/// Change of a velocity, over the largest of the model, that is round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Velocity and angular velocity as written and as found.
+type Pair = [[Vector3<f64>; 2]; 2];
+
+impl Model {
+    /// The bodies and points whose velocities at the start of a simulation, which is at `x` (m) with `v` (m/s), are not those that
+    /// were written, in file order, bodies first.
+    pub fn start_changes(&self, x: &[f64], v: &[f64]) -> Vec<StartChange> {
+        let dim = self.dimension;
+        let bodies = self.bodies.iter().map(|body| {
+            let mut spin = Vector3::from(body.angular_velocity);
+            if let ([(local, _)], 3) = (&body.recorded.directions[..], dim) {
+                let axis = body.recorded.start * Vector3::from(*local);
+                spin -= axis * axis.dot(&spin);
+            }
+            (&body.name, [[body.velocity.into(), spin], body.recorded.velocity(x, v, dim)])
+        });
+        let points = self.points.iter().filter_map(|point| {
+            let (Place::Node(_), Some(written)) = (point.place, point.velocity) else { return None };
+            let found = rate(&[(point.place, 1.0).into()], v, dim);
+            Some((&point.name, [written, found].map(|velocity| [velocity.into(), Vector3::zeros()])))
+        });
+        let all: Vec<(&String, Pair)> = bodies.chain(points).collect();
+        let largest = |k: usize| all.iter().flat_map(|(_, pair)| pair.iter().map(move |v| v[k].norm())).fold(0.0, f64::max);
+        let least = [ROUND_OFF * largest(0), ROUND_OFF * largest(1)];
+        let changes = all.iter().map(|&(name, [written, found])| {
+            let [velocity, angular_velocity] = [0, 1].map(|k| (found[k] - written[k]).norm());
+            StartChange { name: name.clone(), velocity, angular_velocity }
+        });
+        changes.filter(|change| change.velocity > least[0] || change.angular_velocity > least[1]).collect()
+    }
+}

@@ -1,0 +1,147 @@
+//! Checkpoints: all that a run goes on from, so that a resumed one has the same bits.
+
+use serde::{Deserialize, Serialize};
+
+use super::adapt::Flight;
+use super::{Audit, Method, Reactions, Simulation, State};
+use crate::formulation::{Newton, Rank, Workspace};
+use crate::system::{Measured, System};
+
+/// A run between two nominal steps. It is plain data: what is written and read again is the same.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Checkpoint {
+    pub state: State,
+    /// What goes on beside the state, where that is a run of the same method.
+    run: Option<Run>,
+}
+
+impl From<State> for Checkpoint {
+    /// A run that begins at a state: nothing is booked of what was before.
+    fn from(state: State) -> Self {
+        Self { state, run: None }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Run {
+    /// The method in words.
+    method: String,
+    grid: Grid,
+    steps: u64,
+    /// Velocities and accelerations that are shown.
+    shown: [Vec<f64>; 2],
+    measured: Measured,
+    audit: Audit,
+    reactions: Option<Reactions>,
+    rank: Rank,
+    /// Iterations and factorisations so far.
+    counters: [u64; 2],
+    /// What the integrator carries on.
+    carried: Vec<f64>,
+    flight: Option<Flight>,
+}
+
+/// The times of nominal steps: `first` + k `step`, of which `passed` lie behind, s.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Grid {
+    first: f64,
+    step: f64,
+    passed: u64,
+}
+
+impl Grid {
+    pub(super) fn new(first: f64, step: f64) -> Self {
+        Self { first, step, passed: 0 }
+    }
+
+    /// The time after so many steps.
+    fn at(&self, count: u64) -> f64 {
+        self.first + count as f64 * self.step
+    }
+
+    /// The next nominal time after `t` in a run to `end`; a run that is not on the grid begins another.
+    pub(super) fn next(&mut self, t: f64, end: f64) -> f64 {
+        if t != self.at(self.passed) {
+            *self = Self::new(t, self.step);
+        }
+        let count = ((end - self.first) / self.step - 1e-9).ceil().max(0.0) as u64;
+        self.passed += 1;
+        if self.passed >= count { end } else { self.at(self.passed) }
+    }
+
+    /// Takes the last nominal time back, which was not reached.
+    pub(super) fn back(&mut self) {
+        self.passed -= 1;
+    }
+}
+
+impl Simulation<'_> {
+    /// All that the run goes on from.
+    pub fn checkpoint(&self) -> Checkpoint {
+        let mut measured = Measured::default();
+        measured.keep(&self.gauges);
+        let run = Run {
+            method: words(&self.method),
+            grid: self.grid,
+            steps: self.steps,
+            shown: [self.shown_v.clone(), self.shown_a.clone()],
+            measured,
+            audit: self.audit.clone(),
+            reactions: self.reactions.clone(),
+            rank: self.newton.rank.clone(),
+            counters: [self.newton.iterations, self.newton.factorizations],
+            carried: self.integrator.carried(),
+            flight: self.pilot.as_ref().map(|pilot| pilot.flight()),
+        };
+        Checkpoint { state: self.state.clone(), run: Some(run) }
+    }
+}
+
+/// All of a method that its numbers depend on.
+fn words(method: &Method) -> String {
+    format!("{} {:?}", method.name, method.summary())
+}
+
+impl<'a> Simulation<'a> {
+    /// Goes on from a checkpoint of an earlier run of the same system: with the same method and nominal step to the same bits, with
+    /// others from its state. `None` when that is not one of this system and method.
+    pub fn resume(system: &'a System, method: Method, step: f64, checkpoint: impl Into<Checkpoint>) -> Option<Self> {
+        let Checkpoint { state, run } = checkpoint.into();
+        let integrator = (method.integrator.make)(system, &method.settings, method.parameters);
+        if !state.fits(system) || state.memory.len() != integrator.memory(system) {
+            return None;
+        }
+        let mut work = Workspace::new(system);
+        work.level = method.settings.level;
+        work.memory = state.memory.clone();
+        state.load(&mut work);
+        system.evaluate_again(&state.x, state.t, &mut work.start.at);
+        let newton = Newton::new(system, method.settings);
+        let mut simulation = Self::assemble(system, method, integrator, step, newton, work, state);
+        if let Some(run) = run.filter(|run| run.method == words(&simulation.method)) {
+            simulation.go_on(run);
+        }
+        Some(simulation)
+    }
+
+    fn go_on(&mut self, run: Run) {
+        let state = self.state.clone();
+        if let (Some(mut pilot), Some(flight)) = (self.pilot.take(), run.flight) {
+            pilot.take_over(flight, self);
+            self.pilot = Some(pilot);
+        }
+        self.state.copy_from(&state);
+        [self.shown_v, self.shown_a] = run.shown;
+        self.gauges.restore(&run.measured);
+        (self.audit, self.reactions) = (run.audit, run.reactions);
+        [self.newton.iterations, self.newton.factorizations] = run.counters;
+        self.newton.rank = run.rank;
+        self.integrator.carry_on(&run.carried);
+        self.steps = run.steps;
+        if run.grid.step == self.step {
+            self.grid = run.grid;
+        }
+        state.load(&mut self.work);
+        self.system.evaluate_again(&state.x, state.t, &mut self.work.start.at);
+    }
+}
