@@ -4,6 +4,8 @@
 //! (2 − z)/(2 + z) of a velocity. At the rate θ ẋ₁ + (1 − θ) ẋ₀ it is (1 − (1 − θ) z)/(1 + θ z), which is never negative with
 //! θ = max(½, 1 − 1/z): then order 2 stays, as z falls with the step, and what is overdamped stands still.
 
+use serde::{Deserialize, Serialize};
+
 use super::newton::Newton;
 use super::workspace::Workspace;
 use crate::system::{Law, LawEntry, MAX_ARGUMENTS, Reach, Response, System};
@@ -11,6 +13,13 @@ use crate::system::{Law, LawEntry, MAX_ARGUMENTS, Reach, Response, System};
 /// z by the masses of single nodes from which on it is found with what else holds these: that may make it larger, as a rod's end
 /// is lighter than the rod.
 const NOTICED: f64 = 0.02;
+
+/// z from which on it is found every [`OFTEN`] steps, and every [`SELDOM`] below; by how much it may grow meanwhile. Too large a z
+/// only takes a rate later than it had to be.
+const NEAR: f64 = 0.5;
+const OFTEN: u32 = 8;
+const SELDOM: u32 = 50;
+const GROWTH: f64 = 1.25;
 
 /// Arguments of laws whose z is found together; of more it is taken by the masses of nodes.
 const MOST: usize = 64;
@@ -57,6 +66,15 @@ impl Damping {
     }
 }
 
+/// What was last found of all dampers together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Fit {
+    /// z over its bound by the masses of nodes.
+    share: f64,
+    /// Steps for which that counts.
+    steps_left: u32,
+}
+
 impl Newton {
     /// Finds for each dissipative law at which share of a step of length `h` (s) it takes its rates.
     pub fn fit_dampers(&mut self, system: &System, start: f64, h: f64, work: &mut Workspace) {
@@ -71,17 +89,31 @@ impl Newton {
         }
         bound_by_nodes(system, &mut dampers, work);
         // A composition goes back in some of its steps, where nothing rings.
-        let matters = dampers.iter().any(|damping| h * damping.speed > NOTICED);
-        // In real time every step does the same work.
-        let may_find = count <= MOST && self.settings.iterations.is_none();
-        if matters && !(may_find && self.find_with_rows(system, &mut dampers, work)) {
-            dampers.iter_mut().for_each(|damping| damping.speed *= LIGHTER);
+        if dampers.iter().any(|damping| h * damping.speed > NOTICED) {
+            // In real time every step does the same work.
+            let may_find = count <= MOST && self.settings.iterations.is_none();
+            self.refine(system, h, may_find, &mut dampers, work);
         }
         for damping in &mut dampers {
             let z = h * damping.speed;
             damping.late = if z > 2.0 { 1.0 - 2.0 / z } else { 0.0 };
         }
         work.forces.damping = dampers;
+    }
+
+    /// Replaces the bounds by what rows and other masses make of them, which is found once in a while.
+    fn refine(&mut self, system: &System, h: f64, may_find: bool, dampers: &mut [Damping], work: &mut Workspace) {
+        let largest = |dampers: &[Damping]| dampers.iter().map(|damping| damping.speed).fold(0.0, f64::max);
+        let bound = largest(dampers);
+        if self.fit.steps_left > 0 && (self.fit.steps_left <= OFTEN || h * self.fit.share * bound < NEAR) {
+            self.fit.steps_left -= 1;
+            dampers.iter_mut().for_each(|damping| damping.speed *= self.fit.share);
+        } else if may_find && self.find_with_rows(system, dampers, work) {
+            let found = largest(dampers);
+            self.fit = Fit { share: GROWTH * found / bound, steps_left: if GROWTH * h * found < NEAR { SELDOM } else { OFTEN } };
+        } else {
+            dampers.iter_mut().for_each(|damping| damping.speed *= LIGHTER);
+        }
     }
 
     /// z over the step with what rows and other masses hold there: Σ √(c_k c_l) |g_k w_l| with [M Gᵀ; G 0][w; μ] = [gᵀ; 0].

@@ -32,6 +32,7 @@ mod velocity_rows;
 mod workspace;
 
 pub use collocation::{Collocation, Timing};
+pub use dampers::Fit;
 pub use failure::{Failure, Unknown};
 pub(crate) use independence::extent;
 pub use independence::{INDEPENDENT, Independence, independence};

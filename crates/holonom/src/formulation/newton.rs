@@ -1,5 +1,6 @@
 //! Newton's iteration, written once: for a single stage, for stages that are solved together, and for rows at both levels.
 
+use super::dampers::Fit;
 use super::failure::Failure;
 use super::iteration::SolveSettings;
 use super::kept::Kept;
@@ -20,6 +21,8 @@ pub struct Newton {
     pub delta: Vec<f64>,
     /// Which rows are redundant.
     pub rank: Rank,
+    /// What was last found of the dampers.
+    pub fit: Fit,
     /// What the factors were last made of.
     pub(super) kept: Kept,
     /// Newton iterations and factorisations so far, those of failed attempts included.
@@ -36,6 +39,7 @@ impl Newton {
             unknowns: vec![0.0; kkt.size()],
             delta: vec![0.0; system.constraints()],
             rank: Rank::new(system.constraints()),
+            fit: Fit::default(),
             kept: Kept::new(system, kkt.is_changed_by_rows()),
             kkt,
             iterations: 0,

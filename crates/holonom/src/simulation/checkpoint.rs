@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::adapt::Flight;
 use super::{Audit, Method, Reactions, Simulation, State};
-use crate::formulation::{Newton, Rank, Workspace};
+use crate::formulation::{Fit, Newton, Rank, Workspace};
 use crate::system::{Measured, System};
 
 /// A run between two nominal steps. It is plain data: what is written and read again is the same.
@@ -34,6 +34,7 @@ struct Run {
     audit: Audit,
     reactions: Option<Reactions>,
     rank: Rank,
+    fit: Fit,
     /// Iterations and factorisations so far.
     counters: [u64; 2],
     /// What the integrator carries on.
@@ -89,6 +90,7 @@ impl Simulation<'_> {
             audit: self.audit.clone(),
             reactions: self.reactions.clone(),
             rank: self.newton.rank.clone(),
+            fit: self.newton.fit,
             counters: [self.newton.iterations, self.newton.factorizations],
             carried: self.integrator.carried(),
             flight: self.pilot.as_ref().map(|pilot| pilot.flight()),
@@ -135,7 +137,7 @@ impl<'a> Simulation<'a> {
         self.gauges.restore(&run.measured);
         (self.audit, self.reactions) = (run.audit, run.reactions);
         [self.newton.iterations, self.newton.factorizations] = run.counters;
-        self.newton.rank = run.rank;
+        (self.newton.rank, self.newton.fit) = (run.rank, run.fit);
         self.integrator.carry_on(&run.carried);
         self.steps = run.steps;
         if run.grid.step == self.step {
