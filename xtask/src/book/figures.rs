@@ -357,8 +357,8 @@ pub const FIGURES: &[Figure] = &[
             within(
                 "`generalized-alpha`, ρ∞ = 0: energy after the first step, J",
                 |results| results.of_run("spring-rho-0", "generalized-alpha").at(0.025, "energy"),
-                1.0,
-                1.5,
+                0.15,
+                0.3,
             ),
             within("`ggl/bdf-2`: energy at 10 s, J", |results| results.of_run("spring", "ggl/bdf-2").last("energy"), -0.8, -0.5),
             within(
