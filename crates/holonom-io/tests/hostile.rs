@@ -146,6 +146,63 @@ fn hostile_values_of_any_key_never_panic() {
     }
 }
 
+/// Things with names of every sort, beside those of an example.
+const NAMED: &str = "[body.beside]\nmass = 1\ninertia = [1, 1, 1]\nposition = [9, 8, 7]\npoints = { tip = [1, 0, 0] }\n\
+                     [point.bead]\nmass = 1\nposition = [7, 8, 9]\n\
+                     [joint.pin]\ntype = \"revolute\"\nbetween = [\"ground\", \"beside\"]\nat = [9, 8, 7]\naxis = [0, 0, 1]\n\
+                     [point.row]\nrepeat = \"i = 0 to 1\"\nmass = 1\nposition = [\"7 + i\", 8, 9]\n";
+
+/// A body, its place and its axes, a point, a repeated one, a joint, its coordinate, time, and what is nothing.
+const NAMES: &[&str] = &[
+    "beside",
+    "beside.tip",
+    "beside.x",
+    "beside.nothing",
+    "beside[0]",
+    "bead",
+    "bead.x",
+    "row",
+    "row[0]",
+    "row[9]",
+    "pin",
+    "pin.angle",
+    "pin[0]",
+    "q[i]",
+    "t",
+    "ground",
+    "ground.x",
+    "nothing",
+];
+
+/// Keys that refer to something, in one kind or another.
+const REFERRING: &[&str] = &["at", "axis", "axes", "between", "joint", "joints", "point", "points", "body", "ends", "curve", "plane"];
+
+/// A name of every sort in every key, those that an example leaves out included: in place of its value, and of each item.
+#[test]
+fn names_of_any_sort_in_any_key_never_panic() {
+    let kinds = constraints::KINDS.iter().chain(forces::KINDS).chain(joints::kinds()).chain(drives::KINDS);
+    let mut read = 0;
+    for kind in kinds.filter(|kind| !kind.example.contains("plane = ")) {
+        let lines: Vec<&str> = kind.example.lines().collect();
+        let last = lines.iter().rposition(|line| line.starts_with("type = ")).expect("every kind has a type");
+        let there = (0..lines.len()).filter_map(|k| lines[k].split_once(" = ").map(|(key, _)| (k, key, "")));
+        let left_out = REFERRING.iter().map(|&key| (last, key, lines[last]));
+        for (k, key, before) in there.chain(left_out) {
+            for name in NAMES {
+                for value in [format!("\"{name}\""), format!("[\"{name}\", \"ground\"]"), format!("[\"ground\", \"{name}\"]")] {
+                    let changed = format!("{before}\n{key} = {value}");
+                    let of_example = lines.iter().enumerate().map(|(at, &line)| if at == k { &*changed } else { line });
+                    let text: String = of_example.flat_map(|line| [line, "\n"]).collect::<String>() + NAMED;
+                    read += 1;
+                    let tried = catch_unwind(AssertUnwindSafe(|| start(kind, &text)));
+                    assert!(tried.is_ok(), "`{key} = {value}` panics in line {k} of\n{text}");
+                }
+            }
+        }
+    }
+    println!("{read} models");
+}
+
 /// Reads a model, and starts it where there is nothing wrong with it.
 fn start(kind: &Kind, text: &str) {
     let Ok(model) = Source::read(kind.name, text.as_bytes()).and_then(|source| source.model()) else { return };

@@ -167,3 +167,44 @@ fn a_resumed_run_has_the_same_bits() {
     println!("{cases} runs");
     assert!(wrong.is_empty(), "{} of {cases} runs:\n{}", wrong.len(), wrong.join("\n"));
 }
+
+/// Steps that are far too long: none of their parts is taken, either.
+const TOO_LONG: f64 = 1e7;
+
+/// What cannot be integrated, projected or kept as promised leaves the state before it, but for what is counted.
+#[test]
+fn a_rejected_step_leaves_no_trace() {
+    let (mut cases, mut wrong) = (0, Vec::new());
+    for (name, model) in gallery() {
+        for method in NAMED.iter().map(|named| named.name).chain(OTHERS.iter().copied()) {
+            let choice = Choice { method: Some(method.into()), ..Choice::default() };
+            let case = Case { model: &model, choice, step: model.settings.step.unwrap_or(0.01), every: 1 };
+            let (Some(method_found), Some(_)) = (case.method(), case.whole()) else { continue };
+            let mut simulation = Simulation::new(&model.system, method_found, case.step).unwrap();
+            let mut watch = case.watch(&mut simulation, 1 + STEPS / 2);
+            simulation.run(case.end(), &mut watch);
+            let before = simulation.checkpoint();
+            let long = TOO_LONG * case.step;
+            let mut simulation = Simulation::resume(&model.system, case.method().unwrap(), long, before.clone()).unwrap();
+            simulation.run(before.state.t + 2.0 * long, &mut |_: &Simulation<'_>| Verdict::GoOn);
+            if simulation.state().t != before.state.t {
+                continue;
+            }
+            cases += 1;
+            let [kept, mut found] = [&before, &simulation.checkpoint()].map(|checkpoint| serde_json::to_value(checkpoint).unwrap());
+            for counted in ["grid", "counters"] {
+                found["run"][counted] = kept["run"][counted].clone();
+            }
+            // `before` is what a nominal step begins with.
+            for counted in ["iterations", "total_iterations", "factorizations", "rejected", "before"] {
+                found["run"]["audit"][counted] = kept["run"]["audit"][counted].clone();
+            }
+            if kept != found {
+                wrong.push(format!("{name}, {method}: {}", diff(&kept.to_string(), &found.to_string())));
+            }
+        }
+    }
+    println!("{cases} rejected steps");
+    assert!(cases > 100, "only {cases} of the steps were rejected");
+    assert!(wrong.is_empty(), "{} of {cases} steps:\n{}", wrong.len(), wrong.join("\n"));
+}

@@ -62,3 +62,16 @@ fn turns_are_counted_however_long_the_step() {
         assert!((values[0] - 400.0).abs() < 1e-9, "{method}: {values:?}");
     }
 }
+
+/// A flat rotor has light directions, whose iteration ends by its residual: what that leaves adds up over steps.
+#[test]
+fn a_flat_rotor_keeps_its_energy_for_long() {
+    let text = ROTOR.replace("SPIN", "1").replace("CLIMB", "0") + "type = \"revolute\"\n";
+    for (order, bound) in [(2, 1e-12), (4, 2e-12)] {
+        let choice =
+            Choice { formulation: Some("ggl".into()), integrator: Some("conserving-ggl".into()), order: Some(order), ..Choice::default() };
+        let drift = run(&text, choice, 0.1, 500.0).2;
+        println!("order {order}: {drift:.1e} J of 1 J after 5000 steps");
+        assert!(drift < bound, "order {order}: {drift:e}");
+    }
+}

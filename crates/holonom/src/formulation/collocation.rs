@@ -70,10 +70,10 @@ pub struct Collocation {
 }
 
 impl Collocation {
-    /// What the last factorisations said of the rows, as numbers.
-    pub fn carried(&self) -> Vec<f64> {
-        let flags = self.idle.iter().map(|&idle| f64::from(u8::from(idle)));
-        [f64::from(u8::from(self.is_known)), f64::from(self.singular)].into_iter().chain(flags).collect()
+    /// Adds what the last factorisations said of the rows, as numbers.
+    pub fn carry(&self, carried: &mut Vec<f64>) {
+        carried.extend([f64::from(u8::from(self.is_known)), f64::from(self.singular)]);
+        carried.extend(self.idle.iter().map(|&idle| f64::from(u8::from(idle))));
     }
 
     /// Takes that over.

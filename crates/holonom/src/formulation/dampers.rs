@@ -17,7 +17,7 @@ const NOTICED: f64 = 0.02;
 /// z from which on it is found every [`OFTEN`] steps, and every [`SELDOM`] below; by how much it may grow meanwhile. Too large a z
 /// only takes a rate later than it had to be.
 const NEAR: f64 = 0.5;
-const OFTEN: u32 = 8;
+const OFTEN: u32 = 16;
 const SELDOM: u32 = 50;
 const GROWTH: f64 = 1.25;
 

@@ -175,6 +175,9 @@ const ROUNDED: f64 = 2.0 * f64::EPSILON;
 /// nothing else is left.
 const NEAR: f64 = 1e-11;
 
+/// Share of the tolerance that may be left there.
+const LEFT: f64 = 0.01;
+
 /// A prediction that misses a row by more than this share of the shortest one is a guess like others.
 const ASTRAY: f64 = 0.1;
 
@@ -192,6 +195,9 @@ struct Convergence {
     increment: f64,
     /// Last increment of coordinates or multipliers, whichever was larger: what the matrix changes by.
     turn: f64,
+    /// What the last increment is expected to leave but for the rounding of the next: its product with the share that the
+    /// linearisation or the solution with the factors leaves.
+    left_over: f64,
     /// What the factors in use are off by.
     stale: f64,
     /// Share of an increment that the next one with the same factors came to.
@@ -213,6 +219,7 @@ impl Convergence {
             left: settings.iterations,
             increment: f64::INFINITY,
             turn: f64::INFINITY,
+            left_over: f64::INFINITY,
             stale: 0.0,
             contraction: 0.0,
             stalls: false,
@@ -221,9 +228,10 @@ impl Convergence {
         }
     }
 
-    /// Whether the residual may be nothing but round-off: increments no longer shrink, or come near the round-off of light nodes.
+    /// Whether the residual may be nothing but round-off: increments no longer shrink, or come near the round-off of light nodes
+    /// and leave hardly anything: what they leave has the same sign in step after step.
     fn may_be_met(&self, are_light: bool) -> bool {
-        self.stalls || (are_light && self.increment < NEAR)
+        self.stalls || (are_light && self.increment < NEAR && self.left_over <= LEFT * self.tolerance)
     }
 
     /// Whether increments are more than the rounding of positions, or have not been that for a while.
@@ -256,6 +264,7 @@ impl Convergence {
         let (increment, multipliers) = (change.increment, change.multipliers.max(change.left));
         let contraction = if self.increment.is_finite() { (increment / self.increment).min(1.0) } else { 1.0 };
         let remaining = increment * contraction.max(multipliers).max(self.stale);
+        self.left_over = increment * multipliers.max(self.stale);
         self.contraction = if self.stale > 0.0 { self.contraction.max(contraction) } else { 0.0 };
         self.stalls = increment > 0.1 * self.increment;
         self.since = if increment < 0.5 * self.best { 0 } else { self.since + 1 };

@@ -40,6 +40,13 @@ impl Rank {
         Self { regular: vec![false; rows], redundant: None, changes: false, singular: 0, spares_regular: false }
     }
 
+    /// Becomes the same without any allocation.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Self { regular, redundant, changes, singular, spares_regular } = other;
+        self.regular.copy_from_slice(regular);
+        (self.redundant, self.changes, self.singular, self.spares_regular) = (*redundant, *changes, *singular, *spares_regular);
+    }
+
     /// Has the rows as they are known to be, whatever the last factorisations said.
     pub(super) fn set(&mut self, regular: impl Iterator<Item = bool>) {
         self.regular.iter_mut().zip(regular).for_each(|(own, regular)| *own = regular);

@@ -78,8 +78,8 @@ impl Bdf {
 }
 
 impl Integrator for Bdf {
-    fn carried(&self) -> Vec<f64> {
-        self.stage.carried()
+    fn carry(&self, carried: &mut Vec<f64>) {
+        self.stage.carry(carried);
     }
 
     fn carry_on(&mut self, carried: &[f64]) {

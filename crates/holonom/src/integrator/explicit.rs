@@ -183,8 +183,8 @@ impl Explicit {
 }
 
 impl Integrator for Explicit {
-    fn carried(&self) -> Vec<f64> {
-        vec![f64::from(u8::from(self.extended))]
+    fn carry(&self, carried: &mut Vec<f64>) {
+        carried.push(f64::from(u8::from(self.extended)));
     }
 
     fn carry_on(&mut self, carried: &[f64]) {

@@ -27,12 +27,10 @@ pub trait Integrator: Send {
         0
     }
 
-    /// What else it knows from the steps before, failed ones included, of which the next step is made; not part of the state.
-    fn carried(&self) -> Vec<f64> {
-        Vec::new()
-    }
+    /// Adds what else it knows from the steps before, of which the next step is made and which is not part of the state.
+    fn carry(&self, _carried: &mut Vec<f64>) {}
 
-    /// Goes on with what was [`carried`](Self::carried).
+    /// Goes on with what [`carry`](Self::carry) added.
     fn carry_on(&mut self, _carried: &[f64]) {}
 
     /// Takes one step; says where the work done in it is booked from. An estimate of the

@@ -164,8 +164,8 @@ impl RungeKutta {
 }
 
 impl Integrator for RungeKutta {
-    fn carried(&self) -> Vec<f64> {
-        self.stages.carried()
+    fn carry(&self, carried: &mut Vec<f64>) {
+        self.stages.carry(carried);
     }
 
     fn carry_on(&mut self, carried: &[f64]) {

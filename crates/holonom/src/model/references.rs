@@ -10,12 +10,20 @@ use super::geometry::Vec3;
 use super::joints::Joint;
 use super::value::Value;
 
+/// What a name of a place stands for.
+enum Named {
+    /// A point, by its number.
+    Point(usize),
+    /// A place of a body, by its number, with its position at the start.
+    Place(usize, Vec3),
+}
+
 impl Assembly<'_> {
     /// The point named at a key.
     pub fn point(&self, entry: &Entry<'_>, key: &str) -> Read<End> {
         match entry.text(key)? {
             GROUND => Err(entry.refuse(key, format!("`{GROUND}` is a place, and a point is wanted here"), "name a [point.NAME]")),
-            name => self.named(entry, key.into(), name),
+            name => self.named_end(entry, key.into(), name),
         }
     }
 
@@ -110,9 +118,11 @@ impl Assembly<'_> {
     /// Where a place is at the start: `"BODY.POINT"`, the name of a point or a body, or coordinates.
     pub fn place_at_start(&self, entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<Vec3> {
         match value {
-            Value::Text(name) if self.frames.is_empty() && split_place(name).is_some() => {
-                self.named_place(entry, spot, name).map(|(_, at)| at)
-            }
+            // The frames of bodies may not be there yet.
+            Value::Text(name) if name != GROUND => Ok(match self.named(entry, spot, name)? {
+                Named::Point(k) => self.points[k].end.start,
+                Named::Place(_, at) => at,
+            }),
             _ => self.end_in(entry, spot, value).map(|end| end.start),
         }
     }
@@ -165,7 +175,7 @@ impl Assembly<'_> {
     fn end_in(&self, entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<End> {
         match value {
             Value::Text(name) if name == GROUND => Ok(fixed([0.0; 3], GROUND.into())),
-            Value::Text(name) => self.named(entry, spot, name),
+            Value::Text(name) => self.named_end(entry, spot, name),
             Value::List(items) if items.len() == self.dimension() => {
                 let start = numbers(entry, spot, items)?;
                 Ok(fixed(start, value.quoted()))
@@ -181,16 +191,23 @@ impl Assembly<'_> {
         }
     }
 
-    fn named(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<End> {
+    fn named_end(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<End> {
+        Ok(match self.named(entry, spot, name)? {
+            Named::Point(k) => self.points[k].end.clone(),
+            Named::Place(body, at) => self.body_end(body, at, name),
+        })
+    }
+
+    fn named(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<Named> {
         if let Some(&k) = self.by_name.get(name) {
-            return Ok(self.points[k].end.clone());
+            return Ok(Named::Point(k));
         }
         if !self.bodies.is_empty() {
             if split_place(name).is_some() {
-                return self.named_place(entry, spot, name).map(|(body, at)| self.body_end(body, at, name));
+                return self.named_place(entry, spot, name).map(|(body, at)| Named::Place(body, at));
             }
             if let Ok(Some(k)) = indexed(name, &entry.scope).map(|full| self.body_by_name(&full)) {
-                return Ok(self.body_end(k, self.bodies[k].position, name));
+                return Ok(Named::Place(k, self.bodies[k].position));
             }
         }
         let full = match indexed(name, &entry.scope) {
@@ -198,7 +215,7 @@ impl Assembly<'_> {
             Err(mistake) => return Err(entry.mistaken(spot, mistake)),
         };
         if let Some(&k) = self.by_name.get(&full) {
-            return Ok(self.points[k].end.clone());
+            return Ok(Named::Point(k));
         }
         let base = full.split('[').next().unwrap_or(&full);
         if self.faulty.contains(base) {

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::adapt::Flight;
 use super::{Audit, Method, Reactions, Simulation, State};
 use crate::formulation::{Fit, Newton, Rank, Workspace};
+use crate::integrator::Integrator;
 use crate::system::{Measured, System};
 
 /// A run between two nominal steps. It is plain data: what is written and read again is the same.
@@ -33,13 +34,40 @@ struct Run {
     measured: Measured,
     audit: Audit,
     reactions: Option<Reactions>,
-    rank: Rank,
-    fit: Fit,
+    hints: Hints,
     /// Iterations and factorisations so far.
     counters: [u64; 2],
+    flight: Option<Flight>,
+}
+
+/// What the steps before said of rows and dampers, of which the next step is made beside the state.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Hints {
+    rank: Rank,
+    fit: Fit,
     /// What the integrator carries on.
     carried: Vec<f64>,
-    flight: Option<Flight>,
+}
+
+impl Hints {
+    pub(super) fn of(newton: &Newton, integrator: &dyn Integrator) -> Self {
+        let mut hints = Self { rank: newton.rank.clone(), fit: newton.fit, carried: Vec::new() };
+        hints.keep(newton, integrator);
+        hints
+    }
+
+    pub(super) fn keep(&mut self, newton: &Newton, integrator: &dyn Integrator) {
+        self.rank.copy_from(&newton.rank);
+        self.fit = newton.fit;
+        self.carried.clear();
+        integrator.carry(&mut self.carried);
+    }
+
+    pub(super) fn restore(&self, newton: &mut Newton, integrator: &mut dyn Integrator) {
+        newton.rank.copy_from(&self.rank);
+        newton.fit = self.fit;
+        integrator.carry_on(&self.carried);
+    }
 }
 
 /// The times of nominal steps: `first` + k `step`, of which `passed` lie behind, s.
@@ -81,6 +109,8 @@ impl Simulation<'_> {
     pub fn checkpoint(&self) -> Checkpoint {
         let mut measured = Measured::default();
         measured.keep(&self.gauges);
+        let mut hints = self.hints.clone();
+        hints.keep(&self.newton, &*self.integrator);
         let run = Run {
             method: words(&self.method),
             grid: self.grid,
@@ -89,10 +119,8 @@ impl Simulation<'_> {
             measured,
             audit: self.audit.clone(),
             reactions: self.reactions.clone(),
-            rank: self.newton.rank.clone(),
-            fit: self.newton.fit,
+            hints,
             counters: [self.newton.iterations, self.newton.factorizations],
-            carried: self.integrator.carried(),
             flight: self.pilot.as_ref().map(|pilot| pilot.flight()),
         };
         Checkpoint { state: self.state.clone(), run: Some(run) }
@@ -137,8 +165,8 @@ impl<'a> Simulation<'a> {
         self.gauges.restore(&run.measured);
         (self.audit, self.reactions) = (run.audit, run.reactions);
         [self.newton.iterations, self.newton.factorizations] = run.counters;
-        (self.newton.rank, self.newton.fit) = (run.rank, run.fit);
-        self.integrator.carry_on(&run.carried);
+        self.hints = run.hints;
+        self.hints.restore(&mut self.newton, &mut *self.integrator);
         self.steps = run.steps;
         if run.grid.step == self.step {
             self.grid = run.grid;

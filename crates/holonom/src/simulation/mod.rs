@@ -28,7 +28,7 @@ use crate::formulation::{Failure, Iteration, Newton, Workspace};
 use crate::integrator::{Integrator, Step};
 use crate::system::{GaugeValues, System};
 use adapt::Pilot;
-use checkpoint::Grid;
+use checkpoint::{Grid, Hints};
 use promise::Judge;
 
 /// Why words do not make a method.
@@ -110,6 +110,8 @@ pub struct Simulation<'a> {
     next_gauges: GaugeValues,
     /// Multipliers (r) and accelerations (D × nodes) of the index-1 system at the present state, where they are wanted.
     reactions: Option<Reactions>,
+    /// What was known after the last step that was taken.
+    hints: Hints,
 }
 
 impl<'a> Simulation<'a> {
@@ -140,6 +142,7 @@ impl<'a> Simulation<'a> {
         system.measure(&state.x, &state.v, &mut gauges);
         let pilot = Pilot::new(system, &method, &state, &gauges, &audit);
         Self {
+            hints: Hints::of(&newton, &*integrator),
             grid: Grid::new(state.t, step),
             integrator,
             shown_v: state.v.clone(),
@@ -173,6 +176,8 @@ impl<'a> Simulation<'a> {
             let target = self.grid.next(self.state.t, end);
             if let Err(failure) = self.advance(target) {
                 self.grid.back();
+                // Shorter attempts may profit from what failed ones learned of the rows; what comes after the run may not.
+                self.hints.restore(&mut self.newton, &mut *self.integrator);
                 return Status::Stopped { at: self.state.t, reason: self.reason(failure) };
             }
             if observer.after_step(self) == Verdict::Stop {
@@ -299,6 +304,7 @@ impl<'a> Simulation<'a> {
         }
         std::mem::swap(&mut work.start.at, &mut work.end.at);
         std::mem::swap(&mut self.gauges, &mut self.next_gauges);
+        self.hints.keep(&self.newton, &*self.integrator);
     }
 
     fn reason(&mut self, failure: Failure) -> String {

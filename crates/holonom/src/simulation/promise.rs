@@ -99,8 +99,8 @@ const SUMMED: f64 = 2.0 * f64::EPSILON;
 /// Share of the energies of the mechanism that a nominal step may be off by, however many parts it was taken in.
 const WHOLE: f64 = 1e-9;
 
-/// Energy of nothing over all there was to move from which on nothing is left of a motion: its speeds are more than twice what they can be.
-const SUPPLY: f64 = 4.0;
+/// Energy of nothing over all there was to move from which on little is left of a motion.
+const SUPPLY: f64 = 0.5;
 
 /// Angles turn by at most so much in a step, rad, where steps are divided: schemes of order 2 lag by a twelfth of its cube.
 const FARTHEST: f64 = 1.0;
