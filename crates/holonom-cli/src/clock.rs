@@ -30,7 +30,7 @@ impl<'a, O: Observer> Clock<'a, O> {
 }
 
 impl<O: Observer> Observer for Clock<'_, O> {
-    fn after_step(&mut self, simulation: &Simulation<'_>) -> Verdict {
+    fn after_step(&mut self, simulation: &Simulation) -> Verdict {
         if let Some(begun) = self.begun {
             self.steps.push(1e6 * begun.elapsed().as_secs_f64());
         }

@@ -53,10 +53,10 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
         return Err(Failure::usage(message, "give a later --end"));
     }
     let mut simulation = match resume {
-        Some(run) => Simulation::resume(&model.system, method, step, run).ok_or_else(|| {
+        Some(run) => Simulation::resume(model.system.clone(), method, step, run).ok_or_else(|| {
             Failure::usage("the checkpoint is of another model", "resume with the model and the --set options that made it")
         })?,
-        None => Simulation::new(&model.system, method, step).map_err(load::start_failure)?,
+        None => Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?,
     };
     if !quiet && mark.is_none() {
         announce_corrections(model, &simulation);
@@ -93,7 +93,7 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
 }
 
 /// Says on standard error what was put right before the start.
-fn announce_corrections(model: &Model, simulation: &Simulation<'_>) {
+fn announce_corrections(model: &Model, simulation: &Simulation) {
     let start = simulation.start();
     if start.moved > 1e-12 {
         eprintln!("note: positions were moved by up to {:.2e} m onto their constraints", start.moved);

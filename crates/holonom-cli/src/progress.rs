@@ -33,7 +33,7 @@ impl<'a> Watched<'a> {
         self.recorder.finish()
     }
 
-    fn show(&self, simulation: &Simulation<'_>) {
+    fn show(&self, simulation: &Simulation) {
         self.bar.set_position((1000.0 * simulation.state().t / self.end) as u64);
         let drift = simulation.audit().energy_summary().max_drift;
         self.bar.set_message(format!("t = {:.3} s, energy drift {drift:.1e} J", simulation.state().t));
@@ -41,7 +41,7 @@ impl<'a> Watched<'a> {
 }
 
 impl Observer for Watched<'_> {
-    fn after_step(&mut self, simulation: &Simulation<'_>) -> Verdict {
+    fn after_step(&mut self, simulation: &Simulation) -> Verdict {
         self.recorder.after_step(simulation);
         self.seen += 1;
         if self.seen.is_multiple_of(LOOK) {

@@ -38,8 +38,8 @@ const REFERENCES: [Reference; 6] = [
 fn run(reference: &Reference, end: f64, place: &[f64], method: &str, accuracy: f64) -> (f64, Summary) {
     let model = example(reference.model);
     let choice = Choice { method: Some(method.into()), accuracy: Some(accuracy), ..Choice::default() };
-    let mut simulation = Simulation::new(&model.system, Method::resolve(&choice).unwrap(), 0.1 * end).unwrap();
-    let status = simulation.run(end, &mut |_: &Simulation<'_>| Verdict::GoOn);
+    let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&choice).unwrap(), 0.1 * end).unwrap();
+    let status = simulation.run(end, &mut |_: &Simulation| Verdict::GoOn);
     assert_eq!(status, Status::Completed, "{}, {method}, {accuracy:e}", reference.model);
     let point = model.points.iter().find(|point| point.name == reference.point).expect("the point is there");
     let Place::Node(node) = point.place else { panic!("{} moves", reference.point) };
@@ -97,9 +97,9 @@ fn dense_output_takes_no_steps() {
     for method in ["ode/dopri5", "ode/dopri5/velocity", "ode/dop853/velocity"] {
         let run = |interval: f64| {
             let choice = Choice { method: Some(method.into()), accuracy: Some(1e-7), ..Choice::default() };
-            let mut simulation = Simulation::new(&model.system, Method::resolve(&choice).unwrap(), interval).unwrap();
+            let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&choice).unwrap(), interval).unwrap();
             let (mut rows, mut changes) = (Vec::new(), 0.0);
-            let status = simulation.run(2.0, &mut |simulation: &Simulation<'_>| {
+            let status = simulation.run(2.0, &mut |simulation: &Simulation| {
                 let audit = simulation.audit();
                 changes += audit.integrator + audit.projection;
                 rows.push((simulation.state().t, simulation.state().x[3..].to_vec(), simulation.velocities()[..3].to_vec()));
@@ -149,8 +149,8 @@ fn pulses_in_formulas_are_seen() {
         for start in [0.5, 0.537] {
             let model = model(&text.replace("START", &start.to_string()));
             let choice = Choice { method: Some(method.into()), accuracy: Some(1e-4), ..Choice::default() };
-            let mut simulation = Simulation::new(&model.system, Method::resolve(&choice).unwrap(), 0.1).unwrap();
-            let status = simulation.run(1.0, &mut |_: &Simulation<'_>| Verdict::GoOn);
+            let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&choice).unwrap(), 0.1).unwrap();
+            let status = simulation.run(1.0, &mut |_: &Simulation| Verdict::GoOn);
             assert_eq!(status, Status::Completed, "{method}");
             let (state, audit) = (simulation.state(), simulation.audit());
             let expected = [1.0 - start - 0.5e-3, 1.0];
@@ -177,8 +177,8 @@ fn steps_by_accuracy_pass_singular_positions() {
         let model = model(&text);
         let place = |method: &str, accuracy: f64| {
             let choice = Choice { method: Some(method.into()), accuracy: Some(accuracy), ..Choice::default() };
-            let mut simulation = Simulation::new(&model.system, Method::resolve(&choice).unwrap(), 0.05).unwrap();
-            let status = simulation.run(2.0, &mut |_: &Simulation<'_>| Verdict::GoOn);
+            let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&choice).unwrap(), 0.05).unwrap();
+            let status = simulation.run(2.0, &mut |_: &Simulation| Verdict::GoOn);
             assert_eq!(status, Status::Completed, "{windows} windows, {method} at {accuracy}");
             simulation.state().x.clone()
         };

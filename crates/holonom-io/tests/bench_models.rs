@@ -30,12 +30,12 @@ struct Found {
 /// Runs a model for 20 steps.
 fn run(model: &Model) -> Found {
     let method = Method::resolve(&Choice::default()).unwrap();
-    let mut simulation = Simulation::new(&model.system, method, 1e-3).unwrap();
+    let mut simulation = Simulation::new(model.system.clone(), method, 1e-3).unwrap();
     let moved = simulation.state().x.iter().zip(model.system.start_position()).map(|(now, given)| (now - given).abs());
     assert!(moved.fold(0.0, f64::max) < ASSEMBLED, "the model is assembled as it is written");
     let turned = simulation.state().v.iter().zip(model.system.start_velocity()).map(|(now, given)| (now - given).abs());
     assert!(turned.fold(0.0, f64::max) < ASSEMBLED, "its velocities are consistent");
-    let status = simulation.run(0.02, &mut |_: &Simulation<'_>| Verdict::GoOn);
+    let status = simulation.run(0.02, &mut |_: &Simulation| Verdict::GoOn);
     assert_eq!(status, Status::Completed);
     let size = analysis::rank(&model.system, &simulation.state().x, 0.02).size(&model.system);
     let (redundant, freedom) = (size.redundant, size.dof);

@@ -194,7 +194,7 @@ fn run(name: &str, set: &[(&str, &str)], method: &str, accuracy: Option<f64>, st
     let choice = Choice { method: Some(method.into()), accuracy, ..Choice::default() };
     let method = Method::resolve(&choice).unwrap_or_else(|error| panic!("{error}"));
     let label = format!("{name}, {}, step {step}", method.name);
-    let mut simulation = Simulation::new(&model.system, method, step).unwrap_or_else(|error| panic!("{label}: {error}"));
+    let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap_or_else(|error| panic!("{label}: {error}"));
     let mut recorder = Recorder::new(&model.channels, &model.system, 1, false);
     let status = simulation.run(end, &mut recorder);
     assert_eq!(status, Status::Completed, "{label}");

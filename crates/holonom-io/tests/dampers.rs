@@ -16,9 +16,9 @@ fn text(damping: f64, stiffness: f64) -> String {
 fn run(text: &str, method: &str, step: f64) -> [f64; 4] {
     let model = Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}"));
     let method = Method::resolve(&Choice { method: Some(method.into()), ..Choice::default() }).unwrap();
-    let mut simulation = Simulation::new(&model.system, method, step).unwrap();
+    let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
     let mut back = 0.0_f64;
-    let mut see = |simulation: &Simulation<'_>| {
+    let mut see = |simulation: &Simulation| {
         back = back.max(-simulation.velocities()[0]);
         Verdict::GoOn
     };

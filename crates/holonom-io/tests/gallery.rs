@@ -10,8 +10,8 @@ use holonom::system::Place;
 /// Runs a model; the place of a point at the end, and the summary.
 fn run(model: &Model, method: &str, step: f64, end: f64, point: &str) -> ([f64; 2], Summary) {
     let method = Method::resolve(&Choice { method: Some(method.into()), ..Choice::default() }).unwrap();
-    let mut simulation = Simulation::new(&model.system, method, step).unwrap();
-    let status = simulation.run(end, &mut |_: &Simulation<'_>| Verdict::GoOn);
+    let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
+    let status = simulation.run(end, &mut |_: &Simulation| Verdict::GoOn);
     assert_eq!(status, Status::Completed);
     let found = model.points.iter().find(|known| known.name == point).expect("the point is there");
     let Place::Node(node) = found.place else { panic!("{point} moves") };
@@ -74,10 +74,10 @@ fn driven_and_damped_models_close_their_balance() {
         for method in ["conserving", "conserving-ggl"] {
             let method = Method::resolve(&Choice { method: Some(method.into()), ..Choice::default() }).unwrap();
             let label = method.name.clone();
-            let mut simulation = Simulation::new(&model.system, method, step).unwrap();
+            let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
             // What has gone back and forth between kinetic and potential energy, and what was done from outside.
             let (mut through, mut before) = (0.0, [simulation.audit().kinetic, simulation.audit().work]);
-            let status = simulation.run(end, &mut |simulation: &Simulation<'_>| {
+            let status = simulation.run(end, &mut |simulation: &Simulation| {
                 let now = [simulation.audit().kinetic, simulation.audit().work];
                 through += (now[0] - before[0]).abs() + (now[1] - before[1]).abs();
                 before = now;

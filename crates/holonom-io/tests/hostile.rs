@@ -207,5 +207,5 @@ fn names_of_any_sort_in_any_key_never_panic() {
 fn start(kind: &Kind, text: &str) {
     let Ok(model) = Source::read(kind.name, text.as_bytes()).and_then(|source| source.model()) else { return };
     let method = Method::resolve(&Choice::default()).expect("the method of choice");
-    let _ = Simulation::new(&model.system, method, 0.01);
+    let _ = Simulation::new(model.system.clone(), method, 0.01);
 }

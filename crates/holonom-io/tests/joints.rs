@@ -36,7 +36,7 @@ fn run(model: &Model, method: &str, accuracy: Option<f64>, step: f64, end: f64, 
     let choice = Choice { method: Some(method.into()), accuracy, ..Choice::default() };
     let method = Method::resolve(&choice).unwrap_or_else(|error| panic!("{error}"));
     let label = method.name.clone();
-    let mut simulation = Simulation::new(&model.system, method, step).unwrap_or_else(|error| panic!("{label}: {error}"));
+    let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap_or_else(|error| panic!("{label}: {error}"));
     if reactions {
         simulation.find_reactions();
     }

@@ -18,8 +18,8 @@ fn examples_run_and_keep_their_balance_of_energy() {
     for kind in kinds() {
         let model = model(kind.example).unwrap_or_else(|message| panic!("{message}"));
         let method = Method::resolve(&Choice { method: Some("conserving".into()), ..Choice::default() }).unwrap();
-        let mut simulation = Simulation::new(&model.system, method, 0.01).unwrap_or_else(|error| panic!("{}: {error}", kind.name));
-        let status = simulation.run(1.0, &mut |_: &Simulation<'_>| Verdict::GoOn);
+        let mut simulation = Simulation::new(model.system.clone(), method, 0.01).unwrap_or_else(|error| panic!("{}: {error}", kind.name));
+        let status = simulation.run(1.0, &mut |_: &Simulation| Verdict::GoOn);
         assert_eq!(status, Status::Completed, "{}", kind.name);
         let energy = simulation.audit().energy_summary();
         assert!(energy.max_drift < 1e-9, "{}: the energy drifts by {}", kind.name, energy.max_drift);

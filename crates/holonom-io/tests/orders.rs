@@ -79,11 +79,11 @@ type Samples = [Vec<f64>; 3];
 
 fn run(model: &Model, choice: &Choice, steps: u32, end: f64) -> Option<Samples> {
     let method = Method::resolve(choice).unwrap();
-    let mut simulation = Simulation::new(&model.system, method, end / f64::from(steps)).unwrap();
+    let mut simulation = Simulation::new(model.system.clone(), method, end / f64::from(steps)).unwrap();
     simulation.find_reactions();
     let n = model.system.coordinates();
     let mut samples = Samples::default();
-    let status = simulation.run(end, &mut |simulation: &Simulation<'_>| {
+    let status = simulation.run(end, &mut |simulation: &Simulation| {
         if simulation.steps() > 0 && simulation.steps().is_multiple_of(u64::from(steps / SAMPLES)) {
             samples[0].extend_from_slice(&simulation.state().x[..n]);
             samples[1].extend_from_slice(&simulation.velocities()[..n]);

@@ -53,9 +53,9 @@ fn model(text: &str) -> Model {
     Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}\n{text}"))
 }
 
-fn run<'a>(model: &'a Model, method: &str) -> (Simulation<'a>, Recording) {
+fn run<'a>(model: &'a Model, method: &str) -> (Simulation, Recording) {
     let method = Method::resolve(&Choice { method: Some(method.into()), ..Choice::default() }).unwrap();
-    let mut simulation = Simulation::new(&model.system, method, 0.005).unwrap();
+    let mut simulation = Simulation::new(model.system.clone(), method, 0.005).unwrap();
     simulation.find_reactions();
     let mut recorder = Recorder::new(&model.channels, &model.system, 1, true);
     assert_eq!(simulation.run(0.5, &mut recorder), Status::Completed);
@@ -67,7 +67,7 @@ fn last(recording: &Recording, ending: &str) -> Vector3<f64> {
 }
 
 /// What moves a body beside gravity: force, and moment about a place.
-fn balance(body: &BodyInfo, simulation: &Simulation<'_>, about: Vector3<f64>) -> [Vector3<f64>; 2] {
+fn balance(body: &BodyInfo, simulation: &Simulation, about: Vector3<f64>) -> [Vector3<f64>; 2] {
     let x = simulation.system().in_world(&simulation.state().x);
     let [_, spin] = body.recorded.velocity(&x, simulation.velocities(), 3);
     // Of three orthogonal directions e, ½ Σ e × ë is the angular acceleration.
@@ -75,7 +75,7 @@ fn balance(body: &BodyInfo, simulation: &Simulation<'_>, about: Vector3<f64>) ->
     let turned = body.recorded.orientation(&x) * body.recorded.start.transpose();
     let inertia = turned * body.inertia * turned.transpose();
     let force = body.mass * (acceleration - Vector3::from(GRAVITY));
-    [force, inertia * twist + spin.cross(&(inertia * spin)) + (body.recorded.place(&x) - about).cross(&force)]
+    [force, inertia * twist + spin.cross(&(inertia * spin)) + (body.recorded.place(&x, 3) - about).cross(&force)]
 }
 
 #[test]

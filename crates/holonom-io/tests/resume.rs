@@ -46,7 +46,7 @@ struct Until<'a> {
 }
 
 impl Observer for Until<'_> {
-    fn after_step(&mut self, simulation: &Simulation<'_>) -> Verdict {
+    fn after_step(&mut self, simulation: &Simulation) -> Verdict {
         self.recorder.after_step(simulation);
         self.left -= 1;
         if self.left == 0 { Verdict::Stop } else { Verdict::GoOn }
@@ -66,7 +66,7 @@ impl Case<'_> {
         Method::resolve(&self.choice).ok()
     }
 
-    fn watch(&self, simulation: &mut Simulation<'_>, left: u64) -> Until<'_> {
+    fn watch(&self, simulation: &mut Simulation, left: u64) -> Until<'_> {
         simulation.find_reactions();
         Until { recorder: Recorder::new(&self.model.channels, &self.model.system, self.every, true), left }
     }
@@ -77,7 +77,7 @@ impl Case<'_> {
 
     /// The whole run, or nothing where the method refuses the model.
     fn whole(&self) -> Option<(Recording, String)> {
-        let mut simulation = Simulation::new(&self.model.system, self.method()?, self.step).ok()?;
+        let mut simulation = Simulation::new(self.model.system.clone(), self.method()?, self.step).ok()?;
         let mut watch = self.watch(&mut simulation, u64::MAX);
         let status = simulation.run(self.end(), &mut watch);
         Some((watch.recorder.finish(), written(&simulation, &status)))
@@ -85,7 +85,7 @@ impl Case<'_> {
 
     /// The rows of a run that is stopped after `first` steps, and of what is resumed from its checkpoint as it is written.
     fn in_parts(&self, first: u64) -> ([Recording; 2], String) {
-        let mut simulation = Simulation::new(&self.model.system, self.method().unwrap(), self.step).unwrap();
+        let mut simulation = Simulation::new(self.model.system.clone(), self.method().unwrap(), self.step).unwrap();
         let mut watch = self.watch(&mut simulation, first + 1);
         let status = simulation.run(self.end(), &mut watch);
         let (kept, mark) = (serde_json::to_string(&simulation.checkpoint()).unwrap(), watch.recorder.mark());
@@ -94,7 +94,7 @@ impl Case<'_> {
             return ([before.clone(), Recording::new([])], written(&simulation, &status));
         }
         let kept: Checkpoint = serde_json::from_str(&kept).unwrap();
-        let mut simulation = Simulation::resume(&self.model.system, self.method().unwrap(), self.step, kept).unwrap();
+        let mut simulation = Simulation::resume(self.model.system.clone(), self.method().unwrap(), self.step, kept).unwrap();
         let mut watch = self.watch(&mut simulation, u64::MAX);
         watch.recorder = watch.recorder.resume(&mark);
         let status = simulation.run(self.end(), &mut watch);
@@ -103,7 +103,7 @@ impl Case<'_> {
 }
 
 /// The summary, and what goes on from the end.
-fn written(simulation: &Simulation<'_>, status: &Status) -> String {
+fn written(simulation: &Simulation, status: &Status) -> String {
     let summary =
         simulation.summary("", 0.0, status, analysis::rank(simulation.system(), &simulation.state().x, 0.0).size(simulation.system()));
     format!("{} {}", serde_json::to_string(&summary).unwrap(), serde_json::to_string(&simulation.checkpoint()).unwrap())
@@ -180,13 +180,13 @@ fn a_rejected_step_leaves_no_trace() {
             let choice = Choice { method: Some(method.into()), ..Choice::default() };
             let case = Case { model: &model, choice, step: model.settings.step.unwrap_or(0.01), every: 1 };
             let (Some(method_found), Some(_)) = (case.method(), case.whole()) else { continue };
-            let mut simulation = Simulation::new(&model.system, method_found, case.step).unwrap();
+            let mut simulation = Simulation::new(model.system.clone(), method_found, case.step).unwrap();
             let mut watch = case.watch(&mut simulation, 1 + STEPS / 2);
             simulation.run(case.end(), &mut watch);
             let before = simulation.checkpoint();
             let long = TOO_LONG * case.step;
-            let mut simulation = Simulation::resume(&model.system, case.method().unwrap(), long, before.clone()).unwrap();
-            simulation.run(before.state.t + 2.0 * long, &mut |_: &Simulation<'_>| Verdict::GoOn);
+            let mut simulation = Simulation::resume(model.system.clone(), case.method().unwrap(), long, before.clone()).unwrap();
+            simulation.run(before.state.t + 2.0 * long, &mut |_: &Simulation| Verdict::GoOn);
             if simulation.state().t != before.state.t {
                 continue;
             }

@@ -10,8 +10,8 @@ fn model(text: &str) -> Model {
     Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}\n{text}"))
 }
 
-fn start(model: &Model) -> Simulation<'_> {
-    Simulation::new(&model.system, Method::resolve(&Choice::default()).unwrap(), 1e-3).unwrap()
+fn start(model: &Model) -> Simulation {
+    Simulation::new(model.system.clone(), Method::resolve(&Choice::default()).unwrap(), 1e-3).unwrap()
 }
 
 /// Angular velocity of a body.

@@ -16,11 +16,11 @@ fn model(text: &str) -> Model {
 /// All bits of the state after some steps, and how many of the steps behind the first few allocated.
 fn run(model: &Model, name: &str) -> (Vec<u64>, u64) {
     let method = Method::resolve(&Choice { method: Some(name.into()), ..Choice::default() }).unwrap_or_else(|error| panic!("{error}"));
-    let mut simulation = Simulation::new(&model.system, method, 0.01).unwrap_or_else(|error| panic!("{error}"));
+    let mut simulation = Simulation::new(model.system.clone(), method, 0.01).unwrap_or_else(|error| panic!("{error}"));
     simulation.find_reactions();
     let mut status = Status::Completed;
     let counted = allocation_counter::measure(|| {
-        status = simulation.run(0.2, &mut |_: &Simulation<'_>| Verdict::GoOn);
+        status = simulation.run(0.2, &mut |_: &Simulation| Verdict::GoOn);
     });
     assert_eq!(status, Status::Completed, "{name}");
     let state = simulation.state();

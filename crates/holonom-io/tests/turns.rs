@@ -9,8 +9,8 @@ const ROTOR: &str = "gravity = [0, 0, 0]\n[body.rotor]\nmass = 1\ninertia = [1, 
 /// Values of the joint's coordinates and their rates at the end, and what was drifted of the energy.
 fn run(text: &str, choice: Choice, step: f64, end: f64) -> (Vec<f64>, Vec<f64>, f64) {
     let model = Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}"));
-    let mut simulation = Simulation::new(&model.system, Method::resolve(&choice).unwrap(), step).unwrap();
-    assert_eq!(simulation.run(end, &mut |_: &Simulation<'_>| Verdict::GoOn), Status::Completed);
+    let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&choice).unwrap(), step).unwrap();
+    assert_eq!(simulation.run(end, &mut |_: &Simulation| Verdict::GoOn), Status::Completed);
     let gauges = simulation.gauges();
     (gauges.value.clone(), gauges.rate.clone(), simulation.audit().energy_summary().max_drift)
 }

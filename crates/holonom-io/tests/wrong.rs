@@ -255,7 +255,7 @@ fn models_that_cannot_start_name_what_contradicts() {
         let model =
             Source::read(name, text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{name}: {message}"));
         let method = Method::resolve(&Choice::default()).expect("the method of choice");
-        let error = Simulation::new(&model.system, method, 0.01).err().unwrap_or_else(|| panic!("{name} starts")).to_string();
+        let error = Simulation::new(model.system.clone(), method, 0.01).err().unwrap_or_else(|| panic!("{name} starts")).to_string();
         assert!(words.iter().all(|word| error.contains(word)), "{name}: {error}");
     }
 }

@@ -93,8 +93,8 @@ fn step_conserving_ggl(bencher: Bencher<'_, '_>, case: &Case) {
 /// One step after the other, from the start on.
 fn steps(bencher: Bencher<'_, '_>, case: &Case, name: &str) {
     let system = case.model().system;
-    let mut simulation = Simulation::new(&system, method(name), STEP).expect("the model starts");
-    let mut go_on = |_: &Simulation<'_>| Verdict::GoOn;
+    let mut simulation = Simulation::new(system.clone(), method(name), STEP).expect("the model starts");
+    let mut go_on = |_: &Simulation| Verdict::GoOn;
     bencher.counter(ItemsCount::new(case.bodies())).bench_local(|| {
         let end = simulation.state().t + STEP;
         simulation.run(end, &mut go_on)

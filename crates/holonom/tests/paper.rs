@@ -164,8 +164,8 @@ fn two_particles_move_like_one_rod() {
 fn a_million_steps_keep_the_energy() {
     use holonom::simulation::{Method, Simulation, Verdict};
     let system = pendulum();
-    let mut simulation = Simulation::new(&system, Method::resolve(&named("conserving")).unwrap(), STEP).unwrap();
-    let status = simulation.run(25_000.0, &mut |_: &Simulation<'_>| Verdict::GoOn);
+    let mut simulation = Simulation::new(system.clone(), Method::resolve(&named("conserving")).unwrap(), STEP).unwrap();
+    let status = simulation.run(25_000.0, &mut |_: &Simulation| Verdict::GoOn);
     assert_eq!(status, Status::Completed);
     assert_eq!(simulation.steps(), 1_000_000);
     // The potential energy falls by up to 29 J on the way: the scale of what is exchanged.

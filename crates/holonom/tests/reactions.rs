@@ -20,8 +20,8 @@ fn forces() -> [f64; 6] {
 
 fn error(choice: &Choice, step: f64) -> f64 {
     let system = pendulum();
-    let mut simulation = Simulation::new(&system, Method::resolve(choice).unwrap(), step).unwrap();
-    assert_eq!(simulation.run(2.0, &mut |_: &Simulation<'_>| Verdict::GoOn), Status::Completed);
+    let mut simulation = Simulation::new(system.clone(), Method::resolve(choice).unwrap(), step).unwrap();
+    assert_eq!(simulation.run(2.0, &mut |_: &Simulation| Verdict::GoOn), Status::Completed);
     simulation.find_reactions();
     let found = &simulation.reactions().unwrap().force;
     found.iter().zip(forces()).map(|(found, force)| (found - force).abs()).fold(0.0, f64::max)

@@ -30,7 +30,7 @@ fn pushed(off: f64) -> System {
 fn velocities_off_the_constraints_are_projected_first() {
     for (name, choice) in every_method() {
         let system = pushed(0.0);
-        let simulation = Simulation::new(&system, Method::resolve(&choice).unwrap(), 0.01).unwrap();
+        let simulation = Simulation::new(system.clone(), Method::resolve(&choice).unwrap(), 0.01).unwrap();
         assert!(simulation.start().turned > 0.1, "{name} says what it changed");
         assert!(simulation.audit().phi_dot < 1e-14, "{name}: {}", simulation.audit().phi_dot);
         let v = &simulation.state().v;
@@ -45,7 +45,7 @@ fn velocities_off_the_constraints_are_projected_first() {
 #[test]
 fn positions_slightly_off_are_moved_and_it_is_said() {
     let system = pushed(1e-3);
-    let simulation = Simulation::new(&system, Method::resolve(&named("conserving-ggl")).unwrap(), 0.01).unwrap();
+    let simulation = Simulation::new(system.clone(), Method::resolve(&named("conserving-ggl")).unwrap(), 0.01).unwrap();
     assert!((1e-4..2e-3).contains(&simulation.start().moved), "{}", simulation.start().moved);
     assert!(simulation.audit().phi < 1e-14);
 }
@@ -61,7 +61,7 @@ fn positions_that_cannot_be_assembled_are_refused_with_their_rows() {
         builder.constant_row(name, square, 0.5);
     }
     let system = builder.build();
-    match Simulation::new(&system, Method::resolve(&named("conserving-ggl")).unwrap(), 0.01).err() {
+    match Simulation::new(system.clone(), Method::resolve(&named("conserving-ggl")).unwrap(), 0.01).err() {
         Some(StartError::Position { rows }) => assert!(rows.contains("left-rod") && rows.contains("right-rod"), "{rows}"),
         other => panic!("{other:?}"),
     }

@@ -14,9 +14,9 @@ fn systems() -> [(&'static str, System); 4] {
 fn a_step_allocates_nothing() {
     for (model, system) in systems() {
         for (name, choice) in every_method() {
-            let mut simulation = Simulation::new(&system, Method::resolve(&choice).unwrap(), 0.005).unwrap();
+            let mut simulation = Simulation::new(system.clone(), Method::resolve(&choice).unwrap(), 0.005).unwrap();
             simulation.find_reactions();
-            let mut go_on = |_: &Simulation<'_>| Verdict::GoOn;
+            let mut go_on = |_: &Simulation| Verdict::GoOn;
             let allocations = allocation_counter::measure(|| {
                 assert_eq!(simulation.run(0.2, &mut go_on), Status::Completed, "{model}, {name}");
             });

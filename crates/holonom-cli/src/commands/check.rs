@@ -26,7 +26,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let projection = method.projection.clone();
     let name = method.name.clone();
     let step = loaded.step().unwrap_or(1e-3);
-    let simulation = Simulation::new(system, method, step).map_err(load::start_failure)?;
+    let simulation = Simulation::new(system.clone(), method, step).map_err(load::start_failure)?;
     // Bodies that share nodes have no rows where they are joined: what holds what is asked of the model without sharing.
     let mut plain = load::overrides(&arguments.model.set);
     plain.set("output.reactions=true");
@@ -141,7 +141,7 @@ struct Held {
 impl Held {
     fn new(plain: &Loaded, method: Method, step: f64) -> Result<Self, Failure> {
         let model = &plain.model;
-        let simulation = Simulation::new(&model.system, method, step).map_err(load::start_failure)?;
+        let simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
         let (system, x) = (&model.system, &simulation.state().x);
         let world = system.in_world(x);
         let rank = rank(system, x, 0.0);

@@ -76,8 +76,8 @@ fn search(loaded: &Loaded, choice: &Choice, bounds: &Bounds) -> LargestStep {
 /// Whether a run reaches its end without its energy exploding on the way.
 fn completes(loaded: &Loaded, choice: &Choice, step: f64, end: f64) -> bool {
     let method = Method::resolve(choice).expect("the choice was resolved before");
-    let Ok(mut simulation) = Simulation::new(&loaded.model.system, method, step) else { return false };
-    let status = simulation.run(end, &mut |simulation: &Simulation<'_>| {
+    let Ok(mut simulation) = Simulation::new(loaded.model.system.clone(), method, step) else { return false };
+    let status = simulation.run(end, &mut |simulation: &Simulation| {
         let energy = simulation.audit().energy_summary();
         let exploded = !energy.last.is_finite() || energy.max_drift > EXPLODED * (energy.initial.abs() + energy.work_total.abs() + 1.0);
         if exploded { Verdict::Stop } else { Verdict::GoOn }

@@ -91,7 +91,7 @@ impl Runner<'_> {
             Ok(model) => model,
             Err(faults) => return Some(refused(faults.to_string())),
         };
-        model.system.share_plans(&self.eliminations);
+        Arc::make_mut(&mut model.system).share_plans(&self.eliminations);
         match self.simulate(&model) {
             Ok(outcome) => outcome,
             Err(Failure::Usage { message, .. }) => Some(refused(message)),
@@ -101,12 +101,12 @@ impl Runner<'_> {
 
     fn simulate(&self, model: &Model) -> Result<Option<Outcome>, Failure> {
         let Task { method, step, end } = Task::new(model, self.method)?;
-        let mut simulation = Simulation::new(&model.system, method, step).map_err(load::start_failure)?;
+        let mut simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
         if model.output.reactions.unwrap_or(false) || !model.channels.efforts.is_empty() {
             simulation.find_reactions();
         }
         let mut looks = 0_u64;
-        let status = simulation.run(end, &mut |_: &Simulation<'_>| {
+        let status = simulation.run(end, &mut |_: &Simulation| {
             looks += 1;
             match looks.is_multiple_of(LOOK) && self.interrupted.load(Ordering::Relaxed) {
                 true => Verdict::Stop,
@@ -123,7 +123,7 @@ impl Runner<'_> {
         }))
     }
 
-    fn figures(&self, model: &Model, simulation: &Simulation<'_>) -> Figures {
+    fn figures(&self, model: &Model, simulation: &Simulation) -> Figures {
         let (audit, last) = (simulation.audit(), present(model, simulation));
         let (violation, work) = (audit.violation_summary(), audit.work_summary(simulation.steps()));
         Figures {
@@ -153,7 +153,7 @@ impl Task {
 }
 
 /// One row of the trajectory: the present state.
-fn present(model: &Model, simulation: &Simulation<'_>) -> Recording {
+fn present(model: &Model, simulation: &Simulation) -> Recording {
     let mut recorder = Recorder::new(&model.channels, &model.system, 1, model.output.reactions.unwrap_or(false));
     recorder.after_step(simulation);
     recorder.finish()

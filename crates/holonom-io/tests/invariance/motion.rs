@@ -63,14 +63,14 @@ pub fn run(description: &Table, name: &str, step: f64, steps: usize) -> Track {
         Ok(model) => model,
         Err(status) => return Track { status, ..Track::default() },
     };
-    let mut simulation = match Simulation::new(&model.system, method(name), step) {
+    let mut simulation = match Simulation::new(model.system.clone(), method(name), step) {
         Ok(simulation) => simulation,
         Err(error) => return Track { status: error.to_string(), ..Track::default() },
     };
     let rank = rank(&model.system, &simulation.state().x, 0.0).size(&model.system);
     let stride = steps.div_ceil(MOMENTS);
     let (mut moments, mut count) = (Vec::new(), 0);
-    let status = simulation.run(steps as f64 * step, &mut |simulation: &Simulation<'_>| {
+    let status = simulation.run(steps as f64 * step, &mut |simulation: &Simulation| {
         if count % stride == 0 || count == steps {
             moments.push(moment(&model, simulation));
         }
@@ -88,7 +88,7 @@ pub fn run(description: &Table, name: &str, step: f64, steps: usize) -> Track {
 }
 
 /// What a simulation shows at the moment.
-pub fn moment(model: &Model, simulation: &Simulation<'_>) -> Moment {
+pub fn moment(model: &Model, simulation: &Simulation) -> Moment {
     let world = model.system.in_world(&simulation.state().x);
     let (x, v, dim) = (&world[..], simulation.velocities(), model.dimension);
     let place = |terms: &[Term]| [sum(terms, x, dim, 1.0), sum(terms, v, dim, 0.0)];

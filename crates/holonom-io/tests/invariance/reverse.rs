@@ -46,10 +46,10 @@ const IRREVERSIBLE: &[&str] = &[
 
 fn there_and_back(case: &Case, name: &str) -> Finding {
     let model = model(&case.description).expect("it was read before");
-    let mut there = Simulation::new(&model.system, method(name), case.step).expect("it was run before");
+    let mut there = Simulation::new(model.system.clone(), method(name), case.step).expect("it was run before");
     let first = moment(&model, &there);
     let end = case.steps as f64 * case.step;
-    let mut status = there.run(end, &mut |_: &Simulation<'_>| Verdict::GoOn);
+    let mut status = there.run(end, &mut |_: &Simulation| Verdict::GoOn);
     let mut state = there.state().clone();
     state.v.iter_mut().for_each(|v| *v = -*v);
     // What was predicted for the next step was so for the other direction.
@@ -58,9 +58,9 @@ fn there_and_back(case: &Case, name: &str) -> Finding {
     state.lambda_change.fill(0.0);
     state.memory.fill(0.0);
     state.last_step = 0.0;
-    let mut back = Simulation::resume(&model.system, method(name), case.step, state).expect("it is a state of this system");
+    let mut back = Simulation::resume(model.system.clone(), method(name), case.step, state).expect("it is a state of this system");
     if status == Status::Completed {
-        status = back.run(2.0 * end, &mut |_: &Simulation<'_>| Verdict::GoOn);
+        status = back.run(2.0 * end, &mut |_: &Simulation| Verdict::GoOn);
     }
     if let Status::Stopped { reason, .. } = status {
         return Finding::stopped(reason);

@@ -132,7 +132,7 @@ impl Equations for OneStage<'_> {
 
     fn is_met(&mut self, moves: bool, newton: &mut Newton, work: &mut Workspace) -> bool {
         // Only the schemes between two positions have an energy that shows what forces leave.
-        work.is_met(self.system, self.stage, moves || self.stage.sampling != Sampling::Between, &newton.unknowns)
+        work.is_met(self.system, self.stage, moves || self.stage.sampling != Sampling::Between, &newton.unknowns, &newton.rank)
     }
 
     fn factor(&mut self, is_first: bool, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {

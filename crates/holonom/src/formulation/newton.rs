@@ -146,7 +146,7 @@ pub(super) fn attempt(
         if iteration == 1 && is_predicted && settings.iterations.is_none() && is_astray() && equations.reconsider(newton, work) {
             equations.evaluate(!keeps, newton, work);
         }
-        if convergence.may_be_met(work.scales.are_light) && equations.is_met(convergence.moves(), newton, work) {
+        if convergence.may_be_met(work.scales.are_light) && equations.is_met(convergence.moves(newton.rank.weakest), newton, work) {
             return Ok(());
         }
         if !keeps {
@@ -234,9 +234,10 @@ impl Convergence {
         self.stalls || (are_light && self.increment < NEAR && self.left_over <= LEFT * self.tolerance)
     }
 
-    /// Whether increments are more than the rounding of positions, or have not been that for a while.
-    fn moves(&self) -> bool {
-        self.increment > ROUNDED || self.since < PATIENCE / 2
+    /// Whether increments are more than the rounding of positions, or have not been that for a while. What a row hardly holds, which
+    /// adds `weakest` to the others, is rounded by as much more.
+    fn moves(&self, weakest: f64) -> bool {
+        self.increment > ROUNDED / weakest.sqrt() || self.since < PATIENCE / 2
     }
 
     /// Whether increments have not shrunk for long.

@@ -33,18 +33,26 @@ pub struct Rank {
     singular: u32,
     /// Whether rows that were regular have hardly any proximal term in this attempt.
     pub(super) spares_regular: bool,
+    /// The least that a regular row adds to those before it, over what it would add alone.
+    pub(super) weakest: f64,
 }
 
 impl Rank {
     pub(super) fn new(rows: usize) -> Self {
-        Self { regular: vec![false; rows], redundant: None, changes: false, singular: 0, spares_regular: false }
+        Self { regular: vec![false; rows], redundant: None, changes: false, singular: 0, spares_regular: false, weakest: 1.0 }
+    }
+
+    /// Whether a row was no redundant one when last factored.
+    pub(super) fn is_regular(&self, row: usize) -> bool {
+        self.regular[row]
     }
 
     /// Becomes the same without any allocation.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { regular, redundant, changes, singular, spares_regular } = other;
+        let Self { regular, redundant, changes, singular, spares_regular, weakest } = other;
         self.regular.copy_from_slice(regular);
-        (self.redundant, self.changes, self.singular, self.spares_regular) = (*redundant, *changes, *singular, *spares_regular);
+        (self.redundant, self.changes, self.singular) = (*redundant, *changes, *singular);
+        (self.spares_regular, self.weakest) = (*spares_regular, *weakest);
     }
 
     /// Has the rows as they are known to be, whatever the last factorisations said.
@@ -60,9 +68,15 @@ impl Rank {
             return;
         }
         let mut redundant = 0;
+        self.weakest = 1.0;
         for (row, regular) in self.regular.iter_mut().enumerate() {
-            *regular = kkt.solver.pivot(kkt.multiplier(row, 0)) - delta[row] > REDUNDANT * scales.softness[row];
-            redundant += usize::from(!*regular);
+            let share = (kkt.solver.pivot(kkt.multiplier(row, 0)) - delta[row]) / scales.softness[row];
+            *regular = share > REDUNDANT;
+            if *regular {
+                self.weakest = self.weakest.min(share);
+            } else {
+                redundant += 1;
+            }
         }
         self.changes = self.redundant.replace(redundant).is_some_and(|before| before != redundant);
         if self.changes {

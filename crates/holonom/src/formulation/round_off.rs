@@ -1,6 +1,7 @@
 //! What of a residual is round-off: every node's forces and every row's value against the sizes of the terms that they are
 //! sums of (the backward error of Oettli and Prager 1964), whatever their directions. Neither masses nor units nor other parts of the mechanism matter.
 
+use super::rank::Rank;
 use super::stage::Stage;
 use super::workspace::Workspace;
 use crate::linalg::largest;
@@ -22,12 +23,12 @@ impl Workspace {
     }
 
     /// Whether the residual of a stage, in `unknowns`, is round-off.
-    pub(super) fn is_met(&mut self, system: &System, stage: &Stage, moves: bool, unknowns: &[f64]) -> bool {
+    pub(super) fn is_met(&mut self, system: &System, stage: &Stage, moves: bool, unknowns: &[f64], rank: &Rank) -> bool {
         let n = system.coordinates();
         self.size_forces(system, stage);
         self.size_rows(system);
         let (forces, rows) = unknowns.split_at(n);
-        (!moves || are_forces_round_off(forces, &self.full[..n])) && are_rows_round_off(rows, &self.rows)
+        (!moves || are_forces_round_off(forces, &self.full[..n])) && rank.are_rows_round_off(rows, &self.rows)
     }
 
     /// Leaves the sizes of the terms of M d in `inertial`, known nodes moving by `inertia` times their accelerations, and of Gᵀλ
@@ -138,5 +139,18 @@ pub(super) fn are_forces_round_off(forces: &[f64], sizes: &[f64]) -> bool {
 
 /// The same of values of rows.
 pub(super) fn are_rows_round_off(rows: &[f64], sizes: &[f64]) -> bool {
-    rows.iter().zip(sizes).all(|(row, size)| row.abs() <= ROWS * size)
+    rows.iter().zip(sizes).all(|(row, size)| is_row_round_off(*row, *size))
+}
+
+/// The same of the value of one row.
+fn is_row_round_off(row: f64, size: f64) -> bool {
+    row.abs() <= ROWS * size
+}
+
+impl Rank {
+    /// The same of values of all rows but redundant ones. No multiplier moves these: they are what the rounding of positions makes
+    /// of them, much near a singular position.
+    pub(super) fn are_rows_round_off(&self, rows: &[f64], sizes: &[f64]) -> bool {
+        rows.iter().zip(sizes).enumerate().all(|(k, (row, size))| !self.is_regular(k) || is_row_round_off(*row, *size))
+    }
 }

@@ -16,7 +16,7 @@ use super::failure::Failure;
 use super::iteration::{Multipliers, OneStage, predict, restart};
 use super::kkt::{ALL, Block, Kkt};
 use super::newton::{Change, Equations, Newton, RESTARTS, attempt, iterate};
-use super::round_off::{are_forces_round_off, are_rows_round_off};
+use super::round_off::are_forces_round_off;
 use super::scales::Scales;
 use super::stage::Stage;
 use super::sweep::Sweeps;
@@ -250,7 +250,9 @@ impl Stabilized {
         for (lambda, (mu, gamma)) in work.lambda.iter_mut().zip(self.mu.iter().zip(&self.gamma)) {
             *lambda = (mu.abs() + gamma.abs()) / stage.inertia;
         }
-        if !work.is_met(system, stage, moves, &newton.unknowns) || (moves && !are_forces_round_off(&self.unknowns[..n], &work.full[..n])) {
+        if !work.is_met(system, stage, moves, &newton.unknowns, &newton.rank)
+            || (moves && !are_forces_round_off(&self.unknowns[..n], &work.full[..n]))
+        {
             return false;
         }
         let nothing = work.nothing();
@@ -262,7 +264,7 @@ impl Stabilized {
             let own = size(&work.end.at.gradient[g.clone()], &self.u[x.clone()]);
             work.rows[slot.row as usize] += own + size(&self.turned_u[g], &work.end.x[x]);
         }
-        are_rows_round_off(&self.unknowns[n..], &work.rows)
+        newton.rank.are_rows_round_off(&self.unknowns[n..], &work.rows)
     }
 
     /// Work of known motion in the step that the stage's forces do not show, J: through the velocity rows,

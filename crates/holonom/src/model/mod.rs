@@ -45,6 +45,7 @@ pub use value::{Table, Value, item_path, key_path};
 pub use written::StartChange;
 
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 use assembly::Assembly;
 use entry::Entry;
@@ -100,7 +101,8 @@ pub struct Model {
     pub axes: &'static str,
     /// In world axes (3), m/s².
     pub gravity: [f64; 3],
-    pub system: System,
+    /// Shared with the simulations of it.
+    pub system: Arc<System>,
     pub settings: Settings,
     pub output: Output,
     /// How it is drawn.

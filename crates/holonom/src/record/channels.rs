@@ -114,7 +114,7 @@ impl Channels {
     }
 
     /// Appends the columns of efforts, where the simulation finds forces.
-    pub fn efforts(&self, simulation: &Simulation<'_>, row: &mut Vec<f64>) {
+    pub fn efforts(&self, simulation: &Simulation, row: &mut Vec<f64>) {
         let t = simulation.state().t;
         for effort in &self.efforts {
             let lambda = simulation.reactions().map_or(f64::NAN, |reactions| reactions.lambda[effort.row]);
@@ -137,7 +137,7 @@ impl Channels {
     }
 
     /// Appends the columns of motion.
-    pub fn motion(&self, simulation: &Simulation<'_>, last: &mut [UnitQuaternion<f64>], row: &mut Vec<f64>) {
+    pub fn motion(&self, simulation: &Simulation, last: &mut [UnitQuaternion<f64>], row: &mut Vec<f64>) {
         let x = simulation.system().in_world(&simulation.state().x);
         let (x, v, dim) = (&x[..], simulation.velocities(), self.axes.len());
         for terms in self.points.iter().map(|point| &point.terms) {
@@ -161,7 +161,7 @@ impl Channels {
     }
 
     /// Appends the columns of forces.
-    pub fn reactions(&self, simulation: &Simulation<'_>, row: &mut Vec<f64>) {
+    pub fn reactions(&self, simulation: &Simulation, row: &mut Vec<f64>) {
         let Some(reactions) = simulation.reactions() else { return };
         let dim = self.axes.len();
         let x = simulation.system().in_world(&simulation.state().x);
@@ -223,9 +223,9 @@ impl RecordedBody {
         [rate(&self.centre, v, dim).into(), spin]
     }
 
-    /// Where its centre is at the positions `x` of all nodes in the world, in space, m.
-    pub fn place(&self, x: &[f64]) -> Vector3<f64> {
-        at(&self.centre, x, 3).into()
+    /// Where its centre is at the positions `x` of all nodes in the world, m.
+    pub fn place(&self, x: &[f64], dim: usize) -> Vector3<f64> {
+        at(&self.centre, x, dim).into()
     }
 
     /// From body axes to the world's at the positions `x` of all nodes, in space.

@@ -87,7 +87,7 @@ impl<'a> Recorder<'a> {
         self.recording
     }
 
-    fn record(&mut self, simulation: &Simulation<'_>) {
+    fn record(&mut self, simulation: &Simulation) {
         let (audit, state) = (simulation.audit(), simulation.state());
         self.row.clear();
         let lift = audit.lift;
@@ -106,7 +106,7 @@ impl<'a> Recorder<'a> {
 }
 
 impl Observer for Recorder<'_> {
-    fn after_step(&mut self, simulation: &Simulation<'_>) -> Verdict {
+    fn after_step(&mut self, simulation: &Simulation) -> Verdict {
         if std::mem::take(&mut self.resumed) {
             // Where the run was left, that row is the first once more.
             if (self.seen.max(1) - 1).is_multiple_of(self.every) {

@@ -27,7 +27,7 @@ pub(super) struct Moment {
 }
 
 impl Moment {
-    fn keep(&mut self, simulation: &Simulation<'_>) {
+    fn keep(&mut self, simulation: &Simulation) {
         self.state.copy_from(&simulation.state);
         self.v.copy_from_slice(&simulation.shown_v);
         self.a.copy_from_slice(&simulation.shown_a);
@@ -36,7 +36,7 @@ impl Moment {
     }
 
     /// Puts a simulation back here.
-    fn restore(&self, simulation: &mut Simulation<'_>) {
+    fn restore(&self, simulation: &mut Simulation) {
         simulation.state.copy_from(&self.state);
         simulation.shown_v.copy_from_slice(&self.v);
         simulation.shown_a.copy_from_slice(&self.a);
@@ -82,9 +82,12 @@ struct Patience {
 /// before says nothing.
 const RESTART: u32 = 3;
 
+/// Energy that an explicit scheme may make or lose over what there is to move, over the accuracy for which it is left.
+const WORSE: f64 = 20.0;
+
 /// Attempts between looks at how far they have come, and the share of the run that each must come on average.
 const LOOK: u32 = 2000;
-const CRAWL: f64 = 1e-9;
+const CRAWL: f64 = 1e-8;
 
 impl Pilot {
     pub(super) fn new(system: &System, method: &Method, state: &State, gauges: &GaugeValues, audit: &Audit) -> Option<Box<Self>> {
@@ -134,15 +137,20 @@ impl Pilot {
 
     /// The error of the last step over what is allowed. Where it is too large it is looked at once more: rows that hardly differ
     /// from others, but for those that are redundant anyway, make more of round-off, and shorter steps all the more.
-    fn ratio(&mut self, simulation: &mut Simulation<'_>, taken: &Step, step: f64) -> f64 {
+    fn ratio(&mut self, simulation: &mut Simulation, taken: &Step, step: f64) -> f64 {
         let (t, work) = (simulation.state.t, &mut simulation.work);
         let ratio = self.control.ratio(taken, step, t, &self.v, 1.0, work);
-        // Errors of explicit schemes grow there, too.
-        if ratio <= 1.0 || simulation.method.integrator.is_explicit() {
+        // Errors of explicit schemes grow there, too, and may be far more than their estimate, which the energy shows.
+        if simulation.method.integrator.is_explicit() {
+            return ratio.max(simulation.audit.made_since(&self.before.audit) / (WORSE * self.control.allowed() * step));
+        }
+        if ratio <= 1.0 {
             return ratio;
         }
-        self.independence.measure(simulation.system, &simulation.state.x, t);
-        let weakest = self.independence.weakest(self.redundant).max(LEAST_SHARE);
+        self.independence.measure(&simulation.system, &simulation.state.x, t);
+        // A run may begin where rows are redundant that are not elsewhere.
+        let redundant = if self.patience.rejected < RESTART { self.redundant } else { 0 };
+        let weakest = self.independence.weakest(redundant).max(LEAST_SHARE);
         self.control.ratio(taken, step, t, &self.v, 1.0 / weakest.sqrt(), work)
     }
 
@@ -179,7 +187,7 @@ impl Pilot {
     }
 
     /// Goes on from there. An integrator with dense output takes the last step once more, to know what is inside it.
-    pub(super) fn take_over(&mut self, flight: Flight, simulation: &mut Simulation<'_>) {
+    pub(super) fn take_over(&mut self, flight: Flight, simulation: &mut Simulation) {
         let Flight { control, end, v, before, front, length, redundant, patience } = flight;
         (self.redundant, self.patience) = (redundant, patience);
         (self.control, self.end, self.v, self.before, self.front) = (control, end, v, before, front);
@@ -209,7 +217,7 @@ fn smoothing(method: &Method) -> Option<Projection> {
     })
 }
 
-impl Simulation<'_> {
+impl Simulation {
     /// Begins to choose steps for a run to `end` (s).
     pub(super) fn begin_adapting(&mut self, end: f64) {
         let Some(mut pilot) = self.pilot.take() else { return };
@@ -266,7 +274,7 @@ impl Simulation<'_> {
 
     /// Puts the state at a time inside the last step, which took `length` s.
     fn interpolate(&mut self, target: f64, taken: Step, length: f64) -> Result<(), Failure> {
-        let (system, start) = (self.system, self.state.t);
+        let (system, start) = (&*self.system, self.state.t);
         let share = (target - start) / length;
         self.state.load(&mut self.work);
         self.integrator.interpolate(system, start, length, share, &mut self.newton, &mut self.work)?;
@@ -314,7 +322,7 @@ impl Simulation<'_> {
     fn pass_switch(&mut self) {
         self.state.t = self.state.t.next_up().next_up();
         self.state.memory.fill(0.0);
-        let (system, work, t) = (self.system, &mut self.work, self.state.t);
+        let (system, work, t) = (&*self.system, &mut self.work, self.state.t);
         self.state.load(work);
         system.place_known(t, &mut work.end.x, &mut work.end.v, &mut work.a);
         system.evaluate(&self.state.x, t, &work.start.at, &mut work.end.at);
@@ -333,7 +341,7 @@ impl Simulation<'_> {
         // The end of the step is the start of the next already.
         let work = &mut self.work;
         work.end.at.copy_from(&work.start.at);
-        projection.apply(self.system, self.state.t, step, &mut self.newton, work)?;
+        projection.apply(&self.system, self.state.t, step, &mut self.newton, work)?;
         pilot.v.copy_from_slice(&work.end.v);
         Ok(())
     }

@@ -9,6 +9,9 @@ use crate::formulation::{Level, Multipliers, Newton, Sampling, Workspace};
 use crate::integrator::{Step, Work};
 use crate::system::System;
 
+/// Share of energies and works up to which their changes are round-off.
+const ROUNDED: f64 = 64.0 * f64::EPSILON;
+
 /// Everything that is booked of a run. Energies in J; sums over parts of a step where it was taken in parts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Audit {
@@ -139,6 +142,15 @@ impl Audit {
             projection: self.projection_total,
             iterations: self.total_iterations,
         };
+    }
+
+    /// What the integrator made or lost of the energy since an earlier state, over all there is to move; no less than
+    /// round-off shows.
+    pub(super) fn made_since(&self, before: &Self) -> f64 {
+        let made = (self.integrator_total - before.integrator_total).abs();
+        let sizes = self.kinetic + self.potential.abs() + self.work.abs() + self.integrator_total.abs();
+        let round_off = ROUNDED * sizes;
+        if made <= round_off { 0.0 } else { made / (self.supply()[1] + round_off) }
     }
 
     /// Energy and work at the start of the nominal step, J.

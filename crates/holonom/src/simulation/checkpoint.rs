@@ -1,5 +1,7 @@
 //! Checkpoints: all that a run goes on from, so that a resumed one has the same bits.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use super::adapt::Flight;
@@ -104,7 +106,7 @@ impl Grid {
     }
 }
 
-impl Simulation<'_> {
+impl Simulation {
     /// All that the run goes on from.
     pub fn checkpoint(&self) -> Checkpoint {
         let mut measured = Measured::default();
@@ -132,21 +134,22 @@ fn words(method: &Method) -> String {
     format!("{} {:?}", method.name, method.summary())
 }
 
-impl<'a> Simulation<'a> {
+impl Simulation {
     /// Goes on from a checkpoint of an earlier run of the same system: with the same method and nominal step to the same bits, with
     /// others from its state. `None` when that is not one of this system and method.
-    pub fn resume(system: &'a System, method: Method, step: f64, checkpoint: impl Into<Checkpoint>) -> Option<Self> {
+    pub fn resume(system: impl Into<Arc<System>>, method: Method, step: f64, checkpoint: impl Into<Checkpoint>) -> Option<Self> {
+        let system = system.into();
         let Checkpoint { state, run } = checkpoint.into();
-        let integrator = (method.integrator.make)(system, &method.settings, method.parameters);
-        if !state.fits(system) || state.memory.len() != integrator.memory(system) {
+        let integrator = (method.integrator.make)(&system, &method.settings, method.parameters);
+        if !state.fits(&system) || state.memory.len() != integrator.memory(&system) {
             return None;
         }
-        let mut work = Workspace::new(system);
+        let mut work = Workspace::new(&system);
         work.level = method.settings.level;
         work.memory = state.memory.clone();
         state.load(&mut work);
         system.evaluate_again(&state.x, state.t, &mut work.start.at);
-        let newton = Newton::new(system, method.settings);
+        let newton = Newton::new(&system, method.settings);
         let mut simulation = Self::assemble(system, method, integrator, step, newton, work, state);
         if let Some(run) = run.filter(|run| run.method == words(&simulation.method)) {
             simulation.go_on(run);

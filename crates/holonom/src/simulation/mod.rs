@@ -24,6 +24,8 @@ pub use start::{Start, StartError};
 pub use state::State;
 pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, ProjectionSummary, Summary, ViolationSummary, WorkSummary};
 
+use std::sync::Arc;
+
 use crate::formulation::{Failure, Iteration, Newton, Workspace};
 use crate::integrator::{Integrator, Step};
 use crate::system::{GaugeValues, System};
@@ -65,11 +67,11 @@ pub enum Verdict {
 /// Is shown the start and every nominal step.
 pub trait Observer {
     /// Looks at the simulation after a step.
-    fn after_step(&mut self, simulation: &Simulation<'_>) -> Verdict;
+    fn after_step(&mut self, simulation: &Simulation) -> Verdict;
 }
 
-impl<F: FnMut(&Simulation<'_>) -> Verdict> Observer for F {
-    fn after_step(&mut self, simulation: &Simulation<'_>) -> Verdict {
+impl<F: FnMut(&Simulation) -> Verdict> Observer for F {
+    fn after_step(&mut self, simulation: &Simulation) -> Verdict {
         self(simulation)
     }
 }
@@ -84,8 +86,8 @@ const BLAMED: f64 = 1e-10;
 const PARTS: u32 = 1 << 24;
 
 /// A method at work on a system. Everything a step needs is allocated when it is made.
-pub struct Simulation<'a> {
-    system: &'a System,
+pub struct Simulation {
+    system: Arc<System>,
     method: Method,
     integrator: Box<dyn Integrator>,
     newton: Newton,
@@ -114,22 +116,23 @@ pub struct Simulation<'a> {
     hints: Hints,
 }
 
-impl<'a> Simulation<'a> {
+impl Simulation {
     /// Prepares a run with nominal step `step` (s): corrects positions and velocities that miss their constraints a
     /// little, and finds accelerations and multipliers to start with.
-    pub fn new(system: &'a System, method: Method, step: f64) -> Result<Self, StartError> {
-        let mut work = Workspace::new(system);
+    pub fn new(system: impl Into<Arc<System>>, method: Method, step: f64) -> Result<Self, StartError> {
+        let system = system.into();
+        let mut work = Workspace::new(&system);
         work.level = method.settings.level;
-        let mut newton = Newton::new(system, method.settings);
-        let start = start::prepare(system, &method, &mut newton, &mut work)?;
-        let integrator = (method.integrator.make)(system, &method.settings, method.parameters);
-        work.memory = vec![0.0; integrator.memory(system)];
+        let mut newton = Newton::new(&system, method.settings);
+        let start = start::prepare(&system, &method, &mut newton, &mut work)?;
+        let integrator = (method.integrator.make)(&system, &method.settings, method.parameters);
+        work.memory = vec![0.0; integrator.memory(&system)];
         let state = State::new(&work);
         Ok(Self { start, ..Self::assemble(system, method, integrator, step, newton, work, state) })
     }
 
     fn assemble(
-        system: &'a System,
+        system: Arc<System>,
         method: Method,
         integrator: Box<dyn Integrator>,
         step: f64,
@@ -137,10 +140,10 @@ impl<'a> Simulation<'a> {
         mut work: Workspace,
         state: State,
     ) -> Self {
-        let audit = Audit::new(system, &method, &mut work, &state);
+        let audit = Audit::new(&system, &method, &mut work, &state);
         let mut gauges = system.gauge_values();
         system.measure(&state.x, &state.v, &mut gauges);
-        let pilot = Pilot::new(system, &method, &state, &gauges, &audit);
+        let pilot = Pilot::new(&system, &method, &state, &gauges, &audit);
         Self {
             hints: Hints::of(&newton, &*integrator),
             grid: Grid::new(state.t, step),
@@ -149,7 +152,7 @@ impl<'a> Simulation<'a> {
             shown_a: state.a.clone(),
             found_v: state.v.clone(),
             found_a: state.a.clone(),
-            judge: Judge::new(system, &method, &work),
+            judge: Judge::new(&system, &method, &work),
             system,
             method,
             newton,
@@ -207,11 +210,11 @@ impl<'a> Simulation<'a> {
             }
         }
         let h = self.state.t - from;
-        self.judge.whole(self.system, h, &self.audit, &self.work)?;
+        self.judge.whole(&self.system, h, &self.audit, &self.work)?;
         let known = self.pilot.as_ref().map_or(0.0, |pilot| pilot.supply());
         self.judge.supply(h, known, &self.audit, &self.work)?;
         self.steps += 1;
-        self.audit.end_step(self.system, &mut self.work, &self.state, self.steps);
+        self.audit.end_step(&self.system, &mut self.work, &self.state, self.steps);
         self.react();
         Ok(())
     }
@@ -251,7 +254,7 @@ impl<'a> Simulation<'a> {
 
     /// Integrates and finishes a step.
     fn try_step(&mut self, step: f64, target: f64) -> Result<Step, Failure> {
-        let (system, work) = (self.system, &mut self.work);
+        let (system, work) = (&*self.system, &mut self.work);
         self.state.load(work);
         system.constraint_values(&work.start.at, self.state.t, &mut work.phi_start);
         let taken = self.integrator.step(system, self.state.t, step, &mut self.newton, work)?;
@@ -260,20 +263,20 @@ impl<'a> Simulation<'a> {
 
     /// Audits, projects and judges what the integrator left in the workspace; it becomes the present state only then.
     fn finish(&mut self, taken: Step, step: f64, target: f64) -> Result<Step, Failure> {
-        let (system, work, method) = (self.system, &mut self.work, &self.method);
+        let (system, work, method) = (&*self.system, &mut self.work, &self.method);
         for i in 0..system.coordinates() {
             work.end.x[i] = work.start.x[i] + work.d[i];
         }
         system.evaluate(&work.end.x, target, &work.start.at, &mut work.end.at);
         let mut audit = self.audit.clone();
         let accounts = audit.integrated(system, &taken, target, work);
-        self.judge.positions(system, work)?;
+        self.judge.positions(system, target, work)?;
         audit.violate_acceleration(system, method, &taken, target, work);
         self.found_v.copy_from_slice(&work.end.v);
         self.found_a.copy_from_slice(&work.a);
         method.projection.apply(system, target, step, &mut self.newton, work)?;
         audit.projected(system, method, &self.found_v, accounts, target, work);
-        self.judge.velocities(system, step, work)?;
+        self.judge.velocities(system, target, step, work)?;
         audit.closed(system, method, target, &self.newton, work);
         self.judge.accelerations(step, work)?;
         self.judge.energy(system, step, &self.audit, &audit, work)?;
@@ -314,12 +317,12 @@ impl<'a> Simulation<'a> {
         // A row at round-off is not to blame.
         let worst = worst.filter(|(_, missed)| missed.is_nan() || *missed >= BLAMED);
         let row = worst.map_or(String::new(), |(k, _)| format!("; the worst row is `{}` with {:.1e}", self.system.row_names[k], phi[k]));
-        format!("{} at t = {:.6} s{row}", failure.describe(self.system), self.state.t)
+        format!("{} at t = {:.6} s{row}", failure.describe(&self.system), self.state.t)
     }
 
     /// The system that is simulated.
     pub fn system(&self) -> &System {
-        self.system
+        &self.system
     }
 
     /// The method at work.

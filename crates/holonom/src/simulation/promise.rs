@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use super::Method;
 use super::audit::Audit;
 use crate::energy;
-use crate::formulation::{Failure, Iteration, Level, Multipliers, RowsAt, Workspace};
+use crate::formulation::{Failure, INDEPENDENT, Independence, Iteration, Level, Multipliers, RowsAt, Workspace};
 use crate::linalg::largest;
 use crate::projection::{Metric, Solve};
 use crate::system::{GaugeValues, System};
@@ -99,8 +99,8 @@ const SUMMED: f64 = 2.0 * f64::EPSILON;
 /// Share of the energies of the mechanism that a nominal step may be off by, however many parts it was taken in.
 const WHOLE: f64 = 1e-9;
 
-/// Energy of nothing over all there was to move from which on little is left of a motion.
-const SUPPLY: f64 = 0.5;
+/// Energy of nothing over all there was to move from which on nothing is left of a motion: as much as there is.
+const SUPPLY: f64 = 1.0;
 
 /// Angles turn by at most so much in a step, rad, where steps are divided: schemes of order 2 lag by a twelfth of its cube.
 const FARTHEST: f64 = 1.0;
@@ -119,6 +119,8 @@ pub(super) struct Judge {
     weight: f64,
     /// Farthest that an angle may turn in a step, rad.
     farthest: f64,
+    /// Measures how near a singular position is, from when that is first asked.
+    independence: Option<Box<Independence>>,
 }
 
 impl Judge {
@@ -132,7 +134,8 @@ impl Judge {
         for promise in promises.iter_mut().filter(|promise| **promise == Promise::FallingEnergy && system.is_driven()) {
             *promise = Promise::SuppliedEnergy;
         }
-        Self { promises, tolerance: TOLERANCES * tolerance, mass, weight, farthest: if method.subdivide { FARTHEST } else { PI } }
+        let farthest = if method.subdivide { FARTHEST } else { PI };
+        Self { promises, tolerance: TOLERANCES * tolerance, mass, weight, farthest, independence: None }
     }
 
     fn promises(&self, promise: Promise) -> bool {
@@ -203,18 +206,18 @@ impl Judge {
         ROUND_OFF * sizes + momentum * scales.length * 2.0 / h.abs() * (ROUNDED + self.tolerance)
     }
 
-    /// Looks at Φ at the end of a step, in `phi`.
-    pub(super) fn positions(&self, system: &System, work: &mut Workspace) -> Result<(), Failure> {
+    /// Looks at Φ at the end of a step at the time `t` (s), in `phi`.
+    pub(super) fn positions(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
         let length = work.scales.length * (ROUND_OFF + self.tolerance);
         if !self.promises(Promise::Position) || work.phi.iter().zip(&work.scales.gradient).all(|(phi, g)| phi.abs() <= g * length) {
             return Ok(());
         }
         work.size_rows(system);
-        self.compare(Promise::Position, work.scales.length, work)
+        self.compare_near_singular(Promise::Position, work.scales.length, system, t, work)
     }
 
-    /// Looks at Φ̇ at the end of a step of length `h` (s), in `rows`.
-    pub(super) fn velocities(&self, system: &System, h: f64, work: &mut Workspace) -> Result<(), Failure> {
+    /// Looks at Φ̇ at the end of a step of length `h` (s) at the time `t` (s), in `rows`.
+    pub(super) fn velocities(&mut self, system: &System, t: f64, h: f64, work: &mut Workspace) -> Result<(), Failure> {
         let speed = largest(&work.end.v);
         let reach = ROUND_OFF * speed + self.tolerance * work.scales.length / h.abs();
         if !self.promises(Promise::Velocity) || work.rows.iter().zip(&work.scales.gradient).all(|(rate, g)| rate.abs() <= g * reach) {
@@ -222,7 +225,7 @@ impl Judge {
         }
         std::mem::swap(&mut work.phi, &mut work.rows);
         work.size_rates(system);
-        self.compare(Promise::Velocity, work.scales.length / h.abs(), work)
+        self.compare_near_singular(Promise::Velocity, work.scales.length / h.abs(), system, t, work)
     }
 
     /// Looks at Φ̈ at the end of a step of length `h` (s), in `rows`.
@@ -241,6 +244,18 @@ impl Judge {
                 Err(Failure::Broken { promise: Promise::Acceleration.words(), by: value.abs(), bound: g * reach, row: Some(row) })
             }
         }
+    }
+
+    /// Compares as below, and with larger bounds near a singular position: there rounded positions are off by more in what hardly any
+    /// row holds, and redundant rows show it.
+    fn compare_near_singular(&mut self, promise: Promise, unit: f64, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
+        self.compare(promise, unit, work).or_else(|_| {
+            let independence = self.independence.get_or_insert_with(|| Box::new(Independence::new(system)));
+            let redundant = independence.measure(system, &work.end.x, t).iter().filter(|share| **share <= INDEPENDENT).count();
+            let amplified = independence.weakest(redundant).sqrt().recip();
+            work.rows.iter_mut().for_each(|size| *size *= amplified);
+            self.compare(promise, unit, work)
+        })
     }
 
     /// Compares the numbers of the rows in `phi` with the sizes of their terms in `rows`.

@@ -19,7 +19,7 @@ pub struct Reactions {
     pub force: Vec<f64>,
 }
 
-impl Simulation<'_> {
+impl Simulation {
     /// Has the forces of the constraints found at the start and at every nominal step. A run that is resumed has them already
     /// where the one before had them.
     pub fn find_reactions(&mut self) {
@@ -42,13 +42,13 @@ impl Simulation<'_> {
         let Some(reactions) = &self.reactions else { return ([0.0; 3], [0.0; 3]) };
         let gradient = &self.work.start.at.gradient;
         let about = self.system.of_world(about);
-        wrench(self.system, rows, &reactions.lambda, gradient, nodes, about, &self.state.x)
+        wrench(&self.system, rows, &reactions.lambda, gradient, nodes, about, &self.state.x)
     }
 
     /// Finds the forces of the constraints at the present state, where they are wanted.
     pub(super) fn react(&mut self) {
         let Some(reactions) = &mut self.reactions else { return };
-        let (system, newton, work, state) = (self.system, &mut self.newton, &mut self.work, &self.state);
+        let (system, newton, work, state) = (&*self.system, &mut self.newton, &mut self.work, &self.state);
         work.end.x.copy_from_slice(&state.x);
         work.end.v.copy_from_slice(&self.shown_v);
         work.a.copy_from_slice(&state.a);

@@ -45,12 +45,14 @@ use std::sync::Arc;
 use crate::linalg::Plans;
 
 /// A constraint row Φ_k = π_k − c_k(t).
+#[derive(Clone)]
 pub(crate) struct Row {
     pub quantity: Quantity,
     target: Target,
 }
 
 /// c of a row.
+#[derive(Clone)]
 enum Target {
     Constant(f64),
     Signal(Arc<dyn Signal>),
@@ -77,6 +79,7 @@ impl Row {
 }
 
 /// A law acting on the quantities `arguments`, which depend on `invariants`, one after the other.
+#[derive(Clone)]
 pub(crate) struct LawEntry {
     pub name: String,
     pub arguments: Vec<Quantity>,
@@ -85,6 +88,7 @@ pub(crate) struct LawEntry {
 }
 
 /// A load acting on `nodes`.
+#[derive(Clone)]
 pub(crate) struct LoadEntry {
     pub name: String,
     pub nodes: Vec<NodeId>,
@@ -92,6 +96,7 @@ pub(crate) struct LoadEntry {
 }
 
 /// Constraint rows given as functions of coordinates and time.
+#[derive(Clone)]
 pub(crate) struct CustomEntry {
     pub name: String,
     pub nodes: Vec<NodeId>,
@@ -99,6 +104,7 @@ pub(crate) struct CustomEntry {
 }
 
 /// A mechanism ready to be simulated. It never changes during a run.
+#[derive(Clone)]
 pub struct System {
     pub(crate) dim: usize,
     pub(crate) free: usize,

@@ -164,9 +164,9 @@ impl Run {
 /// Runs a system by a method.
 pub fn run(system: &System, choice: &Choice, step: f64, end: f64) -> Run {
     let method = Method::resolve(choice).expect("the method is valid");
-    let mut simulation = Simulation::new(system, method, step).expect("the system starts");
+    let mut simulation = Simulation::new(system.clone(), method, step).expect("the system starts");
     let mut steps = Vec::new();
-    let mut observer = |simulation: &Simulation<'_>| {
+    let mut observer = |simulation: &Simulation| {
         let audit = simulation.audit();
         steps.push(Row {
             t: simulation.state().t,
