@@ -64,7 +64,7 @@ impl Run {
 pub fn run(mechanism: &Mechanism, model: &Model, named: &Named, limit: f64) -> Run {
     let method = Method::resolve(&Choice { method: Some(named.name.into()), ..Choice::default() }).expect("a method with a name");
     let clock = ThreadTime::now();
-    let mut simulation = match Simulation::new(&model.system, method, mechanism.step()) {
+    let mut simulation = match Simulation::new(model.system.clone(), method, mechanism.step()) {
         Ok(simulation) => simulation,
         Err(error) => return Run::without_figures(Ending::Refused(refusal(&error).into())),
     };
@@ -149,7 +149,7 @@ impl<'a> Watch<'a> {
 }
 
 impl Observer for Watch<'_> {
-    fn after_step(&mut self, simulation: &Simulation<'_>) -> Verdict {
+    fn after_step(&mut self, simulation: &Simulation) -> Verdict {
         let (system, state, audit) = (&self.model.system, simulation.state(), simulation.audit());
         let [last, now] = &mut self.at;
         system.evaluate(&state.x, state.t, last, now);
@@ -179,7 +179,7 @@ impl Watch<'_> {
     /// What rounding of weights and increments may come to counts where next to nothing is, as with structures and with
     /// light parts beside heavy ones. Rows are measured in lengths, by their gradients, and over the size and the speed of
     /// the mechanism.
-    fn figures(&self, mechanism: &Mechanism, model: &Model, simulation: &Simulation<'_>) -> Figures {
+    fn figures(&self, mechanism: &Mechanism, model: &Model, simulation: &Simulation) -> Figures {
         let audit = simulation.audit();
         let mass: f64 = model.bodies.iter().map(|body| body.mass).chain(model.points.iter().map(|point| point.mass)).sum();
         let nominal = mechanism.size * mechanism.rate;

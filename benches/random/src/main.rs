@@ -188,7 +188,7 @@ mod tests {
             let source = holonom_io::Source::read("model.toml", generate::mechanism(seed).toml().as_bytes());
             let model = source.and_then(|source| source.model()).unwrap_or_else(|message| panic!("seed {seed}: {message}"));
             let method = Method::resolve(&Choice::default()).expect("the default goes together");
-            let simulation = Simulation::new(&model.system, method, 1e-3).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+            let simulation = Simulation::new(model.system.clone(), method, 1e-3).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
             let speed = simulation.velocities().iter().fold(simulation.start().turned, |most, v| v.abs().max(most));
             let missed = simulation.audit().phi_dot / (speed * mechanism_length(&simulation));
             println!("seed {seed}: rates of rows {missed:.1e} of the velocities");
@@ -196,7 +196,7 @@ mod tests {
         }
     }
 
-    fn mechanism_length(simulation: &Simulation<'_>) -> f64 {
+    fn mechanism_length(simulation: &Simulation) -> f64 {
         simulation.state().x.iter().fold(1.0, |most: f64, x| x.abs().max(most))
     }
 }

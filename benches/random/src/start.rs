@@ -78,9 +78,9 @@ fn shuffled(seed: u64, mechanism: &Mechanism) -> Vec<crate::mechanism::Entry> {
     entries
 }
 
-fn start<'a>(mechanism: &Mechanism, model: &'a Model) -> Option<Simulation<'a>> {
+fn start(mechanism: &Mechanism, model: &Model) -> Option<Simulation> {
     let method = Method::resolve(&Choice::default()).expect("the default goes together");
-    Simulation::new(&model.system, method, mechanism.step()).ok()
+    Simulation::new(model.system.clone(), method, mechanism.step()).ok()
 }
 
 fn motions(mechanism: &Mechanism, model: &Model) -> Option<Vec<Motion>> {

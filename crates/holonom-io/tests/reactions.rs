@@ -53,7 +53,7 @@ fn model(text: &str) -> Model {
     Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}\n{text}"))
 }
 
-fn run<'a>(model: &'a Model, method: &str) -> (Simulation, Recording) {
+fn run(model: &Model, method: &str) -> (Simulation, Recording) {
     let method = Method::resolve(&Choice { method: Some(method.into()), ..Choice::default() }).unwrap();
     let mut simulation = Simulation::new(model.system.clone(), method, 0.005).unwrap();
     simulation.find_reactions();
