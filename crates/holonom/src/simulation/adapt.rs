@@ -85,6 +85,10 @@ const RESTART: u32 = 3;
 /// Energy that an explicit scheme may make or lose over what there is to move, over the accuracy for which it is left.
 const WORSE: f64 = 20.0;
 
+/// Attempts between counts of redundant rows, and rejections in a row after which none is taken to be redundant everywhere.
+const OFTEN: u32 = 64;
+const DOUBT: u32 = 2;
+
 /// Attempts between looks at how far they have come, and the share of the run that each must come on average.
 const LOOK: u32 = 2000;
 const CRAWL: f64 = 1e-8;
@@ -147,11 +151,16 @@ impl Pilot {
         if ratio <= 1.0 {
             return ratio;
         }
-        self.independence.measure(&simulation.system, &simulation.state.x, t);
-        // A run may begin where rows are redundant that are not elsewhere.
-        let redundant = if self.patience.rejected < RESTART { self.redundant } else { 0 };
+        self.count_redundant(&simulation.system, &simulation.state);
+        let redundant = if self.patience.rejected < DOUBT { self.redundant } else { 0 };
         let weakest = self.independence.weakest(redundant).max(LEAST_SHARE);
         self.control.ratio(taken, step, t, &self.v, 1.0 / weakest.sqrt(), work)
+    }
+
+    /// Counts the rows that are redundant here: those that are so everywhere are the fewest, as a run may begin at a singular position.
+    fn count_redundant(&mut self, system: &System, state: &State) {
+        let shares = self.independence.measure(system, &state.x, state.t);
+        self.redundant = self.redundant.min(shares.iter().filter(|share| **share <= INDEPENDENT).count());
     }
 
     /// All energy there was to move up to where integration has come, J.
@@ -297,6 +306,9 @@ impl Simulation {
         });
         let ratio = outcome.as_ref().map_or(f64::INFINITY, |taken| pilot.ratio(self, taken, step));
         if let (Ok(taken), true) = (outcome, ratio <= 1.0) {
+            if pilot.redundant > 0 && pilot.patience.attempts % OFTEN == 0 {
+                pilot.count_redundant(&self.system, &self.state);
+            }
             pilot.control.remember(self.state.t, &pilot.v);
             pilot.control.accept(step, ratio);
             pilot.last = Some((taken, step));
