@@ -3,10 +3,10 @@
 use std::io::Read;
 use std::path::Path;
 
-use holonom::model::{Model, ProjectionSettings};
+use holonom::model::Model;
 use holonom::record::RecorderMark;
-use holonom::simulation::{Checkpoint, Choice, Method, MethodError, ProjectionChoice, StartError};
-use holonom::system::Place;
+use holonom::run::RunError;
+use holonom::simulation::{Checkpoint, Choice, Method, MethodError, StartError};
 use holonom_io::Source;
 use serde::{Deserialize, Serialize};
 
@@ -36,9 +36,6 @@ pub const EXAMPLES: &[(&str, &str)] = &[
     ("stewart-platform", include_str!("../../../examples/stewart-platform.toml")),
     ("robot-arm", include_str!("../../../examples/robot-arm.toml")),
 ];
-
-/// Rows of the results where the steps follow from an accuracy and no interval is given.
-const ROWS_BY_ACCURACY: f64 = 200.0;
 
 /// A model that was read, with where it came from.
 pub struct Loaded {
@@ -132,14 +129,12 @@ fn split(given: &str) -> Result<(&str, &str), Failure> {
 
 /// Nominal step of a model, s: with an accuracy, the interval of the results.
 pub fn step(model: &Model) -> Result<f64, Failure> {
-    let settings = &model.settings;
-    let shown = settings.accuracy.and(settings.end).map(|end| end / ROWS_BY_ACCURACY);
-    settings.step.or(shown).ok_or_else(|| missing("step", "--step 0.01"))
+    model.step().map_err(run_failure)
 }
 
 /// End of a model's run, s.
 pub fn end(model: &Model) -> Result<f64, Failure> {
-    model.settings.end.ok_or_else(|| missing("end", "--end 10"))
+    model.end().map_err(run_failure)
 }
 
 impl Loaded {
@@ -171,70 +166,22 @@ impl Loaded {
     }
 }
 
-fn missing(key: &str, option: &str) -> Failure {
-    Failure::usage(format!("the model has no `{key}` in [simulation]"), format!("add `{key} = …` there, or give {option}"))
-}
-
-/// What a model, and a name on the command line, say of the method. A name replaces what the model says of formulation,
-/// integrator and projection levels, and keeps the numbers.
-pub fn choice(model: &Model, name: Option<&str>) -> Result<Choice, Failure> {
-    let settings = &model.settings;
-    let own = name.is_none();
-    let part = |text: &Option<String>| text.clone().filter(|_| own);
-    Ok(Choice {
-        method: name.map(str::to_string).or_else(|| settings.method.clone()),
-        formulation: part(&settings.formulation),
-        index: settings.index.filter(|_| own).map(|index| index.min(u8::MAX.into()) as u8),
-        integrator: part(&settings.integrator),
-        iteration: settings.iteration.clone(),
-        penalty: settings.penalty,
-        beta: settings.beta,
-        gamma: settings.gamma,
-        alpha: settings.alpha,
-        rho: settings.rho,
-        omega: settings.omega,
-        xi: settings.xi,
-        accuracy: settings.accuracy,
-        order: settings.order.filter(|_| own).map(|order| order.min(u8::MAX.into()) as u8),
-        constraint_at: settings.constraint_at.clone(),
-        tolerance: settings.tolerance,
-        max_iterations: settings.max_iterations.map(|most| most as usize),
-        iterations: settings.iterations.map(|count| count as usize),
-        subdivide: settings.subdivide,
-        projection: settings.projection.as_ref().map(|projection| projection_choice(model, projection, own)).transpose()?,
-    })
-}
-
-fn projection_choice(model: &Model, settings: &ProjectionSettings, own: bool) -> Result<ProjectionChoice, Failure> {
-    let weights = settings.weights.as_ref().map(|weights| free_weights(model, weights)).transpose()?;
-    Ok(ProjectionChoice {
-        levels: settings.levels.clone().filter(|_| own),
-        matrix: settings.matrix.clone(),
-        solve: settings.solve.clone(),
-        penalty: settings.penalty,
-        strength: settings.strength,
-        shadow: settings.shadow,
-        weights,
-    })
-}
-
-/// A weight for each free node, from weights by name.
-fn free_weights(model: &Model, weights: &[(String, f64)]) -> Result<Vec<f64>, Failure> {
-    let mut of_nodes = vec![0.0; model.system.free_nodes()];
-    for point in &model.points {
-        if let Place::Node(node) = point.place
-            && node.index() < of_nodes.len()
-        {
-            let weight = weights.iter().find(|(name, _)| *name == point.name).map(|(_, weight)| *weight);
-            of_nodes[node.index()] = weight.ok_or_else(|| {
-                Failure::usage(
-                    format!("the projection has no weight for the point `{}`", point.name),
-                    "give every free point one in projection.weights",
-                )
-            })?;
+/// What a model lacks to run, with its cure.
+fn run_failure(error: RunError) -> Failure {
+    match error {
+        RunError::Missing { key } => {
+            let example = if key == "end" { 10.0 } else { 0.01 };
+            Failure::usage(error.to_string(), format!("add `{key} = …` there, or give --{key} {example}"))
         }
+        RunError::Unweighted { .. } => Failure::usage(error.to_string(), "give every free point one in projection.weights"),
+        RunError::Method(error) => method_failure(error),
+        RunError::Start(error) => start_failure(error),
     }
-    Ok(of_nodes)
+}
+
+/// What a model, and a name on the command line, say of the method.
+pub fn choice(model: &Model, name: Option<&str>) -> Result<Choice, Failure> {
+    model.choice(name).map_err(run_failure)
 }
 
 /// The method of a model, or the one named on the command line.

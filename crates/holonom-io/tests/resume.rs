@@ -182,11 +182,11 @@ fn a_rejected_step_leaves_no_trace() {
             let (Some(method_found), Some(_)) = (case.method(), case.whole()) else { continue };
             let mut simulation = Simulation::new(model.system.clone(), method_found, case.step).unwrap();
             let mut watch = case.watch(&mut simulation, 1 + STEPS / 2);
-            simulation.run(case.end(), &mut watch);
+            let _ = simulation.run(case.end(), &mut watch);
             let before = simulation.checkpoint();
             let long = TOO_LONG * case.step;
             let mut simulation = Simulation::resume(model.system.clone(), case.method().unwrap(), long, before.clone()).unwrap();
-            simulation.run(before.state.t + 2.0 * long, &mut |_: &Simulation| Verdict::GoOn);
+            let _ = simulation.run(before.state.t + 2.0 * long, &mut |_: &Simulation| Verdict::GoOn);
             if simulation.state().t != before.state.t {
                 continue;
             }

@@ -1,4 +1,47 @@
 //! The engine of holonom: dynamics of constrained mechanical systems in dependent Cartesian coordinates.
+//!
+//! A description, such as a TOML file, becomes a [`Model`](model::Model): what is in the mechanism, by name. It holds a
+//! [`System`](system::System): nodes with masses, rows Φ = 0 and forces, without names. A [`Method`](simulation::Method) at work on a system
+//! is a [`Simulation`](simulation::Simulation), and what it goes through may be kept in a [`Recording`](record::Recording). In formulas n is the number of
+//! coordinates and r that of constraint rows.
+//!
+//! A door on a hinge with a closer, for a second:
+//!
+//! ```
+//! let door = br#"
+//!     [body.door]
+//!     mass = 20
+//!     shape = { box = [1, 0.05, 2] }
+//!     position = [0.5, 0, 1]
+//!     [joint.hinge]
+//!     type = "revolute"
+//!     between = ["ground", "door"]
+//!     at = [0, 0, 1]
+//!     axis = [0, 0, 1]
+//!     [force.closer]
+//!     type = "torsion"
+//!     joint = "hinge"
+//!     stiffness = 5
+//!     angle = 1.57
+//!     [simulation]
+//!     step = 0.01
+//!     [output]
+//!     reactions = true
+//! "#;
+//! let model = holonom_io::Source::read("door.toml", door)?.model()?;
+//! let mut simulation = model.simulation()?;
+//! simulation.find_reactions();
+//! for _ in 0..100 {
+//!     assert_eq!(simulation.step(), holonom::simulation::Status::Completed);
+//! }
+//! let [angle, rate] = simulation.coordinate("hinge.angle").expect("the hinge is there");
+//! let held = model.reaction(&simulation, "hinge").expect("forces were asked for");
+//! println!("{angle:.3} rad, {rate:.3} rad/s, {:.1} N", held.force[2]);
+//! // J φ̈ = c (1.57 − φ) with J = m (b² + t²)/12 + m b²/4.
+//! let exact = 1.57 * (1.0 - (5.0_f64 / 6.670833).sqrt().cos());
+//! assert!((angle - exact).abs() < 1e-4 && (held.force[2] - 20.0 * 9.81).abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod analysis;
 pub mod energy;
@@ -8,5 +51,6 @@ pub mod linalg;
 pub mod model;
 pub mod projection;
 pub mod record;
+pub mod run;
 pub mod simulation;
 pub mod system;

@@ -14,6 +14,7 @@ const FLOORS: &[(&str, u8)] = &[
     ("simulation", 5),
     ("record", 6),
     ("analysis", 6),
+    ("run", 7),
 ];
 
 /// What the model may import: it is compiled down to a system, drawn as a scene, and nothing else knows it.

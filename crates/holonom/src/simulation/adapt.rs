@@ -76,14 +76,13 @@ struct Patience {
     /// Attempts since `since` (s).
     attempts: u32,
     since: f64,
+    /// Looks one after the other at which they had hardly come on.
+    slow: u32,
 }
 
 /// So many steps rejected one after the other are no matter of length: the motion is another one, and what was kept of the steps
 /// before says nothing.
 const RESTART: u32 = 3;
-
-/// Energy that an explicit scheme may make or lose over what there is to move, over the accuracy for which it is left.
-const WORSE: f64 = 20.0;
 
 /// Attempts between counts of redundant rows, and rejections in a row after which none is taken to be redundant everywhere.
 const OFTEN: u32 = 64;
@@ -91,7 +90,14 @@ const DOUBT: u32 = 2;
 
 /// Attempts between looks at how far they have come, and the share of the run that each must come on average.
 const LOOK: u32 = 2000;
-const CRAWL: f64 = 1e-8;
+const CRAWL: f64 = 1e-9;
+
+/// The same for one of some looks one after the other: what is short ends before.
+const SLOW: f64 = 1e-8;
+const SLOW_LOOKS: u32 = 10;
+
+/// Steps between two times at which something changes abruptly: a pulse that is nothing at both is seen.
+const BETWEEN: f64 = 4.0;
 
 impl Pilot {
     pub(super) fn new(system: &System, method: &Method, state: &State, gauges: &GaugeValues, audit: &Audit) -> Option<Box<Self>> {
@@ -134,9 +140,14 @@ pub(super) struct Flight {
 }
 
 impl Pilot {
-    /// The next time after `t` at which something changes abruptly.
-    fn next_switch(&self, t: f64) -> Option<f64> {
-        self.switches.get(self.switches.partition_point(|switch| *switch <= t)).copied()
+    /// Where a step from `t` ends at the latest on the way to `target`, as something changes abruptly there, and how long it may be.
+    fn reach(&self, t: f64, target: f64) -> (f64, f64) {
+        let next = self.switches.partition_point(|switch| *switch <= t);
+        match (next.checked_sub(1).map(|last| self.switches[last]), self.switches.get(next)) {
+            (_, None) => (target, self.control.step),
+            (None, Some(&switch)) => (switch.min(target), self.control.step),
+            (Some(last), Some(&switch)) => (switch.min(target), self.control.step.min((switch - last) / BETWEEN)),
+        }
     }
 
     /// The error of the last step over what is allowed. Where it is too large it is looked at once more: rows that hardly differ
@@ -146,7 +157,7 @@ impl Pilot {
         let ratio = self.control.ratio(taken, step, t, &self.v, 1.0, work);
         // Errors of explicit schemes grow there, too, and may be far more than their estimate, which the energy shows.
         if simulation.method.integrator.is_explicit() {
-            return ratio.max(simulation.audit.made_since(&self.before.audit) / (WORSE * self.control.allowed() * step));
+            return ratio.max(simulation.audit.made_since(&self.before.audit) / self.control.accuracy());
         }
         if ratio <= 1.0 {
             return ratio;
@@ -170,14 +181,15 @@ impl Pilot {
 
     /// Whether attempts have come nowhere: at this pace the run never ends.
     fn crawls(&mut self, t: f64) -> bool {
-        let Patience { attempts, since, .. } = &mut self.patience;
+        let Patience { attempts, since, slow, .. } = &mut self.patience;
         *attempts += 1;
         if *attempts % LOOK != 0 {
             return false;
         }
-        let crawls = t - *since < f64::from(LOOK) * CRAWL * self.control.span;
+        let pace = (t - *since) / (f64::from(LOOK) * self.control.span);
         *since = t;
-        crawls
+        *slow = if pace < SLOW { *slow + 1 } else { 0 };
+        pace < CRAWL || *slow >= SLOW_LOOKS
     }
 
     pub(super) fn flight(&self) -> Flight {
@@ -247,9 +259,9 @@ impl Simulation {
     /// Goes to `target` in equal steps no longer than the accuracy allows.
     pub(super) fn land(&mut self, target: f64, pilot: &mut Pilot) -> Result<(), Failure> {
         while self.state.t < target {
-            let stop = pilot.next_switch(self.state.t).map_or(target, |switch| switch.min(target));
+            let (stop, longest) = pilot.reach(self.state.t, target);
             let left = stop - self.state.t;
-            let parts = (left / pilot.control.step - 1e-9).ceil().max(1.0);
+            let parts = (left / longest - 1e-9).ceil().max(1.0);
             let step = left / parts;
             self.attempt(step, if parts == 1.0 { stop } else { self.state.t + step }, pilot)?;
         }
@@ -264,10 +276,10 @@ impl Simulation {
         let mut outcome = Ok(());
         while self.state.t < target && outcome.is_ok() {
             // The last two steps are alike.
-            let stop = pilot.next_switch(self.state.t).map_or(pilot.end, |switch| switch.min(pilot.end));
+            let (stop, longest) = pilot.reach(self.state.t, pilot.end);
             let left = stop - self.state.t;
-            let parts = (left / pilot.control.step - 1e-9).ceil().max(1.0);
-            let step = if parts <= 2.0 { left / parts } else { pilot.control.step };
+            let parts = (left / longest - 1e-9).ceil().max(1.0);
+            let step = if parts <= 2.0 { left / parts } else { longest };
             outcome = self.attempt(step, if parts == 1.0 { stop } else { self.state.t + step }, pilot);
         }
         pilot.front.keep(self);
@@ -306,7 +318,7 @@ impl Simulation {
         });
         let ratio = outcome.as_ref().map_or(f64::INFINITY, |taken| pilot.ratio(self, taken, step));
         if let (Ok(taken), true) = (outcome, ratio <= 1.0) {
-            if pilot.redundant > 0 && pilot.patience.attempts % OFTEN == 0 {
+            if pilot.redundant > 0 && pilot.patience.attempts.is_multiple_of(OFTEN) {
                 pilot.count_redundant(&self.system, &self.state);
             }
             pilot.control.remember(self.state.t, &pilot.v);

@@ -100,6 +100,11 @@ impl Grid {
         if self.passed >= count { end } else { self.at(self.passed) }
     }
 
+    /// The nominal time after `t`.
+    pub(super) fn following(&self, t: f64) -> f64 {
+        if t == self.at(self.passed) { self.at(self.passed + 1) } else { t + self.step }
+    }
+
     /// Takes the last nominal time back, which was not reached.
     pub(super) fn back(&mut self) {
         self.passed -= 1;

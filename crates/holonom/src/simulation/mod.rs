@@ -51,6 +51,7 @@ pub enum MethodError {
 }
 
 /// How a run ended.
+#[must_use]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Status {
     Completed,
@@ -167,6 +168,16 @@ impl Simulation {
             gauges,
             reactions: None,
         }
+    }
+
+    /// Takes the next nominal step.
+    pub fn step(&mut self) -> Status {
+        self.step_to(self.grid.following(self.state.t))
+    }
+
+    /// Runs to the time `t` (s).
+    pub fn step_to(&mut self, t: f64) -> Status {
+        self.run(t, &mut |_: &Self| Verdict::GoOn)
     }
 
     /// Runs to time `end` (s) and shows the start and every nominal step to the observer.
@@ -348,6 +359,12 @@ impl Simulation {
     /// Coordinates of joints and their rates, in the order of [`System::gauges`].
     pub fn gauges(&self) -> &GaugeValues {
         &self.gauges
+    }
+
+    /// Value (rad or m) and rate (rad/s or m/s) of a coordinate of a joint by its name, such as `hinge.angle`, over any number of turns.
+    pub fn coordinate(&self, name: &str) -> Option<[f64; 2]> {
+        let at = self.system.gauges().iter().position(|known| known == name)?;
+        Some([self.gauges.value[at], self.gauges.rate[at]])
     }
 
     /// The energy audit so far.
