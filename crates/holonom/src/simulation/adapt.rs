@@ -84,6 +84,9 @@ struct Patience {
 /// before says nothing.
 const RESTART: u32 = 3;
 
+/// Energy that an explicit scheme may make or lose over what there is to move, over the accuracy for which it is left.
+const WORSE: f64 = 20.0;
+
 /// Attempts between counts of redundant rows, and rejections in a row after which none is taken to be redundant everywhere.
 const OFTEN: u32 = 64;
 const DOUBT: u32 = 2;
@@ -157,7 +160,7 @@ impl Pilot {
         let ratio = self.control.ratio(taken, step, t, &self.v, 1.0, work);
         // Errors of explicit schemes grow there, too, and may be far more than their estimate, which the energy shows.
         if simulation.method.integrator.is_explicit() {
-            return ratio.max(simulation.audit.made_since(&self.before.audit) / self.control.accuracy());
+            return ratio.max(simulation.audit.made_since(&self.before.audit) / (WORSE * self.control.allowed() * step));
         }
         if ratio <= 1.0 {
             return ratio;

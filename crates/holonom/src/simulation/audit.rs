@@ -144,9 +144,12 @@ impl Audit {
         };
     }
 
-    /// What the integrator made or lost of the energy since an earlier state, over all there is to move; no less than
-    /// round-off shows.
+    /// What the integrator made or lost of the energy since an earlier state, over all there is to move; nothing where that is round-off, or
+    /// work was done, which is booked less exactly than the motion is found.
     pub(super) fn made_since(&self, before: &Self) -> f64 {
+        if self.work != before.work {
+            return 0.0;
+        }
         let made = (self.integrator_total - before.integrator_total).abs();
         let sizes = self.kinetic + self.potential.abs() + self.work.abs() + self.integrator_total.abs();
         let round_off = ROUNDED * sizes;

@@ -97,11 +97,6 @@ impl Control {
         self.accuracy / self.span
     }
 
-    /// What was asked for.
-    pub(super) fn accuracy(&self) -> f64 {
-        self.accuracy
-    }
-
     /// Takes note of an accepted state's time and velocities.
     pub(super) fn remember(&mut self, t: f64, v: &[f64]) {
         self.velocities.rotate_right(1);
