@@ -170,12 +170,12 @@ impl Simulation {
         }
     }
 
-    /// Takes the next nominal step.
+    /// Takes the next nominal step. An accuracy is that of a call: errors of many add up to more.
     pub fn step(&mut self) -> Status {
         self.step_to(self.grid.following(self.state.t))
     }
 
-    /// Runs to the time `t` (s).
+    /// Runs to the time `t` (s), with the accuracy asked for up to there.
     pub fn step_to(&mut self, t: f64) -> Status {
         self.run(t, &mut |_: &Self| Verdict::GoOn)
     }
