@@ -14,6 +14,7 @@ const FLOORS: &[(&str, u8)] = &[
     ("simulation", 5),
     ("record", 6),
     ("analysis", 6),
+    ("model", 6),
     ("run", 7),
 ];
 
