@@ -130,7 +130,7 @@ fn difference(whole: &Recording, [before, after]: &[Recording; 2]) -> Option<Str
 /// Where two texts begin to differ.
 fn diff(a: &str, b: &str) -> String {
     let at = a.bytes().zip(b.bytes()).take_while(|(a, b)| a == b).count();
-    let around = |text: &str| text.chars().skip(at.saturating_sub(80)).take(160).collect::<String>();
+    let around = |text: &str| String::from_utf8_lossy(&text.as_bytes()[at.saturating_sub(80)..text.len().min(at + 80)]).into_owned();
     format!("at the end\n  {}\n  {}", around(a), around(b))
 }
 

@@ -118,10 +118,8 @@ impl Model {
     /// simulation was not asked for forces ([`Simulation::find_reactions`]), and where the bodies share nodes at the joint, which
     /// `reactions = true` in `[output]` prevents.
     pub fn reaction(&self, simulation: &Simulation, name: &str) -> Option<Reaction> {
-        let joint = self.channels.joints.iter().find(|joint| joint.name == name && joint.is_known)?;
-        simulation.reactions()?;
-        let x = self.system.in_world(&simulation.state().x);
-        let (force, moment) = simulation.wrench(joint.rows.clone(), &joint.nodes, joint.place(&x, self.dimension));
-        Some(Reaction { force: force.map(|f| joint.sign * f), moment: moment.map(|m| joint.sign * m) })
+        let joint = self.channels.joints.iter().find(|joint| joint.name == name)?;
+        let (force, moment) = joint.wrench(simulation, &self.system.in_world(&simulation.state().x))?;
+        Some(Reaction { force, moment })
     }
 }

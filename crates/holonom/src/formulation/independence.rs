@@ -43,8 +43,14 @@ impl Independence {
         Self { kkt, at, natural, delta: vec![PROXIMAL; rows], shares: vec![0.0; rows] }
     }
 
+    /// How many rows follow from others at the positions `x` and the time `t`.
+    pub fn count_redundant(&mut self, system: &System, x: &[f64], t: f64) -> usize {
+        self.measure(system, x, t);
+        self.shares.iter().filter(|share| **share <= INDEPENDENT).count()
+    }
+
     /// Measures at the positions `x` and the time `t`.
-    pub fn measure(&mut self, system: &System, x: &[f64], t: f64) -> &[f64] {
+    fn measure(&mut self, system: &System, x: &[f64], t: f64) {
         let Self { kkt, at, natural, delta, shares } = self;
         system.evaluate_again(x, t, at);
         for (row, natural) in natural.iter().enumerate() {
@@ -65,10 +71,9 @@ impl Independence {
         for (row, share) in shares.iter_mut().enumerate() {
             *share = if is_factored { kkt.solver.pivot(kkt.multiplier(row, 0)) } else { 0.0 };
         }
-        shares
     }
 
-    /// The least share of a row, without as many of the least as are `redundant`; 1 where there is no other. The shares are in no
+    /// The least share of a row when last measured, without as many of the least as are `redundant`; 1 where there is no other. The shares are in no
     /// order then.
     pub fn weakest(&mut self, redundant: usize) -> f64 {
         self.shares.sort_unstable_by(f64::total_cmp);

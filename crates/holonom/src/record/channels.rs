@@ -62,6 +62,17 @@ impl RecordedJoint {
     pub fn place(&self, x: &[f64], dim: usize) -> [f64; 3] {
         at(&self.at, x, dim)
     }
+
+    /// Force (N) on its second body and moment (N·m) on it about the joint's place there, in world axes, at the present state, of which `x`
+    /// are the positions of all nodes in the world. `None` where the simulation finds no forces or bodies share nodes at the joint.
+    pub fn wrench(&self, simulation: &Simulation, x: &[f64]) -> Option<([f64; 3], [f64; 3])> {
+        if !self.is_known {
+            return None;
+        }
+        let about = self.place(x, simulation.system().dimension());
+        let (force, moment) = simulation.wrench(self.rows.clone(), &self.nodes, about)?;
+        Some((force.map(|f| self.sign * f), moment.map(|m| self.sign * m)))
+    }
 }
 
 /// A drive whose effort is recorded: −λ of its row, times a length where the row is one of half a square.
@@ -170,11 +181,9 @@ impl Channels {
             row.extend_from_slice(&reactions.force[node.index() * dim..(node.index() + 1) * dim]);
         }
         for joint in &self.joints {
-            let about = joint.place(&x, dim);
-            let (force, moment) = simulation.wrench(joint.rows.clone(), &joint.nodes, about);
-            let components = [force[0], force[1], force[2], moment[0], moment[1], moment[2]];
-            let sign = if joint.is_known { joint.sign } else { f64::NAN };
-            row.extend(RecordedJoint::components(dim).iter().map(|&k| sign * components[k]));
+            let (force, moment) = joint.wrench(simulation, &x).unwrap_or(([f64::NAN; 3], [f64::NAN; 3]));
+            let components = [force, moment].concat();
+            row.extend(RecordedJoint::components(dim).iter().map(|&k| components[k]));
         }
     }
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::control::Control;
 use super::{Audit, Method, Simulation, State, start};
-use crate::formulation::{Failure, INDEPENDENT, Independence};
+use crate::formulation::{Failure, Independence};
 use crate::integrator::{Estimate, Step, Work};
 use crate::projection::{Metric, Projection, Solve};
 use crate::system::{GaugeValues, Measured, System};
@@ -60,7 +60,7 @@ pub(super) struct Pilot {
     before: Moment,
     front: Moment,
     last: Option<(Step, f64)>,
-    /// How independent rows are, and how many are redundant at the start.
+    /// How independent rows are, and how many are redundant everywhere, as far as is known.
     independence: Independence,
     redundant: usize,
     patience: Patience,
@@ -84,7 +84,7 @@ struct Patience {
 /// before says nothing.
 const RESTART: u32 = 3;
 
-/// Energy that an explicit scheme may make or lose over what there is to move, over the accuracy for which it is left.
+/// Largest share of the energy to move that a step of an explicit scheme may make or lose, in units of the accuracy it is allowed.
 const WORSE: f64 = 20.0;
 
 /// Attempts between counts of redundant rows, and rejections in a row after which none is taken to be redundant everywhere.
@@ -95,7 +95,7 @@ const DOUBT: u32 = 2;
 const LOOK: u32 = 2000;
 const CRAWL: f64 = 1e-9;
 
-/// The same for one of some looks one after the other: what is short ends before.
+/// A larger share that so many looks in a row must not fall below: a short stretch of small steps ends before.
 const SLOW: f64 = 1e-8;
 const SLOW_LOOKS: u32 = 10;
 
@@ -110,7 +110,7 @@ impl Pilot {
             || Moment { state: state.clone(), v: state.v.clone(), a: state.a.clone(), measured: measured.clone(), audit: audit.clone() };
         let control = Control::new(method.accuracy?, method.order(), method.integrator.estimate, system.coordinates());
         let mut independence = Independence::new(system);
-        let redundant = independence.measure(system, &state.x, state.t).iter().filter(|share| **share <= INDEPENDENT).count();
+        let redundant = independence.count_redundant(system, &state.x, state.t);
         let smooth = smoothing(method);
         Some(Box::new(Self {
             control,
@@ -173,8 +173,7 @@ impl Pilot {
 
     /// Counts the rows that are redundant here: those that are so everywhere are the fewest, as a run may begin at a singular position.
     fn count_redundant(&mut self, system: &System, state: &State) {
-        let shares = self.independence.measure(system, &state.x, state.t);
-        self.redundant = self.redundant.min(shares.iter().filter(|share| **share <= INDEPENDENT).count());
+        self.redundant = self.redundant.min(self.independence.count_redundant(system, &state.x, state.t));
     }
 
     /// All energy there was to move up to where integration has come, J.

@@ -116,8 +116,6 @@ impl Simulation {
     pub fn checkpoint(&self) -> Checkpoint {
         let mut measured = Measured::default();
         measured.keep(&self.gauges);
-        let mut hints = self.hints.clone();
-        hints.keep(&self.newton, &*self.integrator);
         let run = Run {
             method: words(&self.method),
             grid: self.grid,
@@ -126,20 +124,13 @@ impl Simulation {
             measured,
             audit: self.audit.clone(),
             reactions: self.reactions.clone(),
-            hints,
+            hints: Hints::of(&self.newton, &*self.integrator),
             counters: [self.newton.iterations, self.newton.factorizations],
             flight: self.pilot.as_ref().map(|pilot| pilot.flight()),
         };
         Checkpoint { state: self.state.clone(), run: Some(run) }
     }
-}
 
-/// All of a method that its numbers depend on.
-fn words(method: &Method) -> String {
-    format!("{} {:?}", method.name, method.summary())
-}
-
-impl Simulation {
     /// Goes on from a checkpoint of an earlier run of the same system: with the same method and nominal step to the same bits, with
     /// others from its state. `None` when that is not one of this system and method.
     pub fn resume(system: impl Into<Arc<System>>, method: Method, step: f64, checkpoint: impl Into<Checkpoint>) -> Option<Self> {
@@ -182,4 +173,9 @@ impl Simulation {
         state.load(&mut self.work);
         self.system.evaluate_again(&state.x, state.t, &mut self.work.start.at);
     }
+}
+
+/// All of a method that its numbers depend on.
+fn words(method: &Method) -> String {
+    format!("{} {:?}", method.name, method.summary())
 }

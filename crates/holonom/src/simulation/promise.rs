@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use super::Method;
 use super::audit::Audit;
 use crate::energy;
-use crate::formulation::{Failure, INDEPENDENT, Independence, Iteration, Level, Multipliers, RowsAt, Workspace};
+use crate::formulation::{Failure, Independence, Iteration, Level, Multipliers, RowsAt, Workspace};
 use crate::linalg::largest;
 use crate::projection::{Metric, Solve};
 use crate::system::{GaugeValues, System};
@@ -251,7 +251,7 @@ impl Judge {
     fn compare_near_singular(&mut self, promise: Promise, unit: f64, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
         self.compare(promise, unit, work).or_else(|_| {
             let independence = self.independence.get_or_insert_with(|| Box::new(Independence::new(system)));
-            let redundant = independence.measure(system, &work.end.x, t).iter().filter(|share| **share <= INDEPENDENT).count();
+            let redundant = independence.count_redundant(system, &work.end.x, t);
             let amplified = independence.weakest(redundant).sqrt().recip();
             work.rows.iter_mut().for_each(|size| *size *= amplified);
             self.compare(promise, unit, work)

@@ -5,7 +5,6 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use super::Simulation;
-
 use crate::system::{NodeId, System};
 
 /// Forces of the constraints at a state, of the order of its positions and velocities.
@@ -37,12 +36,12 @@ impl Simulation {
     }
 
     /// Force (3) and moment about a place (3) of some rows on some nodes, points or directions, at the present state, N
-    /// and N·m; zero unless forces of the constraints were asked for.
-    pub fn wrench(&self, rows: Range<usize>, nodes: &[(NodeId, bool)], about: [f64; 3]) -> ([f64; 3], [f64; 3]) {
-        let Some(reactions) = &self.reactions else { return ([0.0; 3], [0.0; 3]) };
+    /// and N·m. `None` unless forces of the constraints were asked for.
+    pub fn wrench(&self, rows: Range<usize>, nodes: &[(NodeId, bool)], about: [f64; 3]) -> Option<([f64; 3], [f64; 3])> {
+        let reactions = self.reactions.as_ref()?;
         let gradient = &self.work.start.at.gradient;
         let about = self.system.of_world(about);
-        wrench(&self.system, rows, &reactions.lambda, gradient, nodes, about, &self.state.x)
+        Some(wrench(&self.system, rows, &reactions.lambda, gradient, nodes, about, &self.state.x))
     }
 
     /// Finds the forces of the constraints at the present state, where they are wanted.
