@@ -8,6 +8,7 @@ lags behind. The command is `holonom`, or what HOLONOM says.
 """
 
 import csv
+import json
 import os
 import subprocess
 import sys
@@ -32,13 +33,12 @@ def run(folder):
     subprocess.run(command, check=False)
 
 
-def cell(path):
+def cell(path, stopped_at):
+    if stopped_at is not None:
+        return f"stops at {stopped_at:.1f} s"
     with open(path, newline="") as file:
         rows = [{key: float(row[key]) for key in ("t", "energy", "hinge.angle")} for row in csv.DictReader(file)]
-    turned = [row for row in rows if row["t"] >= TURNS * 6.283 - 400]
-    if not turned:
-        return f"stops at {rows[-1]['t']:.0f} s"
-    last = turned[-1]
+    last = rows[-1]
     lag = 1.0 - last["hinge.angle"] / last["t"]
     lost = 1.0 - min(row["energy"] for row in rows) / ENERGY
     return f"{lag:.1e}" if lost < 0.5 else f"{lag:.1e}, spin lost"
@@ -48,11 +48,15 @@ def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else tempfile.mkdtemp()
     if not any(Path(folder).glob("*.csv")):
         run(folder)
+    stopped = {summary["label"]: summary["stopped_at"] for summary in json.loads((Path(folder) / "summary.json").read_text())}
     print("| method | " + " | ".join(f"ωh = {step}" for step in STEPS) + " |")
     print("|---" * (len(STEPS) + 1) + "|")
     for method in METHODS:
-        files = [Path(folder) / f"{method.replace('/', '-')}-{step}s.csv" for step in STEPS]
-        print(f"| `{method}` | " + " | ".join(cell(file) for file in files) + " |")
+        cells = []
+        for step in STEPS:
+            file = Path(folder) / f"{method.replace('/', '-')}-{step}s.csv"
+            cells.append(cell(file, stopped[f"{method}, {step} s"]))
+        print(f"| `{method}` | " + " | ".join(cells) + " |")
 
 
 main()
