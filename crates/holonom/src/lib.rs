@@ -43,6 +43,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+// Derived code names this crate from outside.
+extern crate self as holonom;
+
 pub mod analysis;
 pub mod energy;
 pub mod formulation;

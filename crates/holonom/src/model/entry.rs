@@ -103,7 +103,7 @@ impl<'a> Entry<'a> {
         self.sink.report(|| Fault::new(self.path, self.name, message, format!("add {key} = …")))
     }
 
-    fn wanted(&self, spot: Spot<'_>, what: &str, value: &Value) -> Refused {
+    pub(super) fn wanted(&self, spot: Spot<'_>, what: &str, value: &Value) -> Refused {
         let cure = match what {
             "a number" => "write a number such as 1.5, or an expression in quotes",
             "true or false" => "write true or false, without quotes",
@@ -254,6 +254,25 @@ impl<'a> Entry<'a> {
         read(&Entry { name: self.name, path: &path, table, ..*self })
     }
 
+    /// The same of a table at a key or in a list there.
+    pub(super) fn inside_at<T>(&self, spot: Spot<'_>, table: &'a Table, read: impl FnOnce(&Entry<'_>) -> Read<T>) -> Read<T> {
+        let path = key_path(self.path, spot.key);
+        let path = spot.item.map_or(path.clone(), |k| item_path(&path, k));
+        read(&Entry { name: self.name, path: &path, table, ..*self })
+    }
+
+    /// What is said of a table inside of this one, at a key or in a list there.
+    pub fn within<T>(&self, spot: Spot<'_>, read: impl FnOnce(&Entry<'_>) -> Read<T>) -> Read<T> {
+        let value = match (self.table.get(spot.key), spot.item) {
+            (Some(Value::List(items)), Some(k)) => items.get(k),
+            (value, _) => value,
+        };
+        match value {
+            Some(Value::Table(table)) => self.inside_at(spot, table, read),
+            _ => unreachable!("a table was read there"),
+        }
+    }
+
     /// A table inside this one.
     pub fn table(&self, key: &str) -> Read<&'a Table> {
         match self.value(key)? {
@@ -298,7 +317,7 @@ impl<'a> Entry<'a> {
         all(items.iter().enumerate().map(|(k, item)| self.formula_in(Spot { key, item: Some(k) }, item, variables)))
     }
 
-    fn formula_in(&self, spot: Spot<'_>, value: &Value, variables: &[&str]) -> Read<Program> {
+    pub(super) fn formula_in(&self, spot: Spot<'_>, value: &Value, variables: &[&str]) -> Read<Program> {
         match value {
             Value::Text(text) => {
                 let program = Program::parse(text, variables, &self.scope).map_err(|mistake| self.mistaken(spot, mistake))?;

@@ -3,6 +3,7 @@
 use super::assembly::Assembly;
 use super::entry::Entry;
 use super::fault::Read;
+use super::fields::Described;
 
 /// A key of a table in a model file.
 pub struct Key {
@@ -106,6 +107,25 @@ pub struct Kind {
     /// A small model that uses it.
     pub example: &'static str,
     pub(super) build: fn(&mut Assembly<'_>, &Entry<'_>) -> Read<()>,
+}
+
+/// A kind whose entries build what they say.
+pub(super) trait Build: Described {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()>;
+}
+
+impl Kind {
+    /// The line of a kind in its table.
+    pub(super) const fn of<T: Build>() -> Self {
+        Self {
+            name: T::NAME,
+            doc: T::DOC,
+            equations: T::EQUATIONS,
+            keys: T::KEYS,
+            example: T::EXAMPLE,
+            build: |assembly, entry| T::read(entry)?.build(assembly, entry),
+        }
+    }
 }
 
 /// The key that every entry with a name may have.

@@ -15,6 +15,7 @@ mod ends;
 mod entry;
 mod expression;
 mod fault;
+mod fields;
 mod finish;
 mod geometry;
 mod key;
@@ -34,7 +35,9 @@ mod written;
 pub use assembly::{Axes, GROUND};
 pub use bars::{BarInfo, KEYS as BAR_KEYS};
 pub use bodies::{Body, BodyInfo, KEYS as BODY_KEYS, Mesh, Meshes, NoMeshes};
-pub use fault::{Fault, Faults, nearest};
+pub use entry::{Entry, Spot};
+pub use fault::{Fault, Faults, Read, Refused, nearest};
+pub use fields::{Described, Field, Keys, List, Map, Number, Place, Site, Turn};
 pub use key::{Key, Kind, REPEAT, Shape};
 pub use points::KEYS as POINT_KEYS;
 pub use schema::schema;
@@ -48,13 +51,12 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use assembly::Assembly;
-use entry::Entry;
 use expression::Scope;
-use fault::{Read, Refused, Sink};
+use fault::Sink;
 use section::Sections;
 
 use crate::record::{Channels, PointKind, Scene};
-use crate::system::{Place, System, SystemBuilder};
+use crate::system::{self, System, SystemBuilder};
 
 /// The version of the model file that is read.
 pub const SCHEMA: u32 = 1;
@@ -84,7 +86,7 @@ const TABLES: [&str; 10] = ["parameters", "point", "body", "bar", "joint", "cons
 pub struct PointInfo {
     pub name: String,
     /// Its node, or where it is fixed, m.
-    pub place: Place,
+    pub place: system::Place,
     /// Its own mass, kg.
     pub mass: f64,
     /// Velocity at the start as it was written, m/s; `None` where it is fixed or driven.
@@ -235,7 +237,7 @@ fn make_bodies(assembly: &mut Assembly<'_>, root: &Entry<'_>, parameters: &HashM
     for (k, body) in assembly.bodies.iter().enumerate() {
         survey.needed.extend(body.points.iter().map(|&(_, at)| (k, geometry::subtract(at, body.position))));
     }
-    let places: Vec<Option<Place>> =
+    let places: Vec<Option<system::Place>> =
         assembly.points.iter().zip(specs).map(|(point, spec)| if points::is_driven(spec) { None } else { point.end.place() }).collect();
     let wanted = bodies::nodes::Wanted {
         bodies: &assembly.bodies,

@@ -16,6 +16,8 @@ mod stop;
 mod torque;
 mod torsion;
 
+pub use spring::Spring;
+
 use super::assembly::Assembly;
 use super::bodies::nodes::Member;
 use super::entry::Entry;
@@ -24,7 +26,7 @@ use super::key::Kind;
 
 /// All kinds of forces.
 pub const KINDS: &[Kind] = &[
-    spring::KIND,
+    Kind::of::<spring::Spring>(),
     torsion::KIND,
     bushing::KIND,
     force::KIND,

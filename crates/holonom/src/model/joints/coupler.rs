@@ -3,14 +3,9 @@
 use crate::model::assembly::Assembly;
 use crate::model::entry::{Entry, Spot};
 use crate::model::fault::{Read, suggest};
-use crate::model::key::{Key, Shape};
 use crate::model::references::split_place;
 
 use super::pair::Coordinate;
-
-/// The two joints of a coupler.
-pub(super) const JOINTS: Key =
-    Key::required("joints", Shape::Coordinates, "", "two joints, or coordinates of joints as \"JOINT.angle\" or \"JOINT.displacement\"");
 
 /// The coordinate that a text names: that of a joint with one, or `JOINT.COORDINATE`.
 pub fn coordinate(assembly: &Assembly<'_>, entry: &Entry<'_>, spot: Spot<'_>, text: &str) -> Read<Coordinate> {
@@ -38,9 +33,8 @@ pub fn coordinate(assembly: &Assembly<'_>, entry: &Entry<'_>, spot: Spot<'_>, te
 }
 
 /// Two coordinates at the key `joints`, each of the kind that `angles` says.
-pub(super) fn two(assembly: &Assembly<'_>, entry: &Entry<'_>, angles: Option<[bool; 2]>) -> Read<[Coordinate; 2]> {
-    let texts = entry.texts("joints")?;
-    let [first, second] = texts[..] else {
+pub(super) fn two(assembly: &Assembly<'_>, entry: &Entry<'_>, texts: &[String], angles: Option<[bool; 2]>) -> Read<[Coordinate; 2]> {
+    let [first, second] = texts else {
         return Err(entry.refuse(
             "joints",
             format!("two joints are wanted, and this names {}", texts.len()),

@@ -1,23 +1,16 @@
-use super::coupler::{JOINTS, couple, two};
+use super::coupler::{couple, two};
 use crate::model::assembly::Assembly;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
-use crate::model::key::{Key, Kind, Shape};
+use crate::model::fields::{Keys, List, Number};
+use crate::model::key::{Build, Shape};
 
-pub(super) const KIND: Kind = Kind {
-    name: "gear",
-    doc: "wheels that mesh, or any two coordinates of which one is a multiple of the other",
-    equations: "q_1 − ratio q_2 = 0, angles counted over any number of turns",
-    keys: &[
-        JOINTS,
-        Key::required(
-            "ratio",
-            Shape::Number,
-            "",
-            "how many times the second coordinate the first is; negative for outside gears about parallel axes",
-        ),
-    ],
-    example: r#"
+/// wheels that mesh, or any two coordinates of which one is a multiple of the other
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "gear",
+    equations = "q_1 − ratio q_2 = 0, angles counted over any number of turns",
+    example = r#"
 [body.wheel1]
 mass = 1
 shape = { cylinder = [0.1, 0.02] }
@@ -46,15 +39,23 @@ axis = [0, 0, 1]
 type = "gear"
 joints = ["axle1", "axle2"]
 ratio = -2
-"#,
-    build,
-};
+"#
+)]
+pub struct Gear {
+    /// two joints, or coordinates of joints as "JOINT.angle" or "JOINT.displacement"
+    #[key(shape = Shape::Coordinates)]
+    pub joints: List<String>,
+    /// how many times the second coordinate the first is; negative for outside gears about parallel axes
+    pub ratio: Number,
+}
 
-fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    let (joints, ratio) = (two(assembly, entry, None), entry.number("ratio"));
-    let ([first, second], ratio) = (joints?, ratio?);
-    if ratio == 0.0 {
-        return Err(entry.refuse("ratio", "a ratio of zero locks the first joint and frees the second", "give the ratio of the two"));
+impl Build for Gear {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        let (joints, ratio) = (two(assembly, entry, &self.joints, None), self.ratio.number(entry, "ratio"));
+        let ([first, second], ratio) = (joints?, ratio?);
+        if ratio == 0.0 {
+            return Err(entry.refuse("ratio", "a ratio of zero locks the first joint and frees the second", "give the ratio of the two"));
+        }
+        couple(assembly, entry, &[(first, 1.0), (second, -ratio)])
     }
-    couple(assembly, entry, &[(first, 1.0), (second, -ratio)])
 }

@@ -1,17 +1,17 @@
 use super::coupler::{coordinate, couple};
 use crate::model::assembly::Assembly;
-use crate::model::entry::Entry;
-use crate::model::entry::all;
+use crate::model::entry::{Entry, Spot, all};
 use crate::model::fault::Read;
-use crate::model::key::{Key, Kind, Shape};
+use crate::model::fields::{Keys, List, Number};
+use crate::model::key::Build;
 use crate::system::MAX_ARGUMENTS;
 
-pub(super) const KIND: Kind = Kind {
-    name: "linear",
-    doc: "a sum of joint coordinates that stays as it is: a differential, a tilting table, any linear coupling",
-    equations: "Σ factor_k q_k = 0, angles counted over any number of turns",
-    keys: &[Key::required("terms", Shape::Tables(&TERM), "", "the summands: { joint = \"JOINT\", factor = 1.0 }")],
-    example: r#"
+/// a sum of joint coordinates that stays as it is: a differential, a tilting table, any linear coupling
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "linear",
+    equations = "Σ factor_k q_k = 0, angles counted over any number of turns",
+    example = r#"
 [body.wheel1]
 mass = 1
 shape = { cylinder = [0.1, 0.02] }
@@ -39,35 +39,43 @@ axis = [0, 0, 1]
 [joint.sum]
 type = "linear"
 terms = [{ joint = "axle1", factor = 1 }, { joint = "axle2", factor = 2 }]
-"#,
-    build,
-};
+"#
+)]
+pub struct Linear {
+    /// the summands: { joint = "JOINT", factor = 1.0 }
+    pub terms: List<Term>,
+}
 
-/// Keys of a term.
-static TERM: [Key; 2] = [
-    Key::required("joint", Shape::Text, "", "joint, or coordinate of a joint as \"JOINT.angle\""),
-    Key::required("factor", Shape::Number, "", "its factor"),
-];
+/// A summand of a linear coupling.
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[table("a term")]
+pub struct Term {
+    /// joint, or coordinate of a joint as "JOINT.angle"
+    pub joint: String,
+    /// its factor
+    pub factor: Number,
+}
 
-fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    let items = entry.tables("terms")?;
-    if items.len() < 2 {
-        return Err(entry.refuse("terms", "a coupling has at least two terms", "add { joint = \"JOINT\", factor = 1 }"));
+impl Build for Linear {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        if self.terms.len() < 2 {
+            return Err(entry.refuse("terms", "a coupling has at least two terms", "add { joint = \"JOINT\", factor = 1 }"));
+        }
+        let term = |inner: &Entry<'_>, term: &Term| {
+            let joint = coordinate(assembly, inner, "joint".into(), &term.joint);
+            let factor = term.factor.number(inner, "factor");
+            Ok((joint?, factor?))
+        };
+        let terms =
+            all(self.terms.iter().enumerate().map(|(k, of)| entry.within(Spot { key: "terms", item: Some(k) }, |inner| term(inner, of))))?;
+        let arguments: usize = terms.iter().map(|(coordinate, _)| if coordinate.is_angle { 2 } else { 1 }).sum();
+        if arguments > MAX_ARGUMENTS {
+            return Err(entry.refuse(
+                "terms",
+                "a coupling holds three angles, or six displacements",
+                "couple in two steps, through a joint between",
+            ));
+        }
+        couple(assembly, entry, &terms)
     }
-    let term = |inner: &Entry<'_>| {
-        inner.refuse_unknown_keys("a term", &TERM.iter().collect::<Vec<_>>());
-        let joint = inner.text("joint").and_then(|text| coordinate(assembly, inner, "joint".into(), text));
-        let factor = inner.number("factor");
-        Ok((joint?, factor?))
-    };
-    let terms = all(items.iter().enumerate().map(|(k, table)| entry.inside(&format!("terms[{k}]"), table, term)))?;
-    let arguments: usize = terms.iter().map(|(coordinate, _)| if coordinate.is_angle { 2 } else { 1 }).sum();
-    if arguments > MAX_ARGUMENTS {
-        return Err(entry.refuse(
-            "terms",
-            "a coupling holds three angles, or six displacements",
-            "couple in two steps, through a joint between",
-        ));
-    }
-    couple(assembly, entry, &terms)
 }

@@ -93,7 +93,8 @@ pub const JOINTS: &[JointKind] = &[
 ];
 
 /// Couplers of the coordinates of other joints.
-pub const COUPLERS: &[Kind] = &[gear::KIND, rack_and_pinion::KIND, pulley::KIND, linear::KIND];
+pub const COUPLERS: &[Kind] =
+    &[Kind::of::<gear::Gear>(), Kind::of::<rack_and_pinion::RackAndPinion>(), Kind::of::<pulley::Pulley>(), Kind::of::<linear::Linear>()];
 
 /// All that `type` may say.
 pub fn kinds() -> Vec<&'static Kind> {

@@ -1,19 +1,16 @@
-use super::coupler::{JOINTS, couple, two};
+use super::coupler::{couple, two};
 use crate::model::assembly::Assembly;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
-use crate::model::key::{Key, Kind, Shape};
+use crate::model::fields::{Keys, List, Number};
+use crate::model::key::{Build, Shape};
 
-pub(super) const KIND: Kind = Kind {
-    name: "pulley",
-    doc: "two wheels with a belt between them",
-    equations: "r_1 θ_1 − r_2 θ_2 = 0, crossed r_1 θ_1 + r_2 θ_2 = 0, angles counted over any number of turns",
-    keys: &[
-        JOINTS,
-        Key::required("radii", Shape::Numbers(2, 2), "m", "radii of the two wheels"),
-        Key::optional("crossed", Shape::Flag, "false", "", "whether the belt crosses itself, so that the wheels turn against each other"),
-    ],
-    example: r#"
+/// two wheels with a belt between them
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "pulley",
+    equations = "r_1 θ_1 − r_2 θ_2 = 0, crossed r_1 θ_1 + r_2 θ_2 = 0, angles counted over any number of turns",
+    example = r#"
 [body.wheel1]
 mass = 1
 shape = { cylinder = [0.1, 0.02] }
@@ -42,15 +39,26 @@ axis = [0, 0, 1]
 type = "pulley"
 joints = ["axle1", "axle2"]
 radii = [0.1, 0.2]
-"#,
-    build,
-};
+"#
+)]
+pub struct Pulley {
+    /// two joints, or coordinates of joints as "JOINT.angle" or "JOINT.displacement"
+    #[key(shape = Shape::Coordinates)]
+    pub joints: List<String>,
+    /// radii of the two wheels
+    #[key(unit = "m", shape = Shape::Numbers(2, 2))]
+    pub radii: List<Number>,
+    /// whether the belt crosses itself, so that the wheels turn against each other
+    #[key(default = "false")]
+    pub crossed: Option<bool>,
+}
 
-fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    let joints = two(assembly, entry, Some([true, true]));
-    let radii = entry.sizes::<2>("radii");
-    let crossed = entry.optional("crossed", Entry::flag);
-    let ([first, second], [r1, r2]) = (joints?, radii?);
-    let sign = if crossed?.unwrap_or(false) { 1.0 } else { -1.0 };
-    couple(assembly, entry, &[(first, r1), (second, sign * r2)])
+impl Build for Pulley {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        let joints = two(assembly, entry, &self.joints, Some([true, true]));
+        let radii = self.radii.sizes::<2>(entry, "radii");
+        let ([first, second], [r1, r2]) = (joints?, radii?);
+        let sign = if self.crossed.unwrap_or(false) { 1.0 } else { -1.0 };
+        couple(assembly, entry, &[(first, r1), (second, sign * r2)])
+    }
 }

@@ -1,15 +1,16 @@
-use super::coupler::{JOINTS, couple, two};
+use super::coupler::{couple, two};
 use crate::model::assembly::Assembly;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
-use crate::model::key::{Key, Kind, Shape};
+use crate::model::fields::{Keys, List, Number};
+use crate::model::key::{Build, Shape};
 
-pub(super) const KIND: Kind = Kind {
-    name: "rack-and-pinion",
-    doc: "a wheel that rolls along a toothed rail: the displacement of the one joint is the radius times the angle of the other",
-    equations: "s − r θ = 0, θ counted over any number of turns",
-    keys: &[JOINTS, Key::required("radius", Shape::Number, "m", "displacement over angle; negative when they count against each other")],
-    example: r#"
+/// a wheel that rolls along a toothed rail: the displacement of the one joint is the radius times the angle of the other
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "rack-and-pinion",
+    equations = "s − r θ = 0, θ counted over any number of turns",
+    example = r#"
 [body.pinion]
 mass = 1
 shape = { cylinder = [0.1, 0.02] }
@@ -37,15 +38,25 @@ axis = [1, 0, 0]
 type = "rack-and-pinion"
 joints = ["axle", "rail"]
 radius = 0.1
-"#,
-    build,
-};
+"#
+)]
+pub struct RackAndPinion {
+    /// two joints, or coordinates of joints as "JOINT.angle" or "JOINT.displacement"
+    #[key(shape = Shape::Coordinates)]
+    pub joints: List<String>,
+    /// displacement over angle; negative when they count against each other
+    #[key(unit = "m")]
+    pub radius: Number,
+}
 
-fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    let (joints, radius) = (two(assembly, entry, Some([true, false])), entry.number("radius"));
-    let ([angle, displacement], radius) = (joints?, radius?);
-    if radius == 0.0 {
-        return Err(entry.refuse("radius", "a radius of zero locks the rack and frees the pinion", "give the radius of the pinion"));
+impl Build for RackAndPinion {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        let joints = two(assembly, entry, &self.joints, Some([true, false]));
+        let radius = self.radius.number(entry, "radius");
+        let ([angle, displacement], radius) = (joints?, radius?);
+        if radius == 0.0 {
+            return Err(entry.refuse("radius", "a radius of zero locks the rack and frees the pinion", "give the radius of the pinion"));
+        }
+        couple(assembly, entry, &[(displacement, 1.0), (angle, -radius)])
     }
-    couple(assembly, entry, &[(displacement, 1.0), (angle, -radius)])
 }

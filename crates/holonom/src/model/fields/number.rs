@@ -1,0 +1,109 @@
+use super::{Field, Shape};
+use crate::model::entry::{Entry, Spot};
+use crate::model::expression::Program;
+use crate::model::fault::Read;
+use crate::model::value::Value;
+
+/// A number, or a formula over parameters and, where a key says so, other variables.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Number {
+    Given(f64),
+    Formula(String),
+}
+
+impl Field for Number {
+    const SHAPE: Shape = Shape::Number;
+    const LIST: Shape = Shape::Numbers(0, usize::MAX);
+    const MAP: Shape = Shape::Weights;
+
+    fn read(entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<Self> {
+        match value {
+            Value::Number(number) => Ok(Self::Given(*number)),
+            Value::Text(text) => Ok(Self::Formula(text.clone())),
+            other => Err(entry.wanted(spot, "a number", other)),
+        }
+    }
+
+    fn write(&self) -> Value {
+        match self {
+            Self::Given(number) => Value::Number(*number),
+            Self::Formula(text) => Value::text(text),
+        }
+    }
+}
+
+impl From<f64> for Number {
+    fn from(number: f64) -> Self {
+        Self::Given(number)
+    }
+}
+
+impl From<i32> for Number {
+    fn from(number: i32) -> Self {
+        Self::Given(number.into())
+    }
+}
+
+impl From<u32> for Number {
+    fn from(number: u32) -> Self {
+        Self::Given(number.into())
+    }
+}
+
+impl From<&str> for Number {
+    fn from(formula: &str) -> Self {
+        Self::Formula(formula.into())
+    }
+}
+
+impl From<String> for Number {
+    fn from(formula: String) -> Self {
+        Self::Formula(formula)
+    }
+}
+
+impl Number {
+    /// The number, which must be finite; `at` is where it stands, for messages.
+    pub fn number<'s>(&self, entry: &Entry<'_>, at: impl Into<Spot<'s>>) -> Read<f64> {
+        entry.number_in(at.into(), &self.write())
+    }
+
+    /// A number above zero.
+    pub fn positive<'s>(&self, entry: &Entry<'_>, at: impl Into<Spot<'s>>) -> Read<f64> {
+        let at = at.into();
+        let number = self.number(entry, at)?;
+        if number > 0.0 {
+            return Ok(number);
+        }
+        Err(entry.refuse(at, format!("`{}` is {number}, and must be above 0", at.key), "give a number above 0"))
+    }
+
+    /// A number of at least zero.
+    pub fn not_negative<'s>(&self, entry: &Entry<'_>, at: impl Into<Spot<'s>>) -> Read<f64> {
+        let at = at.into();
+        let number = self.number(entry, at)?;
+        if number >= 0.0 {
+            return Ok(number);
+        }
+        Err(entry.refuse(at, format!("`{}` is negative: {number}", at.key), "it must be at least 0"))
+    }
+
+    /// A whole number of at least `least`.
+    pub fn whole<'s>(&self, entry: &Entry<'_>, at: impl Into<Spot<'s>>, least: u32) -> Read<u32> {
+        let at = at.into();
+        let number = self.number(entry, at)?;
+        if number.fract() == 0.0 && number >= f64::from(least) && number <= f64::from(u32::MAX) {
+            return Ok(number as u32);
+        }
+        Err(entry.refuse(
+            at,
+            format!("`{}` wants a whole number of at least {least}, and this is {number}", at.key),
+            format!("write {} = {}, or more", at.key, least.max(1)),
+        ))
+    }
+
+    /// A formula of some variables.
+    pub fn formula<'s>(&self, entry: &Entry<'_>, at: impl Into<Spot<'s>>, variables: &[&str]) -> Read<Program> {
+        entry.formula_in(at.into(), &self.write(), variables)
+    }
+}

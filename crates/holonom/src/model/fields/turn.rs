@@ -1,0 +1,47 @@
+use super::{Field, List, Number, Shape};
+use crate::model::entry::{Entry, Spot};
+use crate::model::fault::Read;
+use crate::model::value::Value;
+
+/// A vector of rotation: three numbers or formulas in space, in a planar model one about the normal.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Turn {
+    InSpace(List<Number>),
+    InPlane(Number),
+}
+
+impl Field for Turn {
+    const SHAPE: Shape = Shape::Spin;
+
+    fn read(entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<Self> {
+        match value {
+            Value::List(_) => List::read(entry, spot, value).map(Self::InSpace),
+            _ => Number::read(entry, spot, value).map(Self::InPlane),
+        }
+    }
+
+    fn write(&self) -> Value {
+        match self {
+            Self::InSpace(numbers) => numbers.write(),
+            Self::InPlane(number) => number.write(),
+        }
+    }
+}
+
+impl<T: Into<Number>> From<[T; 3]> for Turn {
+    fn from(numbers: [T; 3]) -> Self {
+        Self::InSpace(numbers.into())
+    }
+}
+
+impl From<f64> for Turn {
+    fn from(number: f64) -> Self {
+        Self::InPlane(number.into())
+    }
+}
+
+impl From<&str> for Turn {
+    fn from(formula: &str) -> Self {
+        Self::InPlane(formula.into())
+    }
+}
