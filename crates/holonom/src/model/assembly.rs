@@ -10,7 +10,7 @@ use super::ends::End;
 use super::entry::Entry;
 use super::fault::{Read, Sink};
 use super::geometry::Vec3;
-use super::joints::Joint;
+use super::joints::JointInfo;
 use crate::record::{Anchor, Line, LineKind, SceneJoint};
 use crate::system::{Signal, SystemBuilder};
 
@@ -92,7 +92,7 @@ pub struct Assembly<'a> {
     /// Places of each body that something holds, in its axes, for the picture.
     pub body_places: Vec<Vec<Vec3>>,
     /// All joints that are no couplers, in file order.
-    pub joints: Vec<Joint>,
+    pub joints: Vec<JointInfo>,
     /// Position of each joint in the list, by name.
     pub joint_names: HashMap<String, usize>,
     /// Coordinates of joints that are driven, as `JOINT.COORDINATE`, with the drive.

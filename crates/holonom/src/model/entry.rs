@@ -98,7 +98,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    fn missing(&self, key: &str) -> Refused {
+    pub(super) fn missing(&self, key: &str) -> Refused {
         let message = if self.name.is_empty() { format!("`{key}` is missing") } else { format!("`{}` has no `{key}`", self.name) };
         self.sink.report(|| Fault::new(self.path, self.name, message, format!("add {key} = …")))
     }

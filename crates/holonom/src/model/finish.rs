@@ -62,12 +62,12 @@ fn recorded_efforts(efforts: Vec<assembly::Effort>) -> Vec<RecordedEffort> {
 }
 
 /// Points, named points of bodies, and the forces of joints.
-fn channels(axes: Axes, points: &[assembly::Point], bodies: &[Body], frames: &[Frame], joints: &[joints::Joint]) -> Channels {
+fn channels(axes: Axes, points: &[assembly::Point], bodies: &[Body], frames: &[Frame], joints: &[joints::JointInfo]) -> Channels {
     let own = points.iter().map(|point| RecordedPoint { name: point.name.clone(), terms: point.end.terms.clone() });
     let named = bodies.iter().zip(frames).flat_map(|(body, frame)| {
         body.points.iter().map(move |(name, at)| RecordedPoint { name: format!("{}.{name}", body.name), terms: frame.point(*at) })
     });
-    let joint = |joint: &joints::Joint| {
+    let joint = |joint: &joints::JointInfo| {
         let [first, second] = joint.geometry.members.map(|member| match member {
             Member::Ground => Frame::Ground,
             Member::Point(k) => Frame::Particle(points[k].end.place().expect("a point is a node")),

@@ -117,14 +117,12 @@ pub(super) trait Build: Described {
 impl Kind {
     /// The line of a kind in its table.
     pub(super) const fn of<T: Build>() -> Self {
-        Self {
-            name: T::NAME,
-            doc: T::DOC,
-            equations: T::EQUATIONS,
-            keys: T::KEYS,
-            example: T::EXAMPLE,
-            build: |assembly, entry| T::read(entry)?.build(assembly, entry),
-        }
+        Self::with::<T>(|assembly, entry| T::read(entry)?.build(assembly, entry))
+    }
+
+    /// The same of a kind that is built in another way.
+    pub(super) const fn with<T: Described>(build: fn(&mut Assembly<'_>, &Entry<'_>) -> Read<()>) -> Self {
+        Self { name: T::NAME, doc: T::DOC, equations: T::EQUATIONS, keys: T::KEYS, example: T::EXAMPLE, build }
     }
 }
 

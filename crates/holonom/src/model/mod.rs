@@ -116,7 +116,7 @@ pub struct Model {
     /// In file order.
     pub bodies: Vec<BodyInfo>,
     /// Joints between bodies, in file order.
-    pub joints: Vec<joints::Joint>,
+    pub joints: Vec<joints::JointInfo>,
     /// What is recorded of it.
     pub channels: Channels,
 }

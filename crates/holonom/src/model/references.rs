@@ -8,7 +8,7 @@ use super::expression::{Mistake, Program, Scope};
 use super::fault::{Read, Refused, nearest, suggest};
 use super::fields::{self as field, Field};
 use super::geometry::Vec3;
-use super::joints::Joint;
+use super::joints::JointInfo;
 use super::value::Value;
 
 /// What a name of a place stands for.
@@ -142,7 +142,7 @@ impl Assembly<'_> {
     }
 
     /// A joint by name.
-    pub fn joint(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<&Joint> {
+    pub fn joint(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<&JointInfo> {
         let full = indexed(name, &entry.scope).map_err(|mistake| entry.mistaken(spot, mistake))?;
         if let Some(&k) = self.joint_names.get(&full) {
             return Ok(&self.joints[k]);

@@ -1,15 +1,15 @@
-use super::pair::{Pair, build};
-use super::{AT_ANY, BETWEEN, Feature, JointKind, Site};
+use super::pair::Pair;
+use super::{Feature, Joint, Layout, Seat, Sides};
 use crate::model::fault::Read;
-use crate::model::key::Kind;
+use crate::model::fields::{Keys, List, Site};
+use crate::model::key::Shape;
 
-pub(super) const JOINT: JointKind = JointKind {
-    kind: Kind {
-        name: "fixed",
-        doc: "two bodies as one",
-        equations: "d = 0, u_B·v_A = 0, u_B·w_A = 0, v_B·w_A = 0; none where their reactions are not asked for: the two then are one body",
-        keys: &[BETWEEN, AT_ANY],
-        example: r#"
+/// two bodies as one
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "fixed",
+    equations = "d = 0, u_B·v_A = 0, u_B·w_A = 0, v_B·w_A = 0; none where their reactions are not asked for: the two then are one body",
+    example = r#"
 [body.handle]
 mass = 0.5
 shape = { box = [0.2, 0.02, 0.02] }
@@ -23,18 +23,33 @@ position = [0.2, 0, 0]
 [joint.weld]
 type = "fixed"
 between = ["handle", "head"]
-"#,
-        build,
-    },
-    freedom: [Some(0), Some(0)],
-    at: Site::Any,
-    axes: [0, 0],
-    shares: [&[Feature::All], &[Feature::All]],
-    rows,
-};
+"#
+)]
+pub struct Fixed {
+    /// the two bodies, or a body and "ground"
+    #[key(shape = Shape::Members)]
+    pub between: List<String>,
+    /// where displacements and moments are measured: a place, "BODY.POINT", or one for each body
+    #[key(unit = "m", default = "the centre of the second body")]
+    pub at: Option<Site>,
+}
 
-fn rows(pair: &mut Pair<'_, '_>) -> Read<()> {
-    pair.coincide();
-    pair.lock_rotation();
-    Ok(())
+impl Joint for Fixed {
+    const LAYOUT: Layout = Layout {
+        freedom: [Some(0), Some(0)],
+        at: Seat::Any,
+        directions: [0, 0],
+        shares: [&[Feature::All], &[Feature::All]],
+        takes_point: false,
+    };
+
+    fn sides(&self) -> Sides<'_> {
+        Sides { between: &self.between, at: self.at.as_ref(), directions: None }
+    }
+
+    fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
+        pair.coincide();
+        pair.lock_rotation();
+        Ok(())
+    }
 }

@@ -1,29 +1,18 @@
-use super::pair::{Pair, build};
-use super::{AT, BETWEEN, JointKind, Site};
+use super::pair::Pair;
+use super::{Joint, Layout, Seat, Sides};
 use crate::model::entry::Spot;
 use crate::model::fault::{Read, suggest};
+use crate::model::fields::{Keys, List, Site};
 use crate::model::geometry::{cross, norm, scale, unit};
-use crate::model::key::{Key, Kind, Shape};
+use crate::model::key::Shape;
 
-pub(super) const JOINT: JointKind = JointKind {
-    kind: Kind {
-        name: "generic",
-        doc: "any of the six motions of two bodies against each other locked, along and about three axes of the first body; \
-              locks of rotation hold for any others, but two alone are those of a joint with one free axis: locked rx and ry leave rz",
-        equations: "x: d·x_A = 0, y: d·y_A = 0, z: d·z_A = 0, rx: y_A·z_B = 0, ry: z_A·x_B = 0, rz: x_A·y_B = 0",
-        keys: &[
-            BETWEEN,
-            AT,
-            Key::required("locks", Shape::Words(&LOCKS), "", "which motions are locked"),
-            Key::optional(
-                "axes",
-                Shape::Directions,
-                "those of the model",
-                "any",
-                "the x axis at the start, and a direction towards the y axis",
-            ),
-        ],
-        example: r#"
+/// any of the six motions of two bodies against each other locked, along and about three axes of the first body; locks of rotation
+/// hold for any others, but two alone are those of a joint with one free axis: locked rx and ry leave rz
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "generic",
+    equations = "x: d·x_A = 0, y: d·y_A = 0, z: d·z_A = 0, rx: y_A·z_B = 0, ry: z_A·x_B = 0, rz: x_A·y_B = 0",
+    example = r#"
 [body.load]
 mass = 1
 shape = { box = [0.2, 0.1, 0.1] }
@@ -34,41 +23,56 @@ type = "generic"
 between = ["ground", "load"]
 at = [0, 0, 0]
 locks = ["x", "y", "rx", "ry", "rz"]
-"#,
-        build,
-    },
-    freedom: [Some(6), None],
-    at: Site::Given,
-    axes: [0, 0],
-    shares: [&[], &[]],
-    rows,
-};
+"#
+)]
+pub struct Generic {
+    /// the two bodies, or a body and "ground"
+    #[key(shape = Shape::Members)]
+    pub between: List<String>,
+    /// where it sits at the start: a place, "BODY.POINT", or one for each body
+    #[key(unit = "m")]
+    pub at: Site,
+    /// which motions are locked
+    #[key(shape = Shape::Words(&LOCKS))]
+    pub locks: List<String>,
+    /// the x axis at the start, and a direction towards the y axis
+    #[key(unit = "any", default = "those of the model", shape = Shape::Directions)]
+    pub axes: Option<Site>,
+}
 
 const LOCKS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
 
-fn rows(pair: &mut Pair<'_, '_>) -> Read<()> {
-    let locks = locks(pair)?;
-    let axes = axes(pair)?;
-    pair.geometry.triad = [axes; 2];
-    for k in 0..3 {
-        match locks[k] {
-            true => pair.stay(k),
-            false => pair.displacement(LOCKS[k], k),
+impl Joint for Generic {
+    const LAYOUT: Layout = Layout { freedom: [Some(6), None], at: Seat::Given, directions: [0, 0], shares: [&[], &[]], takes_point: false };
+
+    fn sides(&self) -> Sides<'_> {
+        Sides { between: &self.between, at: Some(&self.at), directions: None }
+    }
+
+    fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
+        let locks = locks(pair, &self.locks)?;
+        let axes = axes(pair, self.axes.as_ref())?;
+        pair.geometry.triad = [axes; 2];
+        for k in 0..3 {
+            match locks[k] {
+                true => pair.stay(k),
+                false => pair.displacement(LOCKS[k], k),
+            }
         }
+        for k in (0..3).filter(|&k| locks[3 + k]) {
+            pair.perpendicular((k + 2) % 3, (k + 1) % 3);
+        }
+        if let ([free], 2) = (&(0..3).filter(|&k| !locks[3 + k]).collect::<Vec<_>>()[..], locks[3..].iter().filter(|lock| **lock).count()) {
+            let form = pair.angle_between([(free + 1) % 3, (free + 2) % 3]);
+            pair.coordinate("angle", form, true);
+        }
+        Ok(())
     }
-    for k in (0..3).filter(|&k| locks[3 + k]) {
-        pair.perpendicular((k + 2) % 3, (k + 1) % 3);
-    }
-    if let ([free], 2) = (&(0..3).filter(|&k| !locks[3 + k]).collect::<Vec<_>>()[..], locks[3..].iter().filter(|lock| **lock).count()) {
-        let form = pair.angle_between([(free + 1) % 3, (free + 2) % 3]);
-        pair.coordinate("angle", form, true);
-    }
-    Ok(())
 }
 
-fn locks(pair: &Pair<'_, '_>) -> Read<[bool; 6]> {
+fn locks(pair: &Pair<'_, '_>, words: &[String]) -> Read<[bool; 6]> {
     let mut locks = [false; 6];
-    for (k, word) in pair.entry.texts("locks")?.into_iter().enumerate() {
+    for (k, word) in words.iter().enumerate() {
         match LOCKS.iter().position(|lock| *lock == word) {
             Some(lock) => locks[lock] = true,
             None => {
@@ -86,11 +90,9 @@ fn locks(pair: &Pair<'_, '_>) -> Read<[bool; 6]> {
 }
 
 /// x, y and z of the joint at the start.
-fn axes(pair: &Pair<'_, '_>) -> Read<[[f64; 3]; 3]> {
-    if !pair.entry.has("axes") {
-        return Ok([0, 1, 2].map(unit));
-    }
-    let [x, towards] = super::geometry::directions(pair.assembly, pair.entry, "axes")?;
+fn axes(pair: &Pair<'_, '_>, given: Option<&Site>) -> Read<[[f64; 3]; 3]> {
+    let Some(given) = given else { return Ok([0, 1, 2].map(unit)) };
+    let [x, towards] = super::geometry::directions(pair.assembly, pair.entry, "axes", given)?;
     let z = cross(x, towards);
     let size = norm(z);
     if size < 1e-6 {

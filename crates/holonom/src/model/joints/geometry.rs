@@ -1,11 +1,12 @@
 //! Where a joint is at the start, from its keys `between`, `at`, `axis` and `axes`.
 
-use super::{Feature, JOINTS, JointKind, Site};
+use super::{AnyJoint, Feature, JOINTS, Seat, Sides};
 use crate::model::assembly::Assembly;
 use crate::model::bodies::Body;
 use crate::model::bodies::nodes::{Member, Shared};
 use crate::model::entry::{Entry, Spot};
 use crate::model::fault::Read;
+use crate::model::fields::Site;
 use crate::model::geometry::{Vec3, across, carried, cross, dot, norm, scale, subtract, unit};
 use crate::model::value::Value;
 
@@ -61,13 +62,14 @@ impl Survey {
 /// Adds what a joint asks of the nodes of its bodies.
 pub fn plan(assembly: &Assembly<'_>, entry: &Entry<'_>, share: bool, survey: &mut Survey) -> Read<()> {
     let kind = entry.text("type")?;
-    let Some(joint) = JOINTS.iter().find(|joint| joint.kind.name == kind) else { return Ok(()) };
-    let geometry = Geometry::read(assembly, entry, joint)?;
+    let Some(kind) = JOINTS.iter().find(|joint| joint.kind.name == kind) else { return Ok(()) };
+    let joint = (kind.read)(entry)?;
+    let (layout, geometry) = (joint.layout(), Geometry::of(assembly, entry, &*joint)?);
     let directions = geometry.triad;
     survey.sites.extend(geometry.at);
     for (side, member) in geometry.members.iter().enumerate() {
         if let Member::Body(k) = *member {
-            let used = if joint.shares[0] == [Feature::Point] && joint.axes[0] == 0 { &[][..] } else { &directions[side][..] };
+            let used = if layout.shares[0] == [Feature::Point] && layout.directions[0] == 0 { &[][..] } else { &directions[side][..] };
             survey.needed.extend(used.iter().map(|&u| (k, u)));
             let arm = subtract(geometry.at[side], assembly.bodies[k].position);
             survey.needed.push((k, arm));
@@ -80,7 +82,7 @@ pub fn plan(assembly: &Assembly<'_>, entry: &Entry<'_>, share: bool, survey: &mu
     let sides = |of: [Vec3; 2]| [(geometry.members[0], of[0]), (geometry.members[1], of[1])];
     // What is not in the same place at the start keeps its rows, which the start then meets or refuses.
     let apart = |[a, b]: [Vec3; 2]| norm(subtract(b, a)) > SAME * norm(a).max(norm(b));
-    for feature in joint.shares[usize::from(assembly.dimension() == 2)] {
+    for feature in layout.shares[usize::from(assembly.dimension() == 2)] {
         match *feature {
             Feature::Point | Feature::All if apart(geometry.at) => (),
             Feature::Axis(k) if apart(directions.map(|triad| triad[k])) => (),
@@ -100,18 +102,19 @@ pub fn plan(assembly: &Assembly<'_>, entry: &Entry<'_>, share: bool, survey: &mu
 const SAME: f64 = 1e-12;
 
 impl Geometry {
-    pub fn read(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &JointKind) -> Read<Self> {
+    pub fn of(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> Read<Self> {
         let members = members(assembly, entry, joint);
+        let (layout, sides) = (joint.layout(), joint.sides());
         let dim = assembly.dimension();
-        if joint.freedom[usize::from(dim == 2)].is_none() {
+        if layout.freedom[usize::from(dim == 2)].is_none() {
             return Err(entry.refuse(
                 "type",
-                format!("there is no {} joint in a planar model", joint.kind.name),
+                format!("there is no {} joint in a planar model", joint.name()),
                 "use one of those in the plane",
             ));
         }
-        let at = match (joint.at, entry.has("at")) {
-            (Site::Any, false) => {
+        let at = match (layout.at, sides.at) {
+            (Seat::Any, None) => {
                 let members = members?;
                 let centre = members.iter().rev().find_map(|member| match member {
                     Member::Body(k) => Some(assembly.bodies[*k].position),
@@ -119,10 +122,10 @@ impl Geometry {
                 });
                 Ok([centre.unwrap_or_default(); 2])
             }
-            (Site::Two, _) => sites(assembly, entry, true),
-            _ => sites(assembly, entry, false),
+            (_, None) => Err(entry.missing("at")),
+            (seat, Some(at)) => places(assembly, entry, at, seat == Seat::Two),
         };
-        let triad = triad(assembly, entry, joint, dim);
+        let triad = triad(assembly, entry, layout.directions[usize::from(dim == 2)], sides, dim);
         let (members, at, triad) = (members?, at?, triad?);
         for side in 0..2 {
             let Member::Point(k) = members[side] else { continue };
@@ -137,9 +140,9 @@ impl Geometry {
 }
 
 /// The two sides, of which at least one can move.
-fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &JointKind) -> Read<[Member; 2]> {
-    let names = entry.texts("between")?;
-    let [first, second] = names[..] else {
+fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> Read<[Member; 2]> {
+    let (layout, names) = (joint.layout(), joint.sides().between);
+    let [first, second] = names else {
         let message = format!("a joint is between two bodies, and this names {}", names.len());
         return Err(entry.refuse("between", message, "write between = [\"A\", \"B\"], or [\"ground\", \"B\"]"));
     };
@@ -149,10 +152,10 @@ fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &JointKind) -> Rea
     if members[0] == members[1] {
         return Err(entry.refuse(spot(1), format!("`{}` joins `{first}` to itself", entry.name), "name two different bodies"));
     }
-    let turns = joint.at != Site::Two && (joint.shares[0] != [Feature::Point] || joint.axes[0] > 0);
+    let turns = layout.at != Seat::Two && (layout.shares[0] != [Feature::Point] || layout.directions[0] > 0);
     for (k, member) in members.iter().enumerate() {
-        if matches!(member, Member::Point(_)) && turns && !(k == 1 && joint.kind.name.starts_with("point-on")) {
-            let message = format!("`{}` is a point, and a {} joint needs a body there", names[k], joint.kind.name);
+        if matches!(member, Member::Point(_)) && turns && !(k == 1 && layout.takes_point) {
+            let message = format!("`{}` is a point, and a {} joint needs a body there", names[k], joint.name());
             return Err(entry.refuse(spot(k), message, "name a [body.NAME], or use a joint that holds points only"));
         }
     }
@@ -172,8 +175,8 @@ fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &JointKind) -> Rea
 }
 
 /// The places of the key `at`: one for both sides, or one for each.
-fn sites(assembly: &Assembly<'_>, entry: &Entry<'_>, two: bool) -> Read<[Vec3; 2]> {
-    match entry.value("at")? {
+fn places(assembly: &Assembly<'_>, entry: &Entry<'_>, at: &Site, two: bool) -> Read<[Vec3; 2]> {
+    match &at.0 {
         Value::List(items) if is_one_of_each(assembly, entry, items) => {
             let site = |k: usize| assembly.place_at_start(entry, Spot { key: "at", item: Some(k) }, &items[k]);
             let (a, b) = (site(0), site(1));
@@ -195,15 +198,16 @@ fn is_one_of_each(assembly: &Assembly<'_>, entry: &Entry<'_>, items: &[Value]) -
 }
 
 /// The triads of both sides.
-fn triad(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &JointKind, dim: usize) -> Read<[[Vec3; 3]; 2]> {
-    let axes = joint.axes[usize::from(dim == 2)];
-    if axes == 0 && entry.has("axis") && dim == 2 {
+fn triad(assembly: &Assembly<'_>, entry: &Entry<'_>, count: usize, sides: Sides<'_>, dim: usize) -> Read<[[Vec3; 3]; 2]> {
+    if count == 0 && sides.directions.is_some() && dim == 2 {
         return Err(entry.refuse_key("axis", "in a planar model this joint has no axis", "remove it"));
     }
-    let [a, b] = match axes {
-        0 => [unit(if dim == 2 { 0 } else { 2 }); 2],
-        1 => {
-            let [a, b] = directions(assembly, entry, "axis")?;
+    let [a, b] = match (count, sides.directions) {
+        (0, _) => [unit(if dim == 2 { 0 } else { 2 }); 2],
+        (1, None) => return Err(entry.missing("axis")),
+        (_, None) => return Err(entry.missing("axes")),
+        (1, Some(axis)) => {
+            let [a, b] = directions(assembly, entry, "axis", axis)?;
             if dot(a, b) < 0.5 {
                 let degrees = dot(a, b).clamp(-1.0, 1.0).acos().to_degrees();
                 let message = format!("the axis of the one body is at {degrees:.1}° to that of the other at the start");
@@ -211,12 +215,12 @@ fn triad(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &JointKind, dim: usi
             }
             [a, b]
         }
-        _ => directions(assembly, entry, "axes")?,
+        (_, Some(axes)) => directions(assembly, entry, "axes", axes)?,
     };
     if dim == 2 {
         return Ok([a, b].map(|u| [u, [-u[1], u[0], 0.0], [0.0; 3]]));
     }
-    let v = match axes {
+    let v = match count {
         2 => {
             let normal = cross(a, b);
             let size = norm(normal);
@@ -231,8 +235,7 @@ fn triad(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &JointKind, dim: usi
 }
 
 /// The unit vectors at `axis`, one for both sides or one for each, or at `axes`.
-pub(super) fn directions(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &str) -> Read<[Vec3; 2]> {
-    let value = entry.value(key)?;
+pub(super) fn directions(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &str, given: &Site) -> Read<[Vec3; 2]> {
     let read = |spot: Spot<'_>, value: &Value| -> Read<Vec3> {
         let u = assembly.direction_at_start(entry, spot, value)?;
         let size = norm(u);
@@ -241,7 +244,7 @@ pub(super) fn directions(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &str) 
         }
         Ok(scale(u, 1.0 / size))
     };
-    match value {
+    match &given.0 {
         Value::List(items) if is_one_of_each(assembly, entry, items) => {
             let axis = |k: usize| read(Spot { key, item: Some(k) }, &items[k]);
             let (a, b) = (axis(0), axis(1));

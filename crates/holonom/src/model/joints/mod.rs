@@ -28,30 +28,126 @@ mod screw;
 mod spherical;
 mod universal;
 
+pub use constant_velocity::ConstantVelocity;
 pub use coupler::coordinate;
+pub use cylindrical::Cylindrical;
+pub use distance::Distance;
+pub use fixed::Fixed;
+pub use gear::Gear;
+pub use generic::Generic;
 pub use geometry::{Geometry, Survey, plan};
-pub use pair::{Coordinate, Joint, Pair};
+pub use linear::{Linear, Term};
+pub use orientation::Orientation;
+pub use pair::{Coordinate, JointInfo, Pair};
+pub use parallel::Parallel;
+pub use perpendicular::Perpendicular;
+pub use planar::Planar;
+pub use point_on_curve::PointOnCurve;
+pub use point_on_line::PointOnLine;
+pub use point_on_plane::PointOnPlane;
+pub use prismatic::Prismatic;
+pub use pulley::Pulley;
+pub use rack_and_pinion::RackAndPinion;
+pub use revolute::Revolute;
+pub use rolling::Rolling;
+pub use screw::Screw;
+pub use spherical::Spherical;
+pub use universal::Universal;
 
-use super::key::{Key, Kind};
+use super::entry::Entry;
+use super::fault::Read;
+use super::fields::{Described, Site};
+use super::key::Kind;
 
-/// A joint between two bodies: what `type` may say, beside couplers of other joints.
-pub struct JointKind {
-    pub kind: Kind,
+/// A joint between two bodies, beside its keys.
+pub trait Joint: Described {
+    const LAYOUT: Layout;
+
+    /// The keys that all joints have.
+    fn sides(&self) -> Sides<'_>;
+
+    /// Adds the rows and coordinates.
+    ///
+    /// # Errors
+    /// What is wrong with its keys; the faults are recorded.
+    fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()>;
+}
+
+/// How a joint sits between its bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layout {
     /// Degrees of freedom that two bodies keep against each other, in space and in the plane; none where a planar model
     /// has no such joint.
     pub freedom: [Option<usize>; 2],
-    /// Where it sits.
-    at: Site,
-    /// How many directions it has, in space and in the plane: none, one of both bodies, or one of each.
-    axes: [usize; 2],
+    pub at: Seat,
+    /// How many directions it has, in space and in the plane: none, one of both bodies (`axis`), or one of each (`axes`).
+    pub directions: [usize; 2],
     /// What both bodies have in common, in space and in the plane.
-    shares: [&'static [Feature]; 2],
-    rows: fn(&mut Pair<'_, '_>) -> super::fault::Read<()>,
+    pub shares: [&'static [Feature]; 2],
+    /// Whether the second may be a point though the joint has a direction or holds rotation: that is the first body's.
+    pub takes_point: bool,
+}
+
+/// Keys that all joints have.
+#[derive(Clone, Copy, Debug)]
+pub struct Sides<'a> {
+    /// `between`
+    pub between: &'a [String],
+    /// `at`
+    pub at: Option<&'a Site>,
+    /// `axis` or `axes`
+    pub directions: Option<&'a Site>,
+}
+
+/// A joint of any kind.
+pub trait AnyJoint {
+    /// What `type` says.
+    fn name(&self) -> &'static str;
+    fn layout(&self) -> Layout;
+    fn sides(&self) -> Sides<'_>;
+    fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()>;
+}
+
+impl<T: Joint> AnyJoint for T {
+    fn name(&self) -> &'static str {
+        T::NAME
+    }
+
+    fn layout(&self) -> Layout {
+        T::LAYOUT
+    }
+
+    fn sides(&self) -> Sides<'_> {
+        Joint::sides(self)
+    }
+
+    fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
+        Joint::rows(self, pair)
+    }
+}
+
+/// A kind of joint between two bodies: what `type` may say, beside couplers of other joints.
+pub struct JointKind {
+    pub kind: Kind,
+    pub layout: Layout,
+    read: fn(&Entry<'_>) -> Read<Box<dyn AnyJoint>>,
+}
+
+impl JointKind {
+    /// The line of a kind in its table.
+    const fn of<T: Joint + 'static>() -> Self {
+        Self {
+            kind: Kind::with::<T>(|assembly, entry| pair::build(assembly, entry, &T::read(entry)?)),
+            layout: T::LAYOUT,
+            read: |entry| Ok(Box::new(T::read(entry)?)),
+        }
+    }
 }
 
 /// What both bodies of a joint have in common and may share a node for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Feature {
+pub enum Feature {
+    /// The place of the joint.
     Point,
     /// The directions of the triad u, v, w.
     Axis(usize),
@@ -59,9 +155,9 @@ enum Feature {
     All,
 }
 
-/// Where a joint sits.
+/// Where a joint sits: what its key `at` says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Site {
+pub enum Seat {
     /// `at` must be given.
     Given,
     /// The centre of the second body where `at` is not given.
@@ -72,24 +168,24 @@ enum Site {
 
 /// Joints between two bodies.
 pub const JOINTS: &[JointKind] = &[
-    spherical::JOINT,
-    revolute::JOINT,
-    prismatic::JOINT,
-    cylindrical::JOINT,
-    universal::JOINT,
-    planar::JOINT,
-    fixed::JOINT,
-    screw::JOINT,
-    constant_velocity::JOINT,
-    point_on_line::JOINT,
-    point_on_plane::JOINT,
-    point_on_curve::JOINT,
-    parallel::JOINT,
-    perpendicular::JOINT,
-    orientation::JOINT,
-    distance::JOINT,
-    generic::JOINT,
-    rolling::JOINT,
+    JointKind::of::<spherical::Spherical>(),
+    JointKind::of::<revolute::Revolute>(),
+    JointKind::of::<prismatic::Prismatic>(),
+    JointKind::of::<cylindrical::Cylindrical>(),
+    JointKind::of::<universal::Universal>(),
+    JointKind::of::<planar::Planar>(),
+    JointKind::of::<fixed::Fixed>(),
+    JointKind::of::<screw::Screw>(),
+    JointKind::of::<constant_velocity::ConstantVelocity>(),
+    JointKind::of::<point_on_line::PointOnLine>(),
+    JointKind::of::<point_on_plane::PointOnPlane>(),
+    JointKind::of::<point_on_curve::PointOnCurve>(),
+    JointKind::of::<parallel::Parallel>(),
+    JointKind::of::<perpendicular::Perpendicular>(),
+    JointKind::of::<orientation::Orientation>(),
+    JointKind::of::<distance::Distance>(),
+    JointKind::of::<generic::Generic>(),
+    JointKind::of::<rolling::Rolling>(),
 ];
 
 /// Couplers of the coordinates of other joints.
@@ -100,23 +196,3 @@ pub const COUPLERS: &[Kind] =
 pub fn kinds() -> Vec<&'static Kind> {
     JOINTS.iter().map(|joint| &joint.kind).chain(COUPLERS).collect()
 }
-
-const BETWEEN: Key = Key::required("between", super::key::Shape::Members, "", "the two bodies, or a body and \"ground\"");
-const AT: Key =
-    Key::required("at", super::key::Shape::Site, "m", "where it sits at the start: a place, \"BODY.POINT\", or one for each body");
-const AT_ANY: Key = Key::optional(
-    "at",
-    super::key::Shape::Site,
-    "the centre of the second body",
-    "m",
-    "where displacements and moments are measured: a place, \"BODY.POINT\", or one for each body",
-);
-const AXIS: Key = Key::optional(
-    "axis",
-    super::key::Shape::Direction,
-    "needed",
-    "any",
-    "its direction at the start: a vector, \"BODY.AXIS\", or one for each body",
-);
-const AXES: Key =
-    Key::required("axes", super::key::Shape::Directions, "any", "a direction of the first body and one of the second, at the start");

@@ -1,7 +1,7 @@
 //! What the files of joints write their rows with: two bodies, a place and a triad on each.
 
 use super::geometry::Geometry;
-use super::{Feature, JOINTS, JointKind};
+use super::{AnyJoint, Feature};
 use crate::model::assembly::{Assembly, GROUND};
 use crate::model::bodies::frame::Frame;
 use crate::model::bodies::nodes::Member;
@@ -26,7 +26,7 @@ pub struct Coordinate {
 
 /// A joint of the model.
 #[derive(Clone)]
-pub struct Joint {
+pub struct JointInfo {
     pub name: String,
     /// What `type` says.
     pub kind: &'static str,
@@ -57,25 +57,24 @@ pub enum Side {
 }
 
 /// Builds a joint from its entry: its rows, coordinates and symbol.
-pub(super) fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    let kind = entry.text("type")?;
-    let joint: &JointKind = JOINTS.iter().find(|joint| joint.kind.name == kind).expect("the table has this kind");
-    let geometry = Geometry::read(assembly, entry, joint)?;
+pub(super) fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> Read<()> {
+    let layout = joint.layout();
+    let geometry = Geometry::of(assembly, entry, joint)?;
     let frames = [0, 1].map(|side| assembly.frame(geometry.members[side]));
     let first = assembly.builder.rows();
     let mut pair = Pair { assembly, entry, geometry, coordinates: Vec::new(), frames, names: 0, is_shared: false };
-    (joint.rows)(&mut pair)?;
+    joint.rows(&mut pair)?;
     let Pair { geometry, coordinates, is_shared, .. } = pair;
     let rows = first..assembly.builder.rows();
-    let has_axis = joint.axes[usize::from(assembly.dimension() == 2)] > 0;
-    draw(assembly, entry, joint.kind.name, &geometry, has_axis);
-    if joint.shares[0] != [Feature::All] {
+    let has_axis = layout.directions[usize::from(assembly.dimension() == 2)] > 0;
+    draw(assembly, entry, joint.name(), &geometry, has_axis);
+    if layout.shares[0] != [Feature::All] {
         for coordinate in &coordinates {
             assembly.builder.measure(format!("{}.{}", entry.name, coordinate.name), &coordinate.form);
         }
     }
     assembly.joint_names.insert(entry.name.to_string(), assembly.joints.len());
-    assembly.joints.push(Joint { name: entry.name.to_string(), kind: joint.kind.name, geometry, coordinates, rows, is_shared });
+    assembly.joints.push(JointInfo { name: entry.name.to_string(), kind: joint.name(), geometry, coordinates, rows, is_shared });
     Ok(())
 }
 

@@ -1,16 +1,16 @@
-use super::pair::{Pair, build};
+use super::pair::Pair;
 use super::universal::right_angle;
-use super::{AT_ANY, AXES, BETWEEN, JointKind, Site};
+use super::{Joint, Layout, Seat, Sides};
 use crate::model::fault::Read;
-use crate::model::key::Kind;
+use crate::model::fields::{Keys, List, Site};
+use crate::model::key::Shape;
 
-pub(super) const JOINT: JointKind = JointKind {
-    kind: Kind {
-        name: "perpendicular",
-        doc: "an axis of the one body stays at a right angle to an axis of the other",
-        equations: "u_A·u_B = 0",
-        keys: &[BETWEEN, AXES, AT_ANY],
-        example: r#"
+/// an axis of the one body stays at a right angle to an axis of the other
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "perpendicular",
+    equations = "u_A·u_B = 0",
+    example = r#"
 [body.arm]
 mass = 1
 shape = { box = [0.4, 0.05, 0.05] }
@@ -21,18 +21,30 @@ angular_velocity = [0, 0, 2]
 type = "perpendicular"
 between = ["ground", "arm"]
 axes = [[0, 0, 1], [1, 0, 0]]
-"#,
-        build,
-    },
-    freedom: [Some(5), None],
-    at: Site::Any,
-    axes: [2, 2],
-    shares: [&[], &[]],
-    rows,
-};
+"#
+)]
+pub struct Perpendicular {
+    /// the two bodies, or a body and "ground"
+    #[key(shape = Shape::Members)]
+    pub between: List<String>,
+    /// a direction of the first body and one of the second, at the start
+    #[key(unit = "any", shape = Shape::Directions)]
+    pub axes: Site,
+    /// where displacements and moments are measured: a place, "BODY.POINT", or one for each body
+    #[key(unit = "m", default = "the centre of the second body")]
+    pub at: Option<Site>,
+}
 
-fn rows(pair: &mut Pair<'_, '_>) -> Read<()> {
-    right_angle(pair.entry, pair.geometry.triad.map(|triad| triad[0]))?;
-    pair.perpendicular(0, 0);
-    Ok(())
+impl Joint for Perpendicular {
+    const LAYOUT: Layout = Layout { freedom: [Some(5), None], at: Seat::Any, directions: [2, 2], shares: [&[], &[]], takes_point: false };
+
+    fn sides(&self) -> Sides<'_> {
+        Sides { between: &self.between, at: self.at.as_ref(), directions: Some(&self.axes) }
+    }
+
+    fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
+        right_angle(pair.entry, pair.geometry.triad.map(|triad| triad[0]))?;
+        pair.perpendicular(0, 0);
+        Ok(())
+    }
 }

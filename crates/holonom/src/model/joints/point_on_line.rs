@@ -1,15 +1,15 @@
-use super::pair::{Pair, build};
-use super::{AT, AXIS, BETWEEN, JointKind, Site};
+use super::pair::Pair;
+use super::{Joint, Layout, Seat, Sides};
 use crate::model::fault::Read;
-use crate::model::key::Kind;
+use crate::model::fields::{Keys, List, Site};
+use crate::model::key::Shape;
 
-pub(super) const JOINT: JointKind = JointKind {
-    kind: Kind {
-        name: "point-on-line",
-        doc: "a pin in a slot: a point of the second body moves along a line of the first; the second may be a point",
-        equations: "d·v_A = 0, d·w_A = 0; in the plane d·v_A = 0",
-        keys: &[BETWEEN, AT, AXIS],
-        example: r#"
+/// a pin in a slot: a point of the second body moves along a line of the first; the second may be a point
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "point-on-line",
+    equations = "d·v_A = 0, d·w_A = 0; in the plane d·v_A = 0",
+    example = r#"
 [body.pin]
 mass = 1
 inertia = [0.01, 0.01, 0.01]
@@ -21,21 +21,34 @@ type = "point-on-line"
 between = ["ground", "pin"]
 at = [0, 0, 0]
 axis = [1, 0, 0]
-"#,
-        build,
-    },
-    freedom: [Some(4), Some(2)],
-    at: Site::Given,
-    axes: [1, 1],
-    shares: [&[], &[]],
-    rows,
-};
+"#
+)]
+pub struct PointOnLine {
+    /// the two bodies, or a body and "ground"
+    #[key(shape = Shape::Members)]
+    pub between: List<String>,
+    /// where it sits at the start: a place, "BODY.POINT", or one for each body
+    #[key(unit = "m")]
+    pub at: Site,
+    /// its direction at the start: a vector, "BODY.AXIS", or one for each body
+    #[key(unit = "any", default = "needed", shape = Shape::Direction)]
+    pub axis: Option<Site>,
+}
 
-fn rows(pair: &mut Pair<'_, '_>) -> Read<()> {
-    pair.stay(1);
-    if !pair.is_planar() {
-        pair.stay(2);
+impl Joint for PointOnLine {
+    const LAYOUT: Layout =
+        Layout { freedom: [Some(4), Some(2)], at: Seat::Given, directions: [1, 1], shares: [&[], &[]], takes_point: true };
+
+    fn sides(&self) -> Sides<'_> {
+        Sides { between: &self.between, at: Some(&self.at), directions: self.axis.as_ref() }
     }
-    pair.displacement("displacement", 0);
-    Ok(())
+
+    fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
+        pair.stay(1);
+        if !pair.is_planar() {
+            pair.stay(2);
+        }
+        pair.displacement("displacement", 0);
+        Ok(())
+    }
 }

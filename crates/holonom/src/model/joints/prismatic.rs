@@ -1,15 +1,15 @@
-use super::pair::{Pair, build};
-use super::{AT_ANY, AXIS, BETWEEN, Feature, JointKind, Site};
+use super::pair::Pair;
+use super::{Feature, Joint, Layout, Seat, Sides};
 use crate::model::fault::Read;
-use crate::model::key::Kind;
+use crate::model::fields::{Keys, List, Site};
+use crate::model::key::Shape;
 
-pub(super) const JOINT: JointKind = JointKind {
-    kind: Kind {
-        name: "prismatic",
-        doc: "a slider on a rail: the second body moves along an axis of the first and does not turn against it",
-        equations: "d·v_A = 0, d·w_A = 0, u_B·v_A = 0, u_B·w_A = 0, v_B·w_A = 0; in the plane d·v_A = 0, u_B·v_A = 0",
-        keys: &[BETWEEN, AXIS, AT_ANY],
-        example: r#"
+/// a slider on a rail: the second body moves along an axis of the first and does not turn against it
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "prismatic",
+    equations = "d·v_A = 0, d·w_A = 0, u_B·v_A = 0, u_B·w_A = 0, v_B·w_A = 0; in the plane d·v_A = 0, u_B·v_A = 0",
+    example = r#"
 [body.drawer]
 mass = 2
 shape = { box = [0.4, 0.5, 0.1] }
@@ -20,22 +20,40 @@ velocity = [0, 0.5, 0]
 type = "prismatic"
 between = ["ground", "drawer"]
 axis = [0, 1, 0]
-"#,
-        build,
-    },
-    freedom: [Some(1), Some(1)],
-    at: Site::Any,
-    axes: [1, 1],
-    shares: [&[Feature::Axis(0), Feature::Axis(1), Feature::Axis(2)], &[Feature::Axis(0), Feature::Axis(1), Feature::Axis(2)]],
-    rows,
-};
+"#
+)]
+pub struct Prismatic {
+    /// the two bodies, or a body and "ground"
+    #[key(shape = Shape::Members)]
+    pub between: List<String>,
+    /// its direction at the start: a vector, "BODY.AXIS", or one for each body
+    #[key(unit = "any", default = "needed", shape = Shape::Direction)]
+    pub axis: Option<Site>,
+    /// where displacements and moments are measured: a place, "BODY.POINT", or one for each body
+    #[key(unit = "m", default = "the centre of the second body")]
+    pub at: Option<Site>,
+}
 
-fn rows(pair: &mut Pair<'_, '_>) -> Read<()> {
-    pair.stay(1);
-    if !pair.is_planar() {
-        pair.stay(2);
+impl Joint for Prismatic {
+    const LAYOUT: Layout = Layout {
+        freedom: [Some(1), Some(1)],
+        at: Seat::Any,
+        directions: [1, 1],
+        shares: [&[Feature::Axis(0), Feature::Axis(1), Feature::Axis(2)], &[Feature::Axis(0), Feature::Axis(1), Feature::Axis(2)]],
+        takes_point: false,
+    };
+
+    fn sides(&self) -> Sides<'_> {
+        Sides { between: &self.between, at: self.at.as_ref(), directions: self.axis.as_ref() }
     }
-    pair.lock_rotation();
-    pair.displacement("displacement", 0);
-    Ok(())
+
+    fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
+        pair.stay(1);
+        if !pair.is_planar() {
+            pair.stay(2);
+        }
+        pair.lock_rotation();
+        pair.displacement("displacement", 0);
+        Ok(())
+    }
 }

@@ -1,27 +1,20 @@
 use std::sync::Arc;
 
-use super::pair::{Pair, Side, build};
-use super::{AT, AXIS, BETWEEN, JointKind, Site};
+use super::pair::{Pair, Side};
+use super::{Joint, Layout, Seat, Sides};
 use crate::model::fault::Read;
+use crate::model::fields::{self, Keys, List, Site};
 use crate::model::geometry::{across, dot, norm, scale};
-use crate::model::key::{Key, Kind, Shape};
+use crate::model::key::Shape;
 use crate::system::{Differentiated, Number, Part, PfaffianForm, SmoothFunction};
 
-pub(super) const JOINT: JointKind = JointKind {
-    kind: Kind {
-        name: "rolling",
-        doc: "a disc or wheel with a sharp edge that rolls on a plane of the first body without slipping, upright or tilted; its \
-              rows hold velocities along the plane, and no coordinate",
-        equations: "d·N + R s(0) − R s = 0 and t_j·(ḋ − R/s (N·v v̇ + N·w ẇ)) = 0 in the axes of the first body, with v, w in the disc, \
-                    s² = (N·v)² + (N·w)²",
-        keys: &[
-            BETWEEN,
-            AT,
-            AXIS,
-            Key::required("normal", Shape::Vector, "any", "direction away from the plane at the start"),
-            Key::required("radius", Shape::Number, "m", "R; the plane is where the disc touches it at the start"),
-        ],
-        example: r#"
+/// a disc or wheel with a sharp edge that rolls on a plane of the first body without slipping, upright or tilted; its rows hold
+/// velocities along the plane, and no coordinate
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "rolling",
+    equations = "d·N + R s(0) − R s = 0 and t_j·(ḋ − R/s (N·v v̇ + N·w ẇ)) = 0 in the axes of the first body, with v, w in the disc, s² = (N·v)² + (N·w)²",
+    example = r#"
 [body.coin]
 mass = 1
 shape = { cylinder = [0.5, 0.02] }
@@ -37,45 +30,63 @@ at = [0, 0, 0.5]
 axis = [0, 1, 0]
 normal = [0, 0, 1]
 radius = 0.5
-"#,
-        build,
-    },
-    freedom: [Some(3), None],
-    at: Site::Given,
-    axes: [1, 1],
-    shares: [&[], &[]],
-    rows,
-};
+"#
+)]
+pub struct Rolling {
+    /// the two bodies, or a body and "ground"
+    #[key(shape = Shape::Members)]
+    pub between: List<String>,
+    /// where it sits at the start: a place, "BODY.POINT", or one for each body
+    #[key(unit = "m")]
+    pub at: Site,
+    /// its direction at the start: a vector, "BODY.AXIS", or one for each body
+    #[key(unit = "any", default = "needed", shape = Shape::Direction)]
+    pub axis: Option<Site>,
+    /// direction away from the plane at the start
+    #[key(unit = "any", shape = Shape::Vector)]
+    pub normal: List<fields::Number>,
+    /// R; the plane is where the disc touches it at the start
+    #[key(unit = "m")]
+    pub radius: fields::Number,
+}
 
-fn rows(pair: &mut Pair<'_, '_>) -> Read<()> {
-    let (normal, radius) = (pair.entry.vector("normal", 3), pair.entry.positive("radius"));
-    let (normal, radius) = (normal?, radius?);
-    let size = norm(normal);
-    if size == 0.0 {
-        return Err(pair.entry.refuse("normal", "a normal of zero length has no direction", "give the direction away from the plane"));
+impl Joint for Rolling {
+    const LAYOUT: Layout = Layout { freedom: [Some(3), None], at: Seat::Given, directions: [1, 1], shares: [&[], &[]], takes_point: false };
+
+    fn sides(&self) -> Sides<'_> {
+        Sides { between: &self.between, at: Some(&self.at), directions: self.axis.as_ref() }
     }
-    let normal = scale(normal, 1.0 / size);
-    let [_, v, w] = pair.geometry.triad[1];
-    let start = (dot(normal, v).powi(2) + dot(normal, w).powi(2)).sqrt();
-    if start < FLAT {
-        return Err(pair.entry.refuse("axis", "the disc lies flat on the plane and does not roll", "tilt it, or use a planar joint"));
+
+    fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
+        let (normal, radius) = (self.normal.vector(pair.entry, "normal", 3), self.radius.positive(pair.entry, "radius"));
+        let (normal, radius) = (normal?, radius?);
+        let size = norm(normal);
+        if size == 0.0 {
+            return Err(pair.entry.refuse("normal", "a normal of zero length has no direction", "give the direction away from the plane"));
+        }
+        let normal = scale(normal, 1.0 / size);
+        let [_, v, w] = pair.geometry.triad[1];
+        let start = (dot(normal, v).powi(2) + dot(normal, w).powi(2)).sqrt();
+        if start < FLAT {
+            return Err(pair.entry.refuse("axis", "the disc lies flat on the plane and does not roll", "tilt it, or use a planar joint"));
+        }
+        let d = pair.d();
+        let product = |pair: &mut Pair<'_, '_>, moving: &[_], axis| {
+            let axis = pair.fixed_to(Side::A, axis);
+            pair.assembly.builder.dot(moving, &axis)
+        };
+        let (v, w) = (pair.e(Side::B, 1), pair.e(Side::B, 2));
+        let [height, up_v, up_w] = [&d, &v, &w].map(|moving| product(pair, moving, normal));
+        let touching = Differentiated(Touching { start });
+        let lowest = Part::Smooth { of: vec![up_v, up_w], function: Arc::new(touching) };
+        pair.hold_sum(&[(Part::Invariant(height), 1.0), (lowest, -radius)]);
+        for along in across(normal, 3) {
+            let [way, along_v, along_w] = [&d, &v, &w].map(|moving| product(pair, moving, along));
+            let form = Arc::new(Differentiated(Slip { radius }));
+            pair.hold(Part::Pfaffian { of: vec![way, along_v, along_w, up_v, up_w], form });
+        }
+        Ok(())
     }
-    let d = pair.d();
-    let product = |pair: &mut Pair<'_, '_>, moving: &[_], axis| {
-        let axis = pair.fixed_to(Side::A, axis);
-        pair.assembly.builder.dot(moving, &axis)
-    };
-    let (v, w) = (pair.e(Side::B, 1), pair.e(Side::B, 2));
-    let [height, up_v, up_w] = [&d, &v, &w].map(|moving| product(pair, moving, normal));
-    let touching = Differentiated(Touching { start });
-    let lowest = Part::Smooth { of: vec![up_v, up_w], function: Arc::new(touching) };
-    pair.hold_sum(&[(Part::Invariant(height), 1.0), (lowest, -radius)]);
-    for along in across(normal, 3) {
-        let [way, along_v, along_w] = [&d, &v, &w].map(|moving| product(pair, moving, along));
-        let form = Arc::new(Differentiated(Slip { radius }));
-        pair.hold(Part::Pfaffian { of: vec![way, along_v, along_w, up_v, up_w], form });
-    }
-    Ok(())
 }
 
 /// Sine of the smallest angle between the disc and the plane at the start.

@@ -1,15 +1,15 @@
-use super::pair::{Pair, build};
-use super::{AT, BETWEEN, Feature, JointKind, Site};
+use super::pair::Pair;
+use super::{Feature, Joint, Layout, Seat, Sides};
 use crate::model::fault::Read;
-use crate::model::key::Kind;
+use crate::model::fields::{Keys, List, Site};
+use crate::model::key::Shape;
 
-pub(super) const JOINT: JointKind = JointKind {
-    kind: Kind {
-        name: "spherical",
-        doc: "a ball in its socket: the two bodies share a point and turn freely about it; also between points",
-        equations: "d = r_B − r_A = 0",
-        keys: &[BETWEEN, AT],
-        example: r#"
+/// a ball in its socket: the two bodies share a point and turn freely about it; also between points
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "spherical",
+    equations = "d = r_B − r_A = 0",
+    example = r#"
 [body.bob]
 mass = 1
 inertia = [0.1, 0.2, 0.2]
@@ -19,17 +19,32 @@ position = [1, 0, 0]
 type = "spherical"
 between = ["ground", "bob"]
 at = [0, 0, 0]
-"#,
-        build,
-    },
-    freedom: [Some(3), None],
-    at: Site::Given,
-    axes: [0, 0],
-    shares: [&[Feature::Point], &[Feature::Point]],
-    rows,
-};
+"#
+)]
+pub struct Spherical {
+    /// the two bodies, or a body and "ground"
+    #[key(shape = Shape::Members)]
+    pub between: List<String>,
+    /// where it sits at the start: a place, "BODY.POINT", or one for each body
+    #[key(unit = "m")]
+    pub at: Site,
+}
 
-fn rows(pair: &mut Pair<'_, '_>) -> Read<()> {
-    pair.coincide();
-    Ok(())
+impl Joint for Spherical {
+    const LAYOUT: Layout = Layout {
+        freedom: [Some(3), None],
+        at: Seat::Given,
+        directions: [0, 0],
+        shares: [&[Feature::Point], &[Feature::Point]],
+        takes_point: false,
+    };
+
+    fn sides(&self) -> Sides<'_> {
+        Sides { between: &self.between, at: Some(&self.at), directions: None }
+    }
+
+    fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
+        pair.coincide();
+        Ok(())
+    }
 }
