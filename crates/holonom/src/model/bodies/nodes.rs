@@ -61,10 +61,12 @@ pub fn make(builder: &mut SystemBuilder, wanted: &Wanted<'_>) -> Vec<Frame> {
     let sharing = Sharing::new(wanted, &groups);
     let mut places: Vec<Option<Found>> = wanted.shared.iter().map(|shared| known_place(shared, wanted)).collect();
     sharing.spread(wanted, (0..groups.len()).collect(), &mut places);
+    let mut needed = vec![Vec::new(); wanted.bodies.len()];
+    wanted.needed.iter().for_each(|&(body, direction)| needed[body].push(direction));
     let mut kept = HashSet::new();
     let mut frames: Vec<Option<Frame>> = vec![None; wanted.bodies.len()];
     for (root, members) in groups.iter().enumerate().filter(|(_, members)| !members.is_empty()) {
-        let group = Group { members, shared: &sharing.of_group[root], lead: &wanted.bodies[root], wanted };
+        let group = Group { members, shared: &sharing.of_group[root], needed: &needed, lead: &wanted.bodies[root], wanted };
         let basis = group.basis(builder, &mut places);
         sharing.spread(wanted, sharing.beside(root), &mut places);
         let frame = Frame::new(builder.dimension(), basis.clone());
@@ -178,6 +180,8 @@ struct Group<'a> {
     members: &'a [usize],
     /// Numbers of what it shares, with its reference coordinates there.
     shared: &'a [(usize, Vec3)],
+    /// Directions that are needed of each body of the model.
+    needed: &'a [Vec<Vec3>],
     lead: &'a Body,
     wanted: &'a Wanted<'a>,
 }
@@ -270,7 +274,7 @@ impl Group<'_> {
             return 1;
         }
         let centre = self.centre();
-        let needed = self.wanted.needed.iter().filter(|(body, _)| self.members.contains(body)).map(|&(_, u)| u);
+        let needed = self.members.iter().flat_map(|&body| self.needed[body].iter().copied());
         let edge = |&(k, at): &(usize, Vec3)| if self.wanted.shared[k].is_point { subtract(at, centre) } else { at };
         let edges = shared.iter().map(edge).chain(needed);
         let held = edges.into_iter().all(|edge| norm(rest(solid, edge)) <= THIN * norm(edge));
