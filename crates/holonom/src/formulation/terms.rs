@@ -4,7 +4,7 @@ use super::kkt::{Block, Kkt, LawFactors};
 use super::level::Level;
 use super::stage::{RowsAt, Sampling, Stage};
 use super::workspace::Workspace;
-use crate::system::{Between, LoadEntry, MAX_ARGUMENTS, Quantity, Reach, Response, SIZE, System, gather, scatter};
+use crate::system::{Between, LoadEntry, Local, MAX_ARGUMENTS, Quantity, Reach, Response, System, gather, scatter};
 
 impl Workspace {
     /// Evaluates rows, laws and loads of a stage; leaves Φ in `phi` and the sum of forces in `forces`.
@@ -85,8 +85,8 @@ impl Workspace {
         let mut first = 0;
         for load in &system.loads {
             let width = load.nodes.len() * dim;
-            let (x, v) = self.load_arguments(system, load);
-            load.load.force(&x[..width], &v[..width], t, &mut self.forces.of_loads[first..first + width]);
+            let [x, v] = self.load_arguments(system, load);
+            load.load.force(&x, &v, t, &mut self.forces.of_loads[first..first + width]);
             for (k, node) in load.nodes.iter().enumerate().filter(|(_, node)| node.index() < system.free) {
                 for c in 0..dim {
                     self.forces.sum[node.index() * dim + c] -= self.forces.of_loads[first + k * dim + c];
@@ -130,14 +130,12 @@ impl Workspace {
     }
 
     /// Sampled positions and velocities of a load's nodes.
-    fn load_arguments(&self, system: &System, load: &LoadEntry) -> ([f64; SIZE], [f64; SIZE]) {
-        let (mut x, mut v) = ([0.0; SIZE], [0.0; SIZE]);
-        gather(system.dim, &load.nodes, &self.sampled.x, &mut x);
+    fn load_arguments(&self, system: &System, load: &LoadEntry) -> [Local; 2] {
+        let mut x = gather(system.dim, &load.nodes, &self.sampled.x);
         for (x, _) in x.chunks_exact_mut(system.dim).zip(&load.nodes).filter(|(_, node)| system.is_point[node.index()]) {
             x.iter_mut().zip(system.origin).for_each(|(x, origin)| *x += origin);
         }
-        gather(system.dim, &load.nodes, &self.sampled.v, &mut v);
-        (x, v)
+        [x, gather(system.dim, &load.nodes, &self.sampled.v)]
     }
 
     /// Writes minus the residual of the stage to `unknowns`: ϖ(M a + f) for the coordinates, Φ for the rows.
@@ -241,12 +239,11 @@ impl Workspace {
     pub fn add_loads(&mut self, system: &System, stage: &Stage, block: Block, kkt: &mut Kkt) {
         for (k, load) in system.loads.iter().enumerate() {
             let width = load.nodes.len() * system.dim;
-            let (x, v) = self.load_arguments(system, load);
-            let (by_position, by_velocity) = self.forces.dense.split_at_mut(SIZE * SIZE);
-            let (by_position, by_velocity) = (&mut by_position[..width * width], &mut by_velocity[..width * width]);
+            let [x, v] = self.load_arguments(system, load);
+            let (by_position, by_velocity) = self.forces.dense[..2 * width * width].split_at_mut(width * width);
             by_position.fill(0.0);
             by_velocity.fill(0.0);
-            load.load.tangent(&x[..width], &v[..width], stage.time(), by_position, by_velocity);
+            load.load.tangent(&x, &v, stage.time(), by_position, by_velocity);
             kkt.add_load(block, k, by_position, -stage.inertia * stage.share());
             kkt.add_load(block, k, by_velocity, -stage.inertia * stage.rate);
         }
@@ -261,12 +258,11 @@ impl Workspace {
         }
         for (k, load) in system.loads.iter().enumerate() {
             let width = load.nodes.len() * system.dim;
-            let (x, v) = self.load_arguments(system, load);
-            let (by_position, by_velocity) = self.forces.dense.split_at_mut(SIZE * SIZE);
-            let (by_position, by_velocity) = (&mut by_position[..width * width], &mut by_velocity[..width * width]);
+            let [x, v] = self.load_arguments(system, load);
+            let (by_position, by_velocity) = self.forces.dense[..2 * width * width].split_at_mut(width * width);
             by_position.fill(0.0);
             by_velocity.fill(0.0);
-            load.load.tangent(&x[..width], &v[..width], t, by_position, by_velocity);
+            load.load.tangent(&x, &v, t, by_position, by_velocity);
             kkt.add_load(block, k, by_velocity, -factor);
         }
     }
@@ -276,10 +272,9 @@ impl Workspace {
         let mut first = system.rows.len();
         for (k, entry) in system.custom.iter().enumerate() {
             let rows = entry.rows.rows();
-            let mut x = [0.0; SIZE];
-            let width = gather(system.dim, &entry.nodes, &self.sampled.x, &mut x);
-            let hessian = &mut self.forces.dense[..width * width];
-            entry.rows.hessian(&x[..width], t, &self.lambda[first..first + rows], hessian);
+            let x = gather(system.dim, &entry.nodes, &self.sampled.x);
+            let hessian = &mut self.forces.dense[..x.len() * x.len()];
+            entry.rows.hessian(&x, t, &self.lambda[first..first + rows], hessian);
             kkt.add_custom(block, k, hessian, factor);
             first += rows;
         }

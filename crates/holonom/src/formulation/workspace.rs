@@ -6,7 +6,7 @@ use super::level::Level;
 use super::scales::Scales;
 use super::stage::{Sampling, Stage};
 use crate::linalg::largest;
-use crate::system::{Evaluation, Response, SIZE, System};
+use crate::system::{Evaluation, Response, System};
 
 /// A state of the step. Full vectors hold D numbers a node, free nodes first, known nodes in place.
 pub struct Moment {
@@ -133,6 +133,8 @@ impl Workspace {
         start.x.copy_from_slice(&system.start_position);
         start.v.copy_from_slice(&system.start_velocity);
         system.evaluate_again(&start.x, 0.0, &mut start.at);
+        let widths = system.loads.iter().map(|load| load.nodes.len()).chain(system.custom.iter().map(|custom| custom.nodes.len()));
+        let widest = widths.max().unwrap_or(0) * system.dim;
         Self {
             scales: Scales::new(system),
             level: Level::POSITION,
@@ -149,7 +151,7 @@ impl Workspace {
                 responses: vec![Response::default(); system.laws.len() + system.function_rows.len()],
                 of_loads: vec![0.0; loads],
                 motion: vec![0.0; slots],
-                dense: vec![0.0; 2 * SIZE * SIZE],
+                dense: vec![0.0; 2 * widest * widest],
                 damping: vec![Damping::default(); system.laws.len()],
                 dissipative: system.laws.iter().any(|law| !law.law.conservative()),
             },

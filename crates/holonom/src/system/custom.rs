@@ -1,6 +1,7 @@
 //! Constraints and forces that no invariant expresses: functions of coordinates and time, differentiated by dual numbers.
 
 use num_dual::{Dual2_64, Dual64, DualNum, HyperDual64};
+use smallvec::{SmallVec, smallvec};
 
 use super::Load;
 
@@ -43,11 +44,14 @@ pub trait ForceFunction: Send + Sync {
     fn evaluate<N: Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]);
 }
 
-/// Derivatives of a function by dual numbers, for at most [`SIZE`] coordinates, so that nothing is allocated in a step.
+/// Derivatives of a function by dual numbers. Nothing is allocated in a step for up to [`SIZE`] coordinates and rows.
 pub struct Differentiated<F>(pub F);
 
-/// Most coordinates, and most rows, of one function.
+/// Coordinates, and rows, of one function that fit on the stack; more are put on the heap.
 pub const SIZE: usize = 24;
+
+/// As many numbers as a function has coordinates or rows.
+type Numbers<N> = SmallVec<[N; SIZE]>;
 
 impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
     fn rows(&self) -> usize {
@@ -59,18 +63,18 @@ impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
     }
 
     fn gradient(&self, x: &[f64], t: f64, by_position: &mut [f64], by_time: &mut [f64]) {
-        let (mut point, mut phi) = ([Dual64::from(0.0); SIZE], [Dual64::from(0.0); SIZE]);
         let (k, rows) = (x.len(), self.0.rows());
+        let (mut point, mut phi): (Numbers<_>, Numbers<_>) = (smallvec![Dual64::from(0.0); k], smallvec![Dual64::from(0.0); rows]);
         for direction in 0..=k {
             for (p, &x) in point.iter_mut().zip(x) {
                 *p = Dual64::from(x);
             }
             let mut time = Dual64::from(t);
-            match point[..k].get_mut(direction) {
+            match point.get_mut(direction) {
                 Some(p) => p.eps = 1.0,
                 None => time.eps = 1.0,
             }
-            self.0.evaluate(&point[..k], time, &mut phi[..rows]);
+            self.0.evaluate(&point, time, &mut phi);
             for row in 0..rows {
                 match direction < k {
                     true => by_position[row * k + direction] = phi[row].eps,
@@ -81,8 +85,8 @@ impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
     }
 
     fn hessian(&self, x: &[f64], t: f64, lambda: &[f64], out: &mut [f64]) {
-        let (mut point, mut phi) = ([HyperDual64::from(0.0); SIZE], [HyperDual64::from(0.0); SIZE]);
-        let k = x.len();
+        let (k, zero) = (x.len(), HyperDual64::from(0.0));
+        let (mut point, mut phi): (Numbers<_>, Numbers<_>) = (smallvec![zero; k], smallvec![zero; lambda.len()]);
         for i in 0..k {
             for j in 0..=i {
                 for (p, &x) in point.iter_mut().zip(x) {
@@ -90,7 +94,7 @@ impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
                 }
                 point[i].eps1 = 1.0;
                 point[j].eps2 = 1.0;
-                self.0.evaluate(&point[..k], HyperDual64::from(t), &mut phi[..lambda.len()]);
+                self.0.evaluate(&point, HyperDual64::from(t), &mut phi);
                 let sum: f64 = phi.iter().zip(lambda).map(|(phi, lambda)| lambda * phi.eps1eps2).sum();
                 out[i * k + j] = sum;
                 out[j * k + i] = sum;
@@ -99,11 +103,9 @@ impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
     }
 
     fn curvature(&self, x: &[f64], v: &[f64], t: f64, out: &mut [f64]) {
-        let (mut point, mut phi) = ([Dual2_64::from(0.0); SIZE], [Dual2_64::from(0.0); SIZE]);
-        for ((p, &x), &v) in point.iter_mut().zip(x).zip(v) {
-            *p = Dual2_64::new(x, v, 0.0);
-        }
-        self.0.evaluate(&point[..x.len()], Dual2_64::new(t, 1.0, 0.0), &mut phi[..out.len()]);
+        let point: Numbers<_> = x.iter().zip(v).map(|(&x, &v)| Dual2_64::new(x, v, 0.0)).collect();
+        let mut phi: Numbers<_> = smallvec![Dual2_64::from(0.0); out.len()];
+        self.0.evaluate(&point, Dual2_64::new(t, 1.0, 0.0), &mut phi);
         for (out, phi) in out.iter_mut().zip(&phi) {
             *out = phi.v2;
         }
@@ -117,8 +119,8 @@ impl<F: ForceFunction> Load for Differentiated<F> {
 
     fn tangent(&self, x: &[f64], v: &[f64], t: f64, by_position: &mut [f64], by_velocity: &mut [f64]) {
         let k = x.len();
-        let zero = Dual64::from(0.0);
-        let (mut point, mut rate, mut force) = ([zero; SIZE], [zero; SIZE], [zero; SIZE]);
+        let zeros: Numbers<_> = smallvec![Dual64::from(0.0); k];
+        let (mut point, mut rate, mut force) = (zeros.clone(), zeros.clone(), zeros);
         for direction in 0..2 * k {
             for i in 0..k {
                 point[i] = Dual64::from(x[i]);
@@ -129,7 +131,7 @@ impl<F: ForceFunction> Load for Differentiated<F> {
                 false => (&mut rate[direction - k], &mut *by_velocity),
             };
             varied.eps = 1.0;
-            self.0.evaluate(&point[..k], &rate[..k], Dual64::from(t), &mut force[..k]);
+            self.0.evaluate(&point, &rate, Dual64::from(t), &mut force);
             for i in 0..k {
                 out[i * k + direction % k] = force[i].eps;
             }

@@ -1,6 +1,8 @@
 //! Values and gradients of all invariants and constraint rows, *at* one position and *between* two.
 
-use super::{CustomEntry, FunctionValues, InvariantId, MAX_ARGUMENTS, NodeId, Quantity, RowSlot, System, add_along_rows, along};
+use smallvec::{SmallVec, smallvec};
+
+use super::{CustomEntry, FunctionValues, InvariantId, MAX_ARGUMENTS, NodeId, Quantity, RowSlot, SIZE, System, add_along_rows, along};
 
 /// Values and gradients at one position, or between two.
 ///
@@ -90,10 +92,10 @@ impl System {
             self.functions.evaluate(&out.value, &mut out.functions);
             self.take_functions(out);
         }
-        self.each_custom(out, |entry, local, out| {
-            let k = gather(self.dim, &entry.nodes, x, local);
-            entry.rows.value(&local[..k], t, out.value);
-            entry.rows.gradient(&local[..k], t, out.gradient, out.by_time);
+        self.each_custom(out, |entry, out| {
+            let local = gather(self.dim, &entry.nodes, x);
+            entry.rows.value(&local, t, out.value);
+            entry.rows.gradient(&local, t, out.gradient, out.by_time);
         });
     }
 
@@ -121,11 +123,11 @@ impl System {
             self.take_functions(out);
         }
         let mut first = self.invariants.len() + self.functions.len();
-        self.each_custom(out, |entry, local, mut out| {
+        self.each_custom(out, |entry, mut out| {
             let rows = entry.rows.rows();
             for row in 0..rows {
                 let rise = to.value[first + row] - from.value[first + row];
-                out.beta[row] = directional_point(self.dim, entry, span, row, rise, local, &mut out);
+                out.beta[row] = directional_point(self.dim, entry, span, row, rise, &mut out);
             }
             first += rows;
         });
@@ -188,12 +190,10 @@ impl System {
             return;
         }
         let mut first = self.rows.len();
-        let (mut position, mut velocity) = ([0.0; super::SIZE], [0.0; super::SIZE]);
         for entry in &self.custom {
-            let k = gather(self.dim, &entry.nodes, x, &mut position);
-            gather(self.dim, &entry.nodes, v, &mut velocity);
+            let (position, velocity) = (gather(self.dim, &entry.nodes, x), gather(self.dim, &entry.nodes, v));
             let rows = entry.rows.rows();
-            entry.rows.curvature(&position[..k], &velocity[..k], t, &mut out[first..first + rows]);
+            entry.rows.curvature(&position, &velocity, t, &mut out[first..first + rows]);
             first += rows;
         }
     }
@@ -216,14 +216,15 @@ impl System {
             return;
         }
         let mut slot = (self.invariants.slots() + self.functions.slots()) * self.dim;
-        let (mut hessian, mut position, mut direction) = ([0.0; super::SIZE * super::SIZE], [0.0; super::SIZE], [0.0; super::SIZE]);
         for entry in &self.custom {
-            let width = gather(self.dim, &entry.nodes, x, &mut position);
-            gather(self.dim, &entry.nodes, v, &mut direction);
+            let (position, direction) = (gather(self.dim, &entry.nodes, x), gather(self.dim, &entry.nodes, v));
+            let width = position.len();
+            let mut hessian: SmallVec<[f64; SIZE * SIZE]> = smallvec![0.0; width * width];
+            let mut unit: Local = smallvec![0.0; entry.rows.rows()];
             for row in 0..entry.rows.rows() {
-                let mut unit = [0.0; super::SIZE];
+                unit.fill(0.0);
                 unit[row] = 1.0;
-                entry.rows.hessian(&position[..width], t, &unit[..entry.rows.rows()], &mut hessian[..width * width]);
+                entry.rows.hessian(&position, t, &unit, &mut hessian);
                 for i in 0..width {
                     let line = &hessian[i * width..(i + 1) * width];
                     turned[slot + i] = line.iter().zip(&direction).map(|(h, v)| h * v).sum();
@@ -248,13 +249,12 @@ impl System {
     }
 
     /// Calls `f` for every custom entry with its part of an evaluation.
-    fn each_custom(&self, out: &mut Evaluation, mut f: impl FnMut(&CustomEntry, &mut [f64; super::SIZE], CustomPart<'_>)) {
+    fn each_custom(&self, out: &mut Evaluation, mut f: impl FnMut(&CustomEntry, CustomPart<'_>)) {
         if self.custom.is_empty() {
             return;
         }
         let (mut row, mut slot) = (0, (self.invariants.slots() + self.functions.slots()) * self.dim);
         let values = self.invariants.len() + self.functions.len();
-        let mut local = [0.0; super::SIZE];
         for entry in &self.custom {
             let (rows, width) = (entry.rows.rows(), entry.nodes.len() * self.dim);
             let first = values + row;
@@ -264,7 +264,7 @@ impl System {
                 by_time: &mut out.by_time[row..row + rows],
                 beta: &mut out.beta[row..row + rows],
             };
-            f(entry, &mut local, part);
+            f(entry, part);
             row += rows;
             slot += rows * width;
         }
@@ -278,47 +278,38 @@ struct CustomPart<'a> {
     beta: &'a mut [f64],
 }
 
-/// Copies the coordinates of some nodes to `local` and says how many they are.
-pub(crate) fn gather(dim: usize, nodes: &[NodeId], x: &[f64], local: &mut [f64]) -> usize {
-    for (k, node) in nodes.iter().enumerate() {
-        let from = node.index() * dim;
-        local[k * dim..k * dim + dim].copy_from_slice(&x[from..from + dim]);
-    }
-    nodes.len() * dim
+/// Coordinates of the nodes of a load or custom row.
+pub(crate) type Local = SmallVec<[f64; SIZE]>;
+
+/// The coordinates of some nodes.
+pub(crate) fn gather(dim: usize, nodes: &[NodeId], x: &[f64]) -> Local {
+    nodes.iter().flat_map(|node| x[node.index() * dim..(node.index() + 1) * dim].iter().copied()).collect()
 }
 
 /// The paper's β (15): where on the way from one position to the other a row's gradient times the way is its rise.
 /// Writes the gradient there. Half way is taken when it serves, as it does for every quadratic row.
-fn directional_point(
-    dim: usize,
-    entry: &CustomEntry,
-    span: Between<'_>,
-    row: usize,
-    rise: f64,
-    local: &mut [f64; super::SIZE],
-    out: &mut CustomPart<'_>,
-) -> f64 {
-    let (mut from, mut rate) = ([0.0; super::SIZE], [0.0; super::SIZE]);
-    let k = gather(dim, &entry.nodes, span.from, &mut from);
-    gather(dim, &entry.nodes, span.to, &mut rate);
+fn directional_point(dim: usize, entry: &CustomEntry, span: Between<'_>, row: usize, rise: f64, out: &mut CustomPart<'_>) -> f64 {
+    let (from, mut rate) = (gather(dim, &entry.nodes, span.from), gather(dim, &entry.nodes, span.to));
+    let (k, mut local) = (from.len(), from.clone());
     for i in 0..k {
         rate[i] = (rate[i] - from[i]) / span.step;
     }
     let rows = entry.rows.rows();
-    let (mut gradient, mut by_time, mut curvature) = ([0.0; super::SIZE * super::SIZE], [0.0; super::SIZE], [0.0; super::SIZE]);
+    let mut gradient: SmallVec<[f64; SIZE * SIZE]> = smallvec![0.0; rows * k];
+    let (mut by_time, mut curvature): (Local, Local) = (smallvec![0.0; rows], smallvec![0.0; rows]);
     let (mut beta, mut low, mut high, mut low_sign) = (0.5, 0.0, 1.0, 0.0);
     for _ in 0..BETA_ITERATIONS {
         for i in 0..k {
             local[i] = from[i] + beta * span.step * rate[i];
         }
         let t = span.start + beta * span.step;
-        entry.rows.gradient(&local[..k], t, &mut gradient[..rows * k], &mut by_time[..rows]);
+        entry.rows.gradient(&local, t, &mut gradient, &mut by_time);
         let along: f64 = (0..k).map(|i| gradient[row * k + i] * rate[i]).sum::<f64>() + by_time[row];
         let excess = span.step * along - rise;
         if excess.abs() <= 4.0 * f64::EPSILON * (rise.abs() + span.step * along.abs()) {
             break;
         }
-        entry.rows.curvature(&local[..k], &rate[..k], t, &mut curvature[..rows]);
+        entry.rows.curvature(&local, &rate, t, &mut curvature);
         let slope = span.step * span.step * curvature[row];
         if low_sign == 0.0 {
             // The mean of the gradient along the way is the rise, so its excess changes sign between the ends.
