@@ -6,7 +6,7 @@ use std::path::Path;
 use holonom::model::Model;
 use holonom::record::RecorderMark;
 use holonom::run::RunError;
-use holonom::simulation::{Checkpoint, Choice, Method, MethodError, StartError};
+use holonom::simulation::{Checkpoint, Method, MethodError, StartError};
 use holonom_io::Source;
 use serde::{Deserialize, Serialize};
 
@@ -173,20 +173,14 @@ fn run_failure(error: RunError) -> Failure {
             let example = if key == "end" { 10.0 } else { 0.01 };
             Failure::usage(error.to_string(), format!("add `{key} = …` there, or give --{key} {example}"))
         }
-        RunError::Unweighted { .. } => Failure::usage(error.to_string(), "give every free point one in projection.weights"),
         RunError::Method(error) => method_failure(error),
         RunError::Start(error) => start_failure(error),
     }
 }
 
-/// What a model, and a name on the command line, say of the method.
-pub fn choice(model: &Model, name: Option<&str>) -> Result<Choice, Failure> {
-    model.choice(name).map_err(run_failure)
-}
-
 /// The method of a model, or the one named on the command line.
 pub fn method(model: &Model, name: Option<&str>) -> Result<Method, Failure> {
-    Method::resolve(&choice(model, name)?).map_err(method_failure)
+    Method::resolve(&model.choice(name)).map_err(method_failure)
 }
 
 /// A method that cannot be, with its cure.

@@ -18,8 +18,8 @@ const FLOORS: &[(&str, u8)] = &[
     ("run", 7),
 ];
 
-/// What the model may import: it is compiled down to a system, drawn as a scene, and nothing else knows it.
-const MODEL_IMPORTS: &[&str] = &["system", "record", "model"];
+/// What the model may import: it is compiled down to a system, drawn as a scene, says by what method it is run, and nothing else knows it.
+const MODEL_IMPORTS: &[&str] = &["system", "record", "model", "simulation"];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();

@@ -90,7 +90,7 @@ fn plan(arguments: &CompareArguments, models: &[Loaded]) -> Result<Vec<Planned>,
 /// Puts into a summary how the run is called, and the accuracy where its steps follow from one.
 fn name(summary: &mut Value, label: &str, loaded: &Loaded) {
     summary["label"] = json!(label);
-    if let Some(accuracy) = loaded.model.settings.accuracy {
+    if let Some(accuracy) = loaded.model.settings.choice.accuracy {
         summary["accuracy"] = json!(accuracy);
     }
 }

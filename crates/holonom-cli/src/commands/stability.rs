@@ -61,7 +61,7 @@ fn choices(arguments: &StabilityArguments, loaded: &Loaded) -> Result<Vec<(Strin
         false => arguments.methods.iter().map(String::as_str).collect(),
     };
     let choice = |name: &str| {
-        let mut choice = load::choice(&loaded.model, Some(name))?;
+        let mut choice = loaded.model.choice(Some(name));
         choice.subdivide = Some(false);
         Method::resolve(&choice).map_err(load::method_failure)?;
         Ok((name.to_string(), choice))

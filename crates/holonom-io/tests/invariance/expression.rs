@@ -61,7 +61,7 @@ pub fn number(text: &str, parameters: &Table) -> f64 {
         ("simulation", pairs(vec![("gamma", Value::text(text))])),
     ]);
     let model = Model::from_value(&model, &NoMeshes).unwrap_or_else(|faults| panic!("{text}: {faults:?}"));
-    model.settings.gamma.expect("it was given")
+    model.settings.choice.gamma.expect("it was given")
 }
 
 /// A number as it is written in an expression.

@@ -195,6 +195,13 @@ impl<'a> Entry<'a> {
         }
     }
 
+    /// The one of some words that a text is.
+    pub fn one_of<'s>(&self, at: impl Into<Spot<'s>>, text: &str, words: &[&'static str]) -> Read<&'static str> {
+        let at = at.into();
+        let word = words.iter().copied().find(|&word| word == text);
+        word.ok_or_else(|| self.refuse(at, format!("`{}` cannot be \"{text}\"", at.key), suggest(text, words.iter().copied())))
+    }
+
     /// One of some words.
     pub fn choice(&self, key: &str, words: &[&'static str]) -> Read<&'static str> {
         let text = self.text(key)?;
@@ -255,14 +262,14 @@ impl<'a> Entry<'a> {
     }
 
     /// The same of a table at a key or in a list there.
-    pub(super) fn inside_at<T>(&self, spot: Spot<'_>, table: &'a Table, read: impl FnOnce(&Entry<'_>) -> Read<T>) -> Read<T> {
+    pub(super) fn inside_at<T>(&self, spot: Spot<'_>, table: &'a Table, read: impl FnOnce(&Entry<'_>) -> T) -> T {
         let path = key_path(self.path, spot.key);
         let path = spot.item.map_or(path.clone(), |k| item_path(&path, k));
         read(&Entry { name: self.name, path: &path, table, ..*self })
     }
 
     /// What is said of a table inside of this one, at a key or in a list there.
-    pub fn within<T>(&self, spot: Spot<'_>, read: impl FnOnce(&Entry<'_>) -> Read<T>) -> Read<T> {
+    pub fn within<T>(&self, spot: Spot<'_>, read: impl FnOnce(&Entry<'_>) -> T) -> T {
         let value = match (self.table.get(spot.key), spot.item) {
             (Some(Value::List(items)), Some(k)) => items.get(k),
             (value, _) => value,

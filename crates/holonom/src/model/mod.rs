@@ -41,9 +41,7 @@ pub use fields::{Described, Field, Keys, List, Map, Number, Place, Site, Turn};
 pub use key::{Key, Kind, REPEAT, Shape};
 pub use points::KEYS as POINT_KEYS;
 pub use schema::schema;
-pub use settings::{
-    OUTPUT as OUTPUT_KEYS, Output, PROJECTION as PROJECTION_KEYS, ProjectionSettings, SIMULATION as SIMULATION_KEYS, Settings,
-};
+pub use settings::{OUTPUT as OUTPUT_KEYS, Output, OutputKeys, ProjectionKeys, SIMULATION as SIMULATION_KEYS, Settings, SimulationKeys};
 pub use value::{Table, Value, item_path, key_path};
 pub use written::StartChange;
 

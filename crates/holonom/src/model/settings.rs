@@ -1,62 +1,145 @@
-//! `[simulation]` and `[output]`: how to run a model, in words that the simulation resolves later.
+//! `[simulation]` and `[output]`: how a model is run and what is recorded.
 
 use super::assembly::Assembly;
 use super::entry::{Entry, Spot, all};
 use super::fault::{Read, suggest};
+use super::fields::{Keys, List, Map, Number};
 use super::key::{Key, Shape};
+use crate::simulation::{Choice, ProjectionChoice};
+use crate::system::Place;
 
-/// `[simulation]`; what is not given is `None`.
+/// `[simulation]`
+#[derive(Clone, Debug, Default, PartialEq, Keys)]
+#[table("[simulation]")]
+pub struct SimulationKeys {
+    /// time at which the simulation ends
+    #[key(unit = "s", default = "asked of the command")]
+    pub end: Option<Number>,
+    /// time step; with an accuracy, the interval of the results
+    #[key(unit = "s", default = "asked of the command")]
+    pub step: Option<Number>,
+    /// chooses the steps: error of positions at the end, over the size of the mechanism
+    #[key(default = "none: steps are equal")]
+    pub accuracy: Option<Number>,
+    /// a method by name; `holonom methods` lists them
+    #[key(default = "conserving-ggl")]
+    pub method: Option<String>,
+    /// how constraints are put on
+    #[key(default = "that of the method")]
+    pub formulation: Option<String>,
+    /// index of the formulations lagrange and augmented-lagrangian: 3, 2 or 1
+    #[key(default = "3", shape = Shape::Whole)]
+    pub index: Option<Number>,
+    /// how time is stepped
+    #[key(default = "that of the method")]
+    pub integrator: Option<String>,
+    /// order of an integrator that has several
+    #[key(default = "that of the integrator", shape = Shape::Whole)]
+    pub order: Option<Number>,
+    /// newton, nested or simultaneous
+    #[key(default = "newton")]
+    pub iteration: Option<String>,
+    /// α in the paper's sense
+    #[key(default = "scaled to the system")]
+    pub penalty: Option<Number>,
+    /// Newmark's β
+    #[key(default = "0.25")]
+    pub beta: Option<Number>,
+    /// Newmark's γ
+    #[key(default = "0.5")]
+    pub gamma: Option<Number>,
+    /// α of hht, 0 to 1/3
+    #[key(default = "0.1")]
+    pub alpha: Option<Number>,
+    /// ρ∞ of generalized-alpha, 0 to 1
+    #[key(default = "0.8")]
+    pub rho: Option<Number>,
+    /// ω of the stabilised formulations
+    #[key(unit = "1/s", default = "10")]
+    pub omega: Option<Number>,
+    /// ξ of the stabilised formulations
+    #[key(default = "1")]
+    pub xi: Option<Number>,
+    /// which positions the conserving scheme puts on the constraints
+    #[key(default = "end", shape = Shape::Choice(&["end", "mean"]))]
+    pub constraint_at: Option<String>,
+    /// when the iteration stops
+    #[key(default = "that of the iteration")]
+    pub tolerance: Option<Number>,
+    /// most iterations in a step
+    #[key(default = "that of the iteration", shape = Shape::Whole)]
+    pub max_iterations: Option<Number>,
+    /// real time: exactly so many Newton iterations in every step
+    #[key(default = "as many as it takes", shape = Shape::Whole)]
+    pub iterations: Option<Number>,
+    /// whether a step that fails is retried in halves
+    #[key(default = "true")]
+    pub subdivide: Option<bool>,
+    /// projections after each step
+    #[key(default = "that of the method")]
+    pub projection: Option<ProjectionKeys>,
+}
+
+/// `[simulation.projection]`
+#[derive(Clone, Debug, Default, PartialEq, Keys)]
+#[table("projection")]
+pub struct ProjectionKeys {
+    /// what is projected after each step
+    #[key(default = "those of the method", shape = Shape::Words(&["velocity", "acceleration"]))]
+    pub levels: Option<List<String>>,
+    /// the metric A of the projection: mass, identity, tangent or custom
+    #[key(default = "mass")]
+    pub matrix: Option<String>,
+    /// exact, or by penalty (10)–(13)
+    #[key(default = "exact")]
+    pub solve: Option<String>,
+    /// penalty of the projection by penalty
+    #[key(default = "1e7")]
+    pub penalty: Option<Number>,
+    /// share of the violation that is taken out
+    #[key(default = "1")]
+    pub strength: Option<Number>,
+    /// true projects what is recorded and integrates on without
+    #[key(default = "false")]
+    pub shadow: Option<bool>,
+    /// the diagonal of the matrix custom, a number for each free point
+    #[key(unit = "kg", default = "none")]
+    pub weights: Option<Map<Number>>,
+}
+
+/// `[output]`
+#[derive(Clone, Debug, Default, PartialEq, Keys)]
+#[table("[output]")]
+pub struct OutputKeys {
+    /// record every so many steps
+    #[key(unit = "steps", default = "1", shape = Shape::Whole)]
+    pub every: Option<Number>,
+    /// points to record, in this order
+    #[key(default = "all")]
+    pub points: Option<List<String>>,
+    /// record the multiplier of each row and the constraints' force on each point
+    #[key(default = "false")]
+    pub reactions: Option<bool>,
+}
+
+/// Keys of `[simulation]`.
+pub const SIMULATION: &[Key] = SimulationKeys::KEYS;
+
+/// Keys of `[output]`.
+pub const OUTPUT: &[Key] = OutputKeys::KEYS;
+
+/// How a model is run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
     /// s
     pub end: Option<f64>,
     /// s
     pub step: Option<f64>,
-    pub method: Option<String>,
-    pub formulation: Option<String>,
-    pub index: Option<u32>,
-    pub integrator: Option<String>,
-    /// Order of an integrator that has several.
-    pub order: Option<u32>,
-    /// Relative error of position that steps are chosen for.
-    pub accuracy: Option<f64>,
-    pub iteration: Option<String>,
-    /// α in the paper's sense.
-    pub penalty: Option<f64>,
-    /// Newmark's β and γ.
-    pub beta: Option<f64>,
-    pub gamma: Option<f64>,
-    /// HHT's α and generalized-α's ρ∞.
-    pub alpha: Option<f64>,
-    pub rho: Option<f64>,
-    /// ω (1/s) and ξ of stabilised formulations.
-    pub omega: Option<f64>,
-    pub xi: Option<f64>,
-    /// `"end"` or `"mean"`.
-    pub constraint_at: Option<String>,
-    pub tolerance: Option<f64>,
-    pub max_iterations: Option<u32>,
-    /// Newton iterations of every step, no more and no fewer.
-    pub iterations: Option<u32>,
-    pub subdivide: Option<bool>,
-    pub projection: Option<ProjectionSettings>,
+    /// The method.
+    pub choice: Choice,
 }
 
-/// `[simulation.projection]`; what is not given is `None`.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ProjectionSettings {
-    /// `"velocity"`, `"acceleration"`.
-    pub levels: Option<Vec<String>>,
-    pub matrix: Option<String>,
-    pub solve: Option<String>,
-    pub penalty: Option<f64>,
-    pub strength: Option<f64>,
-    pub shadow: Option<bool>,
-    /// Weights of free points by name, in file order, kg.
-    pub weights: Option<Vec<(String, f64)>>,
-}
-
-/// `[output]`.
+/// What is recorded; what is not given is `None`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Output {
     /// Record every so many steps.
@@ -67,162 +150,110 @@ pub struct Output {
     pub reactions: Option<bool>,
 }
 
-/// Keys of `[simulation.projection]`.
-pub const PROJECTION: &[Key] = &[
-    Key::optional("levels", Shape::Words(&["velocity", "acceleration"]), "those of the method", "", "what is projected after each step"),
-    Key::optional("matrix", Shape::Text, "mass", "", "the metric A of the projection: mass, identity, tangent or custom"),
-    Key::optional("solve", Shape::Text, "exact", "", "exact, or by penalty (10)–(13)"),
-    Key::optional("penalty", Shape::Number, "1e7", "", "penalty of the projection by penalty"),
-    Key::optional("strength", Shape::Number, "1", "", "share of the violation that is taken out"),
-    Key::optional("shadow", Shape::Flag, "false", "", "true projects what is recorded and integrates on without"),
-    Key::optional("weights", Shape::Weights, "none", "kg", "the diagonal of the matrix custom, a number for each free point"),
-];
+impl SimulationKeys {
+    /// What the keys come to. What is wrong with one is recorded, and it counts as not given.
+    pub(super) fn settings(&self, entry: &Entry<'_>, assembly: &Assembly<'_>) -> Settings {
+        let number = |key, number: &Option<Number>| entry.optional_of(key, number, Number::number).unwrap_or(None);
+        let positive = |key, number: &Option<Number>| entry.optional_of(key, number, Number::positive).unwrap_or(None);
+        let whole =
+            |key, number: &Option<Number>| entry.optional_of(key, number, |number, entry, key| number.whole(entry, key, 1)).unwrap_or(None);
+        let small = |number: Option<u32>| number.map(|number| number.min(u8::MAX.into()) as u8);
+        let (end, step) = (positive("end", &self.end), positive("step", &self.step));
+        let choice = Choice {
+            method: self.method.clone(),
+            formulation: self.formulation.clone(),
+            index: small(whole("index", &self.index)),
+            integrator: self.integrator.clone(),
+            order: small(whole("order", &self.order)),
+            accuracy: positive("accuracy", &self.accuracy),
+            iteration: self.iteration.clone(),
+            penalty: positive("penalty", &self.penalty),
+            beta: number("beta", &self.beta),
+            gamma: number("gamma", &self.gamma),
+            alpha: number("alpha", &self.alpha),
+            rho: number("rho", &self.rho),
+            omega: positive("omega", &self.omega),
+            xi: positive("xi", &self.xi),
+            constraint_at: entry
+                .optional_of("constraint_at", &self.constraint_at, |word, entry, key| entry.one_of(key, word, &["end", "mean"]))
+                .unwrap_or(None)
+                .map(str::to_string),
+            tolerance: positive("tolerance", &self.tolerance),
+            max_iterations: whole("max_iterations", &self.max_iterations).map(|most| most as usize),
+            iterations: whole("iterations", &self.iterations).map(|count| count as usize),
+            subdivide: self.subdivide,
+            projection: self.projection.as_ref().map(|keys| entry.within("projection".into(), |inner| keys.choice(inner, assembly))),
+        };
+        Settings { end, step, choice }
+    }
+}
 
-/// Keys of `[simulation]`.
-pub const SIMULATION: &[Key] = &[
-    Key::optional("end", Shape::Number, "asked of the command", "s", "time at which the simulation ends"),
-    Key::optional("step", Shape::Number, "asked of the command", "s", "time step; with an accuracy, the interval of the results"),
-    Key::optional(
-        "accuracy",
-        Shape::Number,
-        "none: steps are equal",
-        "",
-        "chooses the steps: error of positions at the end, over the size of the mechanism",
-    ),
-    Key::optional("method", Shape::Text, "conserving-ggl", "", "a method by name; `holonom methods` lists them"),
-    Key::optional("formulation", Shape::Text, "that of the method", "", "how constraints are put on"),
-    Key::optional("index", Shape::Whole, "3", "", "index of the formulations lagrange and augmented-lagrangian: 3, 2 or 1"),
-    Key::optional("integrator", Shape::Text, "that of the method", "", "how time is stepped"),
-    Key::optional("order", Shape::Whole, "that of the integrator", "", "order of an integrator that has several"),
-    Key::optional("iteration", Shape::Text, "newton", "", "newton, nested or simultaneous"),
-    Key::optional("penalty", Shape::Number, "scaled to the system", "", "α in the paper's sense"),
-    Key::optional("beta", Shape::Number, "0.25", "", "Newmark's β"),
-    Key::optional("gamma", Shape::Number, "0.5", "", "Newmark's γ"),
-    Key::optional("alpha", Shape::Number, "0.1", "", "α of hht, 0 to 1/3"),
-    Key::optional("rho", Shape::Number, "0.8", "", "ρ∞ of generalized-alpha, 0 to 1"),
-    Key::optional("omega", Shape::Number, "10", "1/s", "ω of the stabilised formulations"),
-    Key::optional("xi", Shape::Number, "1", "", "ξ of the stabilised formulations"),
-    Key::optional(
-        "constraint_at",
-        Shape::Choice(&["end", "mean"]),
-        "end",
-        "",
-        "which positions the conserving scheme puts on the constraints",
-    ),
-    Key::optional("tolerance", Shape::Number, "that of the iteration", "", "when the iteration stops"),
-    Key::optional("max_iterations", Shape::Whole, "that of the iteration", "", "most iterations in a step"),
-    Key::optional("iterations", Shape::Whole, "as many as it takes", "", "real time: exactly so many Newton iterations in every step"),
-    Key::optional("subdivide", Shape::Flag, "true", "", "whether a step that fails is retried in halves"),
-    Key::optional("projection", Shape::Table(PROJECTION), "that of the method", "", "projections after each step"),
-];
+impl ProjectionKeys {
+    fn choice(&self, entry: &Entry<'_>, assembly: &Assembly<'_>) -> ProjectionChoice {
+        ProjectionChoice {
+            levels: self.levels.as_ref().map(|levels| levels.to_vec()),
+            matrix: self.matrix.clone(),
+            solve: self.solve.clone(),
+            penalty: entry.optional_of("penalty", &self.penalty, Number::positive).unwrap_or(None),
+            strength: entry.optional_of("strength", &self.strength, Number::not_negative).unwrap_or(None),
+            shadow: self.shadow,
+            weights: entry
+                .optional_of("weights", &self.weights, |weights, entry, key| node_weights(weights, entry, key, assembly))
+                .unwrap_or(None),
+        }
+    }
+}
 
-/// Keys of `[output]`.
-pub const OUTPUT: &[Key] = &[
-    Key::optional("every", Shape::Whole, "1", "steps", "record every so many steps"),
-    Key::optional("points", Shape::Points, "all", "", "points to record, in this order"),
-    Key::optional("reactions", Shape::Flag, "false", "", "record the multiplier of each row and the constraints' force on each point"),
-];
+/// A weight for each free node, from weights by the names of points.
+fn node_weights(weights: &Map<Number>, entry: &Entry<'_>, key: &str, assembly: &Assembly<'_>) -> Read<Vec<f64>> {
+    let known = || assembly.points.iter().map(|point| point.name.as_str());
+    let weight = |(name, weight): &(String, Number), entry: &Entry<'_>| {
+        let weight = weight.positive(entry, name.as_str())?;
+        match assembly.by_name.contains_key(name) {
+            true => Ok((name.clone(), weight)),
+            false => Err(entry.refuse_key(name, format!("there is no point `{name}`"), suggest(name, known()))),
+        }
+    };
+    let given = entry.within(key.into(), |entry| all(weights.iter().map(|given| weight(given, entry))))?;
+    let free: Vec<usize> = assembly.points.iter().enumerate().filter(|(_, point)| point.end.free).map(|(k, _)| k).collect();
+    let mut of_nodes = vec![0.0; assembly.builder.free_nodes()];
+    for point in free.into_iter().map(|k| &assembly.points[k]) {
+        let Some(Place::Node(node)) = point.end.place() else { continue };
+        let Some((_, weight)) = given.iter().find(|(name, _)| *name == point.name) else {
+            let message = format!("the projection has no weight for the point `{}`", point.name);
+            return Err(entry.refuse(key, message, "give every free point one"));
+        };
+        of_nodes[node.index()] = *weight;
+    }
+    Ok(of_nodes)
+}
+
+impl OutputKeys {
+    /// What the keys come to. What is wrong with one is recorded, and it counts as not given.
+    pub(super) fn output(&self, entry: &Entry<'_>, assembly: &Assembly<'_>) -> Output {
+        let point = |(k, name): (usize, &String)| match assembly.by_name.contains_key(name) || assembly.faulty.contains(name) {
+            true => Ok(name.clone()),
+            false => {
+                let cure = suggest(name, assembly.points.iter().map(|point| point.name.as_str()));
+                Err(entry.refuse(Spot { key: "points", item: Some(k) }, format!("there is no point `{name}`"), cure))
+            }
+        };
+        Output {
+            every: entry.optional_of("every", &self.every, |every, entry, key| every.whole(entry, key, 1)).unwrap_or(None),
+            points: self.points.as_ref().and_then(|points| all(points.iter().enumerate().map(point)).ok()),
+            reactions: self.reactions,
+        }
+    }
+}
 
 /// Reads `[simulation]`.
 pub fn read(root: &Entry<'_>, assembly: &Assembly<'_>) -> Read<Settings> {
-    let Some(entry) = inner(root, "simulation", "simulation")? else {
-        return Ok(Settings::default());
-    };
-    entry.refuse_unknown_keys("[simulation]", &SIMULATION.iter().collect::<Vec<_>>());
-    let word = |key| entry.optional(key, |entry, key| entry.text(key).map(str::to_string));
-    let number = |key| entry.optional(key, Entry::number);
-    let positive = |key| entry.optional(key, Entry::positive);
-    let settings = Settings {
-        end: positive("end").unwrap_or(None),
-        step: positive("step").unwrap_or(None),
-        method: word("method").unwrap_or(None),
-        formulation: word("formulation").unwrap_or(None),
-        index: entry.optional("index", |entry, key| entry.whole(key, 1)).unwrap_or(None),
-        integrator: word("integrator").unwrap_or(None),
-        order: entry.optional("order", |entry, key| entry.whole(key, 1)).unwrap_or(None),
-        accuracy: positive("accuracy").unwrap_or(None),
-        iteration: word("iteration").unwrap_or(None),
-        penalty: positive("penalty").unwrap_or(None),
-        beta: number("beta").unwrap_or(None),
-        gamma: number("gamma").unwrap_or(None),
-        alpha: number("alpha").unwrap_or(None),
-        rho: number("rho").unwrap_or(None),
-        omega: positive("omega").unwrap_or(None),
-        xi: positive("xi").unwrap_or(None),
-        constraint_at: entry
-            .optional("constraint_at", |entry, key| entry.choice(key, &["end", "mean"]).map(str::to_string))
-            .unwrap_or(None),
-        tolerance: positive("tolerance").unwrap_or(None),
-        max_iterations: entry.optional("max_iterations", |entry, key| entry.whole(key, 1)).unwrap_or(None),
-        iterations: entry.optional("iterations", |entry, key| entry.whole(key, 1)).unwrap_or(None),
-        subdivide: entry.optional("subdivide", Entry::flag).unwrap_or(None),
-        projection: projection(&entry, assembly).unwrap_or(None),
-    };
-    Ok(settings)
-}
-
-fn projection(simulation: &Entry<'_>, assembly: &Assembly<'_>) -> Read<Option<ProjectionSettings>> {
-    let Some(entry) = inner(simulation, "projection", "simulation.projection")? else {
-        return Ok(None);
-    };
-    entry.refuse_unknown_keys("projection", &PROJECTION.iter().collect::<Vec<_>>());
-    let words = |entry: &Entry<'_>, key: &str| entry.texts(key).map(|words| words.into_iter().map(str::to_string).collect());
-    Ok(Some(ProjectionSettings {
-        levels: entry.optional("levels", words).unwrap_or(None),
-        matrix: entry.optional("matrix", |entry, key| entry.text(key).map(str::to_string)).unwrap_or(None),
-        solve: entry.optional("solve", |entry, key| entry.text(key).map(str::to_string)).unwrap_or(None),
-        penalty: entry.optional("penalty", Entry::positive).unwrap_or(None),
-        strength: entry.optional("strength", Entry::not_negative).unwrap_or(None),
-        shadow: entry.optional("shadow", Entry::flag).unwrap_or(None),
-        weights: weights(&entry, assembly).unwrap_or(None),
-    }))
-}
-
-fn weights(projection: &Entry<'_>, assembly: &Assembly<'_>) -> Read<Option<Vec<(String, f64)>>> {
-    let Some(entry) = inner(projection, "weights", "simulation.projection.weights")? else {
-        return Ok(None);
-    };
-    let weight = |name: &str| {
-        let weight = entry.positive(name)?;
-        match assembly.by_name.get(name) {
-            Some(_) => Ok((name.to_string(), weight)),
-            None => Err(entry.refuse_key(
-                name,
-                format!("there is no point `{name}`"),
-                suggest(name, assembly.points.iter().map(|point| point.name.as_str())),
-            )),
-        }
-    };
-    all(entry.table.keys().map(weight)).map(Some)
+    let keys: Option<SimulationKeys> = root.may_have("simulation")?;
+    Ok(keys.map_or_else(Settings::default, |keys| root.within("simulation".into(), |entry| keys.settings(entry, assembly))))
 }
 
 /// Reads `[output]`.
 pub fn output(root: &Entry<'_>, assembly: &Assembly<'_>) -> Read<Output> {
-    let Some(entry) = inner(root, "output", "output")? else {
-        return Ok(Output::default());
-    };
-    entry.refuse_unknown_keys("[output]", &OUTPUT.iter().collect::<Vec<_>>());
-    let points = |entry: &Entry<'_>, key: &str| {
-        let known = |(k, name): (usize, &str)| match assembly.by_name.contains_key(name) || assembly.faulty.contains(name) {
-            true => Ok(name.to_string()),
-            false => {
-                let cure = suggest(name, assembly.points.iter().map(|point| point.name.as_str()));
-                Err(entry.refuse(Spot { key, item: Some(k) }, format!("there is no point `{name}`"), cure))
-            }
-        };
-        all(entry.texts(key)?.into_iter().enumerate().map(known))
-    };
-    Ok(Output {
-        every: entry.optional("every", |entry, key| entry.whole(key, 1)).unwrap_or(None),
-        points: entry.optional("points", points).unwrap_or(None),
-        reactions: entry.optional("reactions", Entry::flag).unwrap_or(None),
-    })
-}
-
-/// A table inside another one, if it is there.
-fn inner<'a>(outer: &Entry<'a>, key: &str, path: &'a str) -> Read<Option<Entry<'a>>> {
-    let Some(table) = outer.optional(key, Entry::table)? else {
-        return Ok(None);
-    };
-    Ok(Some(Entry { name: "", path, table, ..*outer }))
+    let keys: Option<OutputKeys> = root.may_have("output")?;
+    Ok(keys.map_or_else(Output::default, |keys| root.within("output".into(), |entry| keys.output(entry, assembly))))
 }

@@ -54,6 +54,14 @@ pub struct ProjectionChoice {
     pub weights: Option<Vec<f64>>,
 }
 
+impl Choice {
+    /// The same numbers for the method of a name, which replaces formulation, integrator, order and projected levels.
+    pub fn named(&self, name: &str) -> Self {
+        let projection = self.projection.clone().map(|projection| ProjectionChoice { levels: None, ..projection });
+        Self { method: Some(name.into()), formulation: None, index: None, integrator: None, order: None, projection, ..self.clone() }
+    }
+}
+
 /// A method with a name.
 pub struct Named {
     pub name: &'static str,

@@ -149,6 +149,11 @@ impl SystemBuilder {
         self.dim
     }
 
+    /// Nodes so far whose motion is sought.
+    pub fn free_nodes(&self) -> usize {
+        self.free
+    }
+
     /// Adds a node whose motion is sought, with its position (m) and velocity (m/s) at the start.
     ///
     /// # Panics
