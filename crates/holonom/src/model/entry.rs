@@ -98,7 +98,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    fn missing(&self, key: &str) -> Refused {
+    pub(super) fn missing(&self, key: &str) -> Refused {
         let message = if self.name.is_empty() { format!("`{key}` is missing") } else { format!("`{}` has no `{key}`", self.name) };
         self.sink.report(|| Fault::new(self.path, self.name, message, format!("add {key} = …")))
     }
@@ -197,9 +197,7 @@ impl<'a> Entry<'a> {
 
     /// One of some words.
     pub fn choice(&self, key: &str, words: &[&'static str]) -> Read<&'static str> {
-        let text = self.text(key)?;
-        let word = words.iter().copied().find(|&word| word == text);
-        word.ok_or_else(|| self.refuse(key, format!("`{key}` cannot be \"{text}\""), suggest(text, words.iter().copied())))
+        self.choice_of(key, self.text(key)?, words)
     }
 
     /// The items of a list.
