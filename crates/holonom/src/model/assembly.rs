@@ -55,9 +55,9 @@ impl Axes {
     }
 }
 
-/// A point of the model.
+/// A point of the model, with what the system has of it.
 #[derive(Clone, Debug)]
-pub struct Point {
+pub struct PlacedPoint {
     pub name: String,
     /// Where it is in the description.
     pub path: String,
@@ -78,7 +78,7 @@ pub struct Assembly<'a> {
     pub gravity: [f64; 3],
     pub sink: &'a Sink,
     /// All points, in file order.
-    pub points: Vec<Point>,
+    pub points: Vec<PlacedPoint>,
     /// Position of each point in the list, by name.
     pub by_name: HashMap<String, usize>,
     /// Names of entries of points that could not be read; what refers to them is no second fault.

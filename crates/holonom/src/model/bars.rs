@@ -3,26 +3,38 @@
 use super::assembly::Assembly;
 use super::ends::{End, difference, from_to};
 use super::entry::Entry;
-use super::fault::{Read, Refused};
+use super::fault::{Read, Refused, Sink};
+use super::fields::{Keys, List, Number, Place};
 use super::geometry::norm;
-use super::key::{Key, REPEAT, Shape};
+use super::key::{Key, Shape};
 use super::section::Sections;
 use super::value::Table;
 use crate::record::LineKind;
-use crate::system::Place;
+use crate::system;
+
+/// A uniform rigid rod between two points.
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[table("a bar")]
+pub struct Bar {
+    /// its two ends
+    #[key(shape = Shape::Ends(2, 2))]
+    pub between: List<Place>,
+    /// mass, spread evenly over its length
+    #[key(unit = "kg")]
+    pub mass: Number,
+    /// makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"
+    #[key(default = "one entry", shape = Shape::Repeat)]
+    pub repeat: Option<String>,
+}
 
 /// The keys of a bar.
-pub const KEYS: &[Key] = &[
-    Key::required("between", Shape::Ends(2, 2), "", "its two ends"),
-    Key::required("mass", Shape::Number, "kg", "mass, spread evenly over its length"),
-    REPEAT,
-];
+pub const KEYS: &[Key] = Bar::KEYS;
 
 /// A bar of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BarInfo {
     pub name: String,
-    pub ends: [Place; 2],
+    pub ends: [system::Place; 2],
     /// kg
     pub mass: f64,
     /// m
@@ -38,37 +50,52 @@ pub fn read(sections: &mut Sections<'_>, root: &Table, assembly: &mut Assembly<'
         Ok(())
     };
     sections.read(root, "bar", check, |entry| {
-        bars.push(bar(entry, assembly)?);
+        let bar = Bar::read(entry).inspect_err(|_| carry_unread(assembly, entry))?;
+        bars.push(bar.build(assembly, entry)?);
         Ok(())
     });
     bars
 }
 
-fn bar(entry: &Entry<'_>, assembly: &mut Assembly<'_>) -> Read<BarInfo> {
-    let ends = assembly.moving_pair(entry, "between");
-    // Points of a faulty bar count as having mass: that they lack it would be no fault of theirs.
-    let mass = entry.positive("mass");
-    let ends = ends?;
-    for end in &ends {
-        if let Some(k) = end.point {
-            assembly.points[k].carries_bar = true;
+impl Bar {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<BarInfo> {
+        let ends = assembly.moving_pair_of(entry, "between", &self.between);
+        let mass = self.mass.positive(entry, "mass");
+        let ends = ends?;
+        carry(assembly, &ends);
+        let mass = mass?;
+        let [a, b] = &ends;
+        let length = norm(difference(a, b));
+        if length == 0.0 {
+            return Err(zero_length(entry, &ends));
         }
+        let (Some(first), Some(second)) = (a.place(), b.place()) else {
+            let cure = "give the bar ends of its own, [point.NAME], and join them, or use a body with shape = { rod = … }";
+            return Err(entry.refuse("between", "a bar ends at points and fixed places, not at places of bodies", cure));
+        };
+        add_mass(assembly, [first, second], mass);
+        let half_square = assembly.builder.square(&from_to(a, b));
+        assembly.builder.constant_row(entry.name, half_square, 0.5 * length * length);
+        assembly.draw(entry, LineKind::Bar, a, b);
+        Ok(BarInfo { name: entry.name.to_string(), ends: [first, second], mass, length })
     }
-    let mass = mass?;
-    let [a, b] = &ends;
-    let length = norm(difference(a, b));
-    if length == 0.0 {
-        return Err(zero_length(entry, &ends));
+}
+
+/// Notes that a bar hangs on its ends. Points of a faulty bar count as having mass: that they lack it would be no fault of theirs.
+fn carry(assembly: &mut Assembly<'_>, ends: &[End; 2]) {
+    for point in ends.iter().filter_map(|end| end.point) {
+        assembly.points[point].carries_bar = true;
     }
-    let (Some(first), Some(second)) = (a.place(), b.place()) else {
-        let cure = "give the bar ends of its own, [point.NAME], and join them, or use a body with shape = { rod = … }";
-        return Err(entry.refuse("between", "a bar ends at points and fixed places, not at places of bodies", cure));
-    };
-    add_mass(assembly, [first, second], mass);
-    let half_square = assembly.builder.square(&from_to(a, b));
-    assembly.builder.constant_row(entry.name, half_square, 0.5 * length * length);
-    assembly.draw(entry, LineKind::Bar, a, b);
-    Ok(BarInfo { name: entry.name.to_string(), ends: [first, second], mass, length })
+}
+
+/// Does the same for a bar that could not be read, if its ends can be; what is wrong with it was told.
+fn carry_unread(assembly: &mut Assembly<'_>, entry: &Entry<'_>) {
+    let unheard = Sink::default();
+    let entry = Entry { sink: &unheard, ..*entry };
+    let between = entry.must_have::<List<Place>>("between");
+    if let Ok(ends) = between.and_then(|between| assembly.moving_pair_of(&entry, "between", &between)) {
+        carry(assembly, &ends);
+    }
 }
 
 fn zero_length(entry: &Entry<'_>, [a, b]: &[End; 2]) -> Refused {
@@ -76,7 +103,7 @@ fn zero_length(entry: &Entry<'_>, [a, b]: &[End; 2]) -> Refused {
     entry.refuse("between", message, "move one of them, or use a point with mass")
 }
 
-fn add_mass(assembly: &mut Assembly<'_>, [a, b]: [Place; 2], mass: f64) {
+fn add_mass(assembly: &mut Assembly<'_>, [a, b]: [system::Place; 2], mass: f64) {
     assembly.builder.mass(a, a, mass / 3.0);
     assembly.builder.mass(b, b, mass / 3.0);
     assembly.builder.mass(a, b, mass / 6.0);

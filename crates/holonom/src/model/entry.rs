@@ -195,18 +195,9 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// The one of some words that a text is.
-    pub fn one_of<'s>(&self, at: impl Into<Spot<'s>>, text: &str, words: &[&'static str]) -> Read<&'static str> {
-        let at = at.into();
-        let word = words.iter().copied().find(|&word| word == text);
-        word.ok_or_else(|| self.refuse(at, format!("`{}` cannot be \"{text}\"", at.key), suggest(text, words.iter().copied())))
-    }
-
     /// One of some words.
     pub fn choice(&self, key: &str, words: &[&'static str]) -> Read<&'static str> {
-        let text = self.text(key)?;
-        let word = words.iter().copied().find(|&word| word == text);
-        word.ok_or_else(|| self.refuse(key, format!("`{key}` cannot be \"{text}\""), suggest(text, words.iter().copied())))
+        self.choice_of(key, self.text(key)?, words)
     }
 
     /// The items of a list.

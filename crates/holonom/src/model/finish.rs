@@ -10,8 +10,8 @@ use crate::system::Place;
 /// Puts together what has been read without a fault.
 pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, output: Output, bars: Vec<BarInfo>) -> Model {
     let Assembly { mut builder, axes, gravity, points, lines, bodies, frames, body_places, joints, scene_joints, efforts, .. } = assembly;
-    let place = |point: &assembly::Point| point.end.place().expect("a point is a node");
-    let kind = |point: &assembly::Point| match (place(point), point.end.free) {
+    let place = |point: &assembly::PlacedPoint| point.end.place().expect("a point is a node");
+    let kind = |point: &assembly::PlacedPoint| match (place(point), point.end.free) {
         (Place::Fixed(_), _) => PointKind::Fixed,
         (_, true) => PointKind::Free,
         (_, false) => PointKind::Driven,
@@ -62,7 +62,7 @@ fn recorded_efforts(efforts: Vec<assembly::Effort>) -> Vec<RecordedEffort> {
 }
 
 /// Points, named points of bodies, and the forces of joints.
-fn channels(axes: Axes, points: &[assembly::Point], bodies: &[Body], frames: &[Frame], joints: &[joints::JointInfo]) -> Channels {
+fn channels(axes: Axes, points: &[assembly::PlacedPoint], bodies: &[Body], frames: &[Frame], joints: &[joints::JointInfo]) -> Channels {
     let own = points.iter().map(|point| RecordedPoint { name: point.name.clone(), terms: point.end.terms.clone() });
     let named = bodies.iter().zip(frames).flat_map(|(body, frame)| {
         body.points.iter().map(move |(name, at)| RecordedPoint { name: format!("{}.{name}", body.name), terms: frame.point(*at) })

@@ -33,13 +33,13 @@ mod value;
 mod written;
 
 pub use assembly::{Axes, GROUND};
-pub use bars::{BarInfo, KEYS as BAR_KEYS};
+pub use bars::{Bar, BarInfo, KEYS as BAR_KEYS};
 pub use bodies::{Body, BodyInfo, KEYS as BODY_KEYS, Mesh, Meshes, NoMeshes};
 pub use entry::{Entry, Spot};
 pub use fault::{Fault, Faults, Read, Refused, nearest};
 pub use fields::{Described, Field, Keys, List, Map, Number, Place, Site, Turn};
 pub use key::{Key, Kind, REPEAT, Shape};
-pub use points::KEYS as POINT_KEYS;
+pub use points::{KEYS as POINT_KEYS, Point};
 pub use schema::schema;
 pub use settings::{OUTPUT as OUTPUT_KEYS, Output, OutputKeys, ProjectionKeys, SIMULATION as SIMULATION_KEYS, Settings, SimulationKeys};
 pub use value::{Table, Value, item_path, key_path};

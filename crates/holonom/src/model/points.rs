@@ -3,31 +3,43 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use super::assembly::{Assembly, Axes, Point};
+use super::assembly::{Assembly, Axes, PlacedPoint};
 use super::ends::{fixed, node};
 use super::entry::{Entry, Spot};
 use super::expression::{Program, TimeProgram};
 use super::fault::{Fault, Read};
-use super::key::{Key, REPEAT, Shape};
+use super::fields::{Keys, List, Number};
+use super::key::{Key, Shape};
 use super::section::Sections;
 use super::value::Table;
 use crate::system::{Constant, Signal};
 
+/// A particle, a place or a driven support.
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[table("a point")]
+pub struct Point {
+    /// mass of the point itself; a free point without any must be the end of a bar with mass
+    #[key(unit = "kg", default = "0")]
+    pub mass: Option<Number>,
+    /// where it is at the start
+    #[key(unit = "m", default = "none: needed unless there is a motion", shape = Shape::Vector)]
+    pub position: Option<List<Number>>,
+    /// how fast it is at the start
+    #[key(unit = "m/s", default = "0", shape = Shape::Vector)]
+    pub velocity: Option<List<Number>>,
+    /// true ties it to the ground
+    #[key(default = "false")]
+    pub fixed: Option<bool>,
+    /// makes it a driven support: its coordinates as formulas of the time t
+    #[key(unit = "m", default = "none", shape = Shape::Formulas(&["t"]))]
+    pub motion: Option<List<Number>>,
+    /// makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"
+    #[key(default = "one entry", shape = Shape::Repeat)]
+    pub repeat: Option<String>,
+}
+
 /// The keys of a point.
-pub const KEYS: &[Key] = &[
-    Key::optional(
-        "mass",
-        Shape::Number,
-        "0",
-        "kg",
-        "mass of the point itself; a free point without any must be the end of a bar with mass",
-    ),
-    Key::optional("position", Shape::Vector, "none: needed unless there is a motion", "m", "where it is at the start"),
-    Key::optional("velocity", Shape::Vector, "0", "m/s", "how fast it is at the start"),
-    Key::optional("fixed", Shape::Flag, "false", "", "true ties it to the ground"),
-    Key::optional("motion", Shape::Formulas(&["t"]), "none", "m", "makes it a driven support: its coordinates as formulas of the time t"),
-    REPEAT,
-];
+pub const KEYS: &[Key] = Point::KEYS;
 
 /// A point as it was read.
 pub struct Spec {
@@ -54,42 +66,40 @@ pub fn read(sections: &mut Sections<'_>, root: &Table, axes: Axes) -> (Vec<Spec>
         if entry.sink.count() == before { Ok(()) } else { Err(super::fault::Refused) }
     };
     let faulty = sections.read(root, "point", check, |entry| {
-        specs.push(spec(entry, axes.dimension())?);
+        specs.push(Point::read(entry)?.spec(entry, axes.dimension())?);
         Ok(())
     });
     (specs, faulty)
 }
 
-fn spec(entry: &Entry<'_>, dim: usize) -> Read<Spec> {
-    let mass = entry.optional("mass", Entry::not_negative);
-    let position = entry.optional("position", |entry, key| entry.vector(key, dim));
-    let velocity = entry.optional("velocity", |entry, key| entry.vector(key, dim));
-    let fixed = entry.optional("fixed", Entry::flag);
-    let motion = entry.optional("motion", |entry, key| entry.formulas(key, dim, &["t"]));
-    let (mass, position, velocity) = (mass?, position?, velocity?);
-    let (fixed, motion) = (fixed?.unwrap_or(false), motion?);
-    let (start, motion) = match motion {
-        Some(motion) => {
-            for (given, key) in [(position.is_some(), "position"), (velocity.is_some(), "velocity"), (fixed, "fixed")] {
-                if given {
-                    return Err(entry.refuse_key(key, format!("a point with a `motion` takes no `{key}`"), "keep one of the two"));
+impl Point {
+    fn spec(&self, entry: &Entry<'_>, dim: usize) -> Read<Spec> {
+        let mass = entry.optional_of("mass", &self.mass, Number::not_negative);
+        let position = entry.optional_of("position", &self.position, |position, entry, key| position.vector(entry, key, dim));
+        let velocity = entry.optional_of("velocity", &self.velocity, |velocity, entry, key| velocity.vector(entry, key, dim));
+        let motion = entry.optional_of("motion", &self.motion, |motion, entry, key| motion.formulas(entry, key, dim, &["t"]));
+        let (mass, position, velocity, motion) = (mass?, position?, velocity?, motion?);
+        let fixed = self.fixed.unwrap_or(false);
+        let (start, motion) = match motion {
+            Some(motion) => {
+                for (given, key) in [(position.is_some(), "position"), (velocity.is_some(), "velocity"), (fixed, "fixed")] {
+                    if given {
+                        return Err(entry.refuse_key(key, format!("a point with a `motion` takes no `{key}`"), "keep one of the two"));
+                    }
                 }
+                (driven_start(entry, &motion)?, Motion::Driven(motion))
             }
-            (driven_start(entry, &motion)?, Motion::Driven(motion))
-        }
-        None => {
-            let start = match position {
-                Some(position) => position,
-                None => entry.vector("position", dim)?,
-            };
-            if fixed && velocity.is_some_and(|velocity| velocity != [0.0; 3]) {
-                return Err(entry.refuse("velocity", "a fixed point does not move", "remove the velocity, or fixed = true"));
+            None => {
+                let start = *entry.needed("position", &position)?;
+                if fixed && velocity.is_some_and(|velocity| velocity != [0.0; 3]) {
+                    return Err(entry.refuse("velocity", "a fixed point does not move", "remove the velocity, or fixed = true"));
+                }
+                let motion = if fixed { Motion::Fixed } else { Motion::Free { velocity: velocity.unwrap_or_default() } };
+                (start, motion)
             }
-            let motion = if fixed { Motion::Fixed } else { Motion::Free { velocity: velocity.unwrap_or_default() } };
-            (start, motion)
-        }
-    };
-    Ok(Spec { name: entry.name.to_string(), path: entry.path.to_string(), mass: mass.unwrap_or(0.0), start, motion })
+        };
+        Ok(Spec { name: entry.name.to_string(), path: entry.path.to_string(), mass: mass.unwrap_or(0.0), start, motion })
+    }
 }
 
 /// Where a driven point is at t = 0, which must be somewhere, and with finite derivatives.
@@ -116,7 +126,7 @@ pub fn add(assembly: &mut Assembly<'_>, specs: &[Spec]) {
         assembly.by_name.insert(spec.name.clone(), k);
         let velocity = if let Motion::Free { velocity } = spec.motion { Some(velocity) } else { None };
         let (name, path) = (spec.name.clone(), spec.path.clone());
-        assembly.points.push(Point { name, path, end, mass: spec.mass, velocity, carries_bar: false });
+        assembly.points.push(PlacedPoint { name, path, end, mass: spec.mass, velocity, carries_bar: false });
     }
 }
 

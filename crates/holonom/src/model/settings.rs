@@ -175,7 +175,7 @@ impl SimulationKeys {
             omega: positive("omega", &self.omega),
             xi: positive("xi", &self.xi),
             constraint_at: entry
-                .optional_of("constraint_at", &self.constraint_at, |word, entry, key| entry.one_of(key, word, &["end", "mean"]))
+                .optional_of("constraint_at", &self.constraint_at, |word, entry, key| entry.choice_of(key, word, &["end", "mean"]))
                 .unwrap_or(None)
                 .map(str::to_string),
             tolerance: positive("tolerance", &self.tolerance),

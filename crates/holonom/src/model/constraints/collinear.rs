@@ -2,17 +2,18 @@ use crate::model::assembly::Assembly;
 use crate::model::ends::{End, difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
+use crate::model::fields::{Keys, List, Place};
 use crate::model::geometry::{cross, norm, unit};
-use crate::model::key::{Key, Kind, Shape};
+use crate::model::key::{Build, Shape};
 use crate::record::LineKind;
 
-pub(super) const KIND: Kind = Kind {
-    name: "collinear",
-    doc: "keeps three or more points on a straight line by the cross products of the paper (§7), one of three redundant in space",
-    equations: "(x_1 − x_0) × (x_2 − x_1) = 0, (x_2 − x_1) × (x_3 − x_2) = 0, …; these rows turn with the mechanism but are not invariant: \
-                together with other rows that do not keep it straight, angular momentum may drift with O(h²)",
-    keys: &[Key::required("points", Shape::Ends(3, usize::MAX), "", "the points, in their order along the line")],
-    example: r#"
+/// keeps three or more points on a straight line by the cross products of the paper (§7), one of three redundant in space
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "collinear",
+    equations = "(x_1 − x_0) × (x_2 − x_1) = 0, (x_2 − x_1) × (x_3 − x_2) = 0, …; these rows turn with the mechanism but are not invariant: \
+                 together with other rows that do not keep it straight, angular momentum may drift with O(h²)",
+    example = r#"
 [point.a]
 mass = 1
 position = [1, 0, 0]
@@ -24,24 +25,30 @@ position = [2, 0, 0]
 [constraint.straight]
 type = "collinear"
 points = ["ground", "a", "b"]
-"#,
-    build,
-};
+"#
+)]
+pub struct Collinear {
+    /// the points, in their order along the line
+    #[key(shape = Shape::Ends(3, usize::MAX))]
+    pub points: List<Place>,
+}
 
-fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    let points = assembly.ends(entry, "points", 3, usize::MAX)?;
-    assembly.require_free(entry, "points", &points)?;
-    let each = if assembly.dimension() == 3 { 3 } else { 1 };
-    let rows = each * (points.len() - 2);
-    for (k, triple) in points.windows(3).enumerate() {
-        check(assembly, entry, triple)?;
-        for component in 0..each {
-            let product = assembly.builder.cross(unit(component), &from_to(&triple[0], &triple[1]), &from_to(&triple[1], &triple[2]));
-            assembly.builder.constant_row(Assembly::row_name(entry, each * k + component, rows), product, 0.0);
+impl Build for Collinear {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        let points = assembly.ends_of(entry, "points", &self.points, 3, usize::MAX)?;
+        assembly.require_free(entry, "points", &points)?;
+        let each = if assembly.dimension() == 3 { 3 } else { 1 };
+        let rows = each * (points.len() - 2);
+        for (k, triple) in points.windows(3).enumerate() {
+            check(assembly, entry, triple)?;
+            for component in 0..each {
+                let product = assembly.builder.cross(unit(component), &from_to(&triple[0], &triple[1]), &from_to(&triple[1], &triple[2]));
+                assembly.builder.constant_row(Assembly::row_name(entry, each * k + component, rows), product, 0.0);
+            }
         }
+        assembly.draw(entry, LineKind::Guide, &points[0], &points[points.len() - 1]);
+        Ok(())
     }
-    assembly.draw(entry, LineKind::Guide, &points[0], &points[points.len() - 1]);
-    Ok(())
 }
 
 fn check(assembly: &Assembly<'_>, entry: &Entry<'_>, triple: &[End]) -> Read<()> {

@@ -5,20 +5,18 @@ use crate::model::ends::{End, difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::expression::{Program, TimeProgram};
 use crate::model::fault::Read;
+use crate::model::fields::{Keys, List, Number, Place};
 use crate::model::geometry::norm;
-use crate::model::key::{Key, Kind, Shape};
+use crate::model::key::{Build, Shape};
 use crate::record::LineKind;
 use crate::system::{Constant, Signal};
 
-pub(super) const KIND: Kind = Kind {
-    name: "distance",
-    doc: "keeps two points a distance apart: a massless rod, or with a length that depends on time an actuator",
-    equations: "½ |x_b − x_a|² − ½ L(t)² = 0",
-    keys: &[
-        Key::required("between", Shape::Ends(2, 2), "", "the two points"),
-        Key::optional("length", Shape::Formula(&["t"]), "the distance at the start", "m", "number, or formula of the time t"),
-    ],
-    example: r#"
+/// keeps two points a distance apart: a massless rod, or with a length that depends on time an actuator
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "distance",
+    equations = "½ |x_b − x_a|² − ½ L(t)² = 0",
+    example = r#"
 [point.bob]
 mass = 1
 position = [1, 0, 0]
@@ -27,42 +25,51 @@ position = [1, 0, 0]
 type = "distance"
 between = ["ground", "bob"]
 length = "1 + 0.1*sin(t)"
-"#,
-    build,
-};
+"#
+)]
+pub struct Distance {
+    /// the two points
+    #[key(shape = Shape::Ends(2, 2))]
+    pub between: List<Place>,
+    /// number, or formula of the time t
+    #[key(unit = "m", default = "the distance at the start", shape = Shape::Formula(&["t"]))]
+    pub length: Option<Number>,
+}
 
-fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    let ends = assembly.moving_pair(entry, "between");
-    let length = entry.optional("length", |entry, key| entry.formula(key, &["t"]));
-    let (ends, length) = (ends?, length?);
-    let [a, b] = &ends;
-    let start = norm(difference(a, b));
-    let target: Arc<dyn Signal> = match length {
-        None => {
-            let start = started(entry, &ends, start)?;
-            Arc::new(Constant(0.5 * start * start))
-        }
-        Some(length) => {
-            let at_start = TimeProgram(length.clone()).at(0.0)[0];
-            if at_start == 0.0 {
-                return Err(entry.refuse("length", "a distance of zero has no direction", ZERO_CURE));
+impl Build for Distance {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        let ends = assembly.moving_pair_of(entry, "between", &self.between);
+        let length = entry.optional_of("length", &self.length, |length, entry, key| length.formula(entry, key, &["t"]));
+        let (ends, length) = (ends?, length?);
+        let [a, b] = &ends;
+        let start = norm(difference(a, b));
+        let target: Arc<dyn Signal> = match length {
+            None => {
+                let start = started(entry, &ends, start)?;
+                Arc::new(Constant(0.5 * start * start))
             }
-            if !(at_start > 0.0 && at_start.is_finite()) {
-                return Err(entry.refuse("length", format!("the length at the start is {at_start}"), "it must be above 0"));
+            Some(length) => {
+                let at_start = TimeProgram(length.clone()).at(0.0)[0];
+                if at_start == 0.0 {
+                    return Err(entry.refuse("length", "a distance of zero has no direction", ZERO_CURE));
+                }
+                if !(at_start > 0.0 && at_start.is_finite()) {
+                    return Err(entry.refuse("length", format!("the length at the start is {at_start}"), "it must be above 0"));
+                }
+                let contradiction =
+                    || format!("the length is {at_start} m, but at the start `{}` and `{}` are {start} m apart", a.name, b.name);
+                assembly.check_start(entry, start - at_start, at_start, contradiction)?;
+                match length.as_constant() {
+                    Some(length) => Arc::new(Constant(0.5 * length * length)),
+                    None => Arc::new(HalfSquare(length)),
+                }
             }
-            let contradiction =
-                || format!("the length is {at_start} m, but at the start `{}` and `{}` are {start} m apart", a.name, b.name);
-            assembly.check_start(entry, start - at_start, at_start, contradiction)?;
-            match length.as_constant() {
-                Some(length) => Arc::new(Constant(0.5 * length * length)),
-                None => Arc::new(HalfSquare(length)),
-            }
-        }
-    };
-    let half_square = assembly.builder.square(&from_to(a, b));
-    assembly.builder.row(entry.name, half_square, target);
-    assembly.draw(entry, LineKind::Rod, a, b);
-    Ok(())
+        };
+        let half_square = assembly.builder.square(&from_to(a, b));
+        assembly.builder.row(entry.name, half_square, target);
+        assembly.draw(entry, LineKind::Rod, a, b);
+        Ok(())
+    }
 }
 
 const ZERO_CURE: &str = "to keep two points together use type = \"fixed\" with between";

@@ -7,7 +7,21 @@ mod perpendicular;
 mod point_on_line;
 mod point_on_plane;
 
+pub use collinear::Collinear;
+pub use distance::Distance;
+pub use fixed::Fixed;
+pub use perpendicular::Perpendicular;
+pub use point_on_line::PointOnLine;
+pub use point_on_plane::PointOnPlane;
+
 use super::key::Kind;
 
 /// All kinds of constraints.
-pub const KINDS: &[Kind] = &[distance::KIND, collinear::KIND, perpendicular::KIND, point_on_line::KIND, point_on_plane::KIND, fixed::KIND];
+pub const KINDS: &[Kind] = &[
+    Kind::of::<Distance>(),
+    Kind::of::<Collinear>(),
+    Kind::of::<Perpendicular>(),
+    Kind::of::<PointOnLine>(),
+    Kind::of::<PointOnPlane>(),
+    Kind::of::<Fixed>(),
+];

@@ -2,22 +2,18 @@ use crate::model::assembly::Assembly;
 use crate::model::ends::{End, difference, fixed, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
+use crate::model::fields::{Keys, List, Number, Place};
 use crate::model::geometry::{across, cross, dot, norm, unit};
-use crate::model::key::{Key, Kind, Shape};
+use crate::model::key::{Build, Shape};
 use crate::record::LineKind;
 
-pub(super) const KIND: Kind = Kind {
-    name: "point-on-line",
-    doc: "keeps a point on a line of fixed direction, or on the line through two points",
-    equations: "e_k · (x − x_through) = 0 with e_k ⊥ direction: 2 rows in space, 1 in the plane; \
-                with line = [a, b]: (x_b − x_a) × (x − x_a) = 0, in space 3 rows of which one is redundant",
-    keys: &[
-        Key::required("point", Shape::Point, "", "the point that slides"),
-        Key::optional("direction", Shape::Vector, "none: this or a line is needed", "any", "direction of the line"),
-        Key::optional("through", Shape::End, "where the point starts", "", "a point of the line of that direction"),
-        Key::optional("line", Shape::Ends(2, 2), "none", "", "two points that the line goes through, instead of direction and through"),
-    ],
-    example: r#"
+/// keeps a point on a line of fixed direction, or on the line through two points
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "point-on-line",
+    equations = "e_k · (x − x_through) = 0 with e_k ⊥ direction: 2 rows in space, 1 in the plane; \
+                 with line = [a, b]: (x_b − x_a) × (x − x_a) = 0, in space 3 rows of which one is redundant",
+    example = r#"
 [point.slider]
 mass = 1
 position = [1, 0, 0]
@@ -26,63 +22,84 @@ position = [1, 0, 0]
 type = "point-on-line"
 point = "slider"
 direction = [1, 0, 0]
-"#,
-    build,
-};
-
-fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    if entry.has("line") { between_points(assembly, entry) } else { along_direction(assembly, entry) }
+"#
+)]
+pub struct PointOnLine {
+    /// the point that slides
+    #[key(shape = Shape::Point)]
+    pub point: String,
+    /// direction of the line
+    #[key(unit = "any", default = "none: this or a line is needed", shape = Shape::Vector)]
+    pub direction: Option<List<Number>>,
+    /// a point of the line of that direction
+    #[key(default = "where the point starts")]
+    pub through: Option<Place>,
+    /// two points that the line goes through, instead of direction and through
+    #[key(default = "none", shape = Shape::Ends(2, 2))]
+    pub line: Option<List<Place>>,
 }
 
-fn along_direction(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    let dim = assembly.dimension();
-    let point = assembly.point(entry, "point");
-    let through = entry.optional("through", |entry, key| assembly.end(entry, key));
-    let direction = match entry.has("direction") {
-        true => entry.vector("direction", dim),
-        false => Err(entry.refuse_all(format!("`{}` has neither `direction` nor `line`", entry.name), "add one of them")),
-    };
-    let (point, direction) = (point?, direction?);
-    let through = through?.unwrap_or_else(|| fixed(point.start, "its start".into()));
-    assembly.require_free(entry, "point", &[point.clone(), through.clone()])?;
-    let length = norm(direction);
-    if length == 0.0 {
-        return Err(entry.refuse("direction", "the direction is zero", "give the direction of the line"));
-    }
-    let across = across(direction.map(|c| c / length), dim);
-    let d = difference(&through, &point);
-    let off = across.iter().map(|&e| dot(e, d).powi(2)).sum::<f64>().sqrt();
-    let size = norm(d).max(norm(point.start));
-    assembly.check_start(entry, off, size, || format!("`{}` starts {off} m beside the line", point.name))?;
-    for (row, &e) in across.iter().enumerate() {
-        let component = assembly.builder.linear(e, &from_to(&through, &point));
-        assembly.builder.constant_row(Assembly::row_name(entry, row, across.len()), component, 0.0);
-    }
-    let (back, forth) = ([-1.0, 1.0].map(|s| fixed(std::array::from_fn(|c| through.start[c] + s * direction[c]), String::new()))).into();
-    if through.point.is_none() {
-        assembly.draw(entry, LineKind::Guide, &back, &forth);
-    }
-    Ok(())
-}
-
-fn between_points(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    for key in ["direction", "through"] {
-        if entry.has(key) {
-            entry.refuse(key, format!("`{key}` and `line` exclude each other"), "keep one of the two");
+impl Build for PointOnLine {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        match &self.line {
+            Some(line) => self.between_points(assembly, entry, line),
+            None => self.along_direction(assembly, entry),
         }
     }
-    let (point, line) = (assembly.point(entry, "point"), assembly.pair(entry, "line"));
-    let (point, [a, b]) = (point?, line?);
-    assembly.require_free(entry, "point", &[point.clone(), a.clone(), b.clone()])?;
-    let (u, w) = (difference(&a, &b), difference(&a, &point));
-    check(assembly, entry, [&point, &a, &b], norm(u), norm(cross(u, w)))?;
-    let rows = if assembly.dimension() == 3 { 3 } else { 1 };
-    for row in 0..rows {
-        let product = assembly.builder.cross(unit(row), &from_to(&a, &b), &from_to(&a, &point));
-        assembly.builder.constant_row(Assembly::row_name(entry, row, rows), product, 0.0);
+}
+
+impl PointOnLine {
+    fn along_direction(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        let dim = assembly.dimension();
+        let point = assembly.point_of(entry, "point", &self.point);
+        let through = entry.optional_of("through", &self.through, |through, entry, key| assembly.end_of(entry, key, through));
+        let direction = match &self.direction {
+            Some(direction) => direction.vector(entry, "direction", dim),
+            None => Err(entry.refuse_all(format!("`{}` has neither `direction` nor `line`", entry.name), "add one of them")),
+        };
+        let (point, direction) = (point?, direction?);
+        let through = through?.unwrap_or_else(|| fixed(point.start, "its start".into()));
+        assembly.require_free(entry, "point", &[point.clone(), through.clone()])?;
+        let length = norm(direction);
+        if length == 0.0 {
+            return Err(entry.refuse("direction", "the direction is zero", "give the direction of the line"));
+        }
+        let across = across(direction.map(|c| c / length), dim);
+        let d = difference(&through, &point);
+        let off = across.iter().map(|&e| dot(e, d).powi(2)).sum::<f64>().sqrt();
+        let size = norm(d).max(norm(point.start));
+        assembly.check_start(entry, off, size, || format!("`{}` starts {off} m beside the line", point.name))?;
+        for (row, &e) in across.iter().enumerate() {
+            let component = assembly.builder.linear(e, &from_to(&through, &point));
+            assembly.builder.constant_row(Assembly::row_name(entry, row, across.len()), component, 0.0);
+        }
+        let (back, forth) =
+            ([-1.0, 1.0].map(|s| fixed(std::array::from_fn(|c| through.start[c] + s * direction[c]), String::new()))).into();
+        if through.point.is_none() {
+            assembly.draw(entry, LineKind::Guide, &back, &forth);
+        }
+        Ok(())
     }
-    assembly.draw(entry, LineKind::Guide, &a, &b);
-    Ok(())
+
+    fn between_points(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>, line: &[Place]) -> Read<()> {
+        for (key, given) in [("direction", self.direction.is_some()), ("through", self.through.is_some())] {
+            if given {
+                entry.refuse(key, format!("`{key}` and `line` exclude each other"), "keep one of the two");
+            }
+        }
+        let (point, line) = (assembly.point_of(entry, "point", &self.point), assembly.pair_of(entry, "line", line));
+        let (point, [a, b]) = (point?, line?);
+        assembly.require_free(entry, "point", &[point.clone(), a.clone(), b.clone()])?;
+        let (u, w) = (difference(&a, &b), difference(&a, &point));
+        check(assembly, entry, [&point, &a, &b], norm(u), norm(cross(u, w)))?;
+        let rows = if assembly.dimension() == 3 { 3 } else { 1 };
+        for row in 0..rows {
+            let product = assembly.builder.cross(unit(row), &from_to(&a, &b), &from_to(&a, &point));
+            assembly.builder.constant_row(Assembly::row_name(entry, row, rows), product, 0.0);
+        }
+        assembly.draw(entry, LineKind::Guide, &a, &b);
+        Ok(())
+    }
 }
 
 fn check(assembly: &Assembly<'_>, entry: &Entry<'_>, [point, a, b]: [&End; 3], length: f64, product: f64) -> Read<()> {

@@ -1,16 +1,17 @@
-use super::coordinate::{JOINT, drive};
-use super::profile;
+use super::coordinate::drive;
+use super::profile::Profile;
 use crate::model::assembly::Assembly;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
-use crate::model::key::Kind;
+use crate::model::fields::Keys;
+use crate::model::key::Build;
 
-pub(super) const KIND: Kind = Kind {
-    name: "angle",
-    doc: "a motor that turns a joint as it is told, counted from the start over any number of turns",
-    equations: "θ − θ(t) = 0; its torque is −λ",
-    keys: &[JOINT, profile::key("rad", "angle as a formula of t, or { table = [[t, angle], …] }; zero at the start")],
-    example: r#"
+/// a motor that turns a joint as it is told, counted from the start over any number of turns
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "angle",
+    equations = "θ − θ(t) = 0; its torque is −λ",
+    example = r#"
 [body.wheel]
 mass = 1
 shape = { cylinder = [0.1, 0.02] }
@@ -26,10 +27,18 @@ axis = [0, 0, 1]
 type = "angle"
 joint = "axle"
 profile = "t^2"
-"#,
-    build,
-};
+"#
+)]
+pub struct Angle {
+    /// the joint, or its coordinate as "JOINT.angle" or "JOINT.displacement"
+    pub joint: String,
+    /// angle as a formula of t, or { table = [[t, angle], …] }; zero at the start
+    #[key(unit = "rad")]
+    pub profile: Profile,
+}
 
-fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    drive(assembly, entry, true)
+impl Build for Angle {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        drive(assembly, entry, &self.joint, &self.profile, true)
+    }
 }

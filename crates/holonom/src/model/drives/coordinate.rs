@@ -1,28 +1,22 @@
 //! Drives of a joint coordinate.
 
-use super::profile;
+use super::profile::Profile;
 use crate::model::assembly::{Assembly, Effort};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::joints::coordinate;
-use crate::model::key::{Key, Shape};
-
-/// The key of the joint.
-pub(super) const JOINT: Key =
-    Key::required("joint", Shape::Text, "", "the joint, or its coordinate as \"JOINT.angle\" or \"JOINT.displacement\"");
 
 /// Adds the row that keeps a coordinate, which must be an angle or a displacement, as a profile has it.
-pub(super) fn drive(assembly: &mut Assembly<'_>, entry: &Entry<'_>, is_angle: bool) -> Read<()> {
-    let (text, profile) = (entry.text("joint"), profile::read(entry));
-    let coordinate = coordinate(assembly, entry, "joint".into(), text?)?;
+pub(super) fn drive(assembly: &mut Assembly<'_>, entry: &Entry<'_>, joint: &str, profile: &Profile, is_angle: bool) -> Read<()> {
+    let profile = profile.signal(entry, "profile");
+    let coordinate = coordinate(assembly, entry, "joint".into(), joint)?;
     let profile = profile?;
     if coordinate.is_angle != is_angle {
-        let name = entry.text("joint")?;
         let [is, has] = if is_angle { ["an angle", "a displacement"] } else { ["a displacement", "an angle"] };
         let kind = if is_angle { "displacement" } else { "angle" };
         return Err(entry.refuse(
             "joint",
-            format!("this drives {is}, and `{name}` has {has}"),
+            format!("this drives {is}, and `{joint}` has {has}"),
             format!("use type = \"{kind}\", or another joint"),
         ));
     }

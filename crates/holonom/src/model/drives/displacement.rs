@@ -1,16 +1,17 @@
-use super::coordinate::{JOINT, drive};
-use super::profile;
+use super::coordinate::drive;
+use super::profile::Profile;
 use crate::model::assembly::Assembly;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
-use crate::model::key::Kind;
+use crate::model::fields::Keys;
+use crate::model::key::Build;
 
-pub(super) const KIND: Kind = Kind {
-    name: "displacement",
-    doc: "a drive that moves a joint along its axis as it is told, counted from the start",
-    equations: "s − s(t) = 0; its force is −λ",
-    keys: &[JOINT, profile::key("m", "displacement as a formula of t, or { table = [[t, s], …] }; zero at the start")],
-    example: r#"
+/// a drive that moves a joint along its axis as it is told, counted from the start
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "displacement",
+    equations = "s − s(t) = 0; its force is −λ",
+    example = r#"
 [body.carriage]
 mass = 1
 shape = { box = [0.2, 0.1, 0.1] }
@@ -25,10 +26,18 @@ axis = [1, 0, 0]
 type = "displacement"
 joint = "rail"
 profile = { table = [[0, 0], [1, 0.2], [2, 0]] }
-"#,
-    build,
-};
+"#
+)]
+pub struct Displacement {
+    /// the joint, or its coordinate as "JOINT.angle" or "JOINT.displacement"
+    pub joint: String,
+    /// displacement as a formula of t, or { table = [[t, s], …] }; zero at the start
+    #[key(unit = "m")]
+    pub profile: Profile,
+}
 
-fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    drive(assembly, entry, false)
+impl Build for Displacement {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        drive(assembly, entry, &self.joint, &self.profile, false)
+    }
 }

@@ -1,24 +1,22 @@
 use std::sync::Arc;
 
-use super::profile;
+use super::profile::Profile;
 use crate::model::assembly::{Assembly, Effort};
 use crate::model::ends::{difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
+use crate::model::fields::{Keys, List, Place};
 use crate::model::geometry::norm;
-use crate::model::key::{Key, Kind, Shape};
+use crate::model::key::{Build, Shape};
 use crate::record::LineKind;
 use crate::system::Signal;
 
-pub(super) const KIND: Kind = Kind {
-    name: "distance",
-    doc: "a cylinder that keeps two points as far apart as it is told",
-    equations: "½ |x_b − x_a|² − ½ L(t)² = 0; it pushes with −λ L",
-    keys: &[
-        Key::required("between", Shape::Ends(2, 2), "", "the two points, or places of bodies"),
-        profile::key("m", "distance as a formula of t, or { table = [[t, L], …] }"),
-    ],
-    example: r#"
+/// a cylinder that keeps two points as far apart as it is told
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "distance",
+    equations = "½ |x_b − x_a|² − ½ L(t)² = 0; it pushes with −λ L",
+    example = r#"
 [body.boom]
 mass = 10
 shape = { box = [2, 0.1, 0.1] }
@@ -37,24 +35,34 @@ axis = [0, 1, 0]
 type = "distance"
 between = [[1, 0, -1], "boom.lug"]
 profile = "1 + 0.1*sin(t)"
-"#,
-    build,
-};
+"#
+)]
+pub struct Distance {
+    /// the two points, or places of bodies
+    #[key(shape = Shape::Ends(2, 2))]
+    pub between: List<Place>,
+    /// distance as a formula of t, or { table = [[t, L], …] }
+    #[key(unit = "m")]
+    pub profile: Profile,
+}
 
-fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    let (ends, profile) = (assembly.moving_pair(entry, "between"), profile::read(entry));
-    let ([a, b], profile) = (ends?, profile?);
-    let (start, given) = (norm(difference(&a, &b)), profile.at(0.0)[0]);
-    if given <= 0.0 {
-        return Err(entry.refuse("profile", format!("the distance is {given} at t = 0"), "it must be above 0"));
+impl Build for Distance {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        let ends = assembly.moving_pair_of(entry, "between", &self.between);
+        let profile = self.profile.signal(entry, "profile");
+        let ([a, b], profile) = (ends?, profile?);
+        let (start, given) = (norm(difference(&a, &b)), profile.at(0.0)[0]);
+        if given <= 0.0 {
+            return Err(entry.refuse("profile", format!("the distance is {given} at t = 0"), "it must be above 0"));
+        }
+        let contradiction = || format!("the distance is {given} m at t = 0, but `{}` and `{}` are {start} m apart", a.name, b.name);
+        assembly.check_start(entry, start - given, given, contradiction)?;
+        let half_square = assembly.builder.square(&from_to(&a, &b));
+        assembly.efforts.push(Effort { name: entry.name.to_string(), row: assembly.builder.rows(), length: Some(Arc::clone(&profile)) });
+        assembly.builder.row(entry.name, half_square, Arc::new(HalfSquare(profile)));
+        assembly.draw(entry, LineKind::Rod, &a, &b);
+        Ok(())
     }
-    let contradiction = || format!("the distance is {given} m at t = 0, but `{}` and `{}` are {start} m apart", a.name, b.name);
-    assembly.check_start(entry, start - given, given, contradiction)?;
-    let half_square = assembly.builder.square(&from_to(&a, &b));
-    assembly.efforts.push(Effort { name: entry.name.to_string(), row: assembly.builder.rows(), length: Some(Arc::clone(&profile)) });
-    assembly.builder.row(entry.name, half_square, Arc::new(HalfSquare(profile)));
-    assembly.draw(entry, LineKind::Rod, &a, &b);
-    Ok(())
 }
 
 /// ½ L(t)².

@@ -7,7 +7,13 @@ mod distance;
 mod point;
 mod profile;
 
+pub use angle::Angle;
+pub use displacement::Displacement;
+pub use distance::Distance;
+pub use point::Point;
+pub use profile::{Profile, ProfileTable, Row};
+
 use super::key::Kind;
 
 /// All kinds of drives.
-pub const KINDS: &[Kind] = &[angle::KIND, displacement::KIND, distance::KIND, point::KIND];
+pub const KINDS: &[Kind] = &[Kind::of::<Angle>(), Kind::of::<Displacement>(), Kind::of::<Distance>(), Kind::of::<Point>()];

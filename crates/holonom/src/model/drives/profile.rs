@@ -5,67 +5,141 @@ use std::sync::Arc;
 use crate::model::entry::{Entry, Spot, all};
 use crate::model::expression::{Program, TimeProgram};
 use crate::model::fault::Read;
-use crate::model::key::{Key, Shape};
+use crate::model::fields::{Field, Keys, List, Number};
+use crate::model::key::Shape;
 use crate::model::spline::Spline;
 use crate::model::value::Value;
 use crate::system::Signal;
 
-/// The key of the profile of a drive, in a unit.
-pub(super) const fn key(unit: &'static str, doc: &'static str) -> Key {
-    Key::required("profile", Shape::Profile(&TABLE), unit, doc)
+/// A number over time, as it is written.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Profile {
+    /// A formula of t, or a number that stays.
+    Formula(Number),
+    /// A spline through a table.
+    Table(ProfileTable),
 }
 
-/// Keys of a profile that is a table.
-static TABLE: [Key; 2] = [
-    Key::required("table", Shape::Pairs, "s", "times and values"),
-    Key::optional("ends", Shape::Choice(ENDS), "\"natural\"", "", "\"rest\" has it start and end at rest; natural ends go on straight"),
-];
+/// Times and values that a spline goes through.
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[table("a profile")]
+pub struct ProfileTable {
+    /// times and values
+    #[key(unit = "s")]
+    pub table: List<Row>,
+    /// "rest" has it start and end at rest; natural ends go on straight
+    #[key(default = "\"natural\"", shape = Shape::Choice(ENDS))]
+    pub ends: Option<String>,
+}
+
+/// A row of a table: `[time, value]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// s
+    pub time: Number,
+    pub value: Number,
+}
 
 const ENDS: &[&str] = &["natural", "rest"];
 
-/// The signal at `profile`.
-pub(super) fn read(entry: &Entry<'_>) -> Read<Arc<dyn Signal>> {
-    let signal: Arc<dyn Signal> = match entry.value("profile")? {
-        Value::Table(_) => Arc::new(table(entry)?),
-        Value::List(_) => {
-            let message = "a profile is a formula of t or a table, and this is a list";
-            return Err(entry.refuse("profile", message, "write profile = { table = [[t, value], …] }, or a formula in quotes"));
+impl Field for Profile {
+    const SHAPE: Shape = Shape::Profile(ProfileTable::KEYS);
+
+    fn read(entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<Self> {
+        match value {
+            Value::Table(_) => <ProfileTable as Field>::read(entry, spot, value).map(Self::Table),
+            Value::List(_) => {
+                let message = "a profile is a formula of t or a table, and this is a list";
+                let cure = format!("write {} = {{ table = [[t, value], …] }}, or a formula in quotes", spot.key);
+                Err(entry.refuse(spot, message, cure))
+            }
+            _ => Number::read(entry, spot, value).map(Self::Formula),
         }
-        _ => Arc::new(TimeProgram(entry.formula("profile", &["t"])?)),
-    };
-    let start = signal.at(0.0);
-    if start.iter().any(|value| !value.is_finite()) {
-        let [value, rate, second] = start;
-        let message = format!("at t = 0 this profile is {value}, its rate {rate} and its second derivative {second}");
-        return Err(entry.refuse("profile", message, "all three must be finite: let it begin smoothly"));
     }
-    Ok(signal)
+
+    fn write(&self) -> Value {
+        match self {
+            Self::Formula(formula) => formula.write(),
+            Self::Table(table) => Field::write(table),
+        }
+    }
 }
 
-fn table(entry: &Entry<'_>) -> Read<Spline> {
-    let table = entry.table("profile")?;
-    entry.inside("profile", table, |inner| {
-        inner.refuse_unknown_keys("a profile", &TABLE.iter().collect::<Vec<_>>());
-        let ends = inner.optional("ends", |inner, key| inner.choice(key, ENDS));
-        let rows = inner.list("table")?;
-        let row = |(k, row): (usize, &Value)| match row {
+impl Field for Row {
+    const SHAPE: Shape = Shape::Numbers(2, 2);
+    const LIST: Shape = Shape::Pairs;
+
+    fn read(entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<Self> {
+        match value {
             Value::List(items) if items.len() == 2 => {
-                all(items.iter().map(|item| inner.number_in(Spot { key: "table", item: Some(k) }, item)))
+                let [time, value] = [0, 1].map(|k| Number::read(entry, spot, &items[k]));
+                Ok(Self { time: time?, value: value? })
             }
-            _ => {
-                Err(inner.refuse(Spot { key: "table", item: Some(k) }, "a row has a time and a value", "write [[t, value], [t, value], …]"))
-            }
+            _ => Err(entry.refuse(spot, "a row has a time and a value", "write [[t, value], [t, value], …]")),
+        }
+    }
+
+    fn write(&self) -> Value {
+        Value::List(vec![self.time.write(), self.value.write()])
+    }
+}
+
+impl<T: Into<Number>> From<T> for Profile {
+    fn from(formula: T) -> Self {
+        Self::Formula(formula.into())
+    }
+}
+
+impl From<ProfileTable> for Profile {
+    fn from(table: ProfileTable) -> Self {
+        Self::Table(table)
+    }
+}
+
+impl<T: Into<Number>> From<[T; 2]> for Row {
+    fn from([time, value]: [T; 2]) -> Self {
+        Self { time: time.into(), value: value.into() }
+    }
+}
+
+impl Profile {
+    /// The number over time, which must begin smoothly; `key` is where the profile stands.
+    pub(super) fn signal(&self, entry: &Entry<'_>, key: &str) -> Read<Arc<dyn Signal>> {
+        let signal: Arc<dyn Signal> = match self {
+            Self::Formula(formula) => Arc::new(TimeProgram(formula.formula(entry, key, &["t"])?)),
+            Self::Table(table) => Arc::new(entry.within(key.into(), |inner| table.spline(inner))?),
         };
-        if rows.len() < 2 {
-            return Err(inner.refuse("table", format!("a table has at least two rows, and this has {}", rows.len()), "add [t, value]"));
+        let start = signal.at(0.0);
+        if start.iter().any(|value| !value.is_finite()) {
+            let [value, rate, second] = start;
+            let message = format!("at t = 0 this profile is {value}, its rate {rate} and its second derivative {second}");
+            return Err(entry.refuse(key, message, "all three must be finite: let it begin smoothly"));
         }
-        let rows = all(rows.iter().enumerate().map(row))?;
-        if let Some(k) = (1..rows.len()).find(|&k| rows[k][0] <= rows[k - 1][0]) {
-            let message = format!("the time {} comes after {}", rows[k][0], rows[k - 1][0]);
-            return Err(inner.refuse(Spot { key: "table", item: Some(k) }, message, "let the times rise from row to row"));
+        Ok(signal)
+    }
+}
+
+impl ProfileTable {
+    fn spline(&self, entry: &Entry<'_>) -> Read<Spline> {
+        let ends = entry.optional_of("ends", &self.ends, |ends, entry, key| entry.choice_of(key, ends, ENDS));
+        let spot = |k| Spot { key: "table", item: Some(k) };
+        if self.table.len() < 2 {
+            return Err(entry.refuse(
+                "table",
+                format!("a table has at least two rows, and this has {}", self.table.len()),
+                "add [t, value]",
+            ));
         }
-        inner.sink.switches.borrow_mut().extend(rows.iter().map(|row| Program::since(row[0])));
-        let (knots, values) = (rows.iter().map(|row| row[0]).collect(), rows.iter().map(|row| row[1]).collect());
+        let row = |(k, row): (usize, &Row)| {
+            let (time, value) = (row.time.number(entry, spot(k)), row.value.number(entry, spot(k)));
+            Ok((time?, value?))
+        };
+        let (knots, values): (Vec<f64>, Vec<f64>) = all(self.table.iter().enumerate().map(row))?.into_iter().unzip();
+        if let Some(k) = (1..knots.len()).find(|&k| knots[k] <= knots[k - 1]) {
+            let message = format!("the time {} comes after {}", knots[k], knots[k - 1]);
+            return Err(entry.refuse(spot(k), message, "let the times rise from row to row"));
+        }
+        entry.sink.switches.borrow_mut().extend(knots.iter().map(|&knot| Program::since(knot)));
         Ok(if ends? == Some("rest") { Spline::resting(knots, values) } else { Spline::natural(knots, values) })
-    })
+    }
 }

@@ -19,7 +19,7 @@ pub use site::Site;
 pub use turn::Turn;
 
 use super::entry::{Entry, Spot};
-use super::fault::Read;
+use super::fault::{Read, suggest};
 use super::key::{Key, Shape};
 use super::value::{Table, Value};
 
@@ -93,6 +93,17 @@ impl Entry<'_> {
         read: impl FnOnce(&T, &Self, &'k str) -> Read<U>,
     ) -> Read<Option<U>> {
         value.as_ref().map(|value| read(value, self, key)).transpose()
+    }
+
+    /// The value of a key that may be left out in general, and not here.
+    pub fn needed<'v, T>(&self, key: &str, value: &'v Option<T>) -> Read<&'v T> {
+        value.as_ref().ok_or_else(|| self.missing(key))
+    }
+
+    /// The word that a text is, which must be one of some.
+    pub fn choice_of(&self, key: &str, text: &str, words: &[&'static str]) -> Read<&'static str> {
+        let word = words.iter().copied().find(|&word| word == text);
+        word.ok_or_else(|| self.refuse(key, format!("`{key}` cannot be \"{text}\""), suggest(text, words.iter().copied())))
     }
 
     /// A table inside of this one, which messages call `what`.
