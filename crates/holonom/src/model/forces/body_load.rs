@@ -11,10 +11,10 @@ use crate::model::ends::End;
 use crate::model::entry::{Entry, Spot};
 use crate::model::expression::Program;
 use crate::model::fault::Read;
+use crate::model::fields::{List, Number, Turn};
 use crate::model::geometry::unit;
-use crate::model::key::{Key, Shape};
 use crate::model::value::Value;
-use crate::system::{Differentiated, ForceFunction, NodeId, Number, Place, SIZE, Term};
+use crate::system::{Differentiated, ForceFunction, NodeId, Number as AnyNumber, Place, Term};
 
 /// Time, place, its velocity, and angular velocity of the body.
 pub(super) const VARIABLES: &[&str] = &["t", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz"];
@@ -26,18 +26,8 @@ fn variables(axes: &str) -> Vec<String> {
     std::iter::once("t".to_string()).chain(own("")).chain(own("v")).chain(turns).collect()
 }
 
-/// The key that says in which axes a force or torque is given.
-pub(super) const AXES: Key = Key::optional(
-    "axes",
-    Shape::Choice(&["world", "body"]),
-    "\"world\"",
-    "",
-    "whether it is given in the axes of the model or of the body",
-);
-
-/// A body by its key.
-pub(super) fn body(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &str) -> Read<usize> {
-    let name = entry.text(key)?;
+/// The body of a name.
+pub(super) fn body(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &str, name: &str) -> Read<usize> {
     match assembly.member(entry, key.into(), name)? {
         Member::Body(k) => Ok(k),
         Member::Point(_) => {
@@ -78,7 +68,7 @@ impl Sum {
     }
 
     /// Its position, or with `fixed` 0 its velocity.
-    fn at<N: Number>(&self, x: &[N], dim: usize, fixed: f64) -> [N; 3] {
+    fn at<N: AnyNumber>(&self, x: &[N], dim: usize, fixed: f64) -> [N; 3] {
         let mut sum = self.fixed.map(|c| N::from(fixed * c));
         for &(node, [f, g]) in &self.terms {
             let own = &x[node * dim..(node + 1) * dim];
@@ -92,7 +82,7 @@ impl Sum {
     }
 
     /// Adds a force on it to those on the nodes.
-    fn spread<N: Number>(&self, force: [N; 3], dim: usize, out: &mut [N]) {
+    fn spread<N: AnyNumber>(&self, force: [N; 3], dim: usize, out: &mut [N]) {
         for &(node, [f, g]) in &self.terms {
             let own = &mut out[node * dim..(node + 1) * dim];
             (0..dim).for_each(|c| own[c] += force[c] * f);
@@ -117,13 +107,13 @@ struct BodyLoad {
     in_body_axes: bool,
 }
 
-fn cross<N: Number>(u: [N; 3], w: [N; 3]) -> [N; 3] {
+fn cross<N: AnyNumber>(u: [N; 3], w: [N; 3]) -> [N; 3] {
     [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]]
 }
 
 impl BodyLoad {
     /// The formulas at a state.
-    fn given<N: Number>(&self, x: &[N], v: &[N], t: N, axes: &[[N; 3]]) -> [N; 3] {
+    fn given<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, axes: &[[N; 3]]) -> [N; 3] {
         let (dim, zero) = (self.dim, N::from(0.0));
         let mut turn = [zero; 3];
         for (sum, &axis) in self.axes.iter().zip(axes) {
@@ -141,7 +131,7 @@ impl BodyLoad {
     }
 
     /// Σ g_k e_k.
-    fn in_world<N: Number>(&self, given: [N; 3], axes: &[[N; 3]]) -> [N; 3] {
+    fn in_world<N: AnyNumber>(&self, given: [N; 3], axes: &[[N; 3]]) -> [N; 3] {
         if self.dim == 2 {
             let [x, y, _] = axes[0];
             return [x * given[0] - y * given[1], y * given[0] + x * given[1], N::from(0.0)];
@@ -151,7 +141,7 @@ impl BodyLoad {
 }
 
 impl ForceFunction for BodyLoad {
-    fn evaluate<N: Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
+    fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
         let (dim, zero) = (self.dim, N::from(0.0));
         let mut axes = [[zero; 3]; 3];
         axes.iter_mut().zip(&self.axes).for_each(|(axis, sum)| *axis = sum.at(x, dim, 1.0));
@@ -175,33 +165,42 @@ impl ForceFunction for BodyLoad {
     }
 }
 
-/// What is read of a force or torque before it becomes a load.
+/// Components of a force or of a torque.
+pub(super) enum Formulas<'a> {
+    Force(&'a List<Number>),
+    Torque(&'a Turn),
+}
+
+/// A force or torque before it becomes a load.
 pub(super) struct Given<'a> {
     pub body: usize,
     pub at: End,
     pub other: Option<usize>,
-    /// The key with the formulas.
-    pub key: &'a str,
-    pub is_torque: bool,
+    pub formulas: Formulas<'a>,
+    /// `"world"` or `"body"`.
+    pub axes: Option<&'a str>,
 }
 
-/// Adds a force or torque whose formulas are at a key.
-pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, given: &Given<'_>) -> Read<()> {
+/// Adds a force or torque.
+pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, given: Given<'_>) -> Read<()> {
     let dim = assembly.dimension();
     let names = variables(assembly.axes.name);
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let wants_list = !given.is_torque || dim == 3;
-    if wants_list && !matches!(entry.value(given.key), Ok(Value::List(_)) | Err(_)) {
-        let message = format!("`{}` wants a list of {dim} numbers or formulas", given.key);
-        return Err(entry.refuse(given.key, message, "give one for each axis of the model"));
-    }
-    let formulas = match given.is_torque && dim == 2 {
-        true => entry.formula(given.key, &names).map(|formula| vec![formula]),
-        false => entry.formulas(given.key, dim, &names),
+    let (key, is_torque) = match given.formulas {
+        Formulas::Force(_) => ("force", false),
+        Formulas::Torque(_) => ("torque", true),
     };
-    let in_body_axes = entry.optional("axes", |entry, key| entry.choice(key, &["world", "body"]));
+    let formulas = match (given.formulas, dim) {
+        (Formulas::Force(force), _) | (Formulas::Torque(Turn::InSpace(force)), 3) => force.formulas(entry, key, dim, &names),
+        (Formulas::Torque(Turn::InPlane(torque)), 2) => torque.formula(entry, key, &names).map(|formula| vec![formula]),
+        (Formulas::Torque(Turn::InPlane(_)), _) => {
+            Err(entry.refuse(key, format!("`{key}` wants a list of {dim} numbers or formulas"), "give one for each axis of the model"))
+        }
+        (Formulas::Torque(Turn::InSpace(_)), _) => Err(entry.wanted(key.into(), "a number", &Value::List(Vec::new()))),
+    };
+    let in_body_axes = given.axes.map(|axes| entry.choice_of("axes", axes, &["world", "body"])).transpose();
     let (formulas, in_body_axes) = (formulas?, in_body_axes? == Some("body"));
-    finite(entry, given, &formulas, dim)?;
+    finite(entry, key, &given.at, &formulas, dim)?;
     let mut nodes = Vec::new();
     let point = Sum::new(&given.at.terms, &mut nodes);
     let mut axes = |body: usize| -> Vec<Sum> {
@@ -210,22 +209,21 @@ pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, given: &Given<
     };
     let own = axes(given.body);
     let other = given.other.map_or(Vec::new(), axes);
-    assert!(nodes.len() * dim <= SIZE, "two bodies have at most eight nodes");
-    let load = BodyLoad { dim, point, axes: own, other, formulas, is_torque: given.is_torque, in_body_axes };
+    let load = BodyLoad { dim, point, axes: own, other, formulas, is_torque, in_body_axes };
     assembly.builder.load(entry.name, &nodes, Arc::new(Differentiated(load)));
     Ok(())
 }
 
 /// Formulas must at least be numbers where the body starts.
-fn finite(entry: &Entry<'_>, given: &Given<'_>, formulas: &[Program], dim: usize) -> Read<()> {
+fn finite(entry: &Entry<'_>, key: &str, place: &End, formulas: &[Program], dim: usize) -> Read<()> {
     let mut at = [0.0; VARIABLES.len()];
-    at[1..1 + dim].copy_from_slice(&given.at.start[..dim]);
+    at[1..1 + dim].copy_from_slice(&place.start[..dim]);
     for (k, formula) in formulas.iter().enumerate() {
         let value = formula.evaluate(&at);
         if !value.is_finite() {
             let item = (formulas.len() > 1).then_some(k);
             let message = format!("this formula is {value} where the body starts, at rest and at t = 0");
-            return Err(entry.refuse(Spot { key: given.key, item }, message, "it must be finite"));
+            return Err(entry.refuse(Spot { key, item }, message, "it must be finite"));
         }
     }
     Ok(())

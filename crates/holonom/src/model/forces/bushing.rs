@@ -6,29 +6,19 @@ use crate::model::bodies::nodes::Member;
 use crate::model::ends::subtract;
 use crate::model::entry::{Entry, Spot, all};
 use crate::model::fault::Read;
+use crate::model::fields::{Field, Keys, List, Number, Place};
 use crate::model::geometry::unit;
-use crate::model::key::{Key, Kind, Shape};
+use crate::model::key::{Build, Shape};
 
 use crate::system::{FunctionId, Part};
 
-pub(super) const KIND: Kind = Kind {
-    name: "bushing",
-    doc: "a rubber bearing between two bodies: springs and dampers along and about three axes of the first body, which are those of \
-          the model at the start; without force as the bodies start; for rotations well below a right angle",
-    equations: "V = ½ Σ k q², effort −c q̇, with q = d·e_k(A) and about e_k the mean of e_j(A)·e_i(B) and −e_i(A)·e_j(B), (i, j, k) \
-                cyclic: the sine of a rotation about one axis alone",
-    keys: &[
-        Key::required("between", Shape::Members, "", "the two bodies, or \"ground\" and a body"),
-        Key::required("at", Shape::End, "m", "where it sits at the start"),
-        Key::required(
-            "stiffness",
-            Shape::Numbers(3, 6),
-            "N/m, N·m/rad",
-            "along x, y, z and about x, y, z; in a planar model three: along both axes and about the normal",
-        ),
-        Key::optional("damping", Shape::Numbers(3, 6), "none", "N·s/m, N·m·s/rad", "in the same order; what it takes is booked as work"),
-    ],
-    example: r#"
+/// a rubber bearing between two bodies: springs and dampers along and about three axes of the first body, which are those of the
+/// model at the start; without force as the bodies start; for rotations well below a right angle
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "bushing",
+    equations = "V = ½ Σ k q², effort −c q̇, with q = d·e_k(A) and about e_k the mean of e_j(A)·e_i(B) and −e_i(A)·e_j(B), (i, j, k) cyclic: the sine of a rotation about one axis alone",
+    example = r#"
 [body.engine]
 mass = 50
 shape = { box = [0.5, 0.4, 0.4] }
@@ -41,35 +31,49 @@ between = ["ground", "engine"]
 at = [0.1, 0, 0.3]
 stiffness = [2e3, 2e3, 5e3, 100, 120, 90]
 damping = [20, 20, 50, 1, 1, 1]
-"#,
-    build,
-};
-
-fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    let count = if assembly.dimension() == 2 { 3 } else { 6 };
-    let members = members(assembly, entry);
-    let at = entry.value("at").and_then(|value| assembly.place_at_start(entry, "at".into(), value));
-    let stiffness = numbers(entry, "stiffness", count);
-    let damping = entry.optional("damping", |entry, key| numbers(entry, key, count));
-    let (members, at, stiffness, damping) = (members?, at?, stiffness?, damping?);
-    if stiffness.iter().chain(damping.iter().flatten()).all(|&number| number == 0.0) {
-        return Err(entry.refuse_all(format!("the bushing `{}` does nothing", entry.name), "give it a stiffness or a damping above 0"));
-    }
-    let coordinates = coordinates(assembly, members, at);
-    for (k, &q) in coordinates.iter().enumerate() {
-        if stiffness[k] > 0.0 {
-            assembly.builder.law(entry.name, &[q], Arc::new(Spring { stiffness: stiffness[k], rest: 0.0 }));
-        }
-        if let Some(damping) = damping.as_ref().map(|damping| damping[k]).filter(|&damping| damping > 0.0) {
-            assembly.builder.law(entry.name, &[q], Arc::new(Resisting(Viscous(damping))));
-        }
-    }
-    Ok(())
+"#
+)]
+pub struct Bushing {
+    /// the two bodies, or "ground" and a body
+    #[key(shape = Shape::Members)]
+    pub between: List<String>,
+    /// where it sits at the start
+    #[key(unit = "m")]
+    pub at: Place,
+    /// along x, y, z and about x, y, z; in a planar model three: along both axes and about the normal
+    #[key(unit = "N/m, N·m/rad", shape = Shape::Numbers(3, 6))]
+    pub stiffness: List<Number>,
+    /// in the same order; what it takes is booked as work
+    #[key(unit = "N·s/m, N·m·s/rad", default = "none", shape = Shape::Numbers(3, 6))]
+    pub damping: Option<List<Number>>,
 }
 
-fn members(assembly: &Assembly<'_>, entry: &Entry<'_>) -> Read<[Member; 2]> {
-    let names = entry.texts("between")?;
-    let [first, second] = names[..] else {
+impl Build for Bushing {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        let count = if assembly.dimension() == 2 { 3 } else { 6 };
+        let members = members(assembly, entry, &self.between);
+        let at = assembly.place_at_start(entry, "at".into(), &self.at.write());
+        let stiffness = numbers(entry, "stiffness", &self.stiffness, count);
+        let damping = entry.optional_of("damping", &self.damping, |damping, entry, key| numbers(entry, key, damping, count));
+        let (members, at, stiffness, damping) = (members?, at?, stiffness?, damping?);
+        if stiffness.iter().chain(damping.iter().flatten()).all(|&number| number == 0.0) {
+            return Err(entry.refuse_all(format!("the bushing `{}` does nothing", entry.name), "give it a stiffness or a damping above 0"));
+        }
+        let coordinates = coordinates(assembly, members, at);
+        for (k, &q) in coordinates.iter().enumerate() {
+            if stiffness[k] > 0.0 {
+                assembly.builder.law(entry.name, &[q], Arc::new(Spring { stiffness: stiffness[k], rest: 0.0 }));
+            }
+            if let Some(damping) = damping.as_ref().map(|damping| damping[k]).filter(|&damping| damping > 0.0) {
+                assembly.builder.law(entry.name, &[q], Arc::new(Resisting(Viscous(damping))));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, names: &[String]) -> Read<[Member; 2]> {
+    let [first, second] = names else {
         return Err(entry.refuse("between", "a bushing is between two bodies", "write between = [\"A\", \"B\"]"));
     };
     let member = |k: usize, name: &str| {
@@ -87,8 +91,7 @@ fn members(assembly: &Assembly<'_>, entry: &Entry<'_>) -> Read<[Member; 2]> {
     Ok(members)
 }
 
-fn numbers(entry: &Entry<'_>, key: &str, count: usize) -> Read<Vec<f64>> {
-    let items = entry.list(key)?;
+fn numbers(entry: &Entry<'_>, key: &str, items: &[Number], count: usize) -> Read<Vec<f64>> {
     if items.len() != count {
         return Err(entry.refuse(
             key,
@@ -96,12 +99,7 @@ fn numbers(entry: &Entry<'_>, key: &str, count: usize) -> Read<Vec<f64>> {
             if count == 3 { "give one for each of x, y and the rotation" } else { "give one for each of x, y, z, rx, ry, rz" },
         ));
     }
-    let number = |(k, item)| {
-        let spot = Spot { key, item: Some(k) };
-        let number = entry.number_in(spot, item)?;
-        if number >= 0.0 { Ok(number) } else { Err(entry.refuse(spot, format!("`{key}` is negative: {number}"), "it must be at least 0")) }
-    };
-    all(items.iter().enumerate().map(number))
+    all(items.iter().enumerate().map(|(k, item)| item.not_negative(entry, Spot { key, item: Some(k) })))
 }
 
 /// Displacements and rotations, zero at the start.

@@ -81,19 +81,19 @@ impl<R: Resistance> Law for Resisting<R> {
 }
 
 /// A stop: V = ½ k p² with p how far q is beyond a limit, above it for `sign` 1 and below it for −1.
-pub struct Stop {
+pub struct Buffer {
     pub stiffness: f64,
     pub limit: f64,
     pub sign: f64,
 }
 
-impl Stop {
+impl Buffer {
     fn beyond(&self, q: f64) -> f64 {
         (self.sign * (q - self.limit)).max(0.0)
     }
 }
 
-impl Law for Stop {
+impl Law for Buffer {
     fn energy(&self, value: &[f64]) -> f64 {
         0.5 * self.stiffness * self.beyond(value[0]).powi(2)
     }
@@ -127,7 +127,7 @@ impl Law for Stop {
 
 /// What a stop takes out: f = k d p q̇, as in Hunt and Crossley's impact.
 pub struct Impact {
-    pub stop: Stop,
+    pub buffer: Buffer,
     /// d, s/m or s/rad.
     pub dissipation: f64,
 }
@@ -138,20 +138,20 @@ impl Law for Impact {
     }
 
     fn at(&self, value: &[f64], rate: &[f64], _t: f64, out: &mut Response) {
-        let factor = self.stop.stiffness * self.dissipation;
-        let p = self.stop.beyond(value[0]);
+        let factor = self.buffer.stiffness * self.dissipation;
+        let p = self.buffer.beyond(value[0]);
         out.force[0] = factor * p * rate[0];
-        out.by_value[0][0] = if p > 0.0 { factor * self.stop.sign * rate[0] } else { 0.0 };
+        out.by_value[0][0] = if p > 0.0 { factor * self.buffer.sign * rate[0] } else { 0.0 };
         out.by_rate[0][0] = factor * p;
     }
 
     fn between(&self, reach: Reach<'_>, out: &mut Response) {
-        let factor = self.stop.stiffness * self.dissipation;
-        let (p0, p1) = (self.stop.beyond(reach.from[0]), self.stop.beyond(reach.to[0]));
+        let factor = self.buffer.stiffness * self.dissipation;
+        let (p0, p1) = (self.buffer.beyond(reach.from[0]), self.buffer.beyond(reach.to[0]));
         let rate = (reach.to[0] - reach.from[0]) / reach.step;
         let mean = 0.5 * (p0 + p1);
         out.force[0] = factor * mean * rate;
-        out.by_value[0][0] = factor * (mean / reach.step + if p1 > 0.0 { 0.5 * self.stop.sign * rate } else { 0.0 });
+        out.by_value[0][0] = factor * (mean / reach.step + if p1 > 0.0 { 0.5 * self.buffer.sign * rate } else { 0.0 });
     }
 }
 

@@ -1,36 +1,22 @@
 use std::sync::Arc;
 
 use super::coordinate_laws;
-use super::joint::{JOINT, quantity, read};
+use super::joint::quantity;
 use crate::model::assembly::Assembly;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
+use crate::model::fields::{Keys, Map, Number};
 use crate::model::joints::coordinate;
-use crate::model::key::{Key, Kind, Shape};
+use crate::model::key::{Build, Shape};
 use crate::system::MAX_ARGUMENTS;
 
-pub(super) const KIND: Kind = Kind {
-    name: "effort",
-    doc: "a motor or any other effort along the coordinate of a joint, as a formula of time, of that coordinate and its rate, and \
-          of those of other joints: control laws, nonlinear springs, engines",
-    equations: "effort E(t, q, q̇, …), booked as work",
-    keys: &[
-        JOINT,
-        Key::required(
-            "effort",
-            Shape::Formula(&["t", "q", "q_rate"]),
-            "N·m or N",
-            "E as a formula of t, q and q_rate, and of the names below",
-        ),
-        Key::optional(
-            "coordinates",
-            Shape::Named,
-            "none",
-            "",
-            "names for coordinates of other joints: { a = \"JOINT\" } makes a and a_rate variables of the formula",
-        ),
-    ],
-    example: r#"
+/// a motor or any other effort along the coordinate of a joint, as a formula of time, of that coordinate and its rate, and of those
+/// of other joints: control laws, nonlinear springs, engines
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "effort",
+    equations = "effort E(t, q, q̇, …), booked as work",
+    example = r#"
 [body.flap]
 mass = 1
 shape = { box = [0.4, 0.2, 0.01] }
@@ -59,42 +45,53 @@ type = "effort"
 joint = "hinge"
 coordinates = { s = "rail" }
 effort = "2*sin(t) - 5*q - 0.3*q_rate + s - 0.1*s_rate"
-"#,
-    build,
-};
+"#
+)]
+pub struct Effort {
+    /// the joint, or its coordinate as "JOINT.angle" or "JOINT.displacement"
+    pub joint: String,
+    /// E as a formula of t, q and q_rate, and of the names below
+    #[key(unit = "N·m or N", shape = Shape::Formula(&["t", "q", "q_rate"]))]
+    pub effort: Number,
+    /// names for coordinates of other joints: { a = "JOINT" } makes a and a_rate variables of the formula
+    #[key(default = "none")]
+    pub coordinates: Option<Map<String>>,
+}
 
-fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    let own = read(assembly, entry);
-    let mut names = vec!["t".to_string(), "q".into(), "q_rate".into()];
-    let mut coordinates = vec![own?];
-    if let Some(table) = entry.optional("coordinates", Entry::table)? {
-        entry.inside("coordinates", table, |inner| {
-            for name in table.keys() {
-                if names.iter().any(|known| known == name) {
-                    return Err(inner.refuse_key(name, format!("`{name}` is the name of another variable"), "give it another name"));
+impl Build for Effort {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        let own = coordinate(assembly, entry, "joint".into(), &self.joint);
+        let mut names = vec!["t".to_string(), "q".into(), "q_rate".into()];
+        let mut coordinates = vec![own?];
+        if let Some(others) = &self.coordinates {
+            entry.within("coordinates".into(), |inner| {
+                for (name, other) in others.iter() {
+                    if names.iter().any(|known| known == name) {
+                        return Err(inner.refuse_key(name, format!("`{name}` is the name of another variable"), "give it another name"));
+                    }
+                    coordinates.push(coordinate(assembly, inner, name.as_str().into(), other)?);
+                    names.extend([name.clone(), format!("{name}_rate")]);
                 }
-                coordinates.push(coordinate(assembly, inner, name.into(), inner.text(name)?)?);
-                names.extend([name.to_string(), format!("{name}_rate")]);
-            }
-            Ok(())
-        })?;
+                Ok(())
+            })?;
+        }
+        let arguments: usize = coordinates.iter().map(|coordinate| if coordinate.is_angle { 2 } else { 1 }).sum();
+        if arguments > MAX_ARGUMENTS {
+            let cure = "it may depend on three angles, or six displacements, its own among them";
+            return Err(entry.refuse("coordinates", "this effort depends on too many joints", cure));
+        }
+        let variables: Vec<&str> = names.iter().map(String::as_str).collect();
+        let effort = self.effort.formula(entry, "effort", &variables)?;
+        let at_start: f64 = effort.evaluate(&vec![0.0; variables.len()]);
+        if !at_start.is_finite() {
+            return Err(entry.refuse(
+                "effort",
+                format!("this formula is {at_start} at the start, where all coordinates are 0"),
+                "it must be finite",
+            ));
+        }
+        let quantities: Vec<_> = coordinates.iter().map(|coordinate| quantity(assembly, coordinate)).collect();
+        assembly.builder.law(entry.name, &quantities, Arc::new(coordinate_laws::Effort(effort)));
+        Ok(())
     }
-    let arguments: usize = coordinates.iter().map(|coordinate| if coordinate.is_angle { 2 } else { 1 }).sum();
-    if arguments > MAX_ARGUMENTS {
-        let cure = "it may depend on three angles, or six displacements, its own among them";
-        return Err(entry.refuse("coordinates", "this effort depends on too many joints", cure));
-    }
-    let variables: Vec<&str> = names.iter().map(String::as_str).collect();
-    let effort = entry.formula("effort", &variables)?;
-    let at_start: f64 = effort.evaluate(&vec![0.0; variables.len()]);
-    if !at_start.is_finite() {
-        return Err(entry.refuse(
-            "effort",
-            format!("this formula is {at_start} at the start, where all coordinates are 0"),
-            "it must be finite",
-        ));
-    }
-    let quantities: Vec<_> = coordinates.iter().map(|coordinate| quantity(assembly, coordinate)).collect();
-    assembly.builder.law(entry.name, &quantities, Arc::new(coordinate_laws::Effort(effort)));
-    Ok(())
 }

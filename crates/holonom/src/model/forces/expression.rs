@@ -5,26 +5,19 @@ use crate::model::assembly::Assembly;
 use crate::model::entry::{Entry, Spot};
 use crate::model::expression::Program;
 use crate::model::fault::Read;
-use crate::model::key::{Key, Kind, Shape};
-use crate::system::{Differentiated, ForceFunction, Number};
+use crate::model::fields::{Keys, List, Number};
+use crate::model::key::{Build, Shape};
+use crate::system::{self, Differentiated, ForceFunction};
 
 /// Time, and position and velocity in world axes.
 const VARIABLES: &[&str] = &["t", "x", "y", "z", "vx", "vy", "vz"];
 
-pub(super) const KIND: Kind = Kind {
-    name: "expression",
-    doc: "a force on a point as formulas of time, its position and its velocity, booked as work",
-    equations: "Q = F(t, x, v)",
-    keys: &[
-        Key::required("point", Shape::Point, "", "the point it acts on"),
-        Key::required(
-            "force",
-            Shape::Formulas(VARIABLES),
-            "N",
-            "its components as formulas of t, x, y, z, vx, vy, vz; a planar model has those of its plane",
-        ),
-    ],
-    example: r#"
+/// a force on a point as formulas of time, its position and its velocity, booked as work
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "expression",
+    equations = "Q = F(t, x, v)",
+    example = r#"
 [point.bob]
 mass = 1
 position = [1, 0, 0]
@@ -33,39 +26,48 @@ position = [1, 0, 0]
 type = "expression"
 point = "bob"
 force = ["-0.1*vx*sqrt(vx^2 + vy^2 + vz^2 + 1e-12)", "sin(t)", "-z^3"]
-"#,
-    build,
-};
+"#
+)]
+pub struct Expression {
+    /// the point it acts on
+    #[key(shape = Shape::Point)]
+    pub point: String,
+    /// its components as formulas of t, x, y, z, vx, vy, vz; a planar model has those of its plane
+    #[key(unit = "N", shape = Shape::Formulas(VARIABLES))]
+    pub force: List<Number>,
+}
 
-fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    let dim = assembly.dimension();
-    let axes = assembly.axes.name;
-    let here = |name: &&&str| **name == "t" || name.chars().last().is_some_and(|axis| axes.contains(axis));
-    let variables: Vec<&str> = VARIABLES.iter().filter(here).copied().collect();
-    let (point, force) = (assembly.point(entry, "point"), entry.formulas("force", dim, &variables));
-    let (point, force) = (point?, force?);
-    let start = point.start;
-    let at: Vec<f64> = std::iter::once(0.0).chain(start[..dim].iter().copied()).chain([0.0; 3]).collect();
-    for (k, component) in force.iter().enumerate() {
-        let value = component.evaluate(&at);
-        if !value.is_finite() {
-            let spot = Spot { key: "force", item: Some(k) };
-            return Err(entry.refuse(
-                spot,
-                format!("this formula is {value} where the point starts, at rest and at t = 0"),
-                "it must be finite",
-            ));
+impl Build for Expression {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        let dim = assembly.dimension();
+        let axes = assembly.axes.name;
+        let here = |name: &&&str| **name == "t" || name.chars().last().is_some_and(|axis| axes.contains(axis));
+        let variables: Vec<&str> = VARIABLES.iter().filter(here).copied().collect();
+        let (point, force) = (assembly.point_of(entry, "point", &self.point), self.force.formulas(entry, "force", dim, &variables));
+        let (point, force) = (point?, force?);
+        let start = point.start;
+        let at: Vec<f64> = std::iter::once(0.0).chain(start[..dim].iter().copied()).chain([0.0; 3]).collect();
+        for (k, component) in force.iter().enumerate() {
+            let value = component.evaluate(&at);
+            if !value.is_finite() {
+                let spot = Spot { key: "force", item: Some(k) };
+                return Err(entry.refuse(
+                    spot,
+                    format!("this formula is {value} where the point starts, at rest and at t = 0"),
+                    "it must be finite",
+                ));
+            }
         }
+        let (load, nodes) = PointLoad::new(entry, &point, Formula(force))?;
+        assembly.builder.load(entry.name, &nodes, Arc::new(Differentiated(load)));
+        Ok(())
     }
-    let (load, nodes) = PointLoad::new(entry, &point, Formula(force))?;
-    assembly.builder.load(entry.name, &nodes, Arc::new(Differentiated(load)));
-    Ok(())
 }
 
 struct Formula(Vec<Program>);
 
 impl ForceFunction for Formula {
-    fn evaluate<N: Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
+    fn evaluate<N: system::Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
         let mut variables = [t; VARIABLES.len()];
         variables[1..1 + x.len()].copy_from_slice(x);
         variables[1 + x.len()..1 + 2 * x.len()].copy_from_slice(v);

@@ -1,29 +1,21 @@
 use std::sync::Arc;
 
 use super::coordinate_laws::{Dry, Resisting, Viscous};
-use super::joint::{JOINT, quantity, read};
+use super::joint::quantity;
 use crate::model::assembly::Assembly;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
-use crate::model::key::{Key, Kind, Shape};
+use crate::model::fields::{Keys, Number};
+use crate::model::joints::coordinate;
+use crate::model::key::Build;
 
-pub(super) const KIND: Kind = Kind {
-    name: "friction",
-    doc: "friction in a joint: an effort of one size against the motion, smooth at rest, so that what should stick creeps \
-          slowly; and one in proportion to the speed",
-    equations: "effort −F tanh(q̇/v) − c q̇",
-    keys: &[
-        JOINT,
-        Key::required("effort", Shape::Number, "N·m or N", "F, the size of the friction when the joint moves"),
-        Key::required(
-            "speed",
-            Shape::Number,
-            "rad/s or m/s",
-            "v, the speed at which three quarters of it are reached: well below those of the motion",
-        ),
-        Key::optional("damping", Shape::Number, "0", "N·m·s/rad or N·s/m", "c"),
-    ],
-    example: r#"
+/// friction in a joint: an effort of one size against the motion, smooth at rest, so that what should stick creeps slowly; and one
+/// in proportion to the speed
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[kind(
+    name = "friction",
+    equations = "effort −F tanh(q̇/v) − c q̇",
+    example = r#"
 [body.flap]
 mass = 1
 shape = { box = [0.4, 0.2, 0.01] }
@@ -43,19 +35,33 @@ joint = "hinge"
 effort = 0.2
 speed = 0.5
 damping = 0.1
-"#,
-    build,
-};
+"#
+)]
+pub struct Friction {
+    /// the joint, or its coordinate as "JOINT.angle" or "JOINT.displacement"
+    pub joint: String,
+    /// F, the size of the friction when the joint moves
+    #[key(unit = "N·m or N")]
+    pub effort: Number,
+    /// v, the speed at which three quarters of it are reached: well below those of the motion
+    #[key(unit = "rad/s or m/s")]
+    pub speed: Number,
+    /// c
+    #[key(unit = "N·m·s/rad or N·s/m", default = "0")]
+    pub damping: Option<Number>,
+}
 
-fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-    let coordinate = read(assembly, entry);
-    let (effort, speed) = (entry.not_negative("effort"), entry.positive("speed"));
-    let damping = entry.optional("damping", Entry::not_negative);
-    let (coordinate, effort, speed, damping) = (coordinate?, effort?, speed?, damping?);
-    let q = quantity(assembly, &coordinate);
-    assembly.builder.law(entry.name, &[q], Arc::new(Resisting(Dry { effort, speed })));
-    if let Some(damping) = damping.filter(|&damping| damping > 0.0) {
-        assembly.builder.law(entry.name, &[q], Arc::new(Resisting(Viscous(damping))));
+impl Build for Friction {
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        let coordinate = coordinate(assembly, entry, "joint".into(), &self.joint);
+        let (effort, speed) = (self.effort.not_negative(entry, "effort"), self.speed.positive(entry, "speed"));
+        let damping = entry.optional_of("damping", &self.damping, Number::not_negative);
+        let (coordinate, effort, speed, damping) = (coordinate?, effort?, speed?, damping?);
+        let q = quantity(assembly, &coordinate);
+        assembly.builder.law(entry.name, &[q], Arc::new(Resisting(Dry { effort, speed })));
+        if let Some(damping) = damping.filter(|&damping| damping > 0.0) {
+            assembly.builder.law(entry.name, &[q], Arc::new(Resisting(Viscous(damping))));
+        }
+        Ok(())
     }
-    Ok(())
 }

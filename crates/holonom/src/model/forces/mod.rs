@@ -16,32 +16,42 @@ mod stop;
 mod torque;
 mod torsion;
 
+pub use bushing::Bushing;
+pub use constant::Constant;
+pub use effort::Effort;
+pub use expression::Expression;
+pub use force::Force;
+pub use friction::Friction;
 pub use spring::Spring;
+pub use stop::Stop;
+pub use torque::Torque;
+pub use torsion::Torsion;
 
 use super::assembly::Assembly;
 use super::bodies::nodes::Member;
 use super::entry::Entry;
+use super::fields::Described;
 use super::geometry::{Vec3, unit};
 use super::key::Kind;
 
 /// All kinds of forces.
 pub const KINDS: &[Kind] = &[
     Kind::of::<spring::Spring>(),
-    torsion::KIND,
-    bushing::KIND,
-    force::KIND,
-    torque::KIND,
-    effort::KIND,
-    friction::KIND,
-    stop::KIND,
-    constant::KIND,
-    expression::KIND,
+    Kind::of::<torsion::Torsion>(),
+    Kind::of::<bushing::Bushing>(),
+    Kind::of::<force::Force>(),
+    Kind::of::<torque::Torque>(),
+    Kind::of::<effort::Effort>(),
+    Kind::of::<friction::Friction>(),
+    Kind::of::<stop::Stop>(),
+    Kind::of::<constant::Constant>(),
+    Kind::of::<expression::Expression>(),
 ];
 
 /// Adds the directions that a force needs of its bodies, which a plate or a rod may lack: all of them, where it turns
 /// them or follows their axes.
 pub(super) fn needed(assembly: &Assembly<'_>, entry: &Entry<'_>, out: &mut Vec<(usize, Vec3)>) {
-    let turns = [bushing::KIND.name, force::KIND.name, torque::KIND.name];
+    let turns = [Bushing::NAME, Force::NAME, Torque::NAME];
     if !entry.text("type").is_ok_and(|kind| turns.contains(&kind)) {
         return;
     }
