@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-use super::bodies::Body;
+use super::bodies::RigidBody;
 use super::bodies::frame::Frame;
 use super::bodies::nodes::Member;
 use super::ends::End;
@@ -85,7 +85,7 @@ pub struct Assembly<'a> {
     pub faulty: HashSet<String>,
     pub lines: Vec<Line>,
     /// All bodies, in file order, and where their nodes are made, their frames.
-    pub bodies: Vec<Body>,
+    pub bodies: Vec<RigidBody>,
     pub frames: Vec<Frame>,
     /// Position of each body in the list, by name.
     pub body_names: HashMap<String, usize>,

@@ -3,7 +3,7 @@
 use super::assembly::{self, Assembly, Axes};
 use super::bodies::frame::Frame;
 use super::bodies::nodes::Member;
-use super::{BarInfo, Body, BodyInfo, Model, Output, PointInfo, Settings, joints};
+use super::{BarInfo, BodyInfo, Model, Output, PointInfo, RigidBody, Settings, joints};
 use crate::record::{Channels, PointKind, RecordedEffort, RecordedJoint, RecordedPoint, Scene, SceneBody, ScenePoint};
 use crate::system::Place;
 
@@ -62,7 +62,13 @@ fn recorded_efforts(efforts: Vec<assembly::Effort>) -> Vec<RecordedEffort> {
 }
 
 /// Points, named points of bodies, and the forces of joints.
-fn channels(axes: Axes, points: &[assembly::PlacedPoint], bodies: &[Body], frames: &[Frame], joints: &[joints::JointInfo]) -> Channels {
+fn channels(
+    axes: Axes,
+    points: &[assembly::PlacedPoint],
+    bodies: &[RigidBody],
+    frames: &[Frame],
+    joints: &[joints::JointInfo],
+) -> Channels {
     let own = points.iter().map(|point| RecordedPoint { name: point.name.clone(), terms: point.end.terms.clone() });
     let named = bodies.iter().zip(frames).flat_map(|(body, frame)| {
         body.points.iter().map(move |(name, at)| RecordedPoint { name: format!("{}.{name}", body.name), terms: frame.point(*at) })

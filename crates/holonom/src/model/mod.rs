@@ -34,10 +34,10 @@ mod written;
 
 pub use assembly::{Axes, GROUND};
 pub use bars::{Bar, BarInfo, KEYS as BAR_KEYS};
-pub use bodies::{Body, BodyInfo, KEYS as BODY_KEYS, Mesh, Meshes, NoMeshes};
+pub use bodies::{Body, BodyInfo, Inertia, KEYS as BODY_KEYS, Mesh, Meshes, NoMeshes, Orientation, RigidBody, Solid};
 pub use entry::{Entry, Spot};
 pub use fault::{Fault, Faults, Read, Refused, nearest};
-pub use fields::{Described, Field, Keys, List, Map, Number, Place, Site, Turn};
+pub use fields::{Described, Field, Keys, List, Map, Number, Place, Rows, Site, Turn};
 pub use key::{Key, Kind, REPEAT, Shape};
 pub use points::{KEYS as POINT_KEYS, Point};
 pub use schema::schema;
@@ -199,7 +199,7 @@ fn read(value: &Value, sink: &Sink, meshes: &dyn Meshes) -> Read<Model> {
     Ok(finish::finish(assembly, title, settings, output, bars))
 }
 
-fn read_bodies(sections: &mut Sections<'_>, root: &Table, axes: Axes) -> (Vec<Body>, HashSet<String>) {
+fn read_bodies(sections: &mut Sections<'_>, root: &Table, axes: Axes) -> (Vec<RigidBody>, HashSet<String>) {
     let keys: Vec<&Key> = bodies::KEYS.iter().collect();
     let mut read = Vec::new();
     let check = |entry: &Entry<'_>| {

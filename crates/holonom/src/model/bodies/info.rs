@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use super::Body;
+use super::RigidBody;
 use super::frame::Frame;
 use crate::model::Axes;
 use crate::model::geometry::{norm, rest, scale, unit};
@@ -27,7 +27,7 @@ pub struct BodyInfo {
 
 impl BodyInfo {
     /// Has the angle of a planar body measured, too, from the first axis of the plane to the body's.
-    pub fn new(body: &Body, frame: &Frame, axes: Axes, builder: &mut SystemBuilder) -> Self {
+    pub fn new(body: &RigidBody, frame: &Frame, axes: Axes, builder: &mut SystemBuilder) -> Self {
         if axes.dimension() == 2 {
             let moving = frame.vector(body.direction(unit(0)));
             let product = |k| [vec![(Place::Fixed(unit(k)), 1.0).into()], moving.clone()];
@@ -48,7 +48,7 @@ impl BodyInfo {
 }
 
 /// Orthogonal directions that the nodes of a body span, in body axes and as nodes; in the plane the first axis.
-fn directions(dim: usize, body: &Body, frame: &Frame) -> Vec<([f64; 3], Vec<crate::system::Term>)> {
+fn directions(dim: usize, body: &RigidBody, frame: &Frame) -> Vec<([f64; 3], Vec<crate::system::Term>)> {
     let with_nodes = |local: [f64; 3]| (local, frame.vector(body.direction(local)));
     if dim == 2 {
         return vec![with_nodes(unit(0))];

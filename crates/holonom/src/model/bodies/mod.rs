@@ -2,20 +2,26 @@
 
 pub mod frame;
 pub mod inertia;
+mod inertia_key;
 mod info;
 mod mesh;
 pub mod nodes;
 mod orientation;
 mod read;
+mod rigid;
 mod shape;
 mod shape_key;
 
 use std::sync::Arc;
 
+pub use inertia_key::Inertia;
 pub use info::BodyInfo;
 pub use mesh::Mesh;
+pub use orientation::Orientation;
 pub use read::{Body, KEYS, body as read};
+pub use rigid::RigidBody;
 pub use shape::{MassProperties, Shape};
+pub use shape_key::Solid;
 
 /// Where the meshes that a model names come from.
 pub trait Meshes {

@@ -9,7 +9,7 @@ use std::collections::{BTreeSet, HashSet};
 use nalgebra::{Matrix3, Vector3};
 
 use super::frame::{Basis, Frame, PseudoInertia, edges, mass_blocks};
-use super::{Body, inertia};
+use super::{RigidBody, inertia};
 use crate::model::geometry::{Vec3, dot, norm, rest, scale, subtract};
 use crate::system::{Place, SystemBuilder, Term};
 
@@ -41,7 +41,7 @@ pub struct Shared {
 
 /// What a plan of nodes is made from.
 pub struct Wanted<'a> {
-    pub bodies: &'a [Body],
+    pub bodies: &'a [RigidBody],
     pub shared: &'a [Shared],
     /// Pairs of bodies that are joined rigidly and become one.
     pub merged: &'a [[usize; 2]],
@@ -182,7 +182,7 @@ struct Group<'a> {
     shared: &'a [(usize, Vec3)],
     /// Directions that are needed of each body of the model.
     needed: &'a [Vec<Vec3>],
-    lead: &'a Body,
+    lead: &'a RigidBody,
     wanted: &'a Wanted<'a>,
 }
 
@@ -314,7 +314,7 @@ impl Group<'_> {
 }
 
 /// Inertia tensor of a body about a place, kg·m².
-fn inertia_about(body: &Body, place: Vec3) -> Matrix3<f64> {
+fn inertia_about(body: &RigidBody, place: Vec3) -> Matrix3<f64> {
     let x = Vector3::from(body.position) - Vector3::from(place);
     body.inertia + body.mass * (Matrix3::identity() * x.norm_squared() - x * x.transpose())
 }

@@ -2,101 +2,164 @@
 
 use nalgebra::{Matrix3, Quaternion, Rotation3, Unit, UnitQuaternion, Vector3};
 
-use crate::model::entry::{Entry, Spot, all};
+use crate::model::entry::Entry;
 use crate::model::fault::{Read, Refused};
-use crate::model::key::{Key, Shape};
-use crate::model::value::Value;
+use crate::model::fields::{Keys, List, Number, Rows};
+use crate::model::key::Shape;
 
-/// The keys of an orientation; one of its spellings is given.
-pub const KEYS: &[Key] = &[
-    Key::optional("quat_wxyz", Shape::Numbers(4, 4), "none", "", "unit quaternion, its real part first"),
-    Key::optional("quat_xyzw", Shape::Numbers(4, 4), "none", "", "unit quaternion, its real part last"),
-    Key::optional("axis", Shape::Vector, "none", "any", "axis of a rotation, with angle or angle_deg; not in a planar model"),
-    Key::optional("angle", Shape::Number, "none", "rad", "angle about the axis; in a planar model from its first axis to its second"),
-    Key::optional("angle_deg", Shape::Number, "none", "°", "the same in degrees"),
-    Key::optional("rpy", Shape::Vector, "none", "rad", "roll, pitch and yaw: about x, then y, then z of the model"),
-    Key::optional("rpy_deg", Shape::Vector, "none", "°", "the same in degrees"),
-    Key::optional("matrix", Shape::Rows, "none", "", "rotation matrix from body axes to those of the model, by rows"),
-];
+/// How the axes of a body are turned from those of the model; one of its spellings is given.
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[table("an orientation")]
+pub struct Orientation {
+    /// unit quaternion, its real part first
+    #[key(default = "none", shape = Shape::Numbers(4, 4))]
+    pub quat_wxyz: Option<List<Number>>,
+    /// unit quaternion, its real part last
+    #[key(default = "none", shape = Shape::Numbers(4, 4))]
+    pub quat_xyzw: Option<List<Number>>,
+    /// axis of a rotation, with angle or angle_deg; not in a planar model
+    #[key(unit = "any", default = "none", shape = Shape::Vector)]
+    pub axis: Option<List<Number>>,
+    /// angle about the axis; in a planar model from its first axis to its second
+    #[key(unit = "rad", default = "none")]
+    pub angle: Option<Number>,
+    /// the same in degrees
+    #[key(unit = "°", default = "none")]
+    pub angle_deg: Option<Number>,
+    /// roll, pitch and yaw: about x, then y, then z of the model
+    #[key(unit = "rad", default = "none", shape = Shape::Vector)]
+    pub rpy: Option<List<Number>>,
+    /// the same in degrees
+    #[key(unit = "°", default = "none", shape = Shape::Vector)]
+    pub rpy_deg: Option<List<Number>>,
+    /// rotation matrix from body axes to those of the model, by rows
+    #[key(default = "none")]
+    pub matrix: Option<Rows>,
+}
 
 /// Largest deviation of a quaternion from unit length, and of a matrix from orthogonal, that rounding explains.
 const ROUNDED: f64 = 1e-6;
 
 const SPELLINGS: [&str; 6] = ["quat_wxyz", "quat_xyzw", "axis", "rpy", "rpy_deg", "matrix"];
 
-/// The rotation from body axes to those of the model.
-pub fn read(body: &Entry<'_>, dim: usize) -> Read<Matrix3<f64>> {
-    if let Value::List(_) = body.value("orientation")? {
-        let cure = "write orientation = { quat_wxyz = [w, x, y, z] } or { quat_xyzw = [x, y, z, w] }";
-        return Err(body.refuse("orientation", "four bare numbers do not say which comes first", cure));
+impl Orientation {
+    /// Turned by an angle, rad, about an axis of any length.
+    pub fn axis_angle(axis: [impl Into<Number>; 3], angle: impl Into<Number>) -> Self {
+        Self::new().axis(axis).angle(angle)
     }
-    let path = format!("{}.orientation", body.path);
-    let entry = Entry { name: body.name, path: &path, table: body.table("orientation")?, ..*body };
-    let before = entry.sink.count();
-    entry.refuse_unknown_keys("an orientation", &KEYS.iter().collect::<Vec<_>>());
-    let given: Vec<&str> = SPELLINGS.into_iter().filter(|key| entry.has(key)).collect();
-    let angles = ["angle", "angle_deg"].into_iter().find(|key| entry.has(key));
-    if given.is_empty() && angles.is_none() && entry.sink.count() > before {
-        // What it says is under a name that is not known.
-        return Err(Refused);
+
+    /// Turned by an angle in degrees about an axis of any length.
+    pub fn axis_angle_deg(axis: [impl Into<Number>; 3], angle: impl Into<Number>) -> Self {
+        Self::new().axis(axis).angle_deg(angle)
     }
-    if let [_, second, ..] = given[..] {
-        return Err(entry.refuse_key(second, format!("`{}` and `{second}` both give the orientation", given[0]), "keep one of the two"));
+
+    /// In a planar model turned by an angle, rad, from its first axis to its second.
+    pub fn in_plane(angle: impl Into<Number>) -> Self {
+        Self::new().angle(angle)
     }
-    if let (Some(angle), Some(&key), 3) = (angles, given.first().filter(|key| **key != "axis"), dim) {
-        return Err(entry.refuse_key(
-            angle,
-            format!("`{angle}` goes with an `axis`, and this orientation has `{key}`"),
-            "keep one of the two",
-        ));
+
+    /// In a planar model turned by an angle in degrees from its first axis to its second.
+    pub fn in_plane_deg(angle: impl Into<Number>) -> Self {
+        Self::new().angle_deg(angle)
     }
-    if dim == 2 {
-        if let Some(key) = given.first() {
-            return Err(entry.refuse_key(key, format!("a planar model has no `{key}`"), "write { angle = … } or { angle_deg = … }"));
+
+    /// By roll, pitch and yaw, rad: about x, then y, then z of the model.
+    pub fn roll_pitch_yaw(angles: [impl Into<Number>; 3]) -> Self {
+        Self::new().rpy(angles)
+    }
+
+    /// By roll, pitch and yaw in degrees.
+    pub fn roll_pitch_yaw_deg(angles: [impl Into<Number>; 3]) -> Self {
+        Self::new().rpy_deg(angles)
+    }
+
+    /// By a unit quaternion, its real part first.
+    pub fn wxyz(quaternion: [impl Into<Number>; 4]) -> Self {
+        Self::new().quat_wxyz(quaternion)
+    }
+
+    /// By a unit quaternion, its real part last.
+    pub fn xyzw(quaternion: [impl Into<Number>; 4]) -> Self {
+        Self::new().quat_xyzw(quaternion)
+    }
+
+    /// By the rows of the rotation matrix from body axes to those of the model.
+    pub fn rows<T: Into<Number>>(matrix: [[T; 3]; 3]) -> Self {
+        Self::new().matrix(matrix)
+    }
+
+    /// The rotation from body axes to those of the model; `entry` is the table of the orientation.
+    pub(super) fn rotation(&self, entry: &Entry<'_>, dim: usize) -> Read<Matrix3<f64>> {
+        let given: Vec<&str> = SPELLINGS.into_iter().filter(|key| self.value(key).is_some()).collect();
+        let angle = ["angle", "angle_deg"].into_iter().find(|key| self.value(key).is_some());
+        if given.is_empty() && angle.is_none() && !entry.table.is_empty() {
+            // What it says is under a name that is not known, which has been told.
+            return Err(Refused);
         }
-        return Ok(Rotation3::from_axis_angle(&Vector3::z_axis(), angle(&entry)?).into_inner());
-    }
-    match given.first().copied() {
-        Some(key @ ("quat_wxyz" | "quat_xyzw")) => quaternion(&entry, key),
-        Some("axis") => {
-            let axis = Vector3::from(entry.vector("axis", 3)?);
-            let angle = angle(&entry)?;
-            let largest = axis.amax();
-            if largest == 0.0 {
-                return Err(entry.refuse("axis", "an axis of zero length has no direction", "give the axis of the rotation"));
+        if let [first, second, ..] = given[..] {
+            return Err(entry.refuse_key(second, format!("`{first}` and `{second}` both give the orientation"), "keep one of the two"));
+        }
+        if let (Some(angle), Some(&key), 3) = (angle, given.first().filter(|key| **key != "axis"), dim) {
+            return Err(entry.refuse_key(
+                angle,
+                format!("`{angle}` goes with an `axis`, and this orientation has `{key}`"),
+                "keep one of the two",
+            ));
+        }
+        if dim == 2 {
+            if let Some(key) = given.first() {
+                return Err(entry.refuse_key(key, format!("a planar model has no `{key}`"), "write { angle = … } or { angle_deg = … }"));
             }
-            // By its largest number first, as squares could overflow.
-            Ok(Rotation3::from_axis_angle(&Unit::new_normalize(axis.map(|c| c / largest)), angle).into_inner())
+            return Ok(Rotation3::from_axis_angle(&Vector3::z_axis(), self.radians(entry)?).into_inner());
         }
-        Some(key @ ("rpy" | "rpy_deg")) => {
-            let unit = if key == "rpy" { 1.0 } else { std::f64::consts::PI / 180.0 };
-            let [roll, pitch, yaw] = entry.vector(key, 3)?.map(|angle| unit * angle);
-            Ok(Rotation3::from_euler_angles(roll, pitch, yaw).into_inner())
+        match self {
+            Self { quat_wxyz: Some(numbers), .. } => quaternion(entry, "quat_wxyz", numbers, |[w, x, y, z]| Quaternion::new(w, x, y, z)),
+            Self { quat_xyzw: Some(numbers), .. } => quaternion(entry, "quat_xyzw", numbers, |[x, y, z, w]| Quaternion::new(w, x, y, z)),
+            Self { axis: Some(axis), .. } => {
+                let axis = Vector3::from(axis.vector(entry, "axis", 3)?);
+                let angle = self.radians(entry)?;
+                let largest = axis.amax();
+                if largest == 0.0 {
+                    return Err(entry.refuse("axis", "an axis of zero length has no direction", "give the axis of the rotation"));
+                }
+                // By its largest number first, as squares could overflow.
+                Ok(Rotation3::from_axis_angle(&Unit::new_normalize(axis.map(|c| c / largest)), angle).into_inner())
+            }
+            Self { rpy: Some(angles), .. } => Ok(rotation_of(angles.vector(entry, "rpy", 3)?)),
+            Self { rpy_deg: Some(angles), .. } => {
+                Ok(rotation_of(angles.vector(entry, "rpy_deg", 3)?.map(|angle| std::f64::consts::PI / 180.0 * angle)))
+            }
+            Self { matrix: Some(rows), .. } => rotation_near(entry, rows),
+            _ => match angle {
+                Some(key) => {
+                    Err(entry.refuse_key(key, "an angle in space needs an axis", format!("write {{ axis = [x, y, z], {key} = … }}")))
+                }
+                None => Err(entry.refuse_all("this orientation says nothing", format!("give one of {}", SPELLINGS.join(", ")))),
+            },
         }
-        Some(_) => matrix(&entry),
-        None => match angles {
-            Some(key) => Err(entry.refuse_key(key, "an angle in space needs an axis", format!("write {{ axis = [x, y, z], {key} = … }}"))),
-            None => Err(entry.refuse_all("this orientation says nothing", format!("give one of {}", SPELLINGS.join(", ")))),
-        },
+    }
+
+    fn radians(&self, entry: &Entry<'_>) -> Read<f64> {
+        match (&self.angle, &self.angle_deg) {
+            (Some(_), Some(_)) => Err(entry.refuse_key("angle_deg", "`angle` and `angle_deg` exclude each other", "keep one of the two")),
+            (Some(angle), None) => angle.number(entry, "angle"),
+            (None, Some(angle)) => angle.number(entry, "angle_deg").map(f64::to_radians),
+            (None, None) => Err(entry.refuse_all("this orientation has no angle", "add angle = … in radians, or angle_deg = … in degrees")),
+        }
     }
 }
 
-fn angle(entry: &Entry<'_>) -> Read<f64> {
-    match (entry.has("angle"), entry.has("angle_deg")) {
-        (true, true) => Err(entry.refuse_key("angle_deg", "`angle` and `angle_deg` exclude each other", "keep one of the two")),
-        (false, true) => entry.number("angle_deg").map(f64::to_radians),
-        (false, false) => Err(entry.refuse_all("this orientation has no angle", "add angle = … in radians, or angle_deg = … in degrees")),
-        _ => entry.number("angle"),
-    }
+/// About x, then y, then z of the model.
+fn rotation_of([roll, pitch, yaw]: [f64; 3]) -> Matrix3<f64> {
+    Rotation3::from_euler_angles(roll, pitch, yaw).into_inner()
 }
 
-fn quaternion(entry: &Entry<'_>, key: &str) -> Read<Matrix3<f64>> {
-    let items = entry.list(key)?;
-    if items.len() != 4 {
-        return Err(entry.refuse(key, format!("a quaternion has four numbers, and this has {}", items.len()), "write four numbers"));
+fn quaternion(entry: &Entry<'_>, key: &str, numbers: &List<Number>, ordered: fn([f64; 4]) -> Quaternion<f64>) -> Read<Matrix3<f64>> {
+    if numbers.len() != 4 {
+        return Err(entry.refuse(key, format!("a quaternion has four numbers, and this has {}", numbers.len()), "write four numbers"));
     }
-    let n = all(items.iter().enumerate().map(|(k, item)| entry.number_in(Spot { key, item: Some(k) }, item)))?;
-    let quaternion = if key == "quat_wxyz" { Quaternion::new(n[0], n[1], n[2], n[3]) } else { Quaternion::new(n[3], n[0], n[1], n[2]) };
+    let n = numbers.numbers(entry, key)?;
+    let quaternion = ordered([n[0], n[1], n[2], n[3]]);
     let size = quaternion.norm();
     if (size - 1.0).abs() > ROUNDED {
         let cure = match size > 0.0 && size.is_finite() {
@@ -111,19 +174,10 @@ fn quaternion(entry: &Entry<'_>, key: &str) -> Read<Matrix3<f64>> {
     Ok(UnitQuaternion::from_quaternion(quaternion).to_rotation_matrix().into_inner())
 }
 
-fn matrix(entry: &Entry<'_>) -> Read<Matrix3<f64>> {
+/// The rotation nearest to a matrix that must be one but for rounding.
+fn rotation_near(entry: &Entry<'_>, rows: &Rows) -> Read<Matrix3<f64>> {
     let cure = "write three rows of three numbers: the body's axes as columns";
-    let rows = entry.list("matrix")?;
-    let row = |(k, row): (usize, &Value)| match row {
-        Value::List(items) if items.len() == 3 => {
-            all(items.iter().map(|item| entry.number_in(Spot { key: "matrix", item: Some(k) }, item)))
-        }
-        _ => Err(entry.refuse(Spot { key: "matrix", item: Some(k) }, "a row of a rotation matrix has three numbers", cure)),
-    };
-    if rows.len() != 3 {
-        return Err(entry.refuse("matrix", format!("a rotation matrix has three rows, and this has {}", rows.len()), cure));
-    }
-    let rows = all(rows.iter().enumerate().map(row))?;
+    let rows = rows.numbers(entry, "matrix", "a rotation matrix", cure)?;
     let matrix = Matrix3::from_fn(|i, j| rows[i][j]);
     let products = matrix.transpose() * matrix;
     // Written so that what is no number is refused too.

@@ -2,133 +2,139 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::inertia;
-use super::orientation;
-use super::shape_key::{self, Shaped};
-use crate::model::entry::{Entry, Spot, all};
+use super::inertia_key::Inertia;
+use super::orientation::Orientation;
+use super::rigid::RigidBody;
+use super::shape_key::{Shaped, Solid};
+use crate::model::entry::{Entry, all};
 use crate::model::fault::{Read, Refused};
-use crate::model::geometry::{Vec3, add};
-use crate::model::key::{Key, REPEAT, Shape};
-use crate::model::value::Value;
-use crate::record::SceneShape;
+use crate::model::fields::{Keys, List, Map, Number, Turn};
+use crate::model::geometry::Vec3;
+use crate::model::key::{Key, Shape};
+use crate::model::value::{Table, Value};
+
+/// A rigid body as it is written.
+#[derive(Clone, Debug, PartialEq, Keys)]
+#[table("a body")]
+pub struct Body {
+    /// mass
+    #[key(unit = "kg", default = "that of the shape by its density")]
+    pub mass: Option<Number>,
+    /// about the centre of mass in body axes: [Ixx, Iyy, Izz], with the products behind them as entries of the tensor,
+    /// [.., Ixy, Ixz, Iyz] with Ixy = −∫ x y dm, or the tensor (3 × 3); one number in a planar model
+    #[key(unit = "kg·m²", default = "that of the shape")]
+    pub inertia: Option<Inertia>,
+    /// a shape of uniform density, for mass, inertia and picture
+    #[key(unit = "m", default = "none: mass and inertia are needed")]
+    pub shape: Option<Solid>,
+    /// of the shape, instead of a mass; of a rod in kg/m
+    #[key(unit = "kg/m³", default = "none")]
+    pub density: Option<Number>,
+    /// of the centre of mass, at the start
+    #[key(unit = "m", shape = Shape::Vector)]
+    pub position: List<Number>,
+    /// of the body's axes, at the start
+    #[key(default = "that of the model's axes")]
+    pub orientation: Option<Orientation>,
+    /// of the centre of mass, at the start
+    #[key(unit = "m/s", default = "0", shape = Shape::Vector)]
+    pub velocity: Option<List<Number>>,
+    /// in the axes of the model, at the start; one number in a planar model
+    #[key(unit = "rad/s", default = "0")]
+    pub angular_velocity: Option<Turn>,
+    /// named places in body axes from the centre of mass, used as "NAME.POINT"
+    #[key(unit = "m", default = "none")]
+    pub points: Option<Map<List<Number>>>,
+    /// named directions in body axes, used as "NAME.AXIS"
+    #[key(unit = "any", default = "none")]
+    pub axes: Option<Map<List<Number>>>,
+    /// makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"
+    #[key(default = "one entry", shape = Shape::Repeat)]
+    pub repeat: Option<String>,
+}
 
 /// The keys of a body.
-pub const KEYS: &[Key] = &[
-    Key::optional("mass", Shape::Number, "that of the shape by its density", "kg", "mass"),
-    Key::optional(
-        "inertia",
-        Shape::Inertia,
-        "that of the shape",
-        "kg·m²",
-        "about the centre of mass in body axes: [Ixx, Iyy, Izz], with the products behind them as entries of the tensor, \
-         [.., Ixy, Ixz, Iyz] with Ixy = −∫ x y dm, or the tensor (3 × 3); one number in a planar model",
-    ),
-    Key::optional(
-        "shape",
-        Shape::Table(shape_key::KEYS),
-        "none: mass and inertia are needed",
-        "m",
-        "a shape of uniform density, for mass, inertia and picture",
-    ),
-    Key::optional("density", Shape::Number, "none", "kg/m³", "of the shape, instead of a mass; of a rod in kg/m"),
-    Key::required("position", Shape::Vector, "m", "of the centre of mass, at the start"),
-    Key::optional("orientation", Shape::Table(orientation::KEYS), "that of the model's axes", "", "of the body's axes, at the start"),
-    Key::optional("velocity", Shape::Vector, "0", "m/s", "of the centre of mass, at the start"),
-    Key::optional("angular_velocity", Shape::Spin, "0", "rad/s", "in the axes of the model, at the start; one number in a planar model"),
-    Key::optional("points", Shape::Places, "none", "m", "named places in body axes from the centre of mass, used as \"NAME.POINT\""),
-    Key::optional("axes", Shape::Places, "none", "any", "named directions in body axes, used as \"NAME.AXIS\""),
-    REPEAT,
-];
+pub const KEYS: &[Key] = <Body as Keys>::KEYS;
 
-/// A rigid body at the start.
-#[derive(Clone, Debug)]
-pub struct Body {
-    pub name: String,
-    /// Where it is in the description.
-    pub path: String,
-    /// kg
-    pub mass: f64,
-    /// Inertia tensor about the centre of mass in the axes of the model, kg·m².
-    pub inertia: Matrix3<f64>,
-    /// Of the centre of mass, m.
-    pub position: Vec3,
-    /// From body axes to those of the model.
-    pub world_from_body: Matrix3<f64>,
-    /// m/s
-    pub velocity: Vec3,
-    /// In the axes of the model, rad/s; in the plane its last number.
-    pub angular_velocity: Vec3,
-    /// Named places: where they are at the start.
-    pub points: Vec<(String, Vec3)>,
-    /// Named directions at the start.
-    pub axes: Vec<(String, Vec3)>,
-    pub shape: Option<SceneShape>,
+/// Reads and evaluates a body.
+pub fn body(entry: &Entry<'_>, dim: usize) -> Read<RigidBody> {
+    let bare: Vec<&str> = entry.table.iter().filter(|(key, value)| refuse_bare(entry, key, value).is_err()).map(|(key, _)| key).collect();
+    if bare.is_empty() {
+        return Body::read(entry)?.evaluate(entry, dim);
+    }
+    // What else is wrong is told, too.
+    let others: Table = entry.table.iter().filter(|(key, _)| !bare.contains(key)).map(|(key, value)| (key, value.clone())).collect();
+    Body::read(&Entry { table: &others, ..*entry }).and(Err(Refused))
+}
+
+/// Refuses what is often written in place of a table, with the table that it would be.
+fn refuse_bare(entry: &Entry<'_>, key: &str, value: &Value) -> Read<()> {
+    match (key, value) {
+        ("shape", Value::Table(_)) => Ok(()),
+        ("shape", _) => {
+            Err(entry.refuse(key, "a shape is a table with one key", "write shape = { box = [1, 1, 1] }, { sphere = 1 } and so on"))
+        }
+        ("orientation", Value::List(_)) => {
+            let cure = "write orientation = { quat_wxyz = [w, x, y, z] } or { quat_xyzw = [x, y, z, w] }";
+            Err(entry.refuse(key, "four bare numbers do not say which comes first", cure))
+        }
+        _ => Ok(()),
+    }
 }
 
 impl Body {
-    /// Where a place in body axes is at the start.
-    pub fn place(&self, local: Vec3) -> Vec3 {
-        add(self.position, self.direction(local))
-    }
-
-    /// A direction in body axes at the start.
-    pub fn direction(&self, local: Vec3) -> Vec3 {
-        (self.world_from_body * Vector3::from(local)).into()
-    }
-
-    /// A place at the start in body axes.
-    pub fn local(&self, place: Vec3) -> Vec3 {
-        (self.world_from_body.transpose() * (Vector3::from(place) - Vector3::from(self.position))).into()
-    }
-
-    /// A direction at the start in body axes.
-    pub fn local_direction(&self, direction: Vec3) -> Vec3 {
-        (self.world_from_body.transpose() * Vector3::from(direction)).into()
-    }
-
-    /// Velocity at the start of the place that is at `place`, m/s.
-    pub fn velocity_at(&self, place: Vec3) -> Vec3 {
-        let arm = Vector3::from(place) - Vector3::from(self.position);
-        (Vector3::from(self.velocity) + Vector3::from(self.angular_velocity).cross(&arm)).into()
-    }
-
-    /// Rate of a direction of the body at the start.
-    pub fn rate_of(&self, direction: Vec3) -> Vec3 {
-        Vector3::from(self.angular_velocity).cross(&Vector3::from(direction)).into()
+    /// The body at the start; of a mesh that is not at its centre of mass, `position` is that of the centre all the same.
+    fn evaluate(&self, entry: &Entry<'_>, dim: usize) -> Read<RigidBody> {
+        let vector = |list: &List<Number>, entry: &Entry<'_>, key: &str| list.vector(entry, key, dim);
+        let mass = entry.optional_of("mass", &self.mass, Number::positive);
+        let density = entry.optional_of("density", &self.density, Number::positive);
+        let inertia = entry.optional_of("inertia", &self.inertia, |inertia, entry, key| inertia.tensor(entry, key, dim));
+        let shape =
+            entry.optional_of("shape", &self.shape, |solid, entry, key| entry.within(key.into(), |entry| solid.evaluate(entry, dim)));
+        let position = self.position.vector(entry, "position", dim);
+        let orientation = entry.optional_of("orientation", &self.orientation, |orientation, entry, key| {
+            entry.within(key.into(), |entry| orientation.rotation(entry, dim))
+        });
+        let velocity = entry.optional_of("velocity", &self.velocity, vector);
+        let angular_velocity =
+            entry.optional_of("angular_velocity", &self.angular_velocity, |turn, entry, key| turn.vector(entry, key, dim));
+        let points = entry.optional_of("points", &self.points, |points, entry, key| vectors(entry, key, points, dim));
+        let axes = entry.optional_of("axes", &self.axes, |axes, entry, key| vectors(entry, key, axes, dim));
+        let (mass, density, inertia, shape) = (mass?, density?, inertia?, shape?);
+        let (mass, inertia) = substance(entry, dim, mass, density, inertia, shape.as_ref())?;
+        let world_from_body = orientation?.unwrap_or_else(Matrix3::identity);
+        let mut body = RigidBody {
+            name: entry.name.to_string(),
+            path: entry.path.to_string(),
+            mass,
+            inertia: world_from_body * inertia * world_from_body.transpose(),
+            position: position?,
+            world_from_body,
+            velocity: velocity?.unwrap_or_default(),
+            angular_velocity: angular_velocity?.unwrap_or_default(),
+            points: Vec::new(),
+            axes: Vec::new(),
+            shape: shape.map(|shaped| shaped.picture),
+        };
+        body.points = points?.into_iter().flatten().map(|(name, local)| (name, body.place(local))).collect();
+        body.axes = axes?.into_iter().flatten().map(|(name, local)| (name, body.direction(local))).collect();
+        Ok(body)
     }
 }
 
-/// Reads a body; of a mesh that is not at its centre of mass, `position` is that of the centre all the same.
-pub fn body(entry: &Entry<'_>, dim: usize) -> Read<Body> {
-    let mass = entry.optional("mass", Entry::positive);
-    let density = entry.optional("density", Entry::positive);
-    let inertia = entry.optional("inertia", |entry, key| tensor(entry, key, dim));
-    let shape = entry.optional("shape", |entry, _| shape_key::read(entry, dim));
-    let position = entry.vector("position", dim);
-    let orientation = entry.optional("orientation", |entry, _| orientation::read(entry, dim));
-    let velocity = entry.optional("velocity", |entry, key| entry.vector(key, dim));
-    let angular_velocity = entry.optional("angular_velocity", |entry, key| entry.spin(key, dim));
-    let points = places(entry, "points", dim);
-    let axes = places(entry, "axes", dim);
-    let (mass, density, inertia, shape) = (mass?, density?, inertia?, shape?);
-    let (mass, inertia) = substance(entry, dim, mass, density, inertia, shape.as_ref())?;
-    let world_from_body = orientation?.unwrap_or_else(Matrix3::identity);
-    let mut body = Body {
-        name: entry.name.to_string(),
-        path: entry.path.to_string(),
-        mass,
-        inertia: world_from_body * inertia * world_from_body.transpose(),
-        position: position?,
-        world_from_body,
-        velocity: velocity?.unwrap_or_default(),
-        angular_velocity: angular_velocity?.unwrap_or_default(),
-        points: Vec::new(),
-        axes: Vec::new(),
-        shape: shape.map(|shaped| shaped.picture),
+/// A table of named places or axes.
+fn vectors(entry: &Entry<'_>, key: &str, named: &Map<List<Number>>, dim: usize) -> Read<Vec<(String, Vec3)>> {
+    let each = |inner: &Entry<'_>, name: &str, numbers: &List<Number>| {
+        if !name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-') {
+            return Err(inner.refuse_key(name, format!("\"{name}\" cannot be a name"), "use letters, digits, _ and -"));
+        }
+        let vector = numbers.vector(inner, name, dim)?;
+        if key == "axes" && vector == [0.0; 3] {
+            return Err(inner.refuse(name, "an axis of zero length has no direction", "give a direction"));
+        }
+        Ok((name.to_string(), vector))
     };
-    body.points = points?.into_iter().map(|(name, local)| (name, body.place(local))).collect();
-    body.axes = axes?.into_iter().map(|(name, local)| (name, body.direction(local))).collect();
-    Ok(body)
+    entry.within(key.into(), |inner| all(named.iter().map(|(name, numbers)| each(inner, name, numbers))))
 }
 
 /// Mass and inertia from what is given of mass, density, inertia and shape.
@@ -178,79 +184,76 @@ fn substance(
 /// Radii of gyration of bodies that can be computed with, m: powers of them must be numbers.
 const SIZES: std::ops::Range<f64> = 1e-30..1e30;
 
-/// The inertia tensor at a key, which must be one that a body can have.
-fn tensor(entry: &Entry<'_>, key: &str, dim: usize) -> Read<Matrix3<f64>> {
-    if dim == 2 {
-        if let Value::List(_) = entry.value(key)? {
-            return Err(entry.refuse(
-                key,
-                "a planar model has one moment of inertia",
-                format!("write {key} = …, about the normal of the plane"),
-            ));
-        }
-        let polar = entry.positive(key)?;
-        return Ok(Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, polar)));
-    }
-    if let Value::Number(_) | Value::Text(_) = entry.value(key)? {
-        let cure = format!("write {key} = [Ixx, Iyy, Izz], or with the products behind them [.., Ixy, Ixz, Iyz]");
-        return Err(entry.refuse(key, "a body in space has three moments of inertia, and this is one", cure));
-    }
-    let items = entry.list(key)?;
-    let number = |(k, item): (usize, &Value)| entry.number_in(Spot { key, item: Some(k) }, item);
-    let tensor = match items.len() {
-        3 if items.iter().all(|item| matches!(item, Value::List(_))) => {
-            let row = |(k, item): (usize, &Value)| match item {
-                Value::List(numbers) if numbers.len() == 3 => {
-                    all(numbers.iter().map(|number| entry.number_in(Spot { key, item: Some(k) }, number)))
-                }
-                _ => Err(entry.refuse(
-                    Spot { key, item: Some(k) },
-                    "a row of the inertia tensor has three numbers",
-                    "write three rows of three numbers",
-                )),
-            };
-            let rows = all(items.iter().enumerate().map(row))?;
-            [0, 1, 2].map(|i| [0, 1, 2].map(|j| rows[i][j]))
-        }
-        3 | 6 => {
-            let n = all(items.iter().enumerate().map(number))?;
-            let product = |k: usize| n.get(k).copied().unwrap_or(0.0);
-            [[n[0], product(3), product(4)], [product(3), n[1], product(5)], [product(4), product(5), n[2]]]
-        }
-        other => {
-            let message = format!("`{key}` has 3 or 6 numbers or is 3 × 3, and this has {other}");
-            return Err(entry.refuse(key, message, "write [Ixx, Iyy, Izz], or with the products behind them [.., Ixy, Ixz, Iyz]"));
-        }
-    };
-    match inertia::check(tensor) {
-        Ok(()) => Ok(Matrix3::from_fn(|i, j| tensor[i][j])),
-        Err(why) => {
-            let symmetric = (0..3).all(|i| tensor[i][(i + 1) % 3] == tensor[(i + 1) % 3][i]);
-            Err(entry.refuse(
-                key,
-                why,
-                if symmetric { CURE } else { "a tensor of inertia is symmetric: write the same number at both places" },
-            ))
-        }
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Field, Model, NoMeshes, REPEAT};
 
-const CURE: &str = "check the units and that it is about the centre of mass; each principal moment is at most the sum of the other two";
+    fn model(body: &Body, plane: Option<&str>) -> Model {
+        let mut table: Table = [("body", Value::Table([("top", Field::write(body))].into_iter().collect()))].into_iter().collect();
+        if let Some(plane) = plane {
+            table.push("plane", Value::text(plane));
+        }
+        Model::from_value(&Value::Table(table), &NoMeshes).unwrap_or_else(|faults| panic!("{faults}"))
+    }
 
-/// A table of named vectors.
-fn places(entry: &Entry<'_>, key: &str, dim: usize) -> Read<Vec<(String, Vec3)>> {
-    let Some(table) = entry.optional(key, Entry::table)? else { return Ok(Vec::new()) };
-    let path = format!("{}.{key}", entry.path);
-    let inner = Entry { name: entry.name, path: &path, table, ..*entry };
-    let place = |name: &str| -> Read<(String, Vec3)> {
-        if !name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-') {
-            return Err::<_, Refused>(inner.refuse_key(name, format!("\"{name}\" cannot be a name"), "use letters, digits, _ and -"));
+    #[test]
+    fn a_body_made_of_structs_is_that_of_a_file() {
+        let body = Body::new([0.0, 0.0, 1.0])
+            .shape(Solid::cuboid([1.0, 2.0, 3.0]))
+            .density("2*6")
+            .orientation(Orientation::axis_angle_deg([0, 0, 2], 90))
+            .velocity([1, 0, 0])
+            .angular_velocity([0.0, 0.0, 4.0])
+            .points([("tip", [0.5, 0.0, 0.0])]);
+        let model = model(&body, None);
+        let top = &model.bodies[0];
+        assert!((top.mass - 72.0).abs() < 1e-12, "{}", top.mass);
+        // A quarter turn exchanges the moments m (l² + l²)/12 about x and y.
+        let moments = [60.0, 78.0, 30.0];
+        assert!((0..3).all(|k| (top.inertia[(k, k)] - moments[k]).abs() < 1e-12), "{}", top.inertia);
+        assert_eq!((top.velocity, top.angular_velocity), ([1.0, 0.0, 0.0], [0.0, 0.0, 4.0]));
+    }
+
+    #[test]
+    fn inertia_and_orientation_may_be_written_in_each_way() {
+        let tensor = [[2.0, 0.1, 0.2], [0.1, 3.0, 0.3], [0.2, 0.3, 4.0]];
+        for inertia in [Inertia::from([2.0, 3.0, 4.0, 0.1, 0.2, 0.3]), Inertia::from(tensor)] {
+            let top = &model(&Body::new([0, 0, 0]).mass(1).inertia(inertia), None).bodies[0];
+            assert_eq!(top.inertia, Matrix3::from_fn(|i, j| tensor[i][j]));
         }
-        let vector = inner.vector(name, dim)?;
-        if key == "axes" && vector == [0.0; 3] {
-            return Err(inner.refuse(name, "an axis of zero length has no direction", "give a direction"));
+        let half = 0.5_f64.sqrt();
+        for orientation in [
+            Orientation::wxyz([half, half, 0.0, 0.0]),
+            Orientation::xyzw([half, 0.0, 0.0, half]),
+            Orientation::axis_angle([3, 0, 0], "pi/2"),
+            Orientation::roll_pitch_yaw(["pi/2", "0", "0"]),
+            Orientation::roll_pitch_yaw_deg([90, 0, 0]),
+            Orientation::rows([[1, 0, 0], [0, 0, -1], [0, 1, 0]]),
+        ] {
+            let body = Body::new([0, 0, 0]).mass(1).inertia([2.0, 3.0, 4.0]).orientation(orientation.clone());
+            let top = &model(&body, None).bodies[0];
+            let moments = [2.0, 4.0, 3.0];
+            assert!((0..3).all(|k| (top.inertia[(k, k)] - moments[k]).abs() < 1e-12), "{orientation:?}");
         }
-        Ok((name.to_string(), vector))
-    };
-    all(table.keys().map(place))
+        let planar = Body::new([0, 0]).mass(1).inertia(0.5).orientation(Orientation::in_plane_deg(30)).angular_velocity(2.0);
+        let top = &model(&planar, Some("xz")).bodies[0];
+        assert_eq!((top.inertia[(2, 2)], top.angular_velocity), (0.5, [0.0, 0.0, 2.0]));
+    }
+
+    #[test]
+    fn what_stands_for_a_table_does_not_hide_what_else_is_wrong() {
+        let body: Table =
+            [("shape", Value::text("box")), ("orientation", Value::List(Vec::new())), ("mass", Value::Bool(true))].into_iter().collect();
+        let body = Value::Table([("top", Value::Table(body))].into_iter().collect());
+        let faults = Model::from_value(&Value::Table([("body", body)].into_iter().collect()), &NoMeshes).err().expect("wrong").0;
+        let paths: Vec<&str> = faults.iter().map(|fault| fault.path.as_str()).collect();
+        assert_eq!(paths, ["body.top.shape", "body.top.orientation", "body.top.mass", "body.top"], "the last has no position");
+    }
+
+    #[test]
+    fn a_body_repeats_like_every_entry() {
+        let repeat = KEYS.last().expect("keys");
+        assert_eq!((repeat.name, repeat.default, repeat.unit, repeat.doc), (REPEAT.name, REPEAT.default, REPEAT.unit, REPEAT.doc));
+    }
 }

@@ -7,6 +7,7 @@ mod list;
 mod map;
 mod number;
 mod place;
+mod rows;
 mod site;
 mod turn;
 
@@ -15,6 +16,7 @@ pub use list::List;
 pub use map::Map;
 pub use number::Number;
 pub use place::Place;
+pub use rows::Rows;
 pub use site::Site;
 pub use turn::Turn;
 

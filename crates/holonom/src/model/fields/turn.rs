@@ -45,3 +45,15 @@ impl From<&str> for Turn {
         Self::InPlane(formula.into())
     }
 }
+
+impl Turn {
+    /// The vector; in a planar model its one number is the last, about the normal.
+    pub fn vector(&self, entry: &Entry<'_>, key: &str, dim: usize) -> Read<[f64; 3]> {
+        match (self, dim) {
+            (Self::InPlane(number), 2) => number.number(entry, key).map(|number| [0.0, 0.0, number]),
+            (Self::InPlane(_), _) => Err(entry.wanted(key.into(), "a list", &self.write())),
+            (Self::InSpace(_), 2) => Err(entry.wanted(key.into(), "a number", &self.write())),
+            (Self::InSpace(numbers), _) => numbers.vector(entry, key, dim),
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::{AnyJoint, Feature, JOINTS, Seat, Sides};
 use crate::model::assembly::Assembly;
-use crate::model::bodies::Body;
+use crate::model::bodies::RigidBody;
 use crate::model::bodies::nodes::{Member, Shared};
 use crate::model::entry::{Entry, Spot};
 use crate::model::fault::Read;
@@ -35,7 +35,7 @@ pub struct Survey {
 impl Survey {
     /// The size of the mechanism, m: the diagonal of the box around all bodies and joints, and of a single body its
     /// radius of gyration.
-    pub fn length(&self, bodies: &[Body]) -> f64 {
+    pub fn length(&self, bodies: &[RigidBody]) -> f64 {
         let places = bodies.iter().map(|body| body.position).chain(self.sites.iter().copied());
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for place in places {
@@ -48,7 +48,7 @@ impl Survey {
 
     /// The usual size of a body, m: the geometric mean of all, each the radius of gyration or the longest way from the centre to
     /// a joint; the size of the mechanism where none has any.
-    pub fn body_size(&self, bodies: &[Body]) -> f64 {
+    pub fn body_size(&self, bodies: &[RigidBody]) -> f64 {
         let mut sizes: Vec<f64> = bodies.iter().map(|body| (body.inertia.trace() / body.mass).sqrt()).collect();
         self.arms.iter().for_each(|&(body, arm)| sizes[body] = sizes[body].max(arm));
         let logarithms: Vec<f64> = sizes.iter().filter(|size| **size > 0.0).map(|size| size.ln()).collect();
