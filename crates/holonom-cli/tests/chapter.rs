@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use common::*;
 use holonom::model::joints::{COUPLERS, JOINTS, kinds};
-use holonom::model::{BODY_KEYS, Key, Kind, Model, drives, forces};
+use holonom::model::{Body, Key, Keys, Kind, Model, drives, forces};
 use holonom_io::Source;
 use serde_json::Value;
 
@@ -84,7 +84,7 @@ fn assert_tells(part: &str, of: &str, key: &Key) {
 fn the_keys_of_bodies_drives_and_forces_are_as_the_reader_has_them() {
     let text = chapter("model-file.md");
     let part = |heading: &str| section(&text, heading);
-    BODY_KEYS.iter().for_each(|key| assert_tells(part("## Bodies: `[body.NAME]`"), "body", key));
+    Body::KEYS.iter().for_each(|key| assert_tells(part("## Bodies: `[body.NAME]`"), "body", key));
     for kind in drives::KINDS {
         assert!(part("## Drives: `[drive.NAME]`").contains(&format!("| `{}` |", kind.name)), "{}", kind.name);
         kind.keys.iter().for_each(|key| assert_tells(part("## Drives: `[drive.NAME]`"), kind.name, key));
@@ -133,15 +133,15 @@ fn says(part: &str, kind: &Kind, what: &str, words: &str) {
 fn freedom_and_coordinates_of_joints_are_as_the_code_has_them() {
     let text = chapter("joints.md");
     for joint in JOINTS {
-        let (name, part) = (joint.kind.name, section(&text, &format!("### `{}`", joint.kind.name)));
+        let (name, part) = (joint.name, section(&text, &format!("### `{}`", joint.name)));
         let row = |first: &str| {
             part.lines().find(|line| line.starts_with(&format!("| {first} |"))).unwrap_or_else(|| panic!("`{name}`: {first}"))
         };
-        let [space, plane] = joint.layout.freedom;
+        let [space, plane] = joint.layout.expect("it is a joint").freedom;
         let plane = plane.map_or("not there in the plane".to_string(), |freedom| format!("{freedom} in the plane"));
         let freedom = format!("{} in space, {plane} |", space.expect("every joint is in space"));
         assert!(row("freedom").contains(&freedom), "`{name}`: {freedom}");
-        let model = model(joint.kind.example);
+        let model = model(joint.example);
         let built = model.joints.iter().find(|built| built.kind == name).expect("the example has the joint");
         let coordinates: Vec<&str> = built.coordinates.iter().map(|coordinate| coordinate.name).collect();
         let told = row("coordinates");

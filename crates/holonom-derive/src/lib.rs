@@ -2,7 +2,7 @@
 //!
 //! The documentation of a field is that of its key, and `Option` says that the key may be left out. What else is known of a key
 //! stands in `#[key(unit = "…", default = "…", shape = …)]`: the unit for people, what is taken when it is not there, and what its value looks
-//! like where the type of the field does not say it. `#[table("a term")]` says what messages call the table. With `#[kind(name = "…", equations =
+//! like where the type of the field does not say it. `#[table("a term")]` says what messages call the table, and `#[table("a shape", function)]` also what refuses a value that is no table. With `#[kind(name = "…", equations =
 //! "…", example = "…")]` the struct is a kind: what `type` may say.
 
 use proc_macro2::TokenStream;
@@ -37,15 +37,21 @@ fn keys(input: &DeriveInput) -> Result<TokenStream> {
         Fields::Unnamed(_) => return Err(Error::new_spanned(input, "keys are named fields")),
     };
     let fields = fields.into_iter().map(known).collect::<Result<Vec<_>>>()?;
-    let (ident, what) = (&input.ident, what(&input.attrs)?);
-    let table = table(ident, &fields, &what);
-    let builder = builder(ident, &fields);
+    let ident = &input.ident;
     let kind = kind(ident, &input.attrs)?;
+    let table = table(ident, &fields, &inside(&input.attrs)?, kind.is_some());
+    let builder = builder(ident, &fields);
     Ok(quote! { #table #builder #kind })
 }
 
 /// The traits by which a table is read and written.
-fn table(ident: &Ident, fields: &[Known<'_>], what: &str) -> TokenStream {
+fn table(ident: &Ident, fields: &[Known<'_>], inside: &Inside, is_kind: bool) -> TokenStream {
+    let what = &inside.what;
+    let otherwise = match &inside.otherwise {
+        Some(function) => quote! { #function(entry, spot, other) },
+        None => quote! { entry.refuse_no_table(spot, other) },
+    };
+    let of_type = is_kind.then(|| quote! { "type" => Some(::holonom::model::Value::text(<Self as ::holonom::model::Described>::NAME)), });
     let keys = fields.iter().map(|Known { name, value, is_optional, doc, unit, default, shape, .. }| {
         let shape = shape.as_ref().map_or(quote! { <#value as ::holonom::model::Field>::SHAPE }, |shape| quote! { #shape });
         let required = !is_optional;
@@ -55,8 +61,8 @@ fn table(ident: &Ident, fields: &[Known<'_>], what: &str) -> TokenStream {
     });
     let locals: Vec<Ident> = fields.iter().map(|field| format_ident!("of_{}", field.name)).collect();
     let reads = fields.iter().map(|Known { name, is_optional, .. }| match is_optional {
-        true => quote! { entry.may_have(#name) },
-        false => quote! { entry.must_have(#name) },
+        true => quote! { reader.may_have(#name) },
+        false => quote! { reader.must_have(#name) },
     });
     let idents: Vec<&Ident> = fields.iter().map(|field| field.ident).collect();
     let writes = fields.iter().map(|Known { ident, name, is_optional, .. }| match is_optional {
@@ -67,14 +73,17 @@ fn table(ident: &Ident, fields: &[Known<'_>], what: &str) -> TokenStream {
         impl ::holonom::model::Keys for #ident {
             const KEYS: &'static [::holonom::model::Key] = &[#(#keys),*];
 
-            fn read(entry: &::holonom::model::Entry<'_>) -> ::holonom::model::Read<Self> {
+            fn read(reader: &::holonom::model::Reader<'_>) -> ::holonom::model::Read<Self> {
                 #(let #locals = #reads;)*
                 Ok(Self { #(#idents: #locals?),* })
             }
+        }
 
+        impl ::holonom::model::Written for #ident {
             fn value(&self, key: &str) -> Option<::holonom::model::Value> {
                 match key {
                     #(#writes,)*
+                    #of_type
                     _ => None,
                 }
             }
@@ -89,7 +98,10 @@ fn table(ident: &Ident, fields: &[Known<'_>], what: &str) -> TokenStream {
                 spot: ::holonom::model::Spot<'_>,
                 value: &::holonom::model::Value,
             ) -> ::holonom::model::Read<Self> {
-                entry.read_inside(#what, spot, value)
+                match value {
+                    ::holonom::model::Value::Table(table) => entry.read_inside(#what, spot, table),
+                    other => Err(#otherwise),
+                }
             }
 
             fn write(&self) -> ::holonom::model::Value {
@@ -158,9 +170,24 @@ fn kind(ident: &Ident, attributes: &[Attribute]) -> Result<Option<TokenStream>> 
     }))
 }
 
-fn what(attributes: &[Attribute]) -> Result<String> {
-    let table = attributes.iter().find(|attribute| attribute.path().is_ident("table"));
-    table.map_or(Ok("this table".to_string()), |table| table.parse_args::<LitStr>().map(|text| text.value()))
+/// What stands in `#[table(…)]`.
+struct Inside {
+    what: String,
+    otherwise: Option<syn::Path>,
+}
+
+fn inside(attributes: &[Attribute]) -> Result<Inside> {
+    let Some(table) = attributes.iter().find(|attribute| attribute.path().is_ident("table")) else {
+        return Ok(Inside { what: "this table".into(), otherwise: None });
+    };
+    table.parse_args_with(|input: syn::parse::ParseStream<'_>| {
+        let what = input.parse::<LitStr>()?.value();
+        let otherwise = match input.parse::<Option<syn::Token![,]>>()? {
+            Some(_) => Some(input.parse()?),
+            None => None,
+        };
+        Ok(Inside { what, otherwise })
+    })
 }
 
 fn known(field: &Field) -> Result<Known<'_>> {

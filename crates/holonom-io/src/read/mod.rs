@@ -102,7 +102,10 @@ impl Source {
 
     /// Faults with their places in the file.
     pub fn render(&self, faults: &Faults) -> String {
-        let shown: Vec<String> = faults.0.iter().map(|fault| render::fault(&self.name, &self.text, &self.places, fault)).collect();
+        // In the order of the file; what has no place in it comes last.
+        let mut faults: Vec<&Fault> = faults.0.iter().collect();
+        faults.sort_by_key(|fault| self.places.find(&fault.path, fault.on_key).map_or(usize::MAX, |bytes| bytes.start));
+        let shown: Vec<String> = faults.into_iter().map(|fault| render::fault(&self.name, &self.text, &self.places, fault)).collect();
         let count = shown.len();
         match count {
             1 => shown.join("\n"),

@@ -80,7 +80,7 @@ fn texts() -> Vec<(String, String)> {
     };
     let mut texts = folder("../../examples");
     texts.extend(folder("tests/invariance/models"));
-    texts.extend(kinds("joint", joints::kinds()));
+    texts.extend(kinds("joint", joints::kinds().collect()));
     texts.extend(kinds("constraint", constraints::KINDS.iter().collect()));
     texts.extend(kinds("drive", drives::KINDS.iter().collect()));
     texts.extend(kinds("force", forces::KINDS.iter().collect()));

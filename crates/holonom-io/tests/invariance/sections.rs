@@ -1,6 +1,6 @@
 //! The sections of a model file and the keys of their entries.
 
-use holonom::model::{BAR_KEYS, BODY_KEYS, Key, Kind, POINT_KEYS, Table, Value, constraints, drives, forces, joints};
+use holonom::model::{Bar, Body, Key, Keys, Kind, Point, Table, Value, constraints, drives, forces, joints};
 
 /// Sections of named entries.
 pub const SECTIONS: [&str; 7] = ["point", "body", "bar", "joint", "constraint", "drive", "force"];
@@ -20,10 +20,10 @@ pub fn keys(section: &str, entry: &Table) -> &'static [Key] {
         found.unwrap_or_else(|| panic!("there is no {section} of type {}", kind(entry))).keys
     };
     match section {
-        "point" => POINT_KEYS,
-        "body" => BODY_KEYS,
-        "bar" => BAR_KEYS,
-        "joint" => find(joints::kinds()),
+        "point" => Point::KEYS,
+        "body" => Body::KEYS,
+        "bar" => Bar::KEYS,
+        "joint" => find(joints::kinds().collect()),
         "constraint" => find(constraints::KINDS.iter().collect()),
         "drive" => find(drives::KINDS.iter().collect()),
         _ => find(forces::KINDS.iter().collect()),

@@ -10,7 +10,7 @@ use super::ends::End;
 use super::entry::Entry;
 use super::fault::{Read, Sink};
 use super::geometry::Vec3;
-use super::joints::JointInfo;
+use super::joints::{Geometry, JointInfo};
 use crate::record::{Anchor, Line, LineKind, SceneJoint};
 use crate::system::{Signal, SystemBuilder};
 
@@ -102,6 +102,8 @@ pub struct Assembly<'a> {
     pub scene_joints: Vec<SceneJoint>,
     /// Efforts of the drives.
     pub efforts: Vec<Effort>,
+    /// Where the joints of the entry are that is built.
+    pub geometries: std::vec::IntoIter<Geometry>,
 }
 
 /// What a drive exerts: −λ of its row, times the length where the row is one of half a square.
@@ -110,6 +112,33 @@ pub struct Effort {
     pub name: String,
     pub row: usize,
     pub length: Option<Arc<dyn Signal>>,
+}
+
+impl<'a> Assembly<'a> {
+    /// With bodies whose nodes are not made yet, and nothing else.
+    pub(super) fn new(builder: SystemBuilder, axes: Axes, gravity: [f64; 3], sink: &'a Sink, bodies: Vec<RigidBody>) -> Self {
+        Self {
+            builder,
+            axes,
+            gravity,
+            sink,
+            points: Vec::new(),
+            by_name: HashMap::new(),
+            faulty: HashSet::new(),
+            lines: Vec::new(),
+            body_places: vec![Vec::new(); bodies.len()],
+            body_names: bodies.iter().enumerate().map(|(k, body)| (body.name.clone(), k)).collect(),
+            bodies,
+            frames: Vec::new(),
+            joints: Vec::new(),
+            joint_names: HashMap::new(),
+            driven: HashMap::new(),
+            faulty_joints: HashSet::new(),
+            scene_joints: Vec::new(),
+            efforts: Vec::new(),
+            geometries: Vec::new().into_iter(),
+        }
+    }
 }
 
 impl Assembly<'_> {

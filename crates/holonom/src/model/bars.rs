@@ -3,12 +3,10 @@
 use super::assembly::Assembly;
 use super::ends::{End, difference, from_to};
 use super::entry::Entry;
-use super::fault::{Read, Refused, Sink};
+use super::fault::{Read, Refused};
 use super::fields::{Keys, List, Number, Place};
 use super::geometry::norm;
-use super::key::{Key, Shape};
-use super::section::Sections;
-use super::value::Table;
+use super::key::Shape;
 use crate::record::LineKind;
 use crate::system;
 
@@ -22,13 +20,7 @@ pub struct Bar {
     /// mass, spread evenly over its length
     #[key(unit = "kg")]
     pub mass: Number,
-    /// makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"
-    #[key(default = "one entry", shape = Shape::Repeat)]
-    pub repeat: Option<String>,
 }
-
-/// The keys of a bar.
-pub const KEYS: &[Key] = Bar::KEYS;
 
 /// A bar of the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,28 +33,16 @@ pub struct BarInfo {
     pub length: f64,
 }
 
-/// Reads all bars: M has m/3 at each end and m/6 between them, and ½|x_b − x_a|² = ½L² keeps the length.
-pub fn read(sections: &mut Sections<'_>, root: &Table, assembly: &mut Assembly<'_>) -> Vec<BarInfo> {
-    let keys: Vec<&Key> = KEYS.iter().collect();
-    let mut bars = Vec::new();
-    let check = |entry: &Entry<'_>| {
-        entry.refuse_unknown_keys("a bar", &keys);
-        Ok(())
-    };
-    sections.read(root, "bar", check, |entry| {
-        let bar = Bar::read(entry).inspect_err(|_| carry_unread(assembly, entry))?;
-        bars.push(bar.build(assembly, entry)?);
-        Ok(())
-    });
-    bars
-}
-
 impl Bar {
-    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<BarInfo> {
-        let ends = assembly.moving_pair_of(entry, "between", &self.between);
+    /// Builds a bar: M has m/3 at each end and m/6 between them, and ½|x_b − x_a|² = ½L² keeps the length.
+    pub(super) fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<BarInfo> {
+        let ends = assembly.moving_pair(entry, "between", &self.between);
         let mass = self.mass.positive(entry, "mass");
         let ends = ends?;
-        carry(assembly, &ends);
+        // Points of a faulty bar count as having mass: that they lack it would be no fault of theirs.
+        for point in ends.iter().filter_map(|end| end.point) {
+            assembly.points[point].carries_bar = true;
+        }
         let mass = mass?;
         let [a, b] = &ends;
         let length = norm(difference(a, b));
@@ -78,23 +58,6 @@ impl Bar {
         assembly.builder.constant_row(entry.name, half_square, 0.5 * length * length);
         assembly.draw(entry, LineKind::Bar, a, b);
         Ok(BarInfo { name: entry.name.to_string(), ends: [first, second], mass, length })
-    }
-}
-
-/// Notes that a bar hangs on its ends. Points of a faulty bar count as having mass: that they lack it would be no fault of theirs.
-fn carry(assembly: &mut Assembly<'_>, ends: &[End; 2]) {
-    for point in ends.iter().filter_map(|end| end.point) {
-        assembly.points[point].carries_bar = true;
-    }
-}
-
-/// Does the same for a bar that could not be read, if its ends can be; what is wrong with it was told.
-fn carry_unread(assembly: &mut Assembly<'_>, entry: &Entry<'_>) {
-    let unheard = Sink::default();
-    let entry = Entry { sink: &unheard, ..*entry };
-    let between = entry.must_have::<List<Place>>("between");
-    if let Ok(ends) = between.and_then(|between| assembly.moving_pair_of(&entry, "between", &between)) {
-        carry(assembly, &ends);
     }
 }
 

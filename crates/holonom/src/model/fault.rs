@@ -98,6 +98,11 @@ impl Sink {
         self.faults.borrow().len() + self.dropped.get()
     }
 
+    /// Whether there was a fault in the table at a path, or of it as a whole.
+    pub fn has_fault_in(&self, path: &str) -> bool {
+        self.faults.borrow().iter().any(|fault| fault.path.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with('.')))
+    }
+
     /// Nothing, or all that was wrong.
     pub fn finish(self) -> Result<(), Faults> {
         let mut faults = self.faults.into_inner();

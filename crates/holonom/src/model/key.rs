@@ -1,9 +1,10 @@
 //! The tables of kinds and keys that the reader, the schema, the manual and the tests walk.
 
-use super::assembly::Assembly;
-use super::entry::Entry;
+use super::element::{self, Boxed, Element};
 use super::fault::Read;
-use super::fields::Described;
+use super::joints::{self, Layout};
+use super::reader::Reader;
+use super::{constraints, drives, forces};
 
 /// A key of a table in a model file.
 pub struct Key {
@@ -95,7 +96,8 @@ impl Key {
     }
 }
 
-/// A kind of constraint or force: what `type` may say.
+/// A kind of joint, constraint, drive or force: what `type` may say.
+#[derive(Clone, Copy)]
 pub struct Kind {
     pub name: &'static str,
     /// One line.
@@ -106,23 +108,43 @@ pub struct Kind {
     pub keys: &'static [Key],
     /// A small model that uses it.
     pub example: &'static str,
-    pub(super) build: fn(&mut Assembly<'_>, &Entry<'_>) -> Read<()>,
-}
-
-/// A kind whose entries build what they say.
-pub(super) trait Build: Described {
-    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()>;
+    /// How it sits between two bodies, of a joint.
+    pub layout: Option<Layout>,
+    pub(super) read: fn(&Reader<'_>) -> Read<Boxed>,
 }
 
 impl Kind {
     /// The line of a kind in its table.
-    pub(super) const fn of<T: Build>() -> Self {
-        Self::with::<T>(|assembly, entry| T::read(entry)?.build(assembly, entry))
+    pub const fn of<T: Element>() -> Self {
+        Self {
+            name: T::NAME,
+            doc: T::DOC,
+            equations: T::EQUATIONS,
+            keys: T::KEYS,
+            example: T::EXAMPLE,
+            layout: T::LAYOUT,
+            read: element::read::<T>,
+        }
     }
+}
 
-    /// The same of a kind that is built in another way.
-    pub(super) const fn with<T: Described>(build: fn(&mut Assembly<'_>, &Entry<'_>) -> Read<()>) -> Self {
-        Self { name: T::NAME, doc: T::DOC, equations: T::EQUATIONS, keys: T::KEYS, example: T::EXAMPLE, build }
+/// The kinds of elements that a reader knows, by section; of one's own are pushed to these.
+#[derive(Clone)]
+pub struct Kinds {
+    pub joints: Vec<Kind>,
+    pub constraints: Vec<Kind>,
+    pub drives: Vec<Kind>,
+    pub forces: Vec<Kind>,
+}
+
+impl Default for Kinds {
+    fn default() -> Self {
+        Self {
+            joints: joints::kinds().copied().collect(),
+            constraints: constraints::KINDS.to_vec(),
+            drives: drives::KINDS.to_vec(),
+            forces: forces::KINDS.to_vec(),
+        }
     }
 }
 

@@ -17,10 +17,16 @@ pub fn read(table: &Table, sink: &Sink) -> HashMap<String, Known> {
     // What is part of a cycle, or behind one, is there but faulty, so that no second fault comes of it.
     known.extend(circular.iter().map(|name| (name.to_string(), Known::Faulty)));
     for name in order {
-        let entry =
-            Entry { name: "", path: "parameters", table, scope: Scope { parameters: Some(&known), indices: &[] }, sink, meshes: &NoMeshes };
+        let entry = Entry {
+            name: "",
+            path: "parameters",
+            written: table,
+            scope: Scope { parameters: Some(&known), indices: &[] },
+            sink,
+            meshes: &NoMeshes,
+        };
         let valid = is_valid(&entry, name);
-        let number = entry.number(name);
+        let number = entry.number_in(name.into(), table.get(name).expect("a name of the table"));
         let value = if valid { number.map_or(Known::Faulty, Known::Known) } else { Known::Faulty };
         known.insert(name.to_string(), value);
     }
@@ -84,7 +90,7 @@ fn report_cycles<'a>(table: &'a Table, needs: &HashMap<&'a str, Vec<String>>, or
     let fine: HashSet<&str> = order.iter().copied().collect();
     let left: Vec<&str> = table.keys().filter(|name| !fine.contains(name)).collect();
     let mut seen: HashSet<&str> = HashSet::new();
-    let entry = Entry { name: "", path: "parameters", table, scope: Scope::default(), sink, meshes: &NoMeshes };
+    let entry = Entry { name: "", path: "parameters", written: table, scope: Scope::default(), sink, meshes: &NoMeshes };
     for &start in &left {
         let mut way: Vec<&str> = Vec::new();
         let mut name = start;

@@ -3,15 +3,13 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use super::assembly::{Assembly, Axes, PlacedPoint};
+use super::assembly::{Assembly, PlacedPoint};
 use super::ends::{fixed, node};
 use super::entry::{Entry, Spot};
 use super::expression::{Program, TimeProgram};
 use super::fault::{Fault, Read};
 use super::fields::{Keys, List, Number};
-use super::key::{Key, Shape};
-use super::section::Sections;
-use super::value::Table;
+use super::key::Shape;
 use crate::system::{Constant, Signal};
 
 /// A particle, a place or a driven support.
@@ -33,13 +31,7 @@ pub struct Point {
     /// makes it a driven support: its coordinates as formulas of the time t
     #[key(unit = "m", default = "none", shape = Shape::Formulas(&["t"]))]
     pub motion: Option<List<Number>>,
-    /// makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"
-    #[key(default = "one entry", shape = Shape::Repeat)]
-    pub repeat: Option<String>,
 }
-
-/// The keys of a point.
-pub const KEYS: &[Key] = Point::KEYS;
 
 /// A point as it was read.
 pub struct Spec {
@@ -56,28 +48,13 @@ enum Motion {
     Driven(Vec<Program>),
 }
 
-/// Reads all points, and says which entries were faulty.
-pub fn read(sections: &mut Sections<'_>, root: &Table, axes: Axes) -> (Vec<Spec>, HashSet<String>) {
-    let keys: Vec<&Key> = KEYS.iter().collect();
-    let mut specs = Vec::new();
-    let check = |entry: &Entry<'_>| {
-        let before = entry.sink.count();
-        entry.refuse_unknown_keys("a point", &keys);
-        if entry.sink.count() == before { Ok(()) } else { Err(super::fault::Refused) }
-    };
-    let faulty = sections.read(root, "point", check, |entry| {
-        specs.push(Point::read(entry)?.spec(entry, axes.dimension())?);
-        Ok(())
-    });
-    (specs, faulty)
-}
-
 impl Point {
-    fn spec(&self, entry: &Entry<'_>, dim: usize) -> Read<Spec> {
-        let mass = entry.optional_of("mass", &self.mass, Number::not_negative);
-        let position = entry.optional_of("position", &self.position, |position, entry, key| position.vector(entry, key, dim));
-        let velocity = entry.optional_of("velocity", &self.velocity, |velocity, entry, key| velocity.vector(entry, key, dim));
-        let motion = entry.optional_of("motion", &self.motion, |motion, entry, key| motion.formulas(entry, key, dim, &["t"]));
+    /// The point with its numbers.
+    pub(super) fn spec(&self, entry: &Entry<'_>, dim: usize) -> Read<Spec> {
+        let mass = entry.optional("mass", &self.mass, Number::not_negative);
+        let position = entry.optional("position", &self.position, |position, entry, key| position.vector(entry, key, dim));
+        let velocity = entry.optional("velocity", &self.velocity, |velocity, entry, key| velocity.vector(entry, key, dim));
+        let motion = entry.optional("motion", &self.motion, |motion, entry, key| motion.formulas(entry, key, dim, &["t"]));
         let (mass, position, velocity, motion) = (mass?, position?, velocity?, motion?);
         let fixed = self.fixed.unwrap_or(false);
         let (start, motion) = match motion {

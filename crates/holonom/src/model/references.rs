@@ -20,33 +20,20 @@ enum Named {
 }
 
 impl Assembly<'_> {
-    /// The point named at a key.
-    pub fn point(&self, entry: &Entry<'_>, key: &str) -> Read<End> {
-        match entry.text(key)? {
-            GROUND => Err(entry.refuse(key, format!("`{GROUND}` is a place, and a point is wanted here"), "name a [point.NAME]")),
-            name => self.named_end(entry, key.into(), name),
-        }
-    }
-
-    /// The end at a key.
-    pub fn end(&self, entry: &Entry<'_>, key: &str) -> Read<End> {
-        self.end_in(entry, key.into(), entry.value(key)?)
-    }
-
     /// The end that a place is.
-    pub fn end_of<'s>(&self, entry: &Entry<'_>, at: impl Into<Spot<'s>>, place: &field::Place) -> Read<End> {
+    pub fn end<'s>(&self, entry: &Entry<'_>, at: impl Into<Spot<'s>>, place: &field::Place) -> Read<End> {
         self.end_in(entry, at.into(), &place.write())
     }
 
     /// At least `least` and at most `most` ends, no two neighbours alike.
-    pub fn ends_of(&self, entry: &Entry<'_>, key: &str, places: &[field::Place], least: usize, most: usize) -> Read<Vec<End>> {
+    pub fn ends(&self, entry: &Entry<'_>, key: &str, places: &[field::Place], least: usize, most: usize) -> Read<Vec<End>> {
         if !(least..=most).contains(&places.len()) {
             let wanted = if least == most { format!("{least}") } else { format!("at least {least}") };
             let names = ["\"A\"", "\"B\"", "\"C\""];
             let cure = format!("write {key} = [{}], with names of points, \"ground\" or fixed places", names[..least.min(3)].join(", "));
             return Err(entry.refuse(key, format!("`{key}` wants {wanted} points, and this has {}", places.len()), cure));
         }
-        let ends = all(places.iter().enumerate().map(|(k, place)| self.end_of(entry, Spot { key, item: Some(k) }, place)))?;
+        let ends = all(places.iter().enumerate().map(|(k, place)| self.end(entry, Spot { key, item: Some(k) }, place)))?;
         match (1..ends.len()).find(|&k| ends[k].terms == ends[k - 1].terms) {
             Some(k) => Err(entry.refuse(Spot { key, item: Some(k) }, "the same point comes twice", "name two different points")),
             None => Ok(ends),
@@ -54,53 +41,24 @@ impl Assembly<'_> {
     }
 
     /// Two different ends.
-    pub fn pair_of(&self, entry: &Entry<'_>, key: &str, places: &[field::Place]) -> Read<[End; 2]> {
-        let ends = self.ends_of(entry, key, places, 2, 2)?;
+    pub fn pair(&self, entry: &Entry<'_>, key: &str, places: &[field::Place]) -> Read<[End; 2]> {
+        let ends = self.ends(entry, key, places, 2, 2)?;
         Ok(ends.try_into().expect("two ends"))
     }
 
     /// Two ends of which at least one can move.
-    pub fn moving_pair_of(&self, entry: &Entry<'_>, key: &str, places: &[field::Place]) -> Read<[End; 2]> {
-        let ends = self.pair_of(entry, key, places)?;
+    pub fn moving_pair(&self, entry: &Entry<'_>, key: &str, places: &[field::Place]) -> Read<[End; 2]> {
+        let ends = self.pair(entry, key, places)?;
         self.require_free(entry, key, &ends)?;
         Ok(ends)
     }
 
     /// The point of a name.
-    pub fn point_of(&self, entry: &Entry<'_>, key: &str, name: &str) -> Read<End> {
+    pub fn point(&self, entry: &Entry<'_>, key: &str, name: &str) -> Read<End> {
         match name {
             GROUND => Err(entry.refuse(key, format!("`{GROUND}` is a place, and a point is wanted here"), "name a [point.NAME]")),
             name => self.named_end(entry, key.into(), name),
         }
-    }
-
-    /// At least `least` and at most `most` ends, no two neighbours alike.
-    pub fn ends(&self, entry: &Entry<'_>, key: &str, least: usize, most: usize) -> Read<Vec<End>> {
-        let items = entry.list(key)?;
-        if !(least..=most).contains(&items.len()) {
-            let wanted = if least == most { format!("{least}") } else { format!("at least {least}") };
-            let names = ["\"A\"", "\"B\"", "\"C\""];
-            let cure = format!("write {key} = [{}], with names of points, \"ground\" or fixed places", names[..least.min(3)].join(", "));
-            return Err(entry.refuse(key, format!("`{key}` wants {wanted} points, and this has {}", items.len()), cure));
-        }
-        let ends = all(items.iter().enumerate().map(|(k, item)| self.end_in(entry, Spot { key, item: Some(k) }, item)))?;
-        match (1..ends.len()).find(|&k| ends[k].terms == ends[k - 1].terms) {
-            Some(k) => Err(entry.refuse(Spot { key, item: Some(k) }, "the same point comes twice", "name two different points")),
-            None => Ok(ends),
-        }
-    }
-
-    /// Two different ends.
-    pub fn pair(&self, entry: &Entry<'_>, key: &str) -> Read<[End; 2]> {
-        let ends = self.ends(entry, key, 2, 2)?;
-        Ok(ends.try_into().expect("two ends"))
-    }
-
-    /// Two ends of which at least one can move.
-    pub fn moving_pair(&self, entry: &Entry<'_>, key: &str) -> Read<[End; 2]> {
-        let ends = self.pair(entry, key)?;
-        self.require_free(entry, key, &ends)?;
-        Ok(ends)
     }
 
     /// Refuses something that ties only places whose motion is known.

@@ -1,22 +1,23 @@
 //! The JSON Schema of the model file, made from the same tables that the reader uses.
 
+use super::fields::Keys;
 use super::key::{Key, Kind, Shape};
 use super::value::{Table, Value};
-use super::{BAR_KEYS, BODY_KEYS, MODEL_KEYS, OUTPUT_KEYS, POINT_KEYS, REPEAT, SIMULATION_KEYS, constraints, drives, forces, joints};
+use super::{Bar, Body, ModelKeys, OutputKeys, Point, REPEAT, SimulationKeys, constraints, drives, forces, joints};
 
 /// JSON Schema (draft 2020-12) of the model file.
 pub fn schema() -> Value {
-    let mut properties: Table = MODEL_KEYS.iter().map(|key| (key.name, described(key))).collect();
+    let mut properties: Table = ModelKeys::KEYS.iter().map(|key| (key.name, described(key))).collect();
     properties.push("parameters", table([("type", Value::text("object")), ("additionalProperties", shape(Shape::Number))]));
-    properties.push("point", entries(object(POINT_KEYS, None)));
-    properties.push("body", entries(object(BODY_KEYS, None)));
-    properties.push("bar", entries(object(BAR_KEYS, None)));
+    properties.push("point", entries(named(Point::KEYS)));
+    properties.push("body", entries(named(Body::KEYS)));
+    properties.push("bar", entries(named(Bar::KEYS)));
     properties.push("joint", entries(one_of(joints::kinds())));
     properties.push("constraint", entries(one_of(constraints::KINDS)));
     properties.push("drive", entries(one_of(drives::KINDS)));
     properties.push("force", entries(one_of(forces::KINDS)));
-    properties.push("simulation", object(SIMULATION_KEYS, None));
-    properties.push("output", object(OUTPUT_KEYS, None));
+    properties.push("simulation", object(SimulationKeys::KEYS, None));
+    properties.push("output", object(OutputKeys::KEYS, None));
     table([
         ("$schema", Value::text("https://json-schema.org/draft/2020-12/schema")),
         ("title", Value::text("holonom model")),
@@ -54,24 +55,29 @@ fn one_of<'a>(kinds: impl IntoIterator<Item = &'a Kind>) -> Value {
 }
 
 /// A table with these keys and no others; of a kind, also `type` and `repeat`.
-fn object(keys: &[Key], kind: Option<&str>) -> Value {
+fn object<'a>(keys: impl IntoIterator<Item = &'a Key>, kind: Option<&str>) -> Value {
     let mut properties = Table::default();
-    let mut required: Vec<&str> = Vec::new();
+    let mut required: Vec<Value> = Vec::new();
     if let Some(kind) = kind {
         properties.push("type", table([("const", Value::text(kind))]));
         properties.push(REPEAT.name, described(&REPEAT));
-        required.push("type");
+        required.push(Value::text("type"));
     }
     for key in keys {
         properties.push(key.name, described(key));
+        required.extend(key.required.then(|| Value::text(key.name)));
     }
-    required.extend(keys.iter().filter(|key| key.required).map(|key| key.name));
     table([
         ("type", Value::text("object")),
         ("properties", Value::Table(properties)),
-        ("required", texts(&required)),
+        ("required", Value::List(required)),
         ("additionalProperties", Value::Bool(false)),
     ])
+}
+
+/// An entry without a `type`.
+fn named(keys: &[Key]) -> Value {
+    object(keys.iter().chain([&REPEAT]), None)
 }
 
 fn described(key: &Key) -> Value {

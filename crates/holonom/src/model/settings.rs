@@ -4,7 +4,7 @@ use super::assembly::Assembly;
 use super::entry::{Entry, Spot, all};
 use super::fault::{Read, suggest};
 use super::fields::{Keys, List, Map, Number};
-use super::key::{Key, Shape};
+use super::key::Shape;
 use crate::simulation::{Choice, ProjectionChoice};
 use crate::system::Place;
 
@@ -122,12 +122,6 @@ pub struct OutputKeys {
     pub reactions: Option<bool>,
 }
 
-/// Keys of `[simulation]`.
-pub const SIMULATION: &[Key] = SimulationKeys::KEYS;
-
-/// Keys of `[output]`.
-pub const OUTPUT: &[Key] = OutputKeys::KEYS;
-
 /// How a model is run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
@@ -153,10 +147,10 @@ pub struct Output {
 impl SimulationKeys {
     /// What the keys come to. What is wrong with one is recorded, and it counts as not given.
     pub(super) fn settings(&self, entry: &Entry<'_>, assembly: &Assembly<'_>) -> Settings {
-        let number = |key, number: &Option<Number>| entry.optional_of(key, number, Number::number).unwrap_or(None);
-        let positive = |key, number: &Option<Number>| entry.optional_of(key, number, Number::positive).unwrap_or(None);
+        let number = |key, number: &Option<Number>| entry.optional(key, number, Number::number).unwrap_or(None);
+        let positive = |key, number: &Option<Number>| entry.optional(key, number, Number::positive).unwrap_or(None);
         let whole =
-            |key, number: &Option<Number>| entry.optional_of(key, number, |number, entry, key| number.whole(entry, key, 1)).unwrap_or(None);
+            |key, number: &Option<Number>| entry.optional(key, number, |number, entry, key| number.whole(entry, key, 1)).unwrap_or(None);
         let small = |number: Option<u32>| number.map(|number| number.min(u8::MAX.into()) as u8);
         let (end, step) = (positive("end", &self.end), positive("step", &self.step));
         let choice = Choice {
@@ -175,14 +169,14 @@ impl SimulationKeys {
             omega: positive("omega", &self.omega),
             xi: positive("xi", &self.xi),
             constraint_at: entry
-                .optional_of("constraint_at", &self.constraint_at, |word, entry, key| entry.choice_of(key, word, &["end", "mean"]))
+                .optional("constraint_at", &self.constraint_at, |word, entry, key| entry.choice(key, word, &["end", "mean"]))
                 .unwrap_or(None)
                 .map(str::to_string),
             tolerance: positive("tolerance", &self.tolerance),
             max_iterations: whole("max_iterations", &self.max_iterations).map(|most| most as usize),
             iterations: whole("iterations", &self.iterations).map(|count| count as usize),
             subdivide: self.subdivide,
-            projection: self.projection.as_ref().map(|keys| entry.within("projection".into(), |inner| keys.choice(inner, assembly))),
+            projection: self.projection.as_ref().map(|keys| entry.within("projection", keys, |inner| keys.choice(inner, assembly))),
         };
         Settings { end, step, choice }
     }
@@ -194,11 +188,11 @@ impl ProjectionKeys {
             levels: self.levels.as_ref().map(|levels| levels.to_vec()),
             matrix: self.matrix.clone(),
             solve: self.solve.clone(),
-            penalty: entry.optional_of("penalty", &self.penalty, Number::positive).unwrap_or(None),
-            strength: entry.optional_of("strength", &self.strength, Number::not_negative).unwrap_or(None),
+            penalty: entry.optional("penalty", &self.penalty, Number::positive).unwrap_or(None),
+            strength: entry.optional("strength", &self.strength, Number::not_negative).unwrap_or(None),
             shadow: self.shadow,
             weights: entry
-                .optional_of("weights", &self.weights, |weights, entry, key| node_weights(weights, entry, key, assembly))
+                .optional("weights", &self.weights, |weights, entry, key| node_weights(weights, entry, key, assembly))
                 .unwrap_or(None),
         }
     }
@@ -214,7 +208,7 @@ fn node_weights(weights: &Map<Number>, entry: &Entry<'_>, key: &str, assembly: &
             false => Err(entry.refuse_key(name, format!("there is no point `{name}`"), suggest(name, known()))),
         }
     };
-    let given = entry.within(key.into(), |entry| all(weights.iter().map(|given| weight(given, entry))))?;
+    let given = entry.within(key, weights, |entry| all(weights.iter().map(|given| weight(given, entry))))?;
     let free: Vec<usize> = assembly.points.iter().enumerate().filter(|(_, point)| point.end.free).map(|(k, _)| k).collect();
     let mut of_nodes = vec![0.0; assembly.builder.free_nodes()];
     for point in free.into_iter().map(|k| &assembly.points[k]) {
@@ -239,21 +233,9 @@ impl OutputKeys {
             }
         };
         Output {
-            every: entry.optional_of("every", &self.every, |every, entry, key| every.whole(entry, key, 1)).unwrap_or(None),
+            every: entry.optional("every", &self.every, |every, entry, key| every.whole(entry, key, 1)).unwrap_or(None),
             points: self.points.as_ref().and_then(|points| all(points.iter().enumerate().map(point)).ok()),
             reactions: self.reactions,
         }
     }
-}
-
-/// Reads `[simulation]`.
-pub fn read(root: &Entry<'_>, assembly: &Assembly<'_>) -> Read<Settings> {
-    let keys: Option<SimulationKeys> = root.may_have("simulation")?;
-    Ok(keys.map_or_else(Settings::default, |keys| root.within("simulation".into(), |entry| keys.settings(entry, assembly))))
-}
-
-/// Reads `[output]`.
-pub fn output(root: &Entry<'_>, assembly: &Assembly<'_>) -> Read<Output> {
-    let keys: Option<OutputKeys> = root.may_have("output")?;
-    Ok(keys.map_or_else(Output::default, |keys| root.within("output".into(), |entry| keys.output(entry, assembly))))
 }

@@ -18,7 +18,7 @@ pub use inertia_key::Inertia;
 pub use info::BodyInfo;
 pub use mesh::Mesh;
 pub use orientation::Orientation;
-pub use read::{Body, KEYS, body as read};
+pub use read::Body;
 pub use rigid::RigidBody;
 pub use shape::{MassProperties, Shape};
 pub use shape_key::Solid;

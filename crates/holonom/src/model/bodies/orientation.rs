@@ -2,14 +2,15 @@
 
 use nalgebra::{Matrix3, Quaternion, Rotation3, Unit, UnitQuaternion, Vector3};
 
-use crate::model::entry::Entry;
+use crate::model::entry::{Entry, Spot, Written};
 use crate::model::fault::{Read, Refused};
 use crate::model::fields::{Keys, List, Number, Rows};
 use crate::model::key::Shape;
+use crate::model::value::Value;
 
 /// How the axes of a body are turned from those of the model; one of its spellings is given.
 #[derive(Clone, Debug, PartialEq, Keys)]
-#[table("an orientation")]
+#[table("an orientation", refuse_bare)]
 pub struct Orientation {
     /// unit quaternion, its real part first
     #[key(default = "none", shape = Shape::Numbers(4, 4))]
@@ -92,7 +93,7 @@ impl Orientation {
     pub(super) fn rotation(&self, entry: &Entry<'_>, dim: usize) -> Read<Matrix3<f64>> {
         let given: Vec<&str> = SPELLINGS.into_iter().filter(|key| self.value(key).is_some()).collect();
         let angle = ["angle", "angle_deg"].into_iter().find(|key| self.value(key).is_some());
-        if given.is_empty() && angle.is_none() && !entry.table.is_empty() {
+        if given.is_empty() && angle.is_none() && entry.has_fault() {
             // What it says is under a name that is not known, which has been told.
             return Err(Refused);
         }
@@ -146,6 +147,16 @@ impl Orientation {
             (None, Some(angle)) => angle.number(entry, "angle_deg").map(f64::to_radians),
             (None, None) => Err(entry.refuse_all("this orientation has no angle", "add angle = … in radians, or angle_deg = … in degrees")),
         }
+    }
+}
+
+fn refuse_bare(entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Refused {
+    match value {
+        Value::List(_) => {
+            let cure = "write orientation = { quat_wxyz = [w, x, y, z] } or { quat_xyzw = [x, y, z, w] }";
+            entry.refuse(spot, "four bare numbers do not say which comes first", cure)
+        }
+        _ => entry.refuse_no_table(spot, value),
     }
 }
 

@@ -7,11 +7,10 @@ use super::orientation::Orientation;
 use super::rigid::RigidBody;
 use super::shape_key::{Shaped, Solid};
 use crate::model::entry::{Entry, all};
-use crate::model::fault::{Read, Refused};
+use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Map, Number, Turn};
 use crate::model::geometry::Vec3;
-use crate::model::key::{Key, Shape};
-use crate::model::value::{Table, Value};
+use crate::model::key::Shape;
 
 /// A rigid body as it is written.
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -48,58 +47,24 @@ pub struct Body {
     /// named directions in body axes, used as "NAME.AXIS"
     #[key(unit = "any", default = "none")]
     pub axes: Option<Map<List<Number>>>,
-    /// makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"
-    #[key(default = "one entry", shape = Shape::Repeat)]
-    pub repeat: Option<String>,
-}
-
-/// The keys of a body.
-pub const KEYS: &[Key] = <Body as Keys>::KEYS;
-
-/// Reads and evaluates a body.
-pub fn body(entry: &Entry<'_>, dim: usize) -> Read<RigidBody> {
-    let bare: Vec<&str> = entry.table.iter().filter(|(key, value)| refuse_bare(entry, key, value).is_err()).map(|(key, _)| key).collect();
-    if bare.is_empty() {
-        return Body::read(entry)?.evaluate(entry, dim);
-    }
-    // What else is wrong is told, too.
-    let others: Table = entry.table.iter().filter(|(key, _)| !bare.contains(key)).map(|(key, value)| (key, value.clone())).collect();
-    Body::read(&Entry { table: &others, ..*entry }).and(Err(Refused))
-}
-
-/// Refuses what is often written in place of a table, with the table that it would be.
-fn refuse_bare(entry: &Entry<'_>, key: &str, value: &Value) -> Read<()> {
-    match (key, value) {
-        ("shape", Value::Table(_)) => Ok(()),
-        ("shape", _) => {
-            Err(entry.refuse(key, "a shape is a table with one key", "write shape = { box = [1, 1, 1] }, { sphere = 1 } and so on"))
-        }
-        ("orientation", Value::List(_)) => {
-            let cure = "write orientation = { quat_wxyz = [w, x, y, z] } or { quat_xyzw = [x, y, z, w] }";
-            Err(entry.refuse(key, "four bare numbers do not say which comes first", cure))
-        }
-        _ => Ok(()),
-    }
 }
 
 impl Body {
     /// The body at the start; of a mesh that is not at its centre of mass, `position` is that of the centre all the same.
-    fn evaluate(&self, entry: &Entry<'_>, dim: usize) -> Read<RigidBody> {
+    pub(in crate::model) fn evaluate(&self, entry: &Entry<'_>, dim: usize) -> Read<RigidBody> {
         let vector = |list: &List<Number>, entry: &Entry<'_>, key: &str| list.vector(entry, key, dim);
-        let mass = entry.optional_of("mass", &self.mass, Number::positive);
-        let density = entry.optional_of("density", &self.density, Number::positive);
-        let inertia = entry.optional_of("inertia", &self.inertia, |inertia, entry, key| inertia.tensor(entry, key, dim));
-        let shape =
-            entry.optional_of("shape", &self.shape, |solid, entry, key| entry.within(key.into(), |entry| solid.evaluate(entry, dim)));
+        let mass = entry.optional("mass", &self.mass, Number::positive);
+        let density = entry.optional("density", &self.density, Number::positive);
+        let inertia = entry.optional("inertia", &self.inertia, |inertia, entry, key| inertia.tensor(entry, key, dim));
+        let shape = entry.optional("shape", &self.shape, |solid, entry, key| entry.within(key, solid, |entry| solid.evaluate(entry, dim)));
         let position = self.position.vector(entry, "position", dim);
-        let orientation = entry.optional_of("orientation", &self.orientation, |orientation, entry, key| {
-            entry.within(key.into(), |entry| orientation.rotation(entry, dim))
+        let orientation = entry.optional("orientation", &self.orientation, |orientation, entry, key| {
+            entry.within(key, orientation, |entry| orientation.rotation(entry, dim))
         });
-        let velocity = entry.optional_of("velocity", &self.velocity, vector);
-        let angular_velocity =
-            entry.optional_of("angular_velocity", &self.angular_velocity, |turn, entry, key| turn.vector(entry, key, dim));
-        let points = entry.optional_of("points", &self.points, |points, entry, key| vectors(entry, key, points, dim));
-        let axes = entry.optional_of("axes", &self.axes, |axes, entry, key| vectors(entry, key, axes, dim));
+        let velocity = entry.optional("velocity", &self.velocity, vector);
+        let angular_velocity = entry.optional("angular_velocity", &self.angular_velocity, |turn, entry, key| turn.vector(entry, key, dim));
+        let points = entry.optional("points", &self.points, |points, entry, key| vectors(entry, key, points, dim));
+        let axes = entry.optional("axes", &self.axes, |axes, entry, key| vectors(entry, key, axes, dim));
         let (mass, density, inertia, shape) = (mass?, density?, inertia?, shape?);
         let (mass, inertia) = substance(entry, dim, mass, density, inertia, shape.as_ref())?;
         let world_from_body = orientation?.unwrap_or_else(Matrix3::identity);
@@ -134,7 +99,7 @@ fn vectors(entry: &Entry<'_>, key: &str, named: &Map<List<Number>>, dim: usize) 
         }
         Ok((name.to_string(), vector))
     };
-    entry.within(key.into(), |inner| all(named.iter().map(|(name, numbers)| each(inner, name, numbers))))
+    entry.within(key, named, |inner| all(named.iter().map(|(name, numbers)| each(inner, name, numbers))))
 }
 
 /// Mass and inertia from what is given of mass, density, inertia and shape.
@@ -187,7 +152,7 @@ const SIZES: std::ops::Range<f64> = 1e-30..1e30;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Field, Model, NoMeshes, REPEAT};
+    use crate::model::{Field, Model, NoMeshes, Table, Value};
 
     fn model(body: &Body, plane: Option<&str>) -> Model {
         let mut table: Table = [("body", Value::Table([("top", Field::write(body))].into_iter().collect()))].into_iter().collect();
@@ -248,12 +213,6 @@ mod tests {
         let body = Value::Table([("top", Value::Table(body))].into_iter().collect());
         let faults = Model::from_value(&Value::Table([("body", body)].into_iter().collect()), &NoMeshes).err().expect("wrong").0;
         let paths: Vec<&str> = faults.iter().map(|fault| fault.path.as_str()).collect();
-        assert_eq!(paths, ["body.top.shape", "body.top.orientation", "body.top.mass", "body.top"], "the last has no position");
-    }
-
-    #[test]
-    fn a_body_repeats_like_every_entry() {
-        let repeat = KEYS.last().expect("keys");
-        assert_eq!((repeat.name, repeat.default, repeat.unit, repeat.doc), (REPEAT.name, REPEAT.default, REPEAT.unit, REPEAT.doc));
+        assert_eq!(paths, ["body.top.mass", "body.top.shape", "body.top", "body.top.orientation"], "the third has no position");
     }
 }

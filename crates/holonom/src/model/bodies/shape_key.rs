@@ -3,15 +3,16 @@
 use std::sync::Arc;
 
 use super::shape::Shape as Evaluated;
-use crate::model::entry::Entry;
+use crate::model::entry::{Entry, Spot, Written};
 use crate::model::fault::{Read, Refused};
 use crate::model::fields::{Keys, List, Number};
 use crate::model::key::{Key, Shape};
+use crate::model::value::Value;
 use crate::record::SceneShape;
 
 /// The shape of a body, of uniform density; one of its keys is given.
 #[derive(Clone, Debug, PartialEq, Keys)]
-#[table("a shape")]
+#[table("a shape", refuse_bare)]
 pub struct Solid {
     /// its edges along x, y and z
     #[key(name = "box", unit = "m", default = "none", shape = Shape::Numbers(3, 3))]
@@ -99,7 +100,7 @@ impl Solid {
             }
             Self { mesh_file: Some(file), .. } => mesh(entry, file, dim)?,
             // What it says is under a name that is not known, which has been told.
-            _ if !entry.table.is_empty() => return Err(Refused),
+            _ if entry.has_fault() => return Err(Refused),
             _ => {
                 let cure = format!("give one of {}", names().collect::<Vec<_>>().join(", "));
                 return Err(entry.refuse_all("this shape says nothing", cure));
@@ -107,6 +108,10 @@ impl Solid {
         };
         Ok(Shaped { shape, picture })
     }
+}
+
+fn refuse_bare(entry: &Entry<'_>, spot: Spot<'_>, _value: &Value) -> Refused {
+    entry.refuse(spot, "a shape is a table with one key", "write shape = { box = [1, 1, 1] }, { sphere = 1 } and so on")
 }
 
 fn names() -> impl Iterator<Item = &'static str> {

@@ -1,10 +1,11 @@
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::ends::{End, difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Place};
 use crate::model::geometry::{cross, norm, unit};
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 use crate::record::LineKind;
 
 /// keeps three or more points on a straight line by the cross products of the paper (§7), one of three redundant in space
@@ -33,9 +34,9 @@ pub struct Collinear {
     pub points: List<Place>,
 }
 
-impl Build for Collinear {
+impl Element for Collinear {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-        let points = assembly.ends_of(entry, "points", &self.points, 3, usize::MAX)?;
+        let points = assembly.ends(entry, "points", &self.points, 3, usize::MAX)?;
         assembly.require_free(entry, "points", &points)?;
         let each = if assembly.dimension() == 3 { 3 } else { 1 };
         let rows = each * (points.len() - 2);

@@ -1,13 +1,14 @@
 use std::sync::Arc;
 
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::ends::{End, difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::expression::{Program, TimeProgram};
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number, Place};
 use crate::model::geometry::norm;
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 use crate::record::LineKind;
 use crate::system::{Constant, Signal};
 
@@ -36,10 +37,10 @@ pub struct Distance {
     pub length: Option<Number>,
 }
 
-impl Build for Distance {
+impl Element for Distance {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-        let ends = assembly.moving_pair_of(entry, "between", &self.between);
-        let length = entry.optional_of("length", &self.length, |length, entry, key| length.formula(entry, key, &["t"]));
+        let ends = assembly.moving_pair(entry, "between", &self.between);
+        let length = entry.optional("length", &self.length, |length, entry, key| length.formula(entry, key, &["t"]));
         let (ends, length) = (ends?, length?);
         let [a, b] = &ends;
         let start = norm(difference(a, b));

@@ -1,10 +1,11 @@
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::ends::{End, difference, fixed, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Place};
 use crate::model::geometry::unit;
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 
 /// keeps a point where it starts, or two points as far apart and in the direction in which they start
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -34,7 +35,7 @@ pub struct Fixed {
     pub between: Option<List<Place>>,
 }
 
-impl Build for Fixed {
+impl Element for Fixed {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let (key, [a, b]) = self.ends(assembly, entry)?;
         assembly.require_free(entry, key, &[a.clone(), b.clone()])?;
@@ -53,8 +54,8 @@ impl Fixed {
     fn ends(&self, assembly: &Assembly<'_>, entry: &Entry<'_>) -> Read<(&'static str, [End; 2])> {
         match (&self.point, &self.between) {
             (Some(_), Some(_)) => Err(entry.refuse("between", "`point` and `between` exclude each other", "keep one of the two")),
-            (Some(point), None) => Ok(("point", [fixed([0.0; 3], "ground".into()), assembly.point_of(entry, "point", point)?])),
-            (None, Some(between)) => Ok(("between", assembly.pair_of(entry, "between", between)?)),
+            (Some(point), None) => Ok(("point", [fixed([0.0; 3], "ground".into()), assembly.point(entry, "point", point)?])),
+            (None, Some(between)) => Ok(("between", assembly.pair(entry, "between", between)?)),
             (None, None) => Err(entry.refuse_all(format!("`{}` has neither `point` nor `between`", entry.name), "add one of them")),
         }
     }

@@ -1,10 +1,11 @@
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::ends::{difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Place};
 use crate::model::geometry::{dot, norm};
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 
 /// keeps the directions of two pairs of points at a right angle
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -35,10 +36,10 @@ pub struct Perpendicular {
     pub second: List<Place>,
 }
 
-impl Build for Perpendicular {
+impl Element for Perpendicular {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-        let first = assembly.pair_of(entry, "first", &self.first);
-        let second = assembly.pair_of(entry, "second", &self.second);
+        let first = assembly.pair(entry, "first", &self.first);
+        let second = assembly.pair(entry, "second", &self.second);
         let ([a, b], [c, d]) = (first?, second?);
         assembly.require_free(entry, "first", &[a.clone(), b.clone(), c.clone(), d.clone()])?;
         let (u, w) = (difference(&a, &b), difference(&c, &d));

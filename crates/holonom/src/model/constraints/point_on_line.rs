@@ -1,10 +1,11 @@
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::ends::{End, difference, fixed, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number, Place};
 use crate::model::geometry::{across, cross, dot, norm, unit};
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 use crate::record::LineKind;
 
 /// keeps a point on a line of fixed direction, or on the line through two points
@@ -39,7 +40,7 @@ pub struct PointOnLine {
     pub line: Option<List<Place>>,
 }
 
-impl Build for PointOnLine {
+impl Element for PointOnLine {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         match &self.line {
             Some(line) => self.between_points(assembly, entry, line),
@@ -51,8 +52,8 @@ impl Build for PointOnLine {
 impl PointOnLine {
     fn along_direction(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let dim = assembly.dimension();
-        let point = assembly.point_of(entry, "point", &self.point);
-        let through = entry.optional_of("through", &self.through, |through, entry, key| assembly.end_of(entry, key, through));
+        let point = assembly.point(entry, "point", &self.point);
+        let through = entry.optional("through", &self.through, |through, entry, key| assembly.end(entry, key, through));
         let direction = match &self.direction {
             Some(direction) => direction.vector(entry, "direction", dim),
             None => Err(entry.refuse_all(format!("`{}` has neither `direction` nor `line`", entry.name), "add one of them")),
@@ -87,7 +88,7 @@ impl PointOnLine {
                 entry.refuse(key, format!("`{key}` and `line` exclude each other"), "keep one of the two");
             }
         }
-        let (point, line) = (assembly.point_of(entry, "point", &self.point), assembly.pair_of(entry, "line", line));
+        let (point, line) = (assembly.point(entry, "point", &self.point), assembly.pair(entry, "line", line));
         let (point, [a, b]) = (point?, line?);
         assembly.require_free(entry, "point", &[point.clone(), a.clone(), b.clone()])?;
         let (u, w) = (difference(&a, &b), difference(&a, &point));

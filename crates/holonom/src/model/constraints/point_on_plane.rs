@@ -1,10 +1,11 @@
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::ends::{difference, fixed, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number, Place};
 use crate::model::geometry::{dot, norm};
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 
 /// keeps a point on a plane of fixed direction; not in planar models
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -34,13 +35,13 @@ pub struct PointOnPlane {
     pub through: Option<Place>,
 }
 
-impl Build for PointOnPlane {
+impl Element for PointOnPlane {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         if assembly.dimension() == 2 {
             return Err(entry.refuse("type", "there is no point-on-plane in a planar model", "use point-on-line"));
         }
-        let (point, normal) = (assembly.point_of(entry, "point", &self.point), self.normal.vector(entry, "normal", 3));
-        let through = entry.optional_of("through", &self.through, |through, entry, key| assembly.end_of(entry, key, through));
+        let (point, normal) = (assembly.point(entry, "point", &self.point), self.normal.vector(entry, "normal", 3));
+        let through = entry.optional("through", &self.through, |through, entry, key| assembly.end(entry, key, through));
         let (point, normal) = (point?, normal?);
         let through = through?.unwrap_or_else(|| fixed(point.start, "its start".into()));
         assembly.require_free(entry, "point", &[point.clone(), through.clone()])?;

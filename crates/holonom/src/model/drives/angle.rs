@@ -1,10 +1,10 @@
 use super::coordinate::drive;
 use super::profile::Profile;
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::Keys;
-use crate::model::key::Build;
 
 /// a motor that turns a joint as it is told, counted from the start over any number of turns
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -37,7 +37,7 @@ pub struct Angle {
     pub profile: Profile,
 }
 
-impl Build for Angle {
+impl Element for Angle {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         drive(assembly, entry, &self.joint, &self.profile, true)
     }

@@ -1,10 +1,10 @@
 use super::coordinate::drive;
 use super::profile::Profile;
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::Keys;
-use crate::model::key::Build;
 
 /// a drive that moves a joint along its axis as it is told, counted from the start
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -36,7 +36,7 @@ pub struct Displacement {
     pub profile: Profile,
 }
 
-impl Build for Displacement {
+impl Element for Displacement {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         drive(assembly, entry, &self.joint, &self.profile, false)
     }

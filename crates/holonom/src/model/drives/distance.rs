@@ -2,12 +2,13 @@ use std::sync::Arc;
 
 use super::profile::Profile;
 use crate::model::assembly::{Assembly, Effort};
+use crate::model::element::Element;
 use crate::model::ends::{difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Place};
 use crate::model::geometry::norm;
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 use crate::record::LineKind;
 use crate::system::Signal;
 
@@ -46,9 +47,9 @@ pub struct Distance {
     pub profile: Profile,
 }
 
-impl Build for Distance {
+impl Element for Distance {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-        let ends = assembly.moving_pair_of(entry, "between", &self.between);
+        let ends = assembly.moving_pair(entry, "between", &self.between);
         let profile = self.profile.signal(entry, "profile");
         let ([a, b], profile) = (ends?, profile?);
         let (start, given) = (norm(difference(&a, &b)), profile.at(0.0)[0]);

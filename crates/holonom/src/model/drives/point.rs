@@ -1,13 +1,14 @@
 use std::sync::Arc;
 
 use crate::model::assembly::{Assembly, Effort};
+use crate::model::element::Element;
 use crate::model::ends::{difference, fixed};
 use crate::model::entry::Entry;
 use crate::model::expression::TimeProgram;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
 use crate::model::geometry::{norm, unit};
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 use crate::system::Signal;
 
 /// a hand that leads a point, or a place of a body, along a path
@@ -39,10 +40,10 @@ pub struct Point {
     pub profile: List<Number>,
 }
 
-impl Build for Point {
+impl Element for Point {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let dim = assembly.dimension();
-        let point = assembly.point_of(entry, "point", &self.point);
+        let point = assembly.point(entry, "point", &self.point);
         let profile = self.profile.formulas(entry, "profile", dim, &["t"]);
         let (point, profile) = (point?, profile?);
         assembly.require_free(entry, "point", std::slice::from_ref(&point))?;

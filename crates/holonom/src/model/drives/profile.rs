@@ -107,7 +107,7 @@ impl Profile {
     pub(super) fn signal(&self, entry: &Entry<'_>, key: &str) -> Read<Arc<dyn Signal>> {
         let signal: Arc<dyn Signal> = match self {
             Self::Formula(formula) => Arc::new(TimeProgram(formula.formula(entry, key, &["t"])?)),
-            Self::Table(table) => Arc::new(entry.within(key.into(), |inner| table.spline(inner))?),
+            Self::Table(table) => Arc::new(entry.within(key, table, |inner| table.spline(inner))?),
         };
         let start = signal.at(0.0);
         if start.iter().any(|value| !value.is_finite()) {
@@ -121,7 +121,7 @@ impl Profile {
 
 impl ProfileTable {
     fn spline(&self, entry: &Entry<'_>) -> Read<Spline> {
-        let ends = entry.optional_of("ends", &self.ends, |ends, entry, key| entry.choice_of(key, ends, ENDS));
+        let ends = entry.optional("ends", &self.ends, |ends, entry, key| entry.choice(key, ends, ENDS));
         let spot = |k| Spot { key: "table", item: Some(k) };
         if self.table.len() < 2 {
             return Err(entry.refuse(

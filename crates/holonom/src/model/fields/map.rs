@@ -1,7 +1,7 @@
 use std::ops::Deref;
 
 use super::{Field, Shape};
-use crate::model::entry::{Entry, Spot, all};
+use crate::model::entry::{Entry, Spot, Written, all};
 use crate::model::fault::Read;
 use crate::model::value::Value;
 
@@ -14,13 +14,19 @@ impl<T: Field> Field for Map<T> {
 
     fn read(entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<Self> {
         let Value::Table(table) = value else { return Err(entry.wanted(spot, "a table", value)) };
-        entry.inside_at(spot, table, |inner| {
+        entry.within(spot, table, |inner| {
             all(table.iter().map(|(name, value)| Ok((name.to_string(), T::read(inner, name.into(), value)?)))).map(Self)
         })
     }
 
     fn write(&self) -> Value {
         Value::Table(self.iter().map(|(name, value)| (name.as_str(), value.write())).collect())
+    }
+}
+
+impl<T: Field> Written for Map<T> {
+    fn value(&self, key: &str) -> Option<Value> {
+        self.iter().find(|(name, _)| name == key).map(|(_, value)| value.write())
     }
 }
 

@@ -20,9 +20,10 @@ pub use rows::Rows;
 pub use site::Site;
 pub use turn::Turn;
 
-use super::entry::{Entry, Spot};
-use super::fault::{Read, suggest};
+use super::entry::{Entry, Spot, Written};
+use super::fault::Read;
 use super::key::{Key, Shape};
+use super::reader::Reader;
 use super::value::{Table, Value};
 
 /// A type that the value of a key may have.
@@ -45,7 +46,7 @@ pub trait Field: Sized {
 }
 
 /// A struct whose fields are the keys of a table; `#[derive(Keys)]` implements it.
-pub trait Keys: Sized {
+pub trait Keys: Written + Sized {
     /// The keys in order.
     const KEYS: &'static [Key];
 
@@ -53,10 +54,7 @@ pub trait Keys: Sized {
     ///
     /// # Errors
     /// What is missing or of another shape; the faults are recorded.
-    fn read(entry: &Entry<'_>) -> Read<Self>;
-
-    /// The value of a key as it would be written, if it is there.
-    fn value(&self, key: &str) -> Option<Value>;
+    fn read(reader: &Reader<'_>) -> Read<Self>;
 
     /// The table as it would be written.
     fn write(&self) -> Table {
@@ -74,48 +72,6 @@ pub trait Described: Keys {
     const EQUATIONS: &'static str;
     /// A small model that uses it.
     const EXAMPLE: &'static str;
-}
-
-impl Entry<'_> {
-    /// A key that must be there.
-    pub fn must_have<T: Field>(&self, key: &str) -> Read<T> {
-        T::read(self, key.into(), self.value(key)?)
-    }
-
-    /// A key that may be left out.
-    pub fn may_have<T: Field>(&self, key: &str) -> Read<Option<T>> {
-        self.table.get(key).map(|value| T::read(self, key.into(), value)).transpose()
-    }
-
-    /// Evaluates the value of a key, if it is there.
-    pub fn optional_of<'k, T, U>(
-        &self,
-        key: &'k str,
-        value: &Option<T>,
-        read: impl FnOnce(&T, &Self, &'k str) -> Read<U>,
-    ) -> Read<Option<U>> {
-        value.as_ref().map(|value| read(value, self, key)).transpose()
-    }
-
-    /// The value of a key that may be left out in general, and not here.
-    pub fn needed<'v, T>(&self, key: &str, value: &'v Option<T>) -> Read<&'v T> {
-        value.as_ref().ok_or_else(|| self.missing(key))
-    }
-
-    /// The word that a text is, which must be one of some.
-    pub fn choice_of(&self, key: &str, text: &str, words: &[&'static str]) -> Read<&'static str> {
-        let word = words.iter().copied().find(|&word| word == text);
-        word.ok_or_else(|| self.refuse(key, format!("`{key}` cannot be \"{text}\""), suggest(text, words.iter().copied())))
-    }
-
-    /// A table inside of this one, which messages call `what`.
-    pub fn read_inside<T: Keys>(&self, what: &str, spot: Spot<'_>, value: &Value) -> Read<T> {
-        let Value::Table(table) = value else { return Err(self.wanted(spot, "a table", value)) };
-        self.inside_at(spot, table, |inner| {
-            inner.refuse_unknown_keys(what, &T::KEYS.iter().collect::<Vec<_>>());
-            T::read(inner)
-        })
-    }
 }
 
 impl Field for String {

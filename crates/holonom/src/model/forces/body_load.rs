@@ -198,7 +198,7 @@ pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, given: Given<'
         }
         (Formulas::Torque(Turn::InSpace(_)), _) => Err(entry.wanted(key.into(), "a number", &Value::List(Vec::new()))),
     };
-    let in_body_axes = given.axes.map(|axes| entry.choice_of("axes", axes, &["world", "body"])).transpose();
+    let in_body_axes = given.axes.map(|axes| entry.choice("axes", axes, &["world", "body"])).transpose();
     let (formulas, in_body_axes) = (formulas?, in_body_axes? == Some("body"));
     finite(entry, key, &given.at, &formulas, dim)?;
     let mut nodes = Vec::new();

@@ -3,12 +3,13 @@ use std::sync::Arc;
 use super::coordinate_laws::{Resisting, Spring, Viscous};
 use crate::model::assembly::Assembly;
 use crate::model::bodies::nodes::Member;
+use crate::model::element::Element;
 use crate::model::ends::subtract;
 use crate::model::entry::{Entry, Spot, all};
 use crate::model::fault::Read;
 use crate::model::fields::{Field, Keys, List, Number, Place};
 use crate::model::geometry::unit;
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 
 use crate::system::{FunctionId, Part};
 
@@ -48,13 +49,17 @@ pub struct Bushing {
     pub damping: Option<List<Number>>,
 }
 
-impl Build for Bushing {
+impl Element for Bushing {
+    fn turns(&self) -> Vec<(&'static str, &str)> {
+        self.between.iter().map(|name| ("between", name.as_str())).collect()
+    }
+
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let count = if assembly.dimension() == 2 { 3 } else { 6 };
         let members = members(assembly, entry, &self.between);
         let at = assembly.place_at_start(entry, "at".into(), &self.at.write());
         let stiffness = numbers(entry, "stiffness", &self.stiffness, count);
-        let damping = entry.optional_of("damping", &self.damping, |damping, entry, key| numbers(entry, key, damping, count));
+        let damping = entry.optional("damping", &self.damping, |damping, entry, key| numbers(entry, key, damping, count));
         let (members, at, stiffness, damping) = (members?, at?, stiffness?, damping?);
         if stiffness.iter().chain(damping.iter().flatten()).all(|&number| number == 0.0) {
             return Err(entry.refuse_all(format!("the bushing `{}` does nothing", entry.name), "give it a stiffness or a damping above 0"));

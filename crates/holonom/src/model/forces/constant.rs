@@ -2,10 +2,11 @@ use std::sync::Arc;
 
 use super::point_load::PointLoad;
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 use crate::system::{self, Differentiated, ForceFunction};
 
 /// a force on a point, or on a place of a body, that never changes, booked as work
@@ -33,9 +34,9 @@ pub struct Constant {
     pub force: List<Number>,
 }
 
-impl Build for Constant {
+impl Element for Constant {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-        let (point, force) = (assembly.point_of(entry, "point", &self.point), self.force.vector(entry, "force", assembly.dimension()));
+        let (point, force) = (assembly.point(entry, "point", &self.point), self.force.vector(entry, "force", assembly.dimension()));
         let (load, nodes) = PointLoad::new(entry, &point?, Steady(force?))?;
         assembly.builder.load(entry.name, &nodes, Arc::new(Differentiated(load)));
         Ok(())

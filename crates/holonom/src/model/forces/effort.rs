@@ -3,11 +3,12 @@ use std::sync::Arc;
 use super::coordinate_laws;
 use super::joint::quantity;
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, Map, Number};
 use crate::model::joints::coordinate;
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 use crate::system::MAX_ARGUMENTS;
 
 /// a motor or any other effort along the coordinate of a joint, as a formula of time, of that coordinate and its rate, and of those
@@ -58,13 +59,13 @@ pub struct Effort {
     pub coordinates: Option<Map<String>>,
 }
 
-impl Build for Effort {
+impl Element for Effort {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let own = coordinate(assembly, entry, "joint".into(), &self.joint);
         let mut names = vec!["t".to_string(), "q".into(), "q_rate".into()];
         let mut coordinates = vec![own?];
         if let Some(others) = &self.coordinates {
-            entry.within("coordinates".into(), |inner| {
+            entry.within("coordinates", others, |inner| {
                 for (name, other) in others.iter() {
                     if names.iter().any(|known| known == name) {
                         return Err(inner.refuse_key(name, format!("`{name}` is the name of another variable"), "give it another name"));

@@ -2,11 +2,12 @@ use std::sync::Arc;
 
 use super::point_load::PointLoad;
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::entry::{Entry, Spot};
 use crate::model::expression::Program;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 use crate::system::{self, Differentiated, ForceFunction};
 
 /// Time, and position and velocity in world axes.
@@ -37,13 +38,13 @@ pub struct Expression {
     pub force: List<Number>,
 }
 
-impl Build for Expression {
+impl Element for Expression {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let dim = assembly.dimension();
         let axes = assembly.axes.name;
         let here = |name: &&&str| **name == "t" || name.chars().last().is_some_and(|axis| axes.contains(axis));
         let variables: Vec<&str> = VARIABLES.iter().filter(here).copied().collect();
-        let (point, force) = (assembly.point_of(entry, "point", &self.point), self.force.formulas(entry, "force", dim, &variables));
+        let (point, force) = (assembly.point(entry, "point", &self.point), self.force.formulas(entry, "force", dim, &variables));
         let (point, force) = (point?, force?);
         let start = point.start;
         let at: Vec<f64> = std::iter::once(0.0).chain(start[..dim].iter().copied()).chain([0.0; 3]).collect();

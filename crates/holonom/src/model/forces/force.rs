@@ -1,9 +1,10 @@
 use super::body_load::{self, Formulas, Given, VARIABLES, add};
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Field, Keys, List, Number, Place};
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 
 /// a force at a place of a body, in the axes of the model or following the body, as formulas of time and of its motion
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -42,10 +43,14 @@ pub struct Force {
     pub axes: Option<String>,
 }
 
-impl Build for Force {
+impl Element for Force {
+    fn turns(&self) -> Vec<(&'static str, &str)> {
+        vec![("body", &self.body)]
+    }
+
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let body = body_load::body(assembly, entry, "body", &self.body);
-        let at = entry.optional_of("at", &self.at, |at, entry, key| assembly.place_at_start(entry, key.into(), &at.write()));
+        let at = entry.optional("at", &self.at, |at, entry, key| assembly.place_at_start(entry, key.into(), &at.write()));
         let (body, at) = (body?, at?);
         let place = at.unwrap_or(assembly.bodies[body].position);
         let at = assembly.body_end(body, place, "");

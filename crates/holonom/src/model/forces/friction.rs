@@ -3,11 +3,11 @@ use std::sync::Arc;
 use super::coordinate_laws::{Dry, Resisting, Viscous};
 use super::joint::quantity;
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, Number};
 use crate::model::joints::coordinate;
-use crate::model::key::Build;
 
 /// friction in a joint: an effort of one size against the motion, smooth at rest, so that what should stick creeps slowly; and one
 /// in proportion to the speed
@@ -51,11 +51,11 @@ pub struct Friction {
     pub damping: Option<Number>,
 }
 
-impl Build for Friction {
+impl Element for Friction {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let coordinate = coordinate(assembly, entry, "joint".into(), &self.joint);
         let (effort, speed) = (self.effort.not_negative(entry, "effort"), self.speed.positive(entry, "speed"));
-        let damping = entry.optional_of("damping", &self.damping, Number::not_negative);
+        let damping = entry.optional("damping", &self.damping, Number::not_negative);
         let (coordinate, effort, speed, damping) = (coordinate?, effort?, speed?, damping?);
         let q = quantity(assembly, &coordinate);
         assembly.builder.law(entry.name, &[q], Arc::new(Resisting(Dry { effort, speed })));

@@ -2,13 +2,14 @@ use std::sync::Arc;
 
 use super::laws::{Damper, Energy, FORCE_VARIABLES, Force, LinearSpring, SHORTEST};
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::ends::{difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::expression::Program;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number, Place};
 use crate::model::geometry::norm;
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 use crate::record::LineKind;
 use crate::system::Law;
 
@@ -53,14 +54,14 @@ pub struct Spring {
     pub force: Option<Number>,
 }
 
-impl Build for Spring {
+impl Element for Spring {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-        let ends = assembly.moving_pair_of(entry, "between", &self.between);
-        let stiffness = entry.optional_of("stiffness", &self.stiffness, Number::not_negative);
-        let rest_length = entry.optional_of("rest_length", &self.rest_length, Number::not_negative);
-        let damping = entry.optional_of("damping", &self.damping, Number::not_negative);
-        let energy = entry.optional_of("energy", &self.energy, |energy, entry, key| energy.formula(entry, key, &["length"]));
-        let force = entry.optional_of("force", &self.force, |force, entry, key| force.formula(entry, key, FORCE_VARIABLES));
+        let ends = assembly.moving_pair(entry, "between", &self.between);
+        let stiffness = entry.optional("stiffness", &self.stiffness, Number::not_negative);
+        let rest_length = entry.optional("rest_length", &self.rest_length, Number::not_negative);
+        let damping = entry.optional("damping", &self.damping, Number::not_negative);
+        let energy = entry.optional("energy", &self.energy, |energy, entry, key| energy.formula(entry, key, &["length"]));
+        let force = entry.optional("force", &self.force, |force, entry, key| force.formula(entry, key, FORCE_VARIABLES));
         if let Self { stiffness: None, rest_length: None, damping: None, energy: None, force: None, .. } = self {
             entry.refuse_all(format!("the spring `{}` does nothing", entry.name), "add stiffness, damping, energy or force");
         }

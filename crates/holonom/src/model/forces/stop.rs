@@ -3,11 +3,11 @@ use std::sync::Arc;
 use super::coordinate_laws::{Buffer, Impact};
 use super::joint::quantity;
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, Number};
 use crate::model::joints::coordinate;
-use crate::model::key::Build;
 
 /// buffers at the ends of a joint's way: springs that act beyond its limits only, with what an impact takes out
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -54,13 +54,13 @@ pub struct Stop {
     pub dissipation: Option<Number>,
 }
 
-impl Build for Stop {
+impl Element for Stop {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let coordinate = coordinate(assembly, entry, "joint".into(), &self.joint);
         let [lower, upper] =
-            [("lower", &self.lower), ("upper", &self.upper)].map(|(key, limit)| entry.optional_of(key, limit, Number::number));
+            [("lower", &self.lower), ("upper", &self.upper)].map(|(key, limit)| entry.optional(key, limit, Number::number));
         let stiffness = self.stiffness.positive(entry, "stiffness");
-        let dissipation = entry.optional_of("dissipation", &self.dissipation, Number::not_negative);
+        let dissipation = entry.optional("dissipation", &self.dissipation, Number::not_negative);
         let (coordinate, lower, upper, stiffness, dissipation) = (coordinate?, lower?, upper?, stiffness?, dissipation?);
         match (lower, upper) {
             (None, None) => {

@@ -1,9 +1,10 @@
 use super::body_load::{self, Formulas, Given, VARIABLES, add};
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, Turn};
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 
 /// a torque on a body, which may react on another one, as formulas of time and of the motion of the body
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -45,10 +46,14 @@ pub struct Torque {
     pub reaction: Option<String>,
 }
 
-impl Build for Torque {
+impl Element for Torque {
+    fn turns(&self) -> Vec<(&'static str, &str)> {
+        std::iter::once(("body", self.body.as_str())).chain(self.reaction.as_deref().map(|name| ("reaction", name))).collect()
+    }
+
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let body = body_load::body(assembly, entry, "body", &self.body);
-        let other = entry.optional_of("reaction", &self.reaction, |name, entry, key| body_load::body(assembly, entry, key, name));
+        let other = entry.optional("reaction", &self.reaction, |name, entry, key| body_load::body(assembly, entry, key, name));
         let (body, other) = (body?, other?);
         if other == Some(body) {
             return Err(entry.refuse("reaction", "a torque that reacts on its own body does nothing", "name another body, or none"));

@@ -3,11 +3,11 @@ use std::sync::Arc;
 use super::coordinate_laws::{Resisting, Spring, Viscous};
 use super::joint::quantity;
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, Number};
 use crate::model::joints::coordinate;
-use crate::model::key::Build;
 use crate::system::Law;
 
 /// a spring, a damper, or both, along the coordinate of a joint: about a hinge, or along a rail
@@ -51,12 +51,12 @@ pub struct Torsion {
     pub damping: Option<Number>,
 }
 
-impl Build for Torsion {
+impl Element for Torsion {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let coordinate = coordinate(assembly, entry, "joint".into(), &self.joint);
-        let stiffness = entry.optional_of("stiffness", &self.stiffness, Number::not_negative);
-        let rest = entry.optional_of("angle", &self.angle, Number::number);
-        let damping = entry.optional_of("damping", &self.damping, Number::not_negative);
+        let stiffness = entry.optional("stiffness", &self.stiffness, Number::not_negative);
+        let rest = entry.optional("angle", &self.angle, Number::number);
+        let damping = entry.optional("damping", &self.damping, Number::not_negative);
         if self.stiffness.is_none() && self.damping.is_none() {
             entry.refuse_all(format!("the torsion spring `{}` does nothing", entry.name), "add stiffness, or damping");
         }

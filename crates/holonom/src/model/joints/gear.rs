@@ -1,9 +1,10 @@
 use super::coupler::{couple, two};
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 
 /// wheels that mesh, or any two coordinates of which one is a multiple of the other
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -49,7 +50,9 @@ pub struct Gear {
     pub ratio: Number,
 }
 
-impl Build for Gear {
+impl Element for Gear {
+    const NEEDS_JOINTS: bool = true;
+
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let (joints, ratio) = (two(assembly, entry, &self.joints, None), self.ratio.number(entry, "ratio"));
         let ([first, second], ratio) = (joints?, ratio?);

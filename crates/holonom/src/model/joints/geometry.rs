@@ -1,6 +1,6 @@
 //! Where a joint is at the start, from its keys `between`, `at`, `axis` and `axes`.
 
-use super::{AnyJoint, Feature, JOINTS, Seat, Sides};
+use super::{AnyJoint, Feature, Seat, Sides};
 use crate::model::assembly::Assembly;
 use crate::model::bodies::RigidBody;
 use crate::model::bodies::nodes::{Member, Shared};
@@ -28,6 +28,8 @@ pub struct Survey {
     pub needed: Vec<(usize, Vec3)>,
     /// Where joints sit.
     pub sites: Vec<Vec3>,
+    /// Where each joint is: of every entry those that it makes, in order; of couplers none.
+    pub geometries: Vec<Vec<Geometry>>,
     /// Bodies, and how far from their centres joints sit, m.
     pub arms: Vec<(usize, f64)>,
 }
@@ -60,11 +62,8 @@ impl Survey {
 }
 
 /// Adds what a joint asks of the nodes of its bodies.
-pub fn plan(assembly: &Assembly<'_>, entry: &Entry<'_>, share: bool, survey: &mut Survey) -> Read<()> {
-    let kind = entry.text("type")?;
-    let Some(kind) = JOINTS.iter().find(|joint| joint.kind.name == kind) else { return Ok(()) };
-    let joint = (kind.read)(entry)?;
-    let (layout, geometry) = (joint.layout(), Geometry::of(assembly, entry, &*joint)?);
+pub fn survey(assembly: &Assembly<'_>, joint: &dyn AnyJoint, geometry: &Geometry, share: bool, survey: &mut Survey) {
+    let layout = joint.layout();
     let directions = geometry.triad;
     survey.sites.extend(geometry.at);
     for (side, member) in geometry.members.iter().enumerate() {
@@ -77,7 +76,7 @@ pub fn plan(assembly: &Assembly<'_>, entry: &Entry<'_>, share: bool, survey: &mu
         }
     }
     if !share {
-        return Ok(());
+        return;
     }
     let sides = |of: [Vec3; 2]| [(geometry.members[0], of[0]), (geometry.members[1], of[1])];
     // What is not in the same place at the start keeps its rows, which the start then meets or refuses.
@@ -95,7 +94,6 @@ pub fn plan(assembly: &Assembly<'_>, entry: &Entry<'_>, share: bool, survey: &mu
             }
         }
     }
-    Ok(())
 }
 
 /// Distance of two places over their coordinates, or of two directions, that is round-off.

@@ -1,9 +1,9 @@
 use super::coupler::{coordinate, couple};
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::entry::{Entry, Spot, all};
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
-use crate::model::key::Build;
 use crate::system::MAX_ARGUMENTS;
 
 /// a sum of joint coordinates that stays as it is: a differential, a tilting table, any linear coupling
@@ -56,7 +56,9 @@ pub struct Term {
     pub factor: Number,
 }
 
-impl Build for Linear {
+impl Element for Linear {
+    const NEEDS_JOINTS: bool = true;
+
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         if self.terms.len() < 2 {
             return Err(entry.refuse("terms", "a coupling has at least two terms", "add { joint = \"JOINT\", factor = 1 }"));
@@ -66,8 +68,11 @@ impl Build for Linear {
             let factor = term.factor.number(inner, "factor");
             Ok((joint?, factor?))
         };
-        let terms =
-            all(self.terms.iter().enumerate().map(|(k, of)| entry.within(Spot { key: "terms", item: Some(k) }, |inner| term(inner, of))))?;
+        let terms = all(self
+            .terms
+            .iter()
+            .enumerate()
+            .map(|(k, of)| entry.within(Spot { key: "terms", item: Some(k) }, of, |inner| term(inner, of))))?;
         let arguments: usize = terms.iter().map(|(coordinate, _)| if coordinate.is_angle { 2 } else { 1 }).sum();
         if arguments > MAX_ARGUMENTS {
             return Err(entry.refuse(

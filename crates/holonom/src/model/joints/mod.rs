@@ -1,9 +1,11 @@
 //! `[joint.NAME]`: what ties bodies together. A kind is one file here and its line in the table.
 
+use std::fmt::Debug;
+
 mod coupler;
 mod curve;
 mod geometry;
-mod pair;
+pub(super) mod pair;
 
 mod constant_velocity;
 mod cylindrical;
@@ -35,7 +37,7 @@ pub use distance::Distance;
 pub use fixed::Fixed;
 pub use gear::Gear;
 pub use generic::Generic;
-pub use geometry::{Geometry, Survey, plan};
+pub use geometry::{Geometry, Survey, survey};
 pub use linear::{Linear, Term};
 pub use orientation::Orientation;
 pub use pair::{Coordinate, JointInfo, Pair};
@@ -54,13 +56,12 @@ pub use screw::Screw;
 pub use spherical::Spherical;
 pub use universal::Universal;
 
-use super::entry::Entry;
 use super::fault::Read;
 use super::fields::{Described, Site};
 use super::key::Kind;
 
 /// A joint between two bodies, beside its keys.
-pub trait Joint: Described {
+pub trait Joint: Described + Debug + Send + Sync + 'static {
     const LAYOUT: Layout;
 
     /// The keys that all joints have.
@@ -126,24 +127,6 @@ impl<T: Joint> AnyJoint for T {
     }
 }
 
-/// A kind of joint between two bodies: what `type` may say, beside couplers of other joints.
-pub struct JointKind {
-    pub kind: Kind,
-    pub layout: Layout,
-    read: fn(&Entry<'_>) -> Read<Box<dyn AnyJoint>>,
-}
-
-impl JointKind {
-    /// The line of a kind in its table.
-    const fn of<T: Joint + 'static>() -> Self {
-        Self {
-            kind: Kind::with::<T>(|assembly, entry| pair::build(assembly, entry, &T::read(entry)?)),
-            layout: T::LAYOUT,
-            read: |entry| Ok(Box::new(T::read(entry)?)),
-        }
-    }
-}
-
 /// What both bodies of a joint have in common and may share a node for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feature {
@@ -167,32 +150,31 @@ pub enum Seat {
 }
 
 /// Joints between two bodies.
-pub const JOINTS: &[JointKind] = &[
-    JointKind::of::<spherical::Spherical>(),
-    JointKind::of::<revolute::Revolute>(),
-    JointKind::of::<prismatic::Prismatic>(),
-    JointKind::of::<cylindrical::Cylindrical>(),
-    JointKind::of::<universal::Universal>(),
-    JointKind::of::<planar::Planar>(),
-    JointKind::of::<fixed::Fixed>(),
-    JointKind::of::<screw::Screw>(),
-    JointKind::of::<constant_velocity::ConstantVelocity>(),
-    JointKind::of::<point_on_line::PointOnLine>(),
-    JointKind::of::<point_on_plane::PointOnPlane>(),
-    JointKind::of::<point_on_curve::PointOnCurve>(),
-    JointKind::of::<parallel::Parallel>(),
-    JointKind::of::<perpendicular::Perpendicular>(),
-    JointKind::of::<orientation::Orientation>(),
-    JointKind::of::<distance::Distance>(),
-    JointKind::of::<generic::Generic>(),
-    JointKind::of::<rolling::Rolling>(),
+pub const JOINTS: &[Kind] = &[
+    Kind::of::<Spherical>(),
+    Kind::of::<Revolute>(),
+    Kind::of::<Prismatic>(),
+    Kind::of::<Cylindrical>(),
+    Kind::of::<Universal>(),
+    Kind::of::<Planar>(),
+    Kind::of::<Fixed>(),
+    Kind::of::<Screw>(),
+    Kind::of::<ConstantVelocity>(),
+    Kind::of::<PointOnLine>(),
+    Kind::of::<PointOnPlane>(),
+    Kind::of::<PointOnCurve>(),
+    Kind::of::<Parallel>(),
+    Kind::of::<Perpendicular>(),
+    Kind::of::<Orientation>(),
+    Kind::of::<Distance>(),
+    Kind::of::<Generic>(),
+    Kind::of::<Rolling>(),
 ];
 
 /// Couplers of the coordinates of other joints.
-pub const COUPLERS: &[Kind] =
-    &[Kind::of::<gear::Gear>(), Kind::of::<rack_and_pinion::RackAndPinion>(), Kind::of::<pulley::Pulley>(), Kind::of::<linear::Linear>()];
+pub const COUPLERS: &[Kind] = &[Kind::of::<Gear>(), Kind::of::<RackAndPinion>(), Kind::of::<Pulley>(), Kind::of::<Linear>()];
 
 /// All that `type` may say.
-pub fn kinds() -> Vec<&'static Kind> {
-    JOINTS.iter().map(|joint| &joint.kind).chain(COUPLERS).collect()
+pub fn kinds() -> impl Iterator<Item = &'static Kind> {
+    JOINTS.iter().chain(COUPLERS)
 }

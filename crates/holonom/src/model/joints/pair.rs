@@ -57,9 +57,9 @@ pub enum Side {
 }
 
 /// Builds a joint from its entry: its rows, coordinates and symbol.
-pub(super) fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> Read<()> {
+pub(in crate::model) fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> Read<()> {
     let layout = joint.layout();
-    let geometry = Geometry::of(assembly, entry, joint)?;
+    let geometry = assembly.geometries.next().expect("every joint was surveyed");
     let frames = [0, 1].map(|side| assembly.frame(geometry.members[side]));
     let first = assembly.builder.rows();
     let mut pair = Pair { assembly, entry, geometry, coordinates: Vec::new(), frames, names: 0, is_shared: false };

@@ -1,9 +1,10 @@
 use super::coupler::{couple, two};
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 
 /// two wheels with a belt between them
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -53,7 +54,9 @@ pub struct Pulley {
     pub crossed: Option<bool>,
 }
 
-impl Build for Pulley {
+impl Element for Pulley {
+    const NEEDS_JOINTS: bool = true;
+
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let joints = two(assembly, entry, &self.joints, Some([true, true]));
         let radii = self.radii.sizes::<2>(entry, "radii");

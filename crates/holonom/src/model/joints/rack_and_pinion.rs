@@ -1,9 +1,10 @@
 use super::coupler::{couple, two};
 use crate::model::assembly::Assembly;
+use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
-use crate::model::key::{Build, Shape};
+use crate::model::key::Shape;
 
 /// a wheel that rolls along a toothed rail: the displacement of the one joint is the radius times the angle of the other
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -49,7 +50,9 @@ pub struct RackAndPinion {
     pub radius: Number,
 }
 
-impl Build for RackAndPinion {
+impl Element for RackAndPinion {
+    const NEEDS_JOINTS: bool = true;
+
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let joints = two(assembly, entry, &self.joints, Some([true, false]));
         let radius = self.radius.number(entry, "radius");

@@ -1,0 +1,253 @@
+//! From a description to a model, in phases: evaluate points and bodies, survey what joints share, number the nodes, write rows and forces, put
+//! together what is recorded.
+
+use std::cell::Cell;
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
+
+use super::assembly::{Assembly, Axes};
+use super::bodies::nodes::{self, Member};
+use super::bodies::{Meshes, RigidBody};
+use super::description::{Description, Unread};
+use super::element::Boxed;
+use super::entries::{Entries, Named};
+use super::entry::{Entry, Written};
+use super::expression::{Scope, TimeProgram, Value as Known};
+use super::fault::{Faults, Read, Sink};
+use super::geometry::{self, Vec3, unit};
+use super::joints::{self, Geometry, Survey};
+use super::repeat::{self, Repetition};
+use super::settings::{Output, Settings};
+use super::value::{Value, key_path};
+use super::{GRAVITY, Model, SCHEMA, finish, parameters, points};
+use crate::system::{self, SystemBuilder};
+
+/// Compiles a description. What could not be read is known by name, so that nothing that refers to it is a second fault.
+pub(super) fn model(description: &Description, unread: &Unread, meshes: &dyn Meshes, sink: Sink) -> Result<Model, Faults> {
+    let parameters = parameters::read(&description.parameters, &sink);
+    let compiler = Compiler { sink: &sink, meshes, parameters: &parameters, room: Cell::new(repeat::MOST) };
+    let (axes, gravity) = compiler.head(description);
+    let (specs, faulty_points) = compiler.points(&description.points, axes);
+    let (bodies, faulty_bodies) = compiler.bodies(&description.bodies, axes);
+    let mut assembly = Assembly::new(SystemBuilder::new(axes.dimension(), gravity), axes, gravity, &sink, bodies);
+    assembly.faulty = [&faulty_points, &faulty_bodies, &unread.points, &unread.bodies].into_iter().flatten().cloned().collect();
+    assembly.faulty_joints.clone_from(&unread.joints);
+    points::add(&mut assembly, &specs);
+    let geometries = compiler.nodes(description, &mut assembly, &specs);
+    points::complete(&mut assembly, specs);
+    let mut bars = Vec::new();
+    let faulty_bars = compiler.each("bar", &description.bars, |entry, bar| {
+        bars.push(bar.build(&mut assembly, entry)?);
+        Ok(())
+    });
+    compiler.build("constraint", &description.constraints, &mut assembly);
+    compiler.joints(&description.joints, geometries, &mut assembly);
+    compiler.build("drive", &description.drives, &mut assembly);
+    compiler.build("force", &description.forces, &mut assembly);
+    // Points of a bar with a fault may have their mass from it.
+    if faulty_bars.is_empty() && unread.bars.is_empty() {
+        points::check_mass(&assembly);
+    }
+    let (settings, output) = compiler.settings(description, &assembly);
+    if sink.count() == 0 {
+        for program in sink.switches.take() {
+            assembly.builder.switch(Arc::new(TimeProgram(program)));
+        }
+        let title = description.model.title.clone().unwrap_or_default();
+        return Ok(finish::finish(assembly, title, settings, output, bars));
+    }
+    drop(assembly);
+    match sink.finish() {
+        Err(faults) => Err(faults),
+        Ok(()) => unreachable!("there are faults"),
+    }
+}
+
+struct Compiler<'a> {
+    sink: &'a Sink,
+    meshes: &'a dyn Meshes,
+    parameters: &'a HashMap<String, Known>,
+    /// Entries that repetitions may still make.
+    room: Cell<usize>,
+}
+
+impl Compiler<'_> {
+    fn entry<'b>(&'b self, name: &'b str, path: &'b str, written: &'b dyn Written) -> Entry<'b> {
+        let scope = Scope { parameters: Some(self.parameters), indices: &[] };
+        Entry { name, path, written, scope, sink: self.sink, meshes: self.meshes }
+    }
+
+    /// Axes and gravity of the model, which is in space where that is not known.
+    fn head(&self, description: &Description) -> (Axes, Vec3) {
+        let keys = &description.model;
+        let root = self.entry("", "", keys);
+        // What is wrong with one of these is recorded, and does not hide the others.
+        let _ = root.optional("schema", &keys.schema, |schema, root, key| match schema.whole(root, key, 0)? {
+            SCHEMA => Ok(()),
+            other => Err(root.refuse(
+                key,
+                format!("this program reads schema {SCHEMA}, and this is {other}"),
+                format!("write schema = {SCHEMA}"),
+            )),
+        });
+        let planes: Vec<&'static str> = Axes::ALL[1..].iter().map(|axes| axes.name).collect();
+        let plane = root.optional("plane", &keys.plane, |plane, root, key| root.choice(key, plane, &planes)).unwrap_or(None);
+        let axes = Axes::ALL.into_iter().find(|axes| plane.is_some_and(|plane| axes.name == plane)).unwrap_or(Axes::ALL[0]);
+        let gravity = root.optional("gravity", &keys.gravity, |gravity, root, key| match gravity.len() {
+            3 => Ok(axes.of_world(gravity.vector(root, key, 3)?)),
+            _ => gravity.vector(root, key, axes.dimension()),
+        });
+        (axes, gravity.map_or_else(|_| Vec3::default(), |gravity| gravity.unwrap_or(axes.of_world(GRAVITY))))
+    }
+
+    fn points(&self, entries: &Entries<points::Point>, axes: Axes) -> (Vec<points::Spec>, HashSet<String>) {
+        let mut specs = Vec::new();
+        let faulty = self.each("point", entries, |entry, point| {
+            specs.push(point.spec(entry, axes.dimension())?);
+            Ok(())
+        });
+        (specs, faulty)
+    }
+
+    fn bodies(&self, entries: &Entries<super::Body>, axes: Axes) -> (Vec<RigidBody>, HashSet<String>) {
+        let mut bodies = Vec::new();
+        let faulty = self.each("body", entries, |entry, body| {
+            bodies.push(body.evaluate(entry, axes.dimension())?);
+            Ok(())
+        });
+        (bodies, faulty)
+    }
+
+    /// Looks at joints and forces for what bodies share and need, and makes the nodes. Hands back where the joints of each entry are, unless
+    /// something is wrong with them.
+    fn nodes(&self, description: &Description, assembly: &mut Assembly<'_>, specs: &[points::Spec]) -> Vec<Option<Vec<Geometry>>> {
+        let reacts = description.output.as_ref().and_then(|output| output.reactions) == Some(true);
+        let mut survey = Survey::default();
+        let mut geometries = Vec::new();
+        // What is surveyed is built later, and counts then.
+        let surveyor = Compiler { room: Cell::new(self.room.get()), ..*self };
+        for named in description.joints.iter() {
+            let mut of_entry = Vec::new();
+            let surveyed = surveyor.instances("joint", named, &mut |entry, element: &Boxed| {
+                let Some(joint) = element.0.as_joint() else { return Ok(()) };
+                let geometry = Geometry::of(assembly, entry, joint)?;
+                joints::survey(assembly, joint, &geometry, !reacts, &mut survey);
+                of_entry.push(geometry);
+                Ok(())
+            });
+            if surveyed.is_err() {
+                assembly.faulty_joints.insert(named.name.clone());
+            }
+            geometries.push(surveyed.is_ok().then_some(of_entry));
+        }
+        // What is wrong with a force is told when it is built.
+        let unheard = Sink::default();
+        let surveyor = Compiler { sink: &unheard, ..surveyor };
+        for named in description.forces.iter() {
+            let _ = surveyor.instances("force", named, &mut |entry, element: &Boxed| {
+                for (key, name) in element.0.turns() {
+                    if let Ok(Member::Body(body)) = assembly.member(entry, key.into(), name) {
+                        survey.needed.extend((0..3).map(|k| (body, unit(k))));
+                    }
+                }
+                Ok(())
+            });
+        }
+        // A named point beside a rod or a plate is held by nodes, too.
+        for (k, body) in assembly.bodies.iter().enumerate() {
+            survey.needed.extend(body.points.iter().map(|&(_, at)| (k, geometry::subtract(at, body.position))));
+        }
+        let places: Vec<Option<system::Place>> =
+            assembly.points.iter().zip(specs).map(|(point, spec)| if points::is_driven(spec) { None } else { point.end.place() }).collect();
+        let wanted = nodes::Wanted {
+            bodies: &assembly.bodies,
+            shared: &survey.shared,
+            merged: &survey.merged,
+            needed: &survey.needed,
+            extent: survey.length(&assembly.bodies),
+            length: survey.body_size(&assembly.bodies),
+            points: &|k| places[k],
+        };
+        assembly.builder.set_size(if wanted.bodies.is_empty() { 0.0 } else { wanted.extent });
+        assembly.frames = nodes::make(&mut assembly.builder, &wanted);
+        geometries
+    }
+
+    /// Joints first, then what names their coordinates.
+    fn joints(&self, entries: &Entries<Boxed>, mut geometries: Vec<Option<Vec<Geometry>>>, assembly: &mut Assembly<'_>) {
+        for late in [false, true] {
+            for (named, of_entry) in entries.iter().zip(&mut geometries).filter(|(named, _)| named.entry.0.needs_joints() == late) {
+                let Some(of_entry) = of_entry.take() else { continue };
+                assembly.geometries = of_entry.into_iter();
+                if self.instances("joint", named, &mut |entry, element: &Boxed| element.0.build(assembly, entry)).is_err() {
+                    assembly.faulty_joints.insert(named.name.clone());
+                }
+            }
+        }
+    }
+
+    fn build(&self, section: &str, entries: &Entries<Boxed>, assembly: &mut Assembly<'_>) {
+        self.each(section, entries, |entry, element| element.0.build(assembly, entry));
+    }
+
+    fn settings(&self, description: &Description, assembly: &Assembly<'_>) -> (Settings, Output) {
+        let settings = description.simulation.as_ref().map(|keys| keys.settings(&self.entry("", "simulation", keys), assembly));
+        let output = description.output.as_ref().map(|keys| keys.output(&self.entry("", "output", keys), assembly));
+        (settings.unwrap_or_default(), output.unwrap_or_default())
+    }
+
+    /// Calls `each` for all that the entries of a section make. Hands back the names of those in which something was wrong.
+    fn each<T: Written>(&self, section: &str, entries: &Entries<T>, mut each: impl FnMut(&Entry<'_>, &T) -> Read<()>) -> HashSet<String> {
+        let mut faulty = HashSet::new();
+        for named in entries.iter() {
+            if self.instances(section, named, &mut each).is_err() {
+                faulty.insert(named.name.clone());
+            }
+        }
+        faulty
+    }
+
+    /// Calls `each` for what an entry makes, up to the first in which something is wrong: the others would repeat it.
+    fn instances<T: Written>(&self, section: &str, named: &Named<T>, each: &mut impl FnMut(&Entry<'_>, &T) -> Read<()>) -> Read<()> {
+        let path = key_path(section, &named.name);
+        let written = Repeated { written: &named.entry, repeat: named.repeat.as_deref() };
+        let entry = self.entry(&named.name, &path, &written);
+        let Some(text) = &named.repeat else { return each(&entry, &named.entry) };
+        let repetition =
+            Repetition::read(text, &entry.scope, self.room.get()).map_err(|mistake| entry.mistaken("repeat".into(), mistake))?;
+        self.room.set(self.room.get().saturating_sub(repetition.len()));
+        let mut indices: Vec<(String, f64)> = repetition.names.iter().map(|name| (name.clone(), 0.0)).collect();
+        let mut name = String::new();
+        for values in repetition.iter() {
+            name.clear();
+            name.push_str(entry.name);
+            for (index, &value) in indices.iter_mut().zip(values) {
+                index.1 = value;
+                name.push_str(&format!("[{value}]"));
+            }
+            each(&Entry { name: &name, scope: Scope { indices: &indices, ..entry.scope }, ..entry }, &named.entry)?;
+        }
+        Ok(())
+    }
+}
+
+impl Written for Boxed {
+    fn value(&self, key: &str) -> Option<Value> {
+        self.0.value(key)
+    }
+}
+
+/// An entry with its repetition.
+struct Repeated<'a> {
+    written: &'a dyn Written,
+    repeat: Option<&'a str>,
+}
+
+impl Written for Repeated<'_> {
+    fn value(&self, key: &str) -> Option<Value> {
+        match key {
+            "repeat" => self.repeat.map(Value::text),
+            _ => self.written.value(key),
+        }
+    }
+}

@@ -1,0 +1,308 @@
+//! A model as it is written, without places in a file: what can be made by hand, changed, compiled, and compiled again.
+
+use std::collections::HashSet;
+
+use super::bars::Bar;
+use super::bodies::{Body, Meshes, NoMeshes};
+use super::element::Boxed;
+use super::entries::{Entries, Named};
+use super::fault::{Fault, Faults, Read, Refused, Sink, suggest};
+use super::fields::{Field, Keys, List, Number};
+use super::key::{Key, Kind, Kinds, REPEAT, Shape};
+use super::points::Point;
+use super::reader::Reader;
+use super::settings::{OutputKeys, SimulationKeys};
+use super::value::{Table, Value, key_path};
+use super::{GROUND, Model, compile};
+
+/// A model as it is written. Numbers are numbers or formulas over its parameters, so that one of these can be changed and the model compiled
+/// again.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Description {
+    /// Title, gravity and plane.
+    pub model: ModelKeys,
+    /// Named numbers and formulas for all others.
+    pub parameters: Table,
+    pub points: Entries<Point>,
+    pub bodies: Entries<Body>,
+    pub bars: Entries<Bar>,
+    pub joints: Entries<Boxed>,
+    pub constraints: Entries<Boxed>,
+    pub drives: Entries<Boxed>,
+    pub forces: Entries<Boxed>,
+    pub simulation: Option<SimulationKeys>,
+    pub output: Option<OutputKeys>,
+}
+
+/// Keys of the model itself.
+#[derive(Clone, Debug, Default, PartialEq, Keys)]
+pub struct ModelKeys {
+    /// version of the model file
+    #[key(default = "1", shape = Shape::Whole)]
+    pub schema: Option<Number>,
+    /// one line for people
+    #[key(default = "none")]
+    pub title: Option<String>,
+    /// in the axes of the model, or all three of the world
+    #[key(unit = "m/s²", default = "[0, 0, -9.81]", shape = Shape::Vector)]
+    pub gravity: Option<List<Number>>,
+    /// makes the model planar, with two coordinates a point
+    #[key(default = "none: the model is in space", shape = Shape::Choice(&["xy", "xz", "yz"]))]
+    pub plane: Option<String>,
+}
+
+/// What could be read of a file, and what could not.
+pub(super) struct Partial {
+    pub description: Description,
+    pub unread: Unread,
+}
+
+/// Names of the entries in which something could not be read; what refers to them is no second fault.
+#[derive(Default)]
+pub(super) struct Unread {
+    pub points: HashSet<String>,
+    pub bodies: HashSet<String>,
+    pub bars: HashSet<String>,
+    pub joints: HashSet<String>,
+}
+
+impl Description {
+    /// An empty model with a title.
+    pub fn new(title: impl Into<String>) -> Self {
+        Self { model: ModelKeys { title: Some(title.into()), ..ModelKeys::default() }, ..Self::default() }
+    }
+
+    /// Sets a parameter that every formula may use.
+    pub fn parameter(&mut self, name: &str, value: impl Into<Number>) {
+        self.parameters.set(name, value.into().write());
+    }
+
+    /// Adds a point.
+    pub fn point(&mut self, name: impl Into<String>, point: Point) -> &mut Named<Point> {
+        self.points.add(name, point)
+    }
+
+    /// Adds a body.
+    pub fn body(&mut self, name: impl Into<String>, body: Body) -> &mut Named<Body> {
+        self.bodies.add(name, body)
+    }
+
+    /// Adds a bar.
+    pub fn bar(&mut self, name: impl Into<String>, bar: Bar) -> &mut Named<Bar> {
+        self.bars.add(name, bar)
+    }
+
+    /// Adds a joint or a coupler.
+    pub fn joint(&mut self, name: impl Into<String>, joint: impl Into<Boxed>) -> &mut Named<Boxed> {
+        self.joints.add(name, joint)
+    }
+
+    /// Adds a constraint.
+    pub fn constraint(&mut self, name: impl Into<String>, constraint: impl Into<Boxed>) -> &mut Named<Boxed> {
+        self.constraints.add(name, constraint)
+    }
+
+    /// Adds a drive.
+    pub fn drive(&mut self, name: impl Into<String>, drive: impl Into<Boxed>) -> &mut Named<Boxed> {
+        self.drives.add(name, drive)
+    }
+
+    /// Adds a force.
+    pub fn force(&mut self, name: impl Into<String>, force: impl Into<Boxed>) -> &mut Named<Boxed> {
+        self.forces.add(name, force)
+    }
+
+    /// Compiles the model.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn compile(&self) -> Result<Model, Faults> {
+        self.compile_with(&NoMeshes)
+    }
+
+    /// The same with the meshes that bodies name.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn compile_with(&self, meshes: &dyn Meshes) -> Result<Model, Faults> {
+        let sink = Sink::default();
+        let mut names = Names { sink: &sink, known: HashSet::new() };
+        self.names().for_each(|(section, name)| {
+            let _ = names.check(section, name);
+        });
+        compile::model(self, &Unread::default(), meshes, sink)
+    }
+
+    /// Reads a table as it stands in a file.
+    ///
+    /// # Errors
+    /// Everything that is missing or of another shape. What its words mean is looked at when it is compiled.
+    pub fn from_value(value: &Value, kinds: &Kinds) -> Result<Self, Faults> {
+        let sink = Sink::default();
+        let read = read(value, kinds, &sink);
+        match (sink.finish(), read) {
+            (Ok(()), Ok(partial)) => Ok(partial.description),
+            (Err(faults), _) => Err(faults),
+            (Ok(()), Err(Refused)) => unreachable!("what is refused has a fault"),
+        }
+    }
+
+    /// The table as it would stand in a file.
+    pub fn to_value(&self) -> Value {
+        let mut table = Keys::write(&self.model);
+        let boxed = |boxed: &Boxed| boxed.0.write();
+        let sections = [
+            ("parameters", (!self.parameters.is_empty()).then(|| Value::Table(self.parameters.clone()))),
+            ("point", self.points.write(Keys::write)),
+            ("body", self.bodies.write(Keys::write)),
+            ("bar", self.bars.write(Keys::write)),
+            ("joint", self.joints.write(boxed)),
+            ("constraint", self.constraints.write(boxed)),
+            ("drive", self.drives.write(boxed)),
+            ("force", self.forces.write(boxed)),
+            ("simulation", self.simulation.as_ref().map(Field::write)),
+            ("output", self.output.as_ref().map(Field::write)),
+        ];
+        sections.into_iter().for_each(|(name, section)| section.into_iter().for_each(|section| table.push(name, section)));
+        Value::Table(table)
+    }
+
+    /// Names of all entries with their sections.
+    fn names(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        fn of<'a, T>(section: &'static str, entries: &'a Entries<T>) -> impl Iterator<Item = (&'static str, &'a str)> {
+            entries.iter().map(move |named| (section, named.name.as_str()))
+        }
+        let parts = of("point", &self.points).chain(of("body", &self.bodies)).chain(of("bar", &self.bars));
+        let elements = of("constraint", &self.constraints).chain(of("joint", &self.joints));
+        parts.chain(elements).chain(of("drive", &self.drives)).chain(of("force", &self.forces))
+    }
+}
+
+/// Names of the tables of a model.
+const TABLES: [&str; 10] = ["parameters", "point", "body", "bar", "joint", "constraint", "drive", "force", "simulation", "output"];
+
+/// Reads all tables of a model. What cannot be read is left out.
+pub(super) fn read(value: &Value, kinds: &Kinds, sink: &Sink) -> Read<Partial> {
+    let Value::Table(table) = value else {
+        return Err(sink.report(|| Fault::new("", value.quoted(), "a model is a table", "")));
+    };
+    let root = Reader::new("", "", table, sink);
+    let tables = TABLES.map(|name| Key::optional(name, Shape::Table(&[]), "", "", ""));
+    root.refuse_unknown_keys("a model", ModelKeys::KEYS.iter().chain(&tables));
+    let parameters = match table.get("parameters") {
+        Some(Value::Table(table)) => table.clone(),
+        Some(other) => {
+            root.refuse_no_table("parameters".into(), other);
+            Table::default()
+        }
+        None => Table::default(),
+    };
+    let model = ModelKeys {
+        schema: root.may_have("schema").unwrap_or(None),
+        title: root.may_have("title").unwrap_or(None),
+        gravity: root.may_have("gravity").unwrap_or(None),
+        plane: root.may_have("plane").unwrap_or(None),
+    };
+    let mut names = Names { sink, known: HashSet::new() };
+    let (points, unread_points) = section(&root, "point", &mut names, |reader| keys::<Point>("a point", reader));
+    let (bodies, unread_bodies) = section(&root, "body", &mut names, |reader| keys::<Body>("a body", reader));
+    let (bars, unread_bars) = section(&root, "bar", &mut names, |reader| keys::<Bar>("a bar", reader));
+    let elements = |names: &mut Names<'_>, name: &str, kinds: &[Kind]| section(&root, name, names, |reader| element(name, kinds, reader));
+    let (constraints, _) = elements(&mut names, "constraint", &kinds.constraints);
+    let (joints, unread_joints) = elements(&mut names, "joint", &kinds.joints);
+    let (drives, _) = elements(&mut names, "drive", &kinds.drives);
+    let (forces, _) = elements(&mut names, "force", &kinds.forces);
+    let (simulation, output) = (root.may_have("simulation").unwrap_or(None), root.may_have("output").unwrap_or(None));
+    Ok(Partial {
+        description: Description { model, parameters, points, bodies, bars, joints, constraints, drives, forces, simulation, output },
+        unread: Unread { points: unread_points, bodies: unread_bodies, bars: unread_bars, joints: unread_joints },
+    })
+}
+
+/// The entries of a section, and the names of those that could not be read.
+fn section<T>(
+    root: &Reader<'_>,
+    section: &str,
+    names: &mut Names<'_>,
+    read: impl Fn(&Reader<'_>) -> Read<T>,
+) -> (Entries<T>, HashSet<String>) {
+    let (mut entries, mut unread) = (Entries::default(), HashSet::new());
+    let table = match root.table.get(section) {
+        None => return (entries, unread),
+        Some(Value::Table(table)) => table,
+        Some(other) => {
+            let message = format!("`{section}` is {}, and a table of named entries is wanted", other.type_name());
+            names.sink.report(|| Fault::new(section, other.quoted(), message, format!("write [{section}.NAME]")));
+            unread.insert(section.to_string());
+            return (entries, unread);
+        }
+    };
+    for (name, value) in table.iter() {
+        let path = key_path(section, name);
+        let valid = names.check(section, name);
+        let Value::Table(table) = value else {
+            let message = format!("`{path}` is {}, and a table is wanted", value.type_name());
+            names.sink.report(|| Fault::new(&*path, value.quoted(), message, format!("write [{section}.NAME] and its keys below")));
+            unread.insert(name.to_string());
+            continue;
+        };
+        let reader = Reader::new(name, &path, table, names.sink);
+        let entry = read(&reader);
+        let repeat = reader.may_have::<String>(REPEAT.name);
+        // What it means is not known either where a key is not known, but what is wrong with the others is told.
+        if valid.is_err() || reader.has_fault() {
+            unread.insert(name.to_string());
+        }
+        if let (Ok(()), Ok(entry), Ok(repeat)) = (valid, entry, repeat) {
+            entries.add(name, entry).repeat = repeat;
+        }
+    }
+    (entries, unread)
+}
+
+/// An entry without a `type`.
+fn keys<T: Keys>(what: &str, reader: &Reader<'_>) -> Read<T> {
+    reader.refuse_unknown_keys(what, T::KEYS.iter().chain([&REPEAT]));
+    T::read(reader)
+}
+
+/// An entry of one of some kinds.
+fn element(section: &str, kinds: &[Kind], reader: &Reader<'_>) -> Read<Boxed> {
+    let names = || kinds.iter().map(|kind| kind.name);
+    if reader.table.get("type").is_none() {
+        let known: Vec<String> = names().map(|name| format!("\"{name}\"")).collect();
+        return Err(reader.refuse_all(format!("`{}` has no `type`", reader.name), format!("add type = {}", known.join(" or "))));
+    }
+    let text: String = reader.must_have("type")?;
+    let Some(kind) = kinds.iter().find(|kind| kind.name == text) else {
+        return Err(reader.refuse("type", format!("there is no {section} of type \"{text}\""), suggest(&text, names())));
+    };
+    let type_key = Key::required("type", Shape::Text, "", "");
+    reader.refuse_unknown_keys(&format!("a {section} of type \"{}\"", kind.name), kind.keys.iter().chain([&type_key, &REPEAT]));
+    (kind.read)(reader)
+}
+
+/// Names of entries so far: they are unique over all sections.
+struct Names<'a> {
+    sink: &'a Sink,
+    known: HashSet<String>,
+}
+
+impl Names<'_> {
+    fn check(&mut self, section: &str, name: &str) -> Read<()> {
+        let report = |message: String, cure: &str| self.sink.report(|| Fault::new(key_path(section, name), name, message, cure));
+        if name == GROUND {
+            return Err(report(format!("`{GROUND}` is the name of the origin"), "give it another name"));
+        }
+        if name.is_empty() || !name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-') {
+            return Err(report(format!("\"{name}\" cannot be a name"), "use letters, digits, _ and -"));
+        }
+        if !self.known.insert(name.to_string()) {
+            return Err(report(
+                format!("the name `{name}` is used twice"),
+                "give one of them another name: points, bars, bodies, constraints, joints, drives and forces share their names",
+            ));
+        }
+        Ok(())
+    }
+}

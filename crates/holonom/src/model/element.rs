@@ -1,0 +1,113 @@
+//! What joints, constraints, drives and forces of any kind have in common.
+
+use std::fmt::Debug;
+
+use super::assembly::Assembly;
+use super::entry::{Entry, Written};
+use super::fault::Read;
+use super::fields::{Described, Keys};
+use super::joints::{AnyJoint, Joint, Layout, pair};
+use super::value::{Table, Value};
+
+/// An element of a model: a joint, a coupler, a constraint, a drive or a force.
+pub trait Element: Described + Debug + Send + Sync + 'static {
+    /// How it sits between two bodies, of a joint.
+    const LAYOUT: Option<Layout> = None;
+
+    /// Whether it names coordinates of joints and is built when all of them are there.
+    const NEEDS_JOINTS: bool = false;
+
+    /// Itself as a joint between two bodies, if it is one.
+    fn as_joint(&self) -> Option<&dyn AnyJoint> {
+        None
+    }
+
+    /// Keys and names of the bodies that it turns or whose axes it follows: a plate or a rod may lack some of these.
+    fn turns(&self) -> Vec<(&'static str, &str)> {
+        Vec::new()
+    }
+
+    /// Adds what it is to the system.
+    ///
+    /// # Errors
+    /// What is wrong with its keys; the faults are recorded.
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()>;
+}
+
+impl<T: Joint> Element for T {
+    const LAYOUT: Option<Layout> = Some(<T as Joint>::LAYOUT);
+
+    fn as_joint(&self) -> Option<&dyn AnyJoint> {
+        Some(self)
+    }
+
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        pair::build(assembly, entry, self)
+    }
+}
+
+/// An element of any kind.
+pub trait AnyElement: Written + Debug + Send + Sync {
+    /// Whether it names coordinates of joints and is built when all of them are there.
+    fn needs_joints(&self) -> bool;
+
+    /// Itself as a joint between two bodies, if it is one.
+    fn as_joint(&self) -> Option<&dyn AnyJoint>;
+
+    /// Keys and names of the bodies that it turns or whose axes it follows.
+    fn turns(&self) -> Vec<(&'static str, &str)>;
+
+    /// The table as it would be written, `type` first.
+    fn write(&self) -> Table;
+
+    /// Adds what it is to the system.
+    ///
+    /// # Errors
+    /// What is wrong with its keys; the faults are recorded.
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()>;
+}
+
+impl<T: Element> AnyElement for T {
+    fn needs_joints(&self) -> bool {
+        T::NEEDS_JOINTS
+    }
+
+    fn as_joint(&self) -> Option<&dyn AnyJoint> {
+        Element::as_joint(self)
+    }
+
+    fn turns(&self) -> Vec<(&'static str, &str)> {
+        Element::turns(self)
+    }
+
+    fn write(&self) -> Table {
+        let mut table: Table = [("type", Value::text(T::NAME))].into_iter().collect();
+        T::KEYS.iter().filter_map(|key| Some((key.name, self.value(key.name)?))).for_each(|(name, value)| table.push(name, value));
+        table
+    }
+
+    fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+        Element::build(self, assembly, entry)
+    }
+}
+
+/// An element in a description; alike are those that are written alike.
+#[derive(Clone, Debug)]
+pub struct Boxed(pub(super) std::sync::Arc<dyn AnyElement>);
+
+impl<T: Element> From<T> for Boxed {
+    fn from(element: T) -> Self {
+        Self(std::sync::Arc::new(element))
+    }
+}
+
+impl PartialEq for Boxed {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.write() == other.0.write()
+    }
+}
+
+/// Reads an element of a kind.
+pub(super) fn read<T: Element>(reader: &super::reader::Reader<'_>) -> Read<Boxed> {
+    Ok(<T as Keys>::read(reader)?.into())
+}
