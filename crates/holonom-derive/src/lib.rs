@@ -2,7 +2,8 @@
 //!
 //! The documentation of a field is that of its key, and `Option` says that the key may be left out. What else is known of a key
 //! stands in `#[key(unit = "…", default = "…", shape = …)]`: the unit for people, what is taken when it is not there, and what its value looks
-//! like where the type of the field does not say it. `#[table("a term")]` says what messages call the table, and `#[table("a shape", function)]` also what refuses a value that is no table. With `#[kind(name = "…", equations =
+//! like where the type of the field does not say it. `#[table("a term")]` says what messages call the table, and `#[table("a shape", function)]`
+//! also what refuses a value that is no table. With `#[kind(name = "…", equations =
 //! "…", example = "…")]` the struct is a kind: what `type` may say.
 
 use proc_macro2::TokenStream;

@@ -1,6 +1,6 @@
 //! The engine of holonom: dynamics of constrained mechanical systems in dependent Cartesian coordinates.
 //!
-//! A description, such as a TOML file, becomes a [`Model`](model::Model): what is in the mechanism, by name. It holds a
+//! A [`Description`](model::Description), by hand or from a TOML file, becomes a [`Model`](model::Model): what is in the mechanism, by name. It holds a
 //! [`System`](system::System): nodes with masses, rows Φ = 0 and forces, without names. A [`Method`](simulation::Method) at work on a system
 //! is a [`Simulation`](simulation::Simulation), and what it goes through may be kept in a [`Recording`](record::Recording). In formulas n is the number of
 //! coordinates and r that of constraint rows.
@@ -8,27 +8,16 @@
 //! A door on a hinge with a closer, for a second:
 //!
 //! ```
-//! let door = br#"
-//!     [body.door]
-//!     mass = 20
-//!     shape = { box = [1, 0.05, 2] }
-//!     position = [0.5, 0, 1]
-//!     [joint.hinge]
-//!     type = "revolute"
-//!     between = ["ground", "door"]
-//!     at = [0, 0, 1]
-//!     axis = [0, 0, 1]
-//!     [force.closer]
-//!     type = "torsion"
-//!     joint = "hinge"
-//!     stiffness = 5
-//!     angle = 1.57
-//!     [simulation]
-//!     step = 0.01
-//!     [output]
-//!     reactions = true
-//! "#;
-//! let model = holonom_io::Source::read("door.toml", door)?.model()?;
+//! use holonom::model::{Body, Description, OutputKeys, SimulationKeys, Solid, forces::Torsion, joints::Revolute};
+//!
+//! let mut door = Description::new("Door");
+//! door.body("door", Body::new([0.5, 0.0, 1.0]).mass(20).shape(Solid::cuboid([1.0, 0.05, 2.0])));
+//! door.joint("hinge", Revolute::new(["ground", "door"], [0.0, 0.0, 1.0]).axis([0.0, 0.0, 1.0]));
+//! door.force("closer", Torsion::new("hinge").stiffness(5).angle(1.57));
+//! door.simulation = Some(SimulationKeys::new().step(0.01));
+//! door.output = Some(OutputKeys::new().reactions(true));
+//! let model = door.compile()?;
+//!
 //! let mut simulation = model.simulation()?;
 //! simulation.find_reactions();
 //! for _ in 0..100 {

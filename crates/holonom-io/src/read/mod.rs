@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use holonom::model::{Fault, Faults, Mesh, Meshes, Model, NoMeshes, Table, Value};
+use holonom::model::{Description, Fault, Faults, Kinds, Mesh, Meshes, Model, NoMeshes, Table, Value};
 
 pub use mesh::{LARGEST_MESH, MOST_TRIANGLES, MeshError, read_mesh};
 use places::Places;
@@ -29,6 +29,7 @@ pub struct Source {
     places: Places,
     /// The files that the model names, where they can be read.
     meshes: Option<MeshFiles>,
+    kinds: Kinds,
 }
 
 impl Source {
@@ -40,12 +41,18 @@ impl Source {
         let text = decode(name, bytes)?;
         let mut places = Places::default();
         let value = toml::parse(&text, &mut places).map_err(|error| render::syntax(name, &text, &error))?;
-        Ok(Self { name: name.into(), text, value, places, meshes: None })
+        Ok(Self { name: name.into(), text, value, places, meshes: None, kinds: Kinds::default() })
     }
 
     /// Says in which folder the files are that the model names.
     pub fn beside(mut self, folder: &Path) -> Self {
         self.meshes = Some(MeshFiles { folder: folder.into(), read: Mutex::default() });
+        self
+    }
+
+    /// Says which kinds of joints, constraints, drives and forces the model may have, where that is more than those of this program.
+    pub fn knowing(mut self, kinds: Kinds) -> Self {
+        self.kinds = kinds;
         self
     }
 
@@ -95,9 +102,17 @@ impl Source {
 
     fn compile(&self, value: &Value) -> Result<Model, Faults> {
         match &self.meshes {
-            Some(meshes) => Model::from_value(value, meshes),
-            None => Model::from_value(value, &NoMeshes),
+            Some(meshes) => Model::from_value_with(value, &self.kinds, meshes),
+            None => Model::from_value_with(value, &self.kinds, &NoMeshes),
         }
+    }
+
+    /// The description, to be changed and compiled by hand.
+    ///
+    /// # Errors
+    /// Every fault of its shape, ready to be shown.
+    pub fn description(&self) -> Result<Description, String> {
+        Description::from_value(&self.value, &self.kinds).map_err(|faults| self.render(&faults))
     }
 
     /// Faults with their places in the file.

@@ -72,38 +72,39 @@ pub struct PlacedPoint {
 
 /// A system while it is put together.
 pub struct Assembly<'a> {
+    /// Takes rows, laws, loads and coordinates of joints.
     pub builder: SystemBuilder,
-    pub axes: Axes,
+    pub(in crate::model) axes: Axes,
     /// Gravity in the axes of the model, m/s².
-    pub gravity: [f64; 3],
-    pub sink: &'a Sink,
+    pub(in crate::model) gravity: [f64; 3],
+    pub(in crate::model) sink: &'a Sink,
     /// All points, in file order.
-    pub points: Vec<PlacedPoint>,
+    pub(in crate::model) points: Vec<PlacedPoint>,
     /// Position of each point in the list, by name.
-    pub by_name: HashMap<String, usize>,
+    pub(in crate::model) by_name: HashMap<String, usize>,
     /// Names of entries of points that could not be read; what refers to them is no second fault.
-    pub faulty: HashSet<String>,
-    pub lines: Vec<Line>,
+    pub(in crate::model) faulty: HashSet<String>,
+    pub(in crate::model) lines: Vec<Line>,
     /// All bodies, in file order, and where their nodes are made, their frames.
-    pub bodies: Vec<RigidBody>,
-    pub frames: Vec<Frame>,
+    pub(in crate::model) bodies: Vec<RigidBody>,
+    pub(in crate::model) frames: Vec<Frame>,
     /// Position of each body in the list, by name.
-    pub body_names: HashMap<String, usize>,
+    pub(in crate::model) body_names: HashMap<String, usize>,
     /// Places of each body that something holds, in its axes, for the picture.
-    pub body_places: Vec<Vec<Vec3>>,
+    pub(in crate::model) body_places: Vec<Vec<Vec3>>,
     /// All joints that are no couplers, in file order.
-    pub joints: Vec<JointInfo>,
+    pub(in crate::model) joints: Vec<JointInfo>,
     /// Position of each joint in the list, by name.
-    pub joint_names: HashMap<String, usize>,
+    pub(in crate::model) joint_names: HashMap<String, usize>,
     /// Coordinates of joints that are driven, as `JOINT.COORDINATE`, with the drive.
-    pub driven: HashMap<String, String>,
+    pub(in crate::model) driven: HashMap<String, String>,
     /// Names of joints and couplers that could not be read.
-    pub faulty_joints: HashSet<String>,
-    pub scene_joints: Vec<SceneJoint>,
+    pub(in crate::model) faulty_joints: HashSet<String>,
+    pub(in crate::model) scene_joints: Vec<SceneJoint>,
     /// Efforts of the drives.
-    pub efforts: Vec<Effort>,
+    pub(in crate::model) efforts: Vec<Effort>,
     /// Where the joints of the entry are that is built.
-    pub geometries: std::vec::IntoIter<Geometry>,
+    pub(in crate::model) geometries: std::vec::IntoIter<Geometry>,
 }
 
 /// What a drive exerts: −λ of its row, times the length where the row is one of half a square.

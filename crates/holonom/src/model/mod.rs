@@ -41,6 +41,7 @@ pub use bars::{Bar, BarInfo};
 pub use bodies::{Body, BodyInfo, Inertia, Mesh, Meshes, NoMeshes, Orientation, RigidBody, Solid};
 pub use description::{Description, ModelKeys};
 pub use element::{AnyElement, Boxed, Element};
+pub use ends::{End, from_to};
 pub use entries::{Entries, Named};
 pub use entry::{Entry, Spot, Written};
 pub use fault::{Fault, Faults, Read, Refused, nearest};

@@ -44,6 +44,37 @@ pub trait ForceFunction: Send + Sync {
     fn evaluate<N: Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]);
 }
 
+/// A load as a closure of coordinates `x` and velocities `v` of its nodes, D numbers a node, and the time; its derivatives, which only steer
+/// the iteration, are central differences.
+pub struct Differences<F>(pub F);
+
+impl<F: Fn(&[f64], &[f64], f64, &mut [f64]) + Send + Sync> Load for Differences<F> {
+    fn force(&self, x: &[f64], v: &[f64], t: f64, force: &mut [f64]) {
+        (self.0)(x, v, t, force);
+    }
+
+    fn tangent(&self, x: &[f64], v: &[f64], t: f64, by_position: &mut [f64], by_velocity: &mut [f64]) {
+        let k = x.len();
+        let (mut x, mut v): (Numbers<f64>, Numbers<f64>) = (x.into(), v.into());
+        let (mut ahead, mut behind): (Numbers<f64>, Numbers<f64>) = (smallvec![0.0; k], smallvec![0.0; k]);
+        let step =
+            |numbers: &[f64]| f64::EPSILON.cbrt() * numbers.iter().fold(0.0, |most: f64, number| most.max(number.abs())).max(f64::EPSILON);
+        let steps = [step(&x), step(&v)];
+        for direction in 0..2 * k {
+            let (i, is_position) = (direction % k, direction < k);
+            let h = steps[usize::from(!is_position)];
+            let here = if is_position { x[i] } else { v[i] };
+            for (sign, out) in [(1.0, &mut ahead), (-1.0, &mut behind)] {
+                *if is_position { &mut x[i] } else { &mut v[i] } = here + sign * h;
+                (self.0)(&x, &v, t, out);
+            }
+            *if is_position { &mut x[i] } else { &mut v[i] } = here;
+            let out = if is_position { &mut *by_position } else { &mut *by_velocity };
+            (0..k).for_each(|row| out[row * k + i] = (ahead[row] - behind[row]) / (2.0 * h));
+        }
+    }
+}
+
 /// Derivatives of a function by dual numbers. Nothing is allocated in a step for up to [`SIZE`] coordinates and rows.
 pub struct Differentiated<F>(pub F);
 

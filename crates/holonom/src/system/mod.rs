@@ -21,7 +21,7 @@ mod slots;
 mod switches;
 
 pub use builder::{NodeId, Place, SystemBuilder, Term};
-pub use custom::{ConstraintFunction, CustomRows, Differentiated, ForceFunction, Number, SIZE};
+pub use custom::{ConstraintFunction, CustomRows, Differences, Differentiated, ForceFunction, Number, SIZE};
 pub(crate) use derive::NO_CHANGE;
 pub use derive::{Derivatives, Followed, FollowedFunction, Pfaffian, PfaffianForm, Smooth, SmoothFunction};
 pub use evaluate::{Between, Evaluation};
