@@ -1,7 +1,6 @@
 //! Constraints and forces that no invariant expresses: functions of coordinates and time, differentiated by dual numbers.
 
 use num_dual::{Dual2_64, Dual64, DualNum, HyperDual64};
-use smallvec::{SmallVec, smallvec};
 
 use super::Load;
 
@@ -55,8 +54,8 @@ impl<F: Fn(&[f64], &[f64], f64, &mut [f64]) + Send + Sync> Load for Differences<
 
     fn tangent(&self, x: &[f64], v: &[f64], t: f64, by_position: &mut [f64], by_velocity: &mut [f64]) {
         let k = x.len();
-        let (mut x, mut v): (Numbers<f64>, Numbers<f64>) = (x.into(), v.into());
-        let (mut ahead, mut behind): (Numbers<f64>, Numbers<f64>) = (smallvec![0.0; k], smallvec![0.0; k]);
+        let (mut x, mut v) = (x.to_vec(), v.to_vec());
+        let (mut ahead, mut behind) = (vec![0.0; k], vec![0.0; k]);
         let step =
             |numbers: &[f64]| f64::EPSILON.cbrt() * numbers.iter().fold(0.0, |most: f64, number| most.max(number.abs())).max(f64::EPSILON);
         let steps = [step(&x), step(&v)];
@@ -81,8 +80,10 @@ pub struct Differentiated<F>(pub F);
 /// Coordinates, and rows, of one function that fit on the stack; more are put on the heap.
 pub const SIZE: usize = 24;
 
-/// As many numbers as a function has coordinates or rows.
-type Numbers<N> = SmallVec<[N; SIZE]>;
+/// Calls `f` with room for so many numbers, on the stack where they are those of a function of [`SIZE`] coordinates.
+fn with_room<N: Copy, T>(zero: N, count: usize, f: impl FnOnce(&mut [N]) -> T) -> T {
+    if count <= 3 * SIZE { f(&mut [zero; 3 * SIZE][..count]) } else { f(&mut vec![zero; count]) }
+}
 
 impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
     fn rows(&self) -> usize {
@@ -95,51 +96,51 @@ impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
 
     fn gradient(&self, x: &[f64], t: f64, by_position: &mut [f64], by_time: &mut [f64]) {
         let (k, rows) = (x.len(), self.0.rows());
-        let (mut point, mut phi): (Numbers<_>, Numbers<_>) = (smallvec![Dual64::from(0.0); k], smallvec![Dual64::from(0.0); rows]);
-        for direction in 0..=k {
-            for (p, &x) in point.iter_mut().zip(x) {
-                *p = Dual64::from(x);
-            }
-            let mut time = Dual64::from(t);
-            match point.get_mut(direction) {
-                Some(p) => p.eps = 1.0,
-                None => time.eps = 1.0,
-            }
-            self.0.evaluate(&point, time, &mut phi);
-            for row in 0..rows {
-                match direction < k {
-                    true => by_position[row * k + direction] = phi[row].eps,
-                    false => by_time[row] = phi[row].eps,
+        with_room(Dual64::from(0.0), k + rows, |room| {
+            let (point, phi) = room.split_at_mut(k);
+            for direction in 0..=k {
+                point.iter_mut().zip(x).for_each(|(point, &x)| *point = Dual64::from(x));
+                let mut time = Dual64::from(t);
+                match point.get_mut(direction) {
+                    Some(point) => point.eps = 1.0,
+                    None => time.eps = 1.0,
+                }
+                self.0.evaluate(point, time, phi);
+                for row in 0..rows {
+                    match direction < k {
+                        true => by_position[row * k + direction] = phi[row].eps,
+                        false => by_time[row] = phi[row].eps,
+                    }
                 }
             }
-        }
+        });
     }
 
     fn hessian(&self, x: &[f64], t: f64, lambda: &[f64], out: &mut [f64]) {
-        let (k, zero) = (x.len(), HyperDual64::from(0.0));
-        let (mut point, mut phi): (Numbers<_>, Numbers<_>) = (smallvec![zero; k], smallvec![zero; lambda.len()]);
-        for i in 0..k {
-            for j in 0..=i {
-                for (p, &x) in point.iter_mut().zip(x) {
-                    *p = HyperDual64::from(x);
+        let k = x.len();
+        with_room(HyperDual64::from(0.0), k + lambda.len(), |room| {
+            let (point, phi) = room.split_at_mut(k);
+            for i in 0..k {
+                for j in 0..=i {
+                    point.iter_mut().zip(x).for_each(|(point, &x)| *point = HyperDual64::from(x));
+                    point[i].eps1 = 1.0;
+                    point[j].eps2 = 1.0;
+                    self.0.evaluate(point, HyperDual64::from(t), phi);
+                    let sum: f64 = phi.iter().zip(lambda).map(|(phi, lambda)| lambda * phi.eps1eps2).sum();
+                    out[i * k + j] = sum;
+                    out[j * k + i] = sum;
                 }
-                point[i].eps1 = 1.0;
-                point[j].eps2 = 1.0;
-                self.0.evaluate(&point, HyperDual64::from(t), &mut phi);
-                let sum: f64 = phi.iter().zip(lambda).map(|(phi, lambda)| lambda * phi.eps1eps2).sum();
-                out[i * k + j] = sum;
-                out[j * k + i] = sum;
             }
-        }
+        });
     }
 
     fn curvature(&self, x: &[f64], v: &[f64], t: f64, out: &mut [f64]) {
-        let point: Numbers<_> = x.iter().zip(v).map(|(&x, &v)| Dual2_64::new(x, v, 0.0)).collect();
-        let mut phi: Numbers<_> = smallvec![Dual2_64::from(0.0); out.len()];
-        self.0.evaluate(&point, Dual2_64::new(t, 1.0, 0.0), &mut phi);
-        for (out, phi) in out.iter_mut().zip(&phi) {
-            *out = phi.v2;
-        }
+        with_room(Dual2_64::from(0.0), x.len() + out.len(), |room| {
+            let (point, phi) = room.split_at_mut(x.len());
+            point.iter_mut().zip(x.iter().zip(v)).for_each(|(point, (&x, &v))| *point = Dual2_64::new(x, v, 0.0));
+            self.0.evaluate(point, Dual2_64::new(t, 1.0, 0.0), phi);
+            out.iter_mut().zip(phi).for_each(|(out, phi)| *out = phi.v2);
+        });
     }
 }
 
@@ -150,22 +151,24 @@ impl<F: ForceFunction> Load for Differentiated<F> {
 
     fn tangent(&self, x: &[f64], v: &[f64], t: f64, by_position: &mut [f64], by_velocity: &mut [f64]) {
         let k = x.len();
-        let zeros: Numbers<_> = smallvec![Dual64::from(0.0); k];
-        let (mut point, mut rate, mut force) = (zeros.clone(), zeros.clone(), zeros);
-        for direction in 0..2 * k {
-            for i in 0..k {
-                point[i] = Dual64::from(x[i]);
-                rate[i] = Dual64::from(v[i]);
+        with_room(Dual64::from(0.0), 3 * k, |room| {
+            let (point, rest) = room.split_at_mut(k);
+            let (rate, force) = rest.split_at_mut(k);
+            for direction in 0..2 * k {
+                for i in 0..k {
+                    point[i] = Dual64::from(x[i]);
+                    rate[i] = Dual64::from(v[i]);
+                }
+                let (varied, out) = match direction < k {
+                    true => (&mut point[direction], &mut *by_position),
+                    false => (&mut rate[direction - k], &mut *by_velocity),
+                };
+                varied.eps = 1.0;
+                self.0.evaluate(point, rate, Dual64::from(t), force);
+                for i in 0..k {
+                    out[i * k + direction % k] = force[i].eps;
+                }
             }
-            let (varied, out) = match direction < k {
-                true => (&mut point[direction], &mut *by_position),
-                false => (&mut rate[direction - k], &mut *by_velocity),
-            };
-            varied.eps = 1.0;
-            self.0.evaluate(&point, &rate, Dual64::from(t), &mut force);
-            for i in 0..k {
-                out[i * k + direction % k] = force[i].eps;
-            }
-        }
+        });
     }
 }

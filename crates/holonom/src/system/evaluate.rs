@@ -283,7 +283,9 @@ pub(crate) type Local = SmallVec<[f64; SIZE]>;
 
 /// The coordinates of some nodes.
 pub(crate) fn gather(dim: usize, nodes: &[NodeId], x: &[f64]) -> Local {
-    nodes.iter().flat_map(|node| x[node.index() * dim..(node.index() + 1) * dim].iter().copied()).collect()
+    let mut local = Local::with_capacity(nodes.len() * dim);
+    nodes.iter().for_each(|node| local.extend_from_slice(&x[node.index() * dim..(node.index() + 1) * dim]));
+    local
 }
 
 /// The paper's β (15): where on the way from one position to the other a row's gradient times the way is its rise.
