@@ -1,10 +1,10 @@
-//! `#[derive(Keys)]`: a struct whose fields are the keys of a table in a model.
+//! `#[derive(Keys)]`: a struct whose fields are the keys of a table in a model; `#[derive(Sides)]`: the keys that joints have in common.
 //!
-//! The documentation of a field is that of its key, and `Option` says that the key may be left out. What else is known of a key
-//! stands in `#[key(unit = "…", default = "…", shape = …)]`: the unit for people, what is taken when it is not there, and what its value looks
-//! like where the type of the field does not say it. `#[table("a term")]` says what messages call the table, and `#[table("a shape", function)]`
-//! also what refuses a value that is no table. With `#[kind(name = "…", equations =
-//! "…", example = "…")]` the struct is a kind: what `type` may say.
+//! The documentation of a field is that of its key, and `Option` says that the key may be left out. What else is known of a key stands
+//! in `#[key(unit = "…", default = "…", shape = …)]`: the unit for people, what is taken when the key is not there, and what its value
+//! looks like where the type of the field does not say it. `#[table("a term")]` says what messages call the table, and
+//! `#[table("a shape", function)]` also what refuses a value that is no table. With `#[kind(name = "…", equations = "…",
+//! example = "…")]` the struct is a kind: what `type` may say.
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -15,6 +15,41 @@ use syn::{Attribute, Data, DeriveInput, Error, Expr, Field, Fields, Ident, LitSt
 pub fn derive_keys(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
     let input = parse_macro_input!(input as DeriveInput);
     keys(&input).unwrap_or_else(Error::into_compile_error).into()
+}
+
+/// Implements `Sides` from the fields `between`, `at`, and `axis` or `axes`.
+#[proc_macro_derive(Sides)]
+pub fn derive_sides(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    let input = parse_macro_input!(input as DeriveInput);
+    sides(&input).unwrap_or_else(Error::into_compile_error).into()
+}
+
+fn sides(input: &DeriveInput) -> Result<TokenStream> {
+    let fields = fields(input)?;
+    let site = |names: &[&str]| {
+        let field = fields.iter().find(|field| field.ident.as_ref().is_some_and(|ident| names.iter().any(|name| ident == name)));
+        match field {
+            Some(Field { ident, ty, .. }) if optional(ty).is_some() => quote! { self.#ident.as_ref() },
+            Some(Field { ident, .. }) => quote! { Some(&self.#ident) },
+            None => quote! { None },
+        }
+    };
+    let (ident, at, directions) = (&input.ident, site(&["at"]), site(&["axis", "axes"]));
+    Ok(quote! {
+        impl ::holonom::model::joints::Sides for #ident {
+            fn between(&self) -> &[String] {
+                &self.between
+            }
+
+            fn at(&self) -> Option<&::holonom::model::Site> {
+                #at
+            }
+
+            fn directions(&self) -> Option<&::holonom::model::Site> {
+                #directions
+            }
+        }
+    })
 }
 
 /// A field with what is known of its key.
@@ -30,14 +65,17 @@ struct Known<'a> {
     shape: Option<Expr>,
 }
 
-fn keys(input: &DeriveInput) -> Result<TokenStream> {
+fn fields(input: &DeriveInput) -> Result<Vec<&Field>> {
     let Data::Struct(data) = &input.data else { return Err(Error::new_spanned(input, "keys are the fields of a struct")) };
-    let fields: Vec<&Field> = match &data.fields {
-        Fields::Named(named) => named.named.iter().collect(),
-        Fields::Unit => Vec::new(),
-        Fields::Unnamed(_) => return Err(Error::new_spanned(input, "keys are named fields")),
-    };
-    let fields = fields.into_iter().map(known).collect::<Result<Vec<_>>>()?;
+    match &data.fields {
+        Fields::Named(named) => Ok(named.named.iter().collect()),
+        Fields::Unit => Ok(Vec::new()),
+        Fields::Unnamed(_) => Err(Error::new_spanned(input, "keys are named fields")),
+    }
+}
+
+fn keys(input: &DeriveInput) -> Result<TokenStream> {
+    let fields = fields(input)?.into_iter().map(known).collect::<Result<Vec<_>>>()?;
     let ident = &input.ident;
     let kind = kind(ident, &input.attrs)?;
     let table = table(ident, &fields, &inside(&input.attrs)?, kind.is_some());

@@ -11,7 +11,7 @@ use holonom::system::{ConstraintFunction, Differences, Differentiated, Law, Plac
 use holonom_io::Source;
 
 /// a hinge that is a spherical joint whose axes stay parallel
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(name = "hinge", equations = "d = 0, u_B·v_A = 0, u_B·w_A = 0", example = "")]
 struct Hinge {
     /// the two bodies, or a body and "ground"
@@ -28,10 +28,6 @@ struct Hinge {
 impl Joint for Hinge {
     const LAYOUT: Layout =
         Layout { freedom: [Some(1), Some(1)], at: Seat::Given, directions: [1, 0], shares: [&[], &[]], takes_point: false };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: Some(&self.at), directions: self.axis.as_ref() }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         pair.coincide();

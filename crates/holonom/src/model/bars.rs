@@ -38,12 +38,7 @@ impl Bar {
     pub(super) fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<BarInfo> {
         let ends = assembly.moving_pair(entry, "between", &self.between);
         let mass = self.mass.positive(entry, "mass");
-        let ends = ends?;
-        // Points of a faulty bar count as having mass: that they lack it would be no fault of theirs.
-        for point in ends.iter().filter_map(|end| end.point) {
-            assembly.points[point].carries_bar = true;
-        }
-        let mass = mass?;
+        let (ends, mass) = (ends?, mass?);
         let [a, b] = &ends;
         let length = norm(difference(a, b));
         if length == 0.0 {
@@ -54,6 +49,7 @@ impl Bar {
             return Err(entry.refuse("between", "a bar ends at points and fixed places, not at places of bodies", cure));
         };
         add_mass(assembly, [first, second], mass);
+        ends.iter().filter_map(|end| end.point).for_each(|point| assembly.points[point].carries_bar = true);
         let half_square = assembly.builder.square(&from_to(a, b));
         assembly.builder.constant_row(entry.name, half_square, 0.5 * length * length);
         assembly.draw(entry, LineKind::Bar, a, b);

@@ -57,10 +57,7 @@ pub(super) fn model(description: &Description, unread: &Unread, meshes: &dyn Mes
         return Ok(finish::finish(assembly, title, settings, output, bars));
     }
     drop(assembly);
-    match sink.finish() {
-        Err(faults) => Err(faults),
-        Ok(()) => unreachable!("there are faults"),
-    }
+    Err(sink.finish().expect_err("there are faults"))
 }
 
 struct Compiler<'a> {

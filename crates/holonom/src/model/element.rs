@@ -7,7 +7,7 @@ use super::entry::{Entry, Written};
 use super::fault::Read;
 use super::fields::{Described, Keys};
 use super::joints::{AnyJoint, Joint, Layout, pair};
-use super::value::{Table, Value};
+use super::value::Table;
 
 /// An element of a model: a joint, a coupler, a constraint, a drive or a force.
 pub trait Element: Described + Debug + Send + Sync + 'static {
@@ -81,9 +81,8 @@ impl<T: Element> AnyElement for T {
     }
 
     fn write(&self) -> Table {
-        let mut table: Table = [("type", Value::text(T::NAME))].into_iter().collect();
-        T::KEYS.iter().filter_map(|key| Some((key.name, self.value(key.name)?))).for_each(|(name, value)| table.push(name, value));
-        table
+        let keys = T::KEYS.iter().map(|key| key.name);
+        ["type"].into_iter().chain(keys).filter_map(|key| Some((key, self.value(key)?))).collect()
     }
 
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {

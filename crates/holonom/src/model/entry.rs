@@ -4,7 +4,7 @@
 //! asks which of them there are: one look at a model finds everything.
 
 use super::bodies::Meshes;
-use super::expression::{Mistake, Program, Scope};
+use super::expression::{Mistake, Scope};
 use super::fault::{Fault, Read, Refused, Sink, suggest};
 use super::value::{Table, Value, item_path, key_path};
 
@@ -77,13 +77,21 @@ impl<'a> Entry<'a> {
         self.fault(spot, Some(mistake.character), mistake.message, mistake.cure)
     }
 
+    /// The path of a key, or of an item of the list there.
+    pub(super) fn path_of(&self, spot: Spot<'_>) -> String {
+        let path = key_path(self.path, spot.key);
+        match spot.item {
+            Some(k) => item_path(&path, k),
+            None => path,
+        }
+    }
+
     fn fault(&self, spot: Spot<'_>, character: Option<usize>, message: String, cure: String) -> Refused {
         let value = match (self.written.value(spot.key), spot.item) {
             (Some(Value::List(mut items)), Some(k)) => (k < items.len()).then(|| items.swap_remove(k)),
             (value, _) => value,
         };
-        let path = key_path(self.path, spot.key);
-        let path = spot.item.map_or(path.clone(), |k| item_path(&path, k));
+        let path = self.path_of(spot);
         let offending = value.map_or_else(|| spot.key.to_string(), |value| value.quoted());
         self.sink.report(|| Fault { character, ..Fault::new(path, offending, self.told(message), cure) })
     }
@@ -103,7 +111,9 @@ impl<'a> Entry<'a> {
             "a number" => "write a number such as 1.5, or an expression in quotes",
             "true or false" => "write true or false, without quotes",
             "a text" | "texts" => "put it in quotes",
-            "a list" => "put the items in square brackets, with commas between them",
+            "a list" | "a list of three numbers, or in a planar model one number" => {
+                "put the items in square brackets, with commas between them"
+            }
             _ => "write its keys in braces, or below a line with its name in square brackets",
         };
         self.refuse(spot, format!("`{}` wants {what}, and this is {}", spot.key, value.type_name()), cure)
@@ -127,50 +137,8 @@ impl<'a> Entry<'a> {
 
     /// What is said of a table inside of this one, at a key or in a list there.
     pub fn within<'s, T>(&self, at: impl Into<Spot<'s>>, written: &dyn Written, read: impl FnOnce(&Entry<'_>) -> T) -> T {
-        let at = at.into();
-        let path = key_path(self.path, at.key);
-        let path = at.item.map_or(path.clone(), |k| item_path(&path, k));
+        let path = self.path_of(at.into());
         read(&Entry { path: &path, written, ..*self })
-    }
-
-    /// A finite number from a number or an expression.
-    pub(super) fn number_in(&self, spot: Spot<'_>, value: &Value) -> Read<f64> {
-        let number = match value {
-            Value::Number(number) => *number,
-            Value::Text(text) => {
-                let program = Program::parse(text, &[], &self.scope).map_err(|mistake| self.mistaken(spot, mistake))?;
-                program.as_constant().expect("an expression without variables is a constant")
-            }
-            other => return Err(self.wanted(spot, "a number", other)),
-        };
-        if number.is_finite() {
-            return Ok(number);
-        }
-        let message = if number.is_nan() { "this is not a number (NaN)" } else { "this number is infinite" };
-        let cure = match value {
-            Value::Text(_) => "every number must be finite: look for a division by zero, or a function where it has no value",
-            _ => "every number must be finite",
-        };
-        Err(self.refuse(spot, message, cure))
-    }
-
-    /// A formula of some variables from a number or an expression.
-    pub(super) fn formula_in(&self, spot: Spot<'_>, value: &Value, variables: &[&str]) -> Read<Program> {
-        match value {
-            Value::Text(text) => {
-                let program = Program::parse(text, variables, &self.scope).map_err(|mistake| self.mistaken(spot, mistake))?;
-                match program.as_constant() {
-                    Some(_) => self.number_in(spot, value).map(Program::constant),
-                    None => {
-                        if let Some(t) = variables.iter().position(|name| *name == "t") {
-                            self.sink.switches.borrow_mut().extend(program.switches(t));
-                        }
-                        Ok(program)
-                    }
-                }
-            }
-            _ => self.number_in(spot, value).map(Program::constant),
-        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! What people write: a description, read with all its faults at once and compiled to a system.
 //!
-//! No files, no clock, no printing. A description is a [`Value`] without places in a file; faults name paths in it, and
-//! who has read the file knows where they are.
+//! No files, no clock, no printing. A [`Description`] knows nothing of places in a file; faults name paths in it, and who has read
+//! the file knows where they are.
 
 pub mod bodies;
 pub mod constraints;

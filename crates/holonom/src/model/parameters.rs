@@ -5,7 +5,8 @@ use std::collections::{HashMap, HashSet};
 use super::bodies::NoMeshes;
 use super::entry::Entry;
 use super::expression::{self, Scope, Value as Known};
-use super::fault::Sink;
+use super::fault::{Read, Sink};
+use super::fields::{Field, Number};
 use super::value::{Table, Value};
 
 /// Values of all parameters; those that cannot be read are there as faulty.
@@ -25,30 +26,26 @@ pub fn read(table: &Table, sink: &Sink) -> HashMap<String, Known> {
             sink,
             meshes: &NoMeshes,
         };
-        let valid = is_valid(&entry, name);
-        let number = entry.number_in(name.into(), table.get(name).expect("a name of the table"));
+        let valid = require_name(&entry, name).is_ok();
+        let number = Number::read(&entry, name.into(), table.get(name).expect("a name of the table"));
+        let number = number.and_then(|number| number.number(&entry, name));
         let value = if valid { number.map_or(Known::Faulty, Known::Known) } else { Known::Faulty };
         known.insert(name.to_string(), value);
     }
     known
 }
 
-/// Names are written in expressions, so they must look like names there.
-fn is_valid(entry: &Entry<'_>, name: &str) -> bool {
+/// Refuses a key that could not be written as a name in expressions.
+pub fn require_name(entry: &Entry<'_>, name: &str) -> Read<()> {
     let starts = name.chars().next().is_some_and(|c| c.is_alphabetic() || c == '_');
     if !starts || !name.chars().all(|c| c.is_alphanumeric() || c == '_') {
-        entry.refuse_key(
-            name,
-            format!("`{name}` cannot be used as a name in expressions"),
-            "use letters, digits and _, and a letter first",
-        );
-        return false;
+        let message = format!("`{name}` cannot be used as a name in expressions");
+        return Err(entry.refuse_key(name, message, "use letters, digits and _, and a letter first"));
     }
     if expression::is_reserved(name) {
-        entry.refuse_key(name, format!("`{name}` is a constant or a function of every expression"), "give the parameter another name");
-        return false;
+        return Err(entry.refuse_key(name, format!("`{name}` is a constant or a function of every expression"), "give it another name"));
     }
-    true
+    Ok(())
 }
 
 /// The parameters that a parameter is made of.

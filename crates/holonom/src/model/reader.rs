@@ -8,7 +8,7 @@ use super::expression::Scope;
 use super::fault::{Fault, Read, Sink, suggest};
 use super::fields::{Field, Keys};
 use super::key::Key;
-use super::value::{Table, Value, item_path, key_path};
+use super::value::{Table, Value, key_path};
 
 /// A table while it is read, and where its faults go.
 #[derive(Clone, Copy)]
@@ -69,8 +69,7 @@ impl Entry<'_> {
     /// # Errors
     /// What is missing in it or of another shape; the faults are recorded.
     pub fn read_inside<T: Keys>(&self, what: &str, spot: Spot<'_>, table: &Table) -> Read<T> {
-        let path = key_path(self.path, spot.key);
-        let path = spot.item.map_or(path.clone(), |k| item_path(&path, k));
+        let path = self.path_of(spot);
         let inner = Reader { table, entry: Entry { path: &path, written: table, ..*self } };
         inner.refuse_unknown_keys(what, T::KEYS.iter());
         T::read(&inner)

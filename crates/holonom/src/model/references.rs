@@ -6,7 +6,7 @@ use super::ends::{End, fixed};
 use super::entry::{Entry, Spot, all};
 use super::expression::{Mistake, Program, Scope};
 use super::fault::{Read, Refused, nearest, suggest};
-use super::fields::{self as field, Field};
+use super::fields::{self as field, Field, Number};
 use super::geometry::Vec3;
 use super::joints::JointInfo;
 use super::value::Value;
@@ -22,7 +22,18 @@ enum Named {
 impl Assembly<'_> {
     /// The end that a place is.
     pub fn end<'s>(&self, entry: &Entry<'_>, at: impl Into<Spot<'s>>, place: &field::Place) -> Read<End> {
-        self.end_in(entry, at.into(), &place.write())
+        let spot = at.into();
+        match place {
+            field::Place::Named(name) if name == GROUND => Ok(fixed([0.0; 3], GROUND.into())),
+            field::Place::Named(name) => self.named_end(entry, spot, name),
+            field::Place::Fixed(numbers) if numbers.len() == self.dimension() => {
+                Ok(fixed(vector(entry, spot, numbers)?, place.write().quoted()))
+            }
+            field::Place::Fixed(numbers) => {
+                let message = format!("a fixed place has {} numbers here, and this has {}", self.dimension(), numbers.len());
+                Err(entry.refuse(spot, message, "give one for each axis of the model"))
+            }
+        }
     }
 
     /// At least `least` and at most `most` ends, no two neighbours alike.
@@ -116,14 +127,14 @@ impl Assembly<'_> {
     }
 
     /// Where a place is at the start: `"BODY.POINT"`, the name of a point or a body, or coordinates.
-    pub fn place_at_start(&self, entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<Vec3> {
-        match value {
+    pub fn place_at_start<'s>(&self, entry: &Entry<'_>, at: impl Into<Spot<'s>>, place: &field::Place) -> Read<Vec3> {
+        match place {
             // The frames of bodies may not be there yet.
-            Value::Text(name) if name != GROUND => Ok(match self.named(entry, spot, name)? {
+            field::Place::Named(name) if name != GROUND => Ok(match self.named(entry, at.into(), name)? {
                 Named::Point(k) => self.points[k].end.start,
                 Named::Place(_, at) => at,
             }),
-            _ => self.end_in(entry, spot, value).map(|end| end.start),
+            _ => self.end(entry, at, place).map(|end| end.start),
         }
     }
 
@@ -131,7 +142,10 @@ impl Assembly<'_> {
     pub fn direction_at_start(&self, entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<Vec3> {
         let cure = "write a direction as a list of numbers, or \"BODY.AXIS\"";
         match value {
-            Value::List(items) if items.len() == self.dimension() => numbers(entry, spot, items),
+            Value::List(items) if items.len() == self.dimension() => {
+                let numbers = all(items.iter().map(|item| Number::read(entry, spot, item)))?;
+                vector(entry, spot, &numbers)
+            }
             Value::Text(text) => {
                 let (body, axis) = split_place(text).ok_or_else(|| entry.refuse(spot, format!("\"{text}\" is no direction"), cure))?;
                 let Member::Body(k) = self.member(entry, spot, body)? else {
@@ -170,25 +184,6 @@ impl Assembly<'_> {
     /// A place of a body as an end.
     pub fn body_end(&self, body: usize, at: Vec3, name: &str) -> End {
         End { terms: self.frames[body].point(at), start: at, free: true, point: None, body: Some(body), name: name.to_string() }
-    }
-
-    fn end_in(&self, entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<End> {
-        match value {
-            Value::Text(name) if name == GROUND => Ok(fixed([0.0; 3], GROUND.into())),
-            Value::Text(name) => self.named_end(entry, spot, name),
-            Value::List(items) if items.len() == self.dimension() => {
-                let start = numbers(entry, spot, items)?;
-                Ok(fixed(start, value.quoted()))
-            }
-            Value::List(items) => {
-                let message = format!("a fixed place has {} numbers here, and this has {}", self.dimension(), items.len());
-                Err(entry.refuse(spot, message, "give one for each axis of the model"))
-            }
-            other => {
-                let message = format!("the name of a point is wanted here, and this is {}", other.type_name());
-                Err(entry.refuse(spot, message, "write \"NAME\", \"ground\" or a list of coordinates"))
-            }
-        }
     }
 
     fn named_end(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<End> {
@@ -239,8 +234,8 @@ impl Assembly<'_> {
 }
 
 /// Numbers of a list that may itself be an item of a list, zeros behind them.
-fn numbers(entry: &Entry<'_>, spot: Spot<'_>, items: &[Value]) -> Read<[f64; 3]> {
-    let read = all(items.iter().map(|item| entry.number_in(spot, item)))?;
+fn vector(entry: &Entry<'_>, spot: Spot<'_>, numbers: &[Number]) -> Read<Vec3> {
+    let read = all(numbers.iter().map(|number| number.number(entry, spot)))?;
     Ok(std::array::from_fn(|k| read.get(k).copied().unwrap_or(0.0)))
 }
 

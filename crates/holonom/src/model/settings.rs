@@ -209,9 +209,8 @@ fn node_weights(weights: &Map<Number>, entry: &Entry<'_>, key: &str, assembly: &
         }
     };
     let given = entry.within(key, weights, |entry| all(weights.iter().map(|given| weight(given, entry))))?;
-    let free: Vec<usize> = assembly.points.iter().enumerate().filter(|(_, point)| point.end.free).map(|(k, _)| k).collect();
     let mut of_nodes = vec![0.0; assembly.builder.free_nodes()];
-    for point in free.into_iter().map(|k| &assembly.points[k]) {
+    for point in assembly.points.iter().filter(|point| point.end.free) {
         let Some(Place::Node(node)) = point.end.place() else { continue };
         let Some((_, weight)) = given.iter().find(|(name, _)| *name == point.name) else {
             let message = format!("the projection has no weight for the point `{}`", point.name);

@@ -65,7 +65,11 @@ impl From<String> for Number {
 impl Number {
     /// The number, which must be finite; `at` is where it stands, for messages.
     pub fn number<'s>(&self, entry: &Entry<'_>, at: impl Into<Spot<'s>>) -> Read<f64> {
-        entry.number_in(at.into(), &self.write())
+        let at = at.into();
+        match self {
+            Self::Given(number) => finite(*number, entry, at, "every number must be finite"),
+            Self::Formula(text) => Ok(program(text, entry, at, &[])?.as_constant().expect("a formula without variables is a constant")),
+        }
     }
 
     /// A number above zero.
@@ -104,6 +108,30 @@ impl Number {
 
     /// A formula of some variables.
     pub fn formula<'s>(&self, entry: &Entry<'_>, at: impl Into<Spot<'s>>, variables: &[&str]) -> Read<Program> {
-        entry.formula_in(at.into(), &self.write(), variables)
+        let text = match self {
+            Self::Given(_) => return self.number(entry, at).map(Program::constant),
+            Self::Formula(text) => text,
+        };
+        let program = program(text, entry, at.into(), variables)?;
+        if let Some(t) = variables.iter().position(|name| *name == "t") {
+            entry.sink.switches.borrow_mut().extend(program.switches(t));
+        }
+        Ok(program)
     }
+}
+
+fn program(text: &str, entry: &Entry<'_>, at: Spot<'_>, variables: &[&str]) -> Read<Program> {
+    let program = Program::parse(text, variables, &entry.scope).map_err(|mistake| entry.mistaken(at, mistake))?;
+    if let Some(number) = program.as_constant() {
+        finite(number, entry, at, "every number must be finite: look for a division by zero, or a function where it has no value")?;
+    }
+    Ok(program)
+}
+
+fn finite(number: f64, entry: &Entry<'_>, at: Spot<'_>, cure: &str) -> Read<f64> {
+    if number.is_finite() {
+        return Ok(number);
+    }
+    let message = if number.is_nan() { "this is not a number (NaN)" } else { "this number is infinite" };
+    Err(entry.refuse(at, message, cure))
 }

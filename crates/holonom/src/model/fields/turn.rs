@@ -16,7 +16,8 @@ impl Field for Turn {
     fn read(entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<Self> {
         match value {
             Value::List(_) => List::read(entry, spot, value).map(Self::InSpace),
-            _ => Number::read(entry, spot, value).map(Self::InPlane),
+            Value::Number(_) | Value::Text(_) => Number::read(entry, spot, value).map(Self::InPlane),
+            other => Err(entry.wanted(spot, "a list of three numbers, or in a planar model one number", other)),
         }
     }
 

@@ -7,7 +7,7 @@ use crate::model::element::Element;
 use crate::model::ends::subtract;
 use crate::model::entry::{Entry, Spot, all};
 use crate::model::fault::Read;
-use crate::model::fields::{Field, Keys, List, Number, Place};
+use crate::model::fields::{Keys, List, Number, Place};
 use crate::model::geometry::unit;
 use crate::model::key::Shape;
 
@@ -57,7 +57,7 @@ impl Element for Bushing {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let count = if assembly.dimension() == 2 { 3 } else { 6 };
         let members = members(assembly, entry, &self.between);
-        let at = assembly.place_at_start(entry, "at".into(), &self.at.write());
+        let at = assembly.place_at_start(entry, "at", &self.at);
         let stiffness = numbers(entry, "stiffness", &self.stiffness, count);
         let damping = entry.optional("damping", &self.damping, |damping, entry, key| numbers(entry, key, damping, count));
         let (members, at, stiffness, damping) = (members?, at?, stiffness?, damping?);

@@ -9,6 +9,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Keys, Map, Number};
 use crate::model::joints::coordinate;
 use crate::model::key::Shape;
+use crate::model::parameters::require_name;
 use crate::system::MAX_ARGUMENTS;
 
 /// a motor or any other effort along the coordinate of a joint, as a formula of time, of that coordinate and its rate, and of those
@@ -67,11 +68,13 @@ impl Element for Effort {
         if let Some(others) = &self.coordinates {
             entry.within("coordinates", others, |inner| {
                 for (name, other) in others.iter() {
-                    if names.iter().any(|known| known == name) {
-                        return Err(inner.refuse_key(name, format!("`{name}` is the name of another variable"), "give it another name"));
+                    require_name(inner, name)?;
+                    let rate = format!("{name}_rate");
+                    if let Some(known) = names.iter().find(|known| *known == name || **known == rate) {
+                        return Err(inner.refuse_key(name, format!("`{known}` is the name of another variable"), "give it another name"));
                     }
                     coordinates.push(coordinate(assembly, inner, name.as_str().into(), other)?);
-                    names.extend([name.clone(), format!("{name}_rate")]);
+                    names.extend([name.clone(), rate]);
                 }
                 Ok(())
             })?;

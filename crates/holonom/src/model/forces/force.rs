@@ -3,7 +3,7 @@ use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
-use crate::model::fields::{Field, Keys, List, Number, Place};
+use crate::model::fields::{Keys, List, Number, Place};
 use crate::model::key::Shape;
 
 /// a force at a place of a body, in the axes of the model or following the body, as formulas of time and of its motion
@@ -50,7 +50,7 @@ impl Element for Force {
 
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let body = body_load::body(assembly, entry, "body", &self.body);
-        let at = entry.optional("at", &self.at, |at, entry, key| assembly.place_at_start(entry, key.into(), &at.write()));
+        let at = entry.optional("at", &self.at, |at, entry, key| assembly.place_at_start(entry, key, at));
         let (body, at) = (body?, at?);
         let place = at.unwrap_or(assembly.bodies[body].position);
         let at = assembly.body_end(body, place, "");

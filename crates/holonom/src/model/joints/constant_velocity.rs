@@ -7,7 +7,7 @@ use crate::model::key::Shape;
 use crate::system::Form;
 
 /// two shafts that share a point and turn at the same speed however they are bent against each other
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "constant-velocity",
     equations = "d = 0, w_A·v_B − v_A·w_B = 0 with v_A = v_B at right angles to both shafts at the start: no turn about u_A + u_B",
@@ -52,10 +52,6 @@ impl Joint for ConstantVelocity {
         shares: [&[Feature::Point], &[Feature::Point]],
         takes_point: false,
     };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: Some(&self.at), directions: Some(&self.axes) }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         let [a, b] = pair.geometry.triad.map(|triad| triad[0]);

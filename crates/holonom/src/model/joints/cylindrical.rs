@@ -5,7 +5,7 @@ use crate::model::fields::{Keys, List, Site};
 use crate::model::key::Shape;
 
 /// a sleeve on a shaft: the second body slides along an axis of the first and turns about it
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "cylindrical",
     equations = "d·v_A = 0, d·w_A = 0, u_B·v_A = 0, u_B·w_A = 0",
@@ -43,10 +43,6 @@ impl Joint for Cylindrical {
         shares: [&[Feature::Axis(0)], &[Feature::Axis(0)]],
         takes_point: false,
     };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: Some(&self.at), directions: self.axis.as_ref() }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         pair.stay(1);

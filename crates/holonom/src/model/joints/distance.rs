@@ -7,7 +7,7 @@ use crate::model::key::Shape;
 use crate::record::LineKind;
 
 /// a massless rod between a place of the one body and a place of the other; the two may be points
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "distance",
     equations = "½ d·d − ½ L² = 0 with the length L of the start",
@@ -36,10 +36,6 @@ pub struct Distance {
 impl Joint for Distance {
     const LAYOUT: Layout =
         Layout { freedom: [Some(5), Some(2)], at: Seat::Two, directions: [0, 0], shares: [&[], &[]], takes_point: false };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: Some(&self.at), directions: None }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         let d = pair.d();

@@ -5,7 +5,7 @@ use crate::model::fields::{Keys, List, Site};
 use crate::model::key::Shape;
 
 /// two bodies as one
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "fixed",
     equations = "d = 0, u_B·v_A = 0, u_B·w_A = 0, v_B·w_A = 0; none where their reactions are not asked for: the two then are one body",
@@ -42,10 +42,6 @@ impl Joint for Fixed {
         shares: [&[Feature::All], &[Feature::All]],
         takes_point: false,
     };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: self.at.as_ref(), directions: None }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         pair.coincide();

@@ -8,7 +8,7 @@ use crate::model::key::Shape;
 
 /// any of the six motions of two bodies against each other locked, along and about three axes of the first body; locks of rotation
 /// hold for any others, but two alone are those of a joint with one free axis: locked rx and ry leave rz
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "generic",
     equations = "x: d·x_A = 0, y: d·y_A = 0, z: d·z_A = 0, rx: y_A·z_B = 0, ry: z_A·x_B = 0, rz: x_A·y_B = 0",
@@ -44,10 +44,6 @@ const LOCKS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
 
 impl Joint for Generic {
     const LAYOUT: Layout = Layout { freedom: [Some(6), None], at: Seat::Given, directions: [0, 0], shares: [&[], &[]], takes_point: false };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: Some(&self.at), directions: None }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         let locks = locks(pair, &self.locks)?;

@@ -1,12 +1,12 @@
 //! Where a joint is at the start, from its keys `between`, `at`, `axis` and `axes`.
 
-use super::{AnyJoint, Feature, Seat, Sides};
+use super::{AnyJoint, Feature, Seat};
 use crate::model::assembly::Assembly;
 use crate::model::bodies::RigidBody;
 use crate::model::bodies::nodes::{Member, Shared};
 use crate::model::entry::{Entry, Spot};
 use crate::model::fault::Read;
-use crate::model::fields::Site;
+use crate::model::fields::{Field, Place, Site};
 use crate::model::geometry::{Vec3, across, carried, cross, dot, norm, scale, subtract, unit};
 use crate::model::value::Value;
 
@@ -28,8 +28,6 @@ pub struct Survey {
     pub needed: Vec<(usize, Vec3)>,
     /// Where joints sit.
     pub sites: Vec<Vec3>,
-    /// Where each joint is: of every entry those that it makes, in order; of couplers none.
-    pub geometries: Vec<Vec<Geometry>>,
     /// Bodies, and how far from their centres joints sit, m.
     pub arms: Vec<(usize, f64)>,
 }
@@ -102,7 +100,7 @@ const SAME: f64 = 1e-12;
 impl Geometry {
     pub fn of(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> Read<Self> {
         let members = members(assembly, entry, joint);
-        let (layout, sides) = (joint.layout(), joint.sides());
+        let layout = joint.layout();
         let dim = assembly.dimension();
         if layout.freedom[usize::from(dim == 2)].is_none() {
             return Err(entry.refuse(
@@ -111,7 +109,7 @@ impl Geometry {
                 "use one of those in the plane",
             ));
         }
-        let at = match (layout.at, sides.at) {
+        let at = match (layout.at, joint.at()) {
             (Seat::Any, None) => {
                 let members = members?;
                 let centre = members.iter().rev().find_map(|member| match member {
@@ -123,7 +121,7 @@ impl Geometry {
             (_, None) => Err(entry.missing("at")),
             (seat, Some(at)) => places(assembly, entry, at, seat == Seat::Two),
         };
-        let triad = triad(assembly, entry, layout.directions[usize::from(dim == 2)], sides, dim);
+        let triad = triad(assembly, entry, layout.directions[usize::from(dim == 2)], joint.directions(), dim);
         let (members, at, triad) = (members?, at?, triad?);
         for side in 0..2 {
             let Member::Point(k) = members[side] else { continue };
@@ -139,7 +137,7 @@ impl Geometry {
 
 /// The two sides, of which at least one can move.
 fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> Read<[Member; 2]> {
-    let (layout, names) = (joint.layout(), joint.sides().between);
+    let (layout, names) = (joint.layout(), joint.between());
     let [first, second] = names else {
         let message = format!("a joint is between two bodies, and this names {}", names.len());
         return Err(entry.refuse("between", message, "write between = [\"A\", \"B\"], or [\"ground\", \"B\"]"));
@@ -176,13 +174,17 @@ fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> 
 fn places(assembly: &Assembly<'_>, entry: &Entry<'_>, at: &Site, two: bool) -> Read<[Vec3; 2]> {
     match &at.0 {
         Value::List(items) if is_one_of_each(assembly, entry, items) => {
-            let site = |k: usize| assembly.place_at_start(entry, Spot { key: "at", item: Some(k) }, &items[k]);
+            let site = |k: usize| place(assembly, entry, Spot { key: "at", item: Some(k) }, &items[k]);
             let (a, b) = (site(0), site(1));
             Ok([a?, b?])
         }
         _ if two => Err(entry.refuse("at", "this joint wants two places, one of each body", "write at = [[x, y, z], [x, y, z]]")),
-        value => assembly.place_at_start(entry, "at".into(), value).map(|place| [place; 2]),
+        value => place(assembly, entry, "at".into(), value).map(|place| [place; 2]),
     }
+}
+
+fn place(assembly: &Assembly<'_>, entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Read<Vec3> {
+    assembly.place_at_start(entry, spot, &Place::read(entry, spot, value)?)
 }
 
 /// Whether these are two places or directions and not the numbers of one, which may be texts with expressions.
@@ -196,11 +198,11 @@ fn is_one_of_each(assembly: &Assembly<'_>, entry: &Entry<'_>, items: &[Value]) -
 }
 
 /// The triads of both sides.
-fn triad(assembly: &Assembly<'_>, entry: &Entry<'_>, count: usize, sides: Sides<'_>, dim: usize) -> Read<[[Vec3; 3]; 2]> {
-    if count == 0 && sides.directions.is_some() && dim == 2 {
+fn triad(assembly: &Assembly<'_>, entry: &Entry<'_>, count: usize, given: Option<&Site>, dim: usize) -> Read<[[Vec3; 3]; 2]> {
+    if count == 0 && given.is_some() && dim == 2 {
         return Err(entry.refuse_key("axis", "in a planar model this joint has no axis", "remove it"));
     }
-    let [a, b] = match (count, sides.directions) {
+    let [a, b] = match (count, given) {
         (0, _) => [unit(if dim == 2 { 0 } else { 2 }); 2],
         (1, None) => return Err(entry.missing("axis")),
         (_, None) => return Err(entry.missing("axes")),

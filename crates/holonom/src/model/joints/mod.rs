@@ -56,16 +56,16 @@ pub use screw::Screw;
 pub use spherical::Spherical;
 pub use universal::Universal;
 
+pub use holonom_derive::Sides;
+
 use super::fault::Read;
 use super::fields::{Described, Site};
 use super::key::Kind;
 
 /// A joint between two bodies, beside its keys.
-pub trait Joint: Described + Debug + Send + Sync + 'static {
+pub trait Joint: Described + Sides + Debug + Send + Sync + 'static {
+    /// How it sits between its bodies.
     const LAYOUT: Layout;
-
-    /// The keys that all joints have.
-    fn sides(&self) -> Sides<'_>;
 
     /// Adds the rows and coordinates.
     ///
@@ -85,27 +85,36 @@ pub struct Layout {
     pub directions: [usize; 2],
     /// What both bodies have in common, in space and in the plane.
     pub shares: [&'static [Feature]; 2],
-    /// Whether the second may be a point though the joint has a direction or holds rotation: that is the first body's.
+    /// Whether the second side may be a point. A joint that has a direction or holds rotation needs two bodies, unless, as that of a
+    /// point on a line, all of this belongs to the first.
     pub takes_point: bool,
 }
 
-/// Keys that all joints have.
-#[derive(Clone, Copy, Debug)]
-pub struct Sides<'a> {
-    /// `between`
-    pub between: &'a [String],
-    /// `at`
-    pub at: Option<&'a Site>,
-    /// `axis` or `axes`
-    pub directions: Option<&'a Site>,
+/// The keys that joints have in common; `#[derive(Sides)]` implements it for a struct with a field `between` and, where the joint
+/// has them, fields `at` and `axis` or `axes`.
+pub trait Sides {
+    /// The names of the two bodies: `between`.
+    fn between(&self) -> &[String];
+
+    /// Where it sits: `at`.
+    fn at(&self) -> Option<&Site>;
+
+    /// How it is directed: `axis` or `axes`.
+    fn directions(&self) -> Option<&Site>;
 }
 
 /// A joint of any kind.
-pub trait AnyJoint {
+pub trait AnyJoint: Sides {
     /// What `type` says.
     fn name(&self) -> &'static str;
+
+    /// How it sits between its bodies.
     fn layout(&self) -> Layout;
-    fn sides(&self) -> Sides<'_>;
+
+    /// Adds the rows and coordinates.
+    ///
+    /// # Errors
+    /// What is wrong with its keys; the faults are recorded.
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()>;
 }
 
@@ -116,10 +125,6 @@ impl<T: Joint> AnyJoint for T {
 
     fn layout(&self) -> Layout {
         T::LAYOUT
-    }
-
-    fn sides(&self) -> Sides<'_> {
-        Joint::sides(self)
     }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {

@@ -5,7 +5,7 @@ use crate::model::fields::{Keys, List, Site};
 use crate::model::key::Shape;
 
 /// the second body does not turn against the first and moves freely otherwise
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "orientation",
     equations = "u_B·v_A = 0, u_B·w_A = 0, v_B·w_A = 0; in the plane u_B·v_A = 0",
@@ -38,10 +38,6 @@ impl Joint for Orientation {
         shares: [&[Feature::Axis(0), Feature::Axis(1), Feature::Axis(2)], &[Feature::Axis(0), Feature::Axis(1), Feature::Axis(2)]],
         takes_point: false,
     };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: self.at.as_ref(), directions: None }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         pair.lock_rotation();

@@ -5,7 +5,7 @@ use crate::model::fields::{Keys, List, Site};
 use crate::model::key::Shape;
 
 /// an axis of the one body stays parallel to an axis of the other
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "parallel",
     equations = "u_B·v_A = 0, u_B·w_A = 0",
@@ -42,10 +42,6 @@ impl Joint for Parallel {
         shares: [&[Feature::Axis(0)], &[Feature::Axis(0)]],
         takes_point: false,
     };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: self.at.as_ref(), directions: self.axis.as_ref() }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         pair.align();

@@ -6,7 +6,7 @@ use crate::model::fields::{Keys, List, Site};
 use crate::model::key::Shape;
 
 /// an axis of the one body stays at a right angle to an axis of the other
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "perpendicular",
     equations = "u_A·u_B = 0",
@@ -37,10 +37,6 @@ pub struct Perpendicular {
 
 impl Joint for Perpendicular {
     const LAYOUT: Layout = Layout { freedom: [Some(5), None], at: Seat::Any, directions: [2, 2], shares: [&[], &[]], takes_point: false };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: self.at.as_ref(), directions: Some(&self.axes) }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         right_angle(pair.entry, pair.geometry.triad.map(|triad| triad[0]))?;

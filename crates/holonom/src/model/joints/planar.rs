@@ -5,7 +5,7 @@ use crate::model::fields::{Keys, List, Site};
 use crate::model::key::Shape;
 
 /// a body on a table: the second body slides in a plane of the first and turns about its normal
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "planar",
     equations = "d·u_A = 0, u_B·v_A = 0, u_B·w_A = 0",
@@ -44,10 +44,6 @@ impl Joint for Planar {
         shares: [&[Feature::Axis(0)], &[Feature::Axis(0)]],
         takes_point: false,
     };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: Some(&self.at), directions: self.axis.as_ref() }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         pair.stay(0);

@@ -12,7 +12,7 @@ use crate::system::{Differentiated, Form, Term};
 
 /// a cam, a track, a roller coaster: a point of the second body moves along a curve of the first, a cubic spline; the second may be
 /// a point
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "point-on-curve",
     equations = "(a − C(s))·n_1(s) = 0, (a − C(s))·n_2(s) = 0 with a_k = d·e_k(A), the nearest s and n ⊥ C'(s); one row in the plane",
@@ -47,10 +47,6 @@ pub struct PointOnCurve {
 impl Joint for PointOnCurve {
     const LAYOUT: Layout =
         Layout { freedom: [Some(4), Some(2)], at: Seat::Given, directions: [0, 0], shares: [&[], &[]], takes_point: true };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: Some(&self.at), directions: None }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         let dim = pair.assembly.dimension();

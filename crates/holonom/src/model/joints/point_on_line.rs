@@ -5,7 +5,7 @@ use crate::model::fields::{Keys, List, Site};
 use crate::model::key::Shape;
 
 /// a pin in a slot: a point of the second body moves along a line of the first; the second may be a point
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "point-on-line",
     equations = "d·v_A = 0, d·w_A = 0; in the plane d·v_A = 0",
@@ -38,10 +38,6 @@ pub struct PointOnLine {
 impl Joint for PointOnLine {
     const LAYOUT: Layout =
         Layout { freedom: [Some(4), Some(2)], at: Seat::Given, directions: [1, 1], shares: [&[], &[]], takes_point: true };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: Some(&self.at), directions: self.axis.as_ref() }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         pair.stay(1);

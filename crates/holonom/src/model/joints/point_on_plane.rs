@@ -5,7 +5,7 @@ use crate::model::fields::{Keys, List, Site};
 use crate::model::key::Shape;
 
 /// a foot on a floor: a point of the second body stays on a plane of the first; the second may be a point
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "point-on-plane",
     equations = "d·u_A = 0",
@@ -37,10 +37,6 @@ pub struct PointOnPlane {
 
 impl Joint for PointOnPlane {
     const LAYOUT: Layout = Layout { freedom: [Some(5), None], at: Seat::Given, directions: [1, 1], shares: [&[], &[]], takes_point: true };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: Some(&self.at), directions: self.axis.as_ref() }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         pair.stay(0);

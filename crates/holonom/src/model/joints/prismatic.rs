@@ -5,7 +5,7 @@ use crate::model::fields::{Keys, List, Site};
 use crate::model::key::Shape;
 
 /// a slider on a rail: the second body moves along an axis of the first and does not turn against it
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "prismatic",
     equations = "d·v_A = 0, d·w_A = 0, u_B·v_A = 0, u_B·w_A = 0, v_B·w_A = 0; in the plane d·v_A = 0, u_B·v_A = 0",
@@ -42,10 +42,6 @@ impl Joint for Prismatic {
         shares: [&[Feature::Axis(0), Feature::Axis(1), Feature::Axis(2)], &[Feature::Axis(0), Feature::Axis(1), Feature::Axis(2)]],
         takes_point: false,
     };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: self.at.as_ref(), directions: self.axis.as_ref() }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         pair.stay(1);

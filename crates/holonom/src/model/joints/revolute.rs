@@ -5,7 +5,7 @@ use crate::model::fields::{Keys, List, Site};
 use crate::model::key::Shape;
 
 /// a hinge: the two bodies share a point and an axis and turn about it; in a planar model they share a point
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "revolute",
     equations = "d = 0, u_B·v_A = 0, u_B·w_A = 0",
@@ -43,10 +43,6 @@ impl Joint for Revolute {
         shares: [&[Feature::Point, Feature::Axis(0)], &[Feature::Point]],
         takes_point: false,
     };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: Some(&self.at), directions: self.axis.as_ref() }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         pair.coincide();

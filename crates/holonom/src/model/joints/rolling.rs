@@ -10,7 +10,7 @@ use crate::system::{Differentiated, Number, Part, PfaffianForm, SmoothFunction};
 
 /// a disc or wheel with a sharp edge that rolls on a plane of the first body without slipping, upright or tilted; its rows hold
 /// velocities along the plane, and no coordinate
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "rolling",
     equations = "d·N + R s(0) − R s = 0 and t_j·(ḋ − R/s (N·v v̇ + N·w ẇ)) = 0 in the axes of the first body, with v, w in the disc, s² = (N·v)² + (N·w)²",
@@ -52,10 +52,6 @@ pub struct Rolling {
 
 impl Joint for Rolling {
     const LAYOUT: Layout = Layout { freedom: [Some(3), None], at: Seat::Given, directions: [1, 1], shares: [&[], &[]], takes_point: false };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: Some(&self.at), directions: self.axis.as_ref() }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         let (normal, radius) = (self.normal.vector(pair.entry, "normal", 3), self.radius.positive(pair.entry, "radius"));

@@ -7,7 +7,7 @@ use crate::model::fields::{Keys, List, Number, Site};
 use crate::model::key::Shape;
 
 /// a nut on a spindle: a cylindrical joint that moves along its axis by the pitch with every turn
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "screw",
     equations = "d·v_A = 0, d·w_A = 0, u_B·v_A = 0, u_B·w_A = 0, d·u_A − pitch θ/2π = 0, θ counted over any number of turns",
@@ -48,10 +48,6 @@ impl Joint for Screw {
         shares: [&[Feature::Axis(0)], &[Feature::Axis(0)]],
         takes_point: false,
     };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: Some(&self.at), directions: self.axis.as_ref() }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         let pitch = self.pitch.number(pair.entry, "pitch")?;

@@ -5,7 +5,7 @@ use crate::model::fields::{Keys, List, Site};
 use crate::model::key::Shape;
 
 /// a ball in its socket: the two bodies share a point and turn freely about it; also between points
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "spherical",
     equations = "d = r_B − r_A = 0",
@@ -38,10 +38,6 @@ impl Joint for Spherical {
         shares: [&[Feature::Point], &[Feature::Point]],
         takes_point: false,
     };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: Some(&self.at), directions: None }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         pair.coincide();

@@ -9,7 +9,7 @@ use crate::system::Form;
 
 /// a cardan joint: the two bodies share a point, and an axis of the one stays at a right angle to an axis of the other; angle1 is
 /// the turn about the axis of the first body, angle2 that about the axis of the second
-#[derive(Clone, Debug, PartialEq, Keys)]
+#[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "universal",
     equations = "d = 0, u_A·u_B = 0",
@@ -50,10 +50,6 @@ impl Joint for Universal {
         shares: [&[Feature::Point], &[Feature::Point]],
         takes_point: false,
     };
-
-    fn sides(&self) -> Sides<'_> {
-        Sides { between: &self.between, at: Some(&self.at), directions: Some(&self.axes) }
-    }
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         right_angle(pair.entry, pair.geometry.triad.map(|triad| triad[0]))?;
