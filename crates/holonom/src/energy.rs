@@ -1,4 +1,4 @@
-//! The energy audit: T, V, what was done on the system, and momenta (§6).
+//! The energy audit: T, V, what was done on the system, and momenta (the paper's §6).
 
 use crate::formulation::{Sampling, Stage, Workspace};
 use crate::system::{Evaluation, System};

@@ -76,7 +76,7 @@ fn conserving_ggl_keeps_everything() {
     assert!(run.summary.work.iterations_per_step <= 4.5);
 }
 
-/// §7.3: the paper reaches 0.25 s with projections and 0.20 s with the conserving scheme.
+/// The paper, §7.3, reaches 0.25 s with projections and 0.20 s with the conserving scheme.
 #[test]
 fn largest_steps_reach_and_pass_the_papers() {
     let system = pendulum();

@@ -1,4 +1,4 @@
-//! What projections and the variants of the conserving scheme promise (methods §2.1, §3).
+//! What projections and the variants of the conserving scheme promise (methods §5, §18).
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! What the velocity projection can do to the energy: the matrix D of (30) and the growth bound of methods §3.
+//! What the velocity projection can do to the energy: the matrix D of (30) and the growth bound of methods §18.
 
 use crate::formulation::{ALL, Kkt, Workspace};
 use crate::linalg::{inverse, relative_eigenvalues};

@@ -1,4 +1,4 @@
-//! Accelerations and multipliers of a state: (3), (4), (6) and (9) as one linear system (methods §6)
+//! Accelerations and multipliers of a state: (3), (4), (6) and (9) as one linear system (methods §2)
 //! ```text
 //! [ M   Gᵀ ] [a]     [ Q               ]
 //! [ G   −δ ] [λ]  =  [ −c − 2ξωΦ̇ − ω²Φ ]
@@ -46,7 +46,7 @@ impl Newton {
 
     /// Accelerations and multipliers at the end position and velocity that satisfy Φ̈ = 0: the index-1 system (3).
     /// The multipliers start from those in the workspace. They are of the order of the positions and velocities
-    /// whatever these were found by, so that forces can be trusted (methods §1.5).
+    /// whatever these were found by, so that forces can be trusted (methods §17).
     pub fn react(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
         let level = std::mem::replace(&mut work.level, Level::ACCELERATION);
         let outcome = self.balance(system, t, None, work);

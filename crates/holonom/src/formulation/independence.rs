@@ -15,7 +15,7 @@ const PROXIMAL: f64 = 1e-15;
 
 /// How much each row (r) adds to those eliminated before it, squared: 1 for a row of its own, 0 for one that follows from
 /// others. Directions are nodes with a length, so that all coordinates are lengths and weigh alike; rows are scaled to unit
-/// gradients (methods §12). The pivots of [1 Gᵀ; G −δ] are minus these numbers.
+/// gradients (methods §13). The pivots of [1 Gᵀ; G −δ] are minus these numbers.
 pub fn independence(system: &System, x: &[f64], t: f64) -> Vec<f64> {
     let mut independence = Independence::new(system);
     independence.measure(system, x, t);

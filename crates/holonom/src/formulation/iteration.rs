@@ -53,7 +53,7 @@ pub struct SolveSettings {
     pub iterations: Option<usize>,
 }
 
-/// Dimensionless penalty of the paper's loops where the user gives none (methods §1.2).
+/// Dimensionless penalty of the paper's loops where the user gives none (methods §3).
 const LOOP_RHO: f64 = 1e6;
 
 /// Tolerance of the outer loop on ‖Φ‖ over that of the inner one on ‖Δq‖: λ moves by αΦ, so that with the paper's α

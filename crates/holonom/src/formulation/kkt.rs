@@ -108,7 +108,7 @@ pub struct Kkt {
 }
 
 /// A row whose square is added to the part of the coordinates, A + ḠᵀWG: the paper's penalty, which leaves the solution where
-/// it is and makes A regular where nodes have hardly any mass (methods §12).
+/// it is and makes A regular where nodes have hardly any mass (methods §13).
 pub(super) struct Augmented {
     /// W, kg over the square of the row's unit.
     pub weight: f64,

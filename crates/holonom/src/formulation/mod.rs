@@ -1,6 +1,6 @@
 //! Constraints in a stage: what the rows' multipliers are and how they are iterated.
 //!
-//! Every iteration solves the same matrix (methods §1.3)
+//! Every iteration solves the same matrix (methods §3)
 //! ```text
 //! [ A   Ḡᵀ ] [Δd ]      [ ϖ(M a + Ḡᵀλ − Q) ]
 //! [ G   −δ ] [Δμ ]  = − [        Φ         ]

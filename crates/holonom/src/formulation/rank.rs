@@ -7,7 +7,7 @@ use super::kkt::Kkt;
 use super::newton::Newton;
 use super::scales::Scales;
 
-/// Share of the rows' own stiffness that the proximal term may soften: δ = (G M⁻¹ Gᵀ)/ρ (methods §1.2, §11). With redundant
+/// Share of the rows' own stiffness that the proximal term may soften: δ = (G M⁻¹ Gᵀ)/ρ (methods §3). With redundant
 /// rows round-off grows with ρ to multipliers that mean nothing.
 pub const RHO: f64 = 1e10;
 

@@ -1,5 +1,5 @@
 //! Rows at both levels, Φ = 0 and Φ̇ = 0, with a multiplier each (Gear–Gupta–Leimkuhler), for the conserving scheme
-//! (methods §2.4; Kinon, Betsch and Schneider 2023).
+//! (methods §9; Kinon, Betsch and Schneider 2023).
 //!
 //! Unknowns in units of length and mass × length: d = Δq, u = ½h v_{n+1}, μ = ϖλ − hγ and γ' = hγ with ϖ = ½h². With
 //! w = h v̄ the equations are

@@ -1,4 +1,4 @@
-//! Rows that hold velocities only, Ψ = B(q) v = 0: rolling without slip (methods §1.7).
+//! Rows that hold velocities only, Ψ = B(q) v = 0: rolling without slip (methods §14).
 //!
 //! Where the other rows are conditions on positions, these are what comes of Ψ over the time of the stage, so that they
 //! are of the size of an increment: B Δq between two positions, Ψ over ∂v/∂Δq at a state.

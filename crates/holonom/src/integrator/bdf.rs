@@ -1,5 +1,5 @@
 //! Backward differentiation of order 1 to 5 on any sequence of steps: the derivative at the end of the step of the
-//! polynomial through it and the states before (Hairer and Wanner, Solving Ordinary Differential Equations II, §VII.3).
+//! polynomial through it and the states before (Hairer and Wanner 1996, §VII.3).
 //! The first steps, before there are enough states, are taken by Radau IIA of order 5.
 
 use super::runge_kutta::{RungeKutta, Tableau};

@@ -1,5 +1,5 @@
-//! Symmetric compositions of a symmetric scheme of order 2: what it conserves stays exact (Hairer, Lubich and Wanner,
-//! Geometric Numerical Integration, §V.3).
+//! Symmetric compositions of a symmetric scheme of order 2: what it conserves stays exact (Hairer, Lubich and Wanner
+//! 2006, §V.3).
 
 use super::history::{History, is_same_length, take_over};
 use super::{Integrator, Step, Work};

@@ -1,4 +1,4 @@
-//! The energy-momentum conserving scheme (14)–(18): midpoint kinematics with discrete gradients (methods §2.1).
+//! The energy-momentum conserving scheme (14)–(18): midpoint kinematics with discrete gradients (methods §5).
 
 use super::{Integrator, Step, Work};
 use crate::formulation::{Failure, Multipliers, Newton, RowsAt, Sampling, Stage, Workspace, predict, solve};

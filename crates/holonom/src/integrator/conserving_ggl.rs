@@ -1,4 +1,4 @@
-//! The conserving scheme with the rows at both levels: energy, momentum, Φ and Φ̇ exact (methods §2.4).
+//! The conserving scheme with the rows at both levels: energy, momentum, Φ and Φ̇ exact (methods §9).
 
 use super::conserving::midpoint_kinematics;
 use super::history::{History, is_same_length, take_over};

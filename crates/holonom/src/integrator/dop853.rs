@@ -1,5 +1,5 @@
 //! Coefficients of the Dormand–Prince method of order 8(5,3) with dense output of order 7 (Prince and Dormand 1981; Hairer,
-//! Nørsett and Wanner, Solving Ordinary Differential Equations I, §II.5 and §II.6). The thirteenth stage is the end of the
+//! Nørsett and Wanner 1993, §II.5 and §II.6). The thirteenth stage is the end of the
 //! step; three more serve the dense output.
 
 /// c

@@ -1,5 +1,5 @@
 //! Explicit Runge–Kutta methods on the accelerations that a formulation gives: the classical one of order 4 and those of
-//! Dormand and Prince (Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, §II.1 and §II.5).
+//! Dormand and Prince (Hairer, Nørsett and Wanner 1993, §II.1 and §II.5).
 
 use super::dop853;
 use super::{Integrator, Step, Work};

@@ -1,6 +1,6 @@
 //! Generalized-α for constrained systems (Arnold and Brüls 2007) and its members: the equations of motion hold at the end
 //! of the step with the true acceleration v̇, and Newmark's formulas take an auxiliary one,
-//! (1 − α_m) a_{n+1} + α_m a_n = (1 − α_f) v̇_{n+1} + α_f v̇_n (methods §6).
+//! (1 − α_m) a_{n+1} + α_m a_n = (1 − α_f) v̇_{n+1} + α_f v̇_n (methods §15).
 
 use super::newmark::newmark_stage;
 use super::{Integrator, Step, Work};

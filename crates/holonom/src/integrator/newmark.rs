@@ -1,4 +1,4 @@
-//! Newmark's family; β = 1/4, γ = 1/2 is the trapezoidal rule (methods §1.1).
+//! Newmark's family; β = 1/4, γ = 1/2 is the trapezoidal rule (methods §15).
 
 use super::{Integrator, Step, Work};
 use crate::formulation::{Failure, Newton, RowsAt, Sampling, Stage, Workspace, solve};

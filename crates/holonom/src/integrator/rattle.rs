@@ -1,5 +1,5 @@
 //! RATTLE: half a kick, a drift onto the constraints, half a kick onto their rates; symplectic (Andersen 1983; methods
-//! §6). Forces that depend on velocity are taken at the drift's, implicitly in the first kick.
+//! §15). Forces that depend on velocity are taken at the drift's, implicitly in the first kick.
 
 use super::{Integrator, Step, Work};
 use crate::formulation::{Failure, Newton, RowsAt, Sampling, Stage, Workspace, solve};

@@ -1,5 +1,5 @@
 //! Implicit Runge–Kutta methods by collocation: Radau IIA with 1, 2, 3 stages and Gauss with 1, 2, 3 stages (Hairer and
-//! Wanner, Solving Ordinary Differential Equations II, §IV.5).
+//! Wanner 1996, §IV.5).
 
 use super::{Integrator, Step, Work};
 use crate::energy;
@@ -12,7 +12,7 @@ pub(super) struct Tableau {
     weights: Vec<f64>,
     inverse: Vec<f64>,
     /// Weights of the stages' increments in the embedded method of order s, for the error estimate: with
-    /// `slope` h ẏ_0 − Σ e_i z_i the estimated error (same book, §IV.8).
+    /// `slope` h ẏ_0 − Σ e_i z_i the estimated error (Hairer and Wanner 1996, §IV.8).
     error: Option<(f64, Vec<f64>)>,
 }
 

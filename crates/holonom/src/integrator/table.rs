@@ -13,7 +13,7 @@ use crate::system::System;
 /// Where the estimate of a step's local error comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Estimate {
-    /// Third derivatives of positions and velocities, from the steps before: schemes of order 2 (methods §7).
+    /// Third derivatives of positions and velocities, from the steps before: schemes of order 2 (methods §16).
     History,
     /// The integrator gives it.
     Own,
@@ -130,7 +130,7 @@ pub const INTEGRATORS: &[Entry] = &[
     },
     Entry {
         name: "trapezoidal",
-        source: "§4, (23)–(25)",
+        source: "García Orden and Dopico 2007, §4, (23)–(25)",
         doc: "Newmark with β = 1/4, γ = 1/2; on index 3 unstable without projection",
         use_for: "real time, with projections",
         keeps: "",
@@ -238,7 +238,7 @@ pub const INTEGRATORS: &[Entry] = &[
     },
     Entry {
         name: "radau",
-        source: "Hairer and Wanner II, §IV.5",
+        source: "Hairer and Wanner 1996, §IV.5",
         doc: "Radau IIA with 1, 2, 3 stages (key order: 1, 3, 5): dissipative, accurate",
         use_for: "reference solutions; stiff mechanisms",
         keeps: "",
@@ -259,7 +259,7 @@ pub const INTEGRATORS: &[Entry] = &[
     },
     Entry {
         name: "bdf",
-        source: "Gear 1971; Hairer and Wanner II, §III.5",
+        source: "Gear 1971; Hairer and Wanner 1996, §III.5",
         doc: "backward differentiation (key order, 1 … 5): order 1 and 2 dissipate; with an accuracy the order varies up to it",
         use_for: "stiff, damped mechanisms",
         keeps: "",
@@ -277,7 +277,7 @@ pub const INTEGRATORS: &[Entry] = &[
     },
     Entry {
         name: "gauss",
-        source: "Hairer and Wanner II, §IV.5",
+        source: "Hairer and Wanner 1996, §IV.5",
         doc: "Gauss collocation with 1, 2, 3 stages (key order: 2, 4, 6)",
         use_for: "high order without damping, on the formulations of index 1 and 0",
         keeps: "",

@@ -1,4 +1,4 @@
-//! `[bar.NAME]`: uniform rigid rods between two points, the two-node body of natural coordinates (methods §4.1).
+//! `[bar.NAME]`: uniform rigid rods between two points, the two-node body of natural coordinates (methods §6).
 
 use super::assembly::Assembly;
 use super::ends::{End, difference, from_to};

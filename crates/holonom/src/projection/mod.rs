@@ -7,7 +7,7 @@ use crate::system::System;
 /// The matrix A that measures the distance moved.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Metric {
-    /// A = M: never adds energy, keeps momenta (methods §3).
+    /// A = M: never adds energy, keeps momenta (methods §18).
     Mass,
     /// A = 1.
     Identity,
@@ -33,7 +33,7 @@ pub struct Projection {
     pub acceleration: bool,
     pub metric: Metric,
     pub solve: Solve,
-    /// θ: v ← v* − θ(v* − v) (methods §3); 1 is the full projection.
+    /// θ: v ← v* − θ(v* − v) (methods §18); 1 is the full projection.
     pub strength: f64,
     /// Shows the projected values and goes on with the others.
     pub shadow: bool,

@@ -1,4 +1,4 @@
-//! Steps from an accuracy: local errors are kept so small that over the run they add up to it (methods §7).
+//! Steps from an accuracy: local errors are kept so small that over the run they add up to it (methods §16).
 
 use serde::{Deserialize, Serialize};
 

@@ -92,7 +92,7 @@ pub const NAMED: &[Named] = &[
         formulation: "augmented-lagrangian-3",
         integrator: "conserving",
         levels: &["velocity"],
-        doc: "the same with velocity projection, A = M: energy never rises (§7.4)",
+        doc: "the same with velocity projection, A = M: energy never rises (the paper's §7.4)",
     },
     Named {
         name: "trapezoidal-projected",

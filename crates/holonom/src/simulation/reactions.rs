@@ -1,4 +1,4 @@
-//! Forces of the constraints, by the index-1 system (3) at the states shown (methods §1.5).
+//! Forces of the constraints, by the index-1 system (3) at the states shown (methods §17).
 
 use std::ops::Range;
 

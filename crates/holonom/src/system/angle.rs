@@ -17,7 +17,7 @@ pub(super) fn angle_at(c: f64, s: f64, near: f64) -> Derivatives {
     out
 }
 
-/// The discrete derivative κ (−s̄, c̄) of an angle, κ = Δθ/(c₀s₁ − s₀c₁) (methods §2.2), for turns below π.
+/// The discrete derivative κ (−s̄, c̄) of an angle, κ = Δθ/(c₀s₁ − s₀c₁) (methods §8), for turns below π.
 pub(super) fn angle_between([[c0, s0], [c1, s1]]: [[f64; 2]; 2]) -> Derivatives {
     let (c, s) = (0.5 * (c0 + c1), 0.5 * (s0 + s1));
     let turn = (c0 * s1 - s0 * c1).atan2(c0 * c1 + s0 * s1);

@@ -255,7 +255,7 @@ impl SystemBuilder {
 
     /// π = e · ((Σ u_a x_a) × (Σ w_b x_b)); in the plane the scalar cross product, and `e` is not read.
     ///
-    /// In space a row of this kind is only equivariant: it may cost angular momentum (methods §2.2).
+    /// In space a row of this kind is only equivariant: it may cost angular momentum (methods §8).
     pub fn cross<T: Into<Term> + Copy, U: Into<Term> + Copy>(&mut self, e: [f64; 3], u: &[T], w: &[U]) -> InvariantId {
         self.invariants.cross(e, &terms(u), &terms(w))
     }

@@ -2,7 +2,7 @@
 //! of them. Rows, laws and outputs take them like invariants.
 //!
 //! A function of invariants keeps what they keep: it does not change under rigid motion, and its discrete derivative,
-//! with D·Δπ = Δg, makes momenta and energy exact (methods §2.2).
+//! with D·Δπ = Δg, makes momenta and energy exact (methods §8).
 
 use std::sync::Arc;
 

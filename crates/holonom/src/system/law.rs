@@ -41,7 +41,7 @@ pub trait Law: Send + Sync {
     fn at(&self, value: &[f64], rate: &[f64], t: f64, out: &mut Response);
 
     /// Forces and derivatives between two positions: the discrete gradient, with f·Δπ = ΔV for a potential
-    /// (methods §2.2) and f·Δπ equal to the energy taken out for a dissipative force. Only `by_value` is read, as the
+    /// (methods §5) and f·Δπ equal to the energy taken out for a dissipative force. Only `by_value` is read, as the
     /// derivative by the value at the end. `out` arrives zeroed.
     fn between(&self, reach: Reach<'_>, out: &mut Response);
 }

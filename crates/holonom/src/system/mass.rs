@@ -1,4 +1,4 @@
-//! Constant mass matrix M = M₄ ⊗ 1: one number for each pair of nodes (methods §4.1), and in the plane a second one for
+//! Constant mass matrix M = M₄ ⊗ 1: one number for each pair of nodes (methods §6), and in the plane a second one for
 //! the quarter turn J, as a body between two points with its centre of mass beside them needs it.
 
 /// Symmetric sparse matrix over nodes, rows compressed.

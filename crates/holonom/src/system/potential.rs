@@ -4,7 +4,7 @@ use super::derive::difference;
 use super::{Differentiated, Law, Reach, Response, Smooth, SmoothFunction};
 
 /// A smooth function as a potential V(π), J. Its discrete gradient keeps energy and, as its arguments are invariants,
-/// momenta (methods §2.2, the G-equivariant one).
+/// momenta (methods §5, the G-equivariant one).
 impl<F: SmoothFunction> Law for Differentiated<F> {
     fn energy(&self, value: &[f64]) -> f64 {
         self.0.evaluate(value)

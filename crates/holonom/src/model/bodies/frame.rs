@@ -1,5 +1,5 @@
 //! A rigid body as a few nodes: points and directions from which every other point and direction of it is a constant
-//! linear combination (methods §4.1).
+//! linear combination (methods §6).
 //!
 //! All geometry of a model is given where it is at the start, so that the *reference* coordinates of a point or a
 //! direction of a body are the world's at the start.

@@ -54,7 +54,7 @@ fn check_moments(inertia: &[[f64; 3]; 3], allowed: f64) -> Result<(), String> {
 
 /// Principal moments, kg m², in ascending order, and the unit vectors of their axes (3 × 3: axis, component), right-handed.
 ///
-/// Cyclic Jacobi rotations (Golub, Van Loan: Matrix Computations, 4th edition, §8.5), which find small moments beside large
+/// Cyclic Jacobi rotations (Golub and Van Loan 2013, §8.5), which find small moments beside large
 /// ones. The upper triangle is read. A diagonal tensor keeps its moments to the bit.
 pub fn principal(inertia: [[f64; 3]; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
     let scale = largest(inertia);

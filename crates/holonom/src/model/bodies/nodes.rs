@@ -1,7 +1,7 @@
 //! Which nodes the bodies of a model are made of.
 //!
 //! Where a joint makes two bodies share a point or a direction, that becomes one node of both, as far as the nodes of a
-//! body stay independent: the rows that would hold the two together are then not needed (methods §4.1). Bodies that are
+//! body stay independent: the rows that would hold the two together are then not needed (methods §7). Bodies that are
 //! joined rigidly are one.
 
 use std::collections::{BTreeSet, HashSet};

@@ -1,7 +1,7 @@
 //! Forces and torques on bodies, as formulas of time and of the motion of the body.
 //!
 //! A force at a place goes to the nodes that the place is made of; a torque n is ½ n × e_k on each of the three axes of
-//! the body, and these go to their nodes: work and moment are exact (methods §4.1).
+//! the body, and these go to their nodes: work and moment are exact (methods §6).
 
 use std::sync::Arc;
 

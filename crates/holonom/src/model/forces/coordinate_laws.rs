@@ -1,7 +1,7 @@
 //! Laws of a joint coordinate q: springs, dampers, friction, stops and formulas.
 //!
 //! A law hands over f with effort −f along q. Between two positions the coordinate is taken half way and its rate is
-//! Δq/h, so that f Δq is exactly the change of energy, or the energy that is taken out (methods §2.2, §2.3).
+//! Δq/h, so that f Δq is exactly the change of energy, or the energy that is taken out (methods §5, §8).
 
 use num_dual::Dual64;
 

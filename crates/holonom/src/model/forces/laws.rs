@@ -1,7 +1,7 @@
 //! Laws of the distance r between two points, written on the invariant π = ½ r²: r = √(2π), ṙ = π̇ / r.
 //!
 //! A law hands over f with force on the nodes −f ∇π, so f is the tension over r. Between two positions
-//! r̄ = ½ (r₀ + r₁) and Δπ = r̄ Δr, which makes f Δπ the exact difference of the energy (methods §2.2).
+//! r̄ = ½ (r₀ + r₁) and Δπ = r̄ Δr, which makes f Δπ the exact difference of the energy (methods §5).
 
 use num_dual::{Dual2_64, Dual64};
 

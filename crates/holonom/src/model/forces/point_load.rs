@@ -5,7 +5,7 @@ use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::system::{ForceFunction, NodeId, Number, Place};
 
-/// A force on a point, spread over the nodes that it is made of: with x = Σ c_a x_a, Q_a = c_aᵀ F (methods §4.1).
+/// A force on a point, spread over the nodes that it is made of: with x = Σ c_a x_a, Q_a = c_aᵀ F (methods §6).
 pub struct PointLoad<F> {
     force: F,
     /// f + g J of each node.
