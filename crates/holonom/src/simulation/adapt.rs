@@ -41,6 +41,7 @@ impl Moment {
         simulation.shown_v.copy_from_slice(&self.v);
         simulation.shown_a.copy_from_slice(&self.a);
         simulation.gauges.restore(&self.measured);
+        simulation.gauges.count_on(&self.state.measured);
         simulation.audit.clone_from(&self.audit);
         let work = &mut simulation.work;
         work.start.at.functions.angle.copy_from_slice(&self.state.angle);

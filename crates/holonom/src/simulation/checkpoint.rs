@@ -162,6 +162,7 @@ impl Simulation {
         self.state.copy_from(&state);
         [self.shown_v, self.shown_a] = run.shown;
         self.gauges.restore(&run.measured);
+        self.gauges.count_on(&state.measured);
         (self.audit, self.reactions) = (run.audit, run.reactions);
         [self.newton.iterations, self.newton.factorizations] = run.counters;
         self.hints = run.hints;

@@ -142,6 +142,7 @@ pub const OMEGA: f64 = 10.0;
 pub const XI: f64 = 1.0;
 
 /// A method that can be run.
+#[derive(Clone)]
 pub struct Method {
     pub name: String,
     pub formulation: &'static Formulation,

@@ -20,6 +20,7 @@ pub use method::{
 pub use promise::Promise;
 pub use reactions::Reactions;
 pub(crate) use reactions::wrench;
+use start::Asked;
 pub use start::{Start, StartError};
 pub use state::State;
 pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, ProjectionSummary, Summary, ViolationSummary, WorkSummary};
@@ -122,13 +123,40 @@ impl Simulation {
     /// little, and finds accelerations and multipliers to start with.
     pub fn new(system: impl Into<Arc<System>>, method: Method, step: f64) -> Result<Self, StartError> {
         let system = system.into();
+        Self::begin(Arc::clone(&system), method, step, &Asked::of(&system))
+    }
+
+    /// Puts the mechanism at the time, the positions and the velocities of a state, as at a start: what misses the constraints a little
+    /// is corrected, accelerations and multipliers are found anew, and the audit begins again. Angles are the nearest to those of
+    /// the state.
+    ///
+    /// # Errors
+    /// As at a start; the simulation is then as it was.
+    pub fn set_state(&mut self, state: &State) -> Result<(), StartError> {
+        if !state.fits(&self.system) {
+            return Err(StartError::Other);
+        }
+        let impulse = vec![0.0; self.system.coordinates()];
+        let asked = Asked { t: state.t, x: &state.x, v: &state.v, impulse: &impulse, angles: Some([&state.angle, &state.measured]) };
+        let found = Self::begin(Arc::clone(&self.system), self.method.clone(), self.step, &asked)?;
+        let reacts = std::mem::replace(self, found).reactions.is_some();
+        if reacts {
+            self.find_reactions();
+        }
+        Ok(())
+    }
+
+    fn begin(system: Arc<System>, method: Method, step: f64, asked: &Asked<'_>) -> Result<Self, StartError> {
         let mut work = Workspace::new(&system);
         work.level = method.settings.level;
         let mut newton = Newton::new(&system, method.settings);
-        let start = start::prepare(&system, &method, &mut newton, &mut work)?;
+        let start = start::prepare(&system, &method, asked, &mut newton, &mut work)?;
         let integrator = (method.integrator.make)(&system, &method.settings, method.parameters);
         work.memory = vec![0.0; integrator.memory(&system)];
-        let state = State::new(&work);
+        let mut state = State::new(asked.t, &work, system.gauge_values().counted());
+        if let Some([_, measured]) = asked.angles {
+            state.measured.copy_from_slice(measured);
+        }
         Ok(Self { start, ..Self::assemble(system, method, integrator, step, newton, work, state) })
     }
 
@@ -139,11 +167,13 @@ impl Simulation {
         step: f64,
         newton: Newton,
         mut work: Workspace,
-        state: State,
+        mut state: State,
     ) -> Self {
         let audit = Audit::new(&system, &method, &mut work, &state);
         let mut gauges = system.gauge_values();
+        gauges.count_on(&state.measured);
         system.measure(&state.x, &state.v, &mut gauges);
+        state.measured.copy_from_slice(gauges.counted());
         let pilot = Pilot::new(&system, &method, &state, &gauges, &audit);
         Self {
             hints: Hints::of(&newton, &*integrator),
@@ -318,6 +348,7 @@ impl Simulation {
         }
         std::mem::swap(&mut work.start.at, &mut work.end.at);
         std::mem::swap(&mut self.gauges, &mut self.next_gauges);
+        self.state.measured.copy_from_slice(self.gauges.counted());
         self.hints.keep(&self.newton, &*self.integrator);
     }
 

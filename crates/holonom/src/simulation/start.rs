@@ -14,6 +14,24 @@ pub struct Start {
     pub turned: f64,
 }
 
+/// What is asked of a start: time, positions and velocities of all nodes (D × nodes), and the impulse (n) by which the momenta as
+/// written differ from those of the velocities.
+pub(super) struct Asked<'a> {
+    pub t: f64,
+    pub x: &'a [f64],
+    pub v: &'a [f64],
+    pub impulse: &'a [f64],
+    /// Angles of the equations and of what is measured, from which turns are counted, rad.
+    pub angles: Option<[&'a [f64]; 2]>,
+}
+
+impl<'a> Asked<'a> {
+    /// The start of the model.
+    pub fn of(system: &'a System) -> Self {
+        Self { t: 0.0, x: &system.start_position, v: &system.start_velocity, impulse: &system.start_impulse, angles: None }
+    }
+}
+
 /// Why a model cannot start.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StartError {
@@ -25,6 +43,8 @@ pub enum StartError {
     Nonholonomic { formulation: &'static str, rows: String },
     #[error("the accelerations at the start cannot be found: the mass matrix is singular where nothing holds it")]
     Acceleration,
+    #[error("the state is one of another system or method")]
+    Other,
 }
 
 /// Violation over the size of the mechanism that counts as met: what a model file written with ten digits leaves.
@@ -43,30 +63,45 @@ const SLOW: f64 = 0.1;
 const LARGEST_MOVE: f64 = 0.05;
 
 /// Puts a workspace at the start of a run: position, velocity, acceleration and evaluation as the end of a step, λ, and the evaluation as the start of one.
-pub(super) fn prepare(system: &System, method: &Method, newton: &mut Newton, work: &mut Workspace) -> Result<Start, StartError> {
-    work.end.x.copy_from_slice(&system.start_position);
-    work.end.v.copy_from_slice(&system.start_velocity);
-    system.place_known(0.0, &mut work.end.x, &mut work.end.v, &mut work.a);
+pub(super) fn prepare(
+    system: &System,
+    method: &Method,
+    asked: &Asked<'_>,
+    newton: &mut Newton,
+    work: &mut Workspace,
+) -> Result<Start, StartError> {
+    work.end.x.copy_from_slice(asked.x);
+    work.end.v.copy_from_slice(asked.v);
+    if let Some([angles, _]) = asked.angles {
+        [&mut work.start.at, &mut work.end.at].into_iter().for_each(|at| at.functions.angle.copy_from_slice(angles));
+    }
+    system.place_known(asked.t, &mut work.end.x, &mut work.end.v, &mut work.a);
     let soft = matches!(method.settings.multipliers, Multipliers::Penalty(_)) && method.settings.level == Level::POSITION;
     if soft && system.is_nonholonomic() {
         let rows: Vec<String> = system.velocity_rows.iter().map(|&row| format!("`{}`", system.row_names[row as usize])).collect();
         return Err(StartError::Nonholonomic { formulation: method.formulation.name, rows: rows.join(", ") });
     }
     let mut start = Start::default();
-    correct_positions(system, newton, work, &mut start)?;
-    correct_velocities(system, newton, work, &mut start)?;
+    correct_positions(system, asked, newton, work, &mut start)?;
+    correct_velocities(system, asked, newton, work, &mut start)?;
     work.lambda.fill(0.0);
-    accelerate(system, method, 0.0, newton, work)?;
+    accelerate(system, method, asked.t, newton, work)?;
     work.start.at.copy_from(&work.end.at);
     Ok(start)
 }
 
 /// Mass-weighted Newton on Φ = 0.
-fn correct_positions(system: &System, newton: &mut Newton, work: &mut Workspace, start: &mut Start) -> Result<(), StartError> {
+fn correct_positions(
+    system: &System,
+    asked: &Asked<'_>,
+    newton: &mut Newton,
+    work: &mut Workspace,
+    start: &mut Start,
+) -> Result<(), StartError> {
     let n = system.coordinates();
     for _ in 0..30 {
-        system.evaluate_again(&work.end.x, 0.0, &mut work.end.at);
-        system.constraint_values(&work.end.at, 0.0, &mut work.phi);
+        system.evaluate_again(&work.end.x, asked.t, &mut work.end.at);
+        system.constraint_values(&work.end.at, asked.t, &mut work.phi);
         if work.scaled_violation() <= ROUND_OFF || !newton.factor_inertia(work) {
             break;
         }
@@ -74,10 +109,10 @@ fn correct_positions(system: &System, newton: &mut Newton, work: &mut Workspace,
         newton.unknowns[n..].iter_mut().zip(&work.phi).for_each(|(unknown, phi)| *unknown = -phi);
         newton.kkt.solve(&mut newton.unknowns);
         work.end.x[..n].iter_mut().zip(&newton.unknowns).for_each(|(x, step)| *x += step);
-        start.moved = work.end.x.iter().zip(&system.start_position).fold(0.0, |m, (x, x0)| f64::max(m, (x - x0).abs()));
+        start.moved = work.end.x.iter().zip(asked.x).fold(0.0, |m, (x, x0)| f64::max(m, (x - x0).abs()));
         if start.moved.is_nan() || start.moved > LARGEST_MOVE * work.scales.length {
-            system.evaluate_again(&system.start_position, 0.0, &mut work.end.at);
-            system.constraint_values(&work.end.at, 0.0, &mut work.phi);
+            system.evaluate_again(asked.x, asked.t, &mut work.end.at);
+            system.constraint_values(&work.end.at, asked.t, &mut work.phi);
             return Err(StartError::Position { rows: worst(system, &work.phi) });
         }
     }
@@ -89,38 +124,44 @@ fn correct_positions(system: &System, newton: &mut Newton, work: &mut Workspace,
 
 /// The velocities on their constraints that change those of all parts as written least, in the metric of the mass: a velocity
 /// projection with A = M (10), of what parts that share nodes have as well.
-fn correct_velocities(system: &System, newton: &mut Newton, work: &mut Workspace, start: &mut Start) -> Result<(), StartError> {
+fn correct_velocities(
+    system: &System,
+    asked: &Asked<'_>,
+    newton: &mut Newton,
+    work: &mut Workspace,
+    start: &mut Start,
+) -> Result<(), StartError> {
     let n = system.coordinates();
     if !newton.factor_inertia(work) {
         return Err(StartError::Acceleration);
     }
     let (mut violation, mut size, mut is_sharp) = (f64::INFINITY, largest(&work.end.v), false);
     for _ in 0..PASSES {
-        work.rate_violation(system, 0.0);
+        work.rate_violation(system, asked.t);
         let before = violation;
         violation = work.rows.iter().zip(&work.scales.gradient).fold(0.0, |m, (row, scale)| f64::max(m, row.abs() / scale));
         // What rows ask for that move is a velocity, too.
         size = size.max(violation);
-        let differ = before.is_infinite() && system.start_impulse.iter().any(|impulse| *impulse != 0.0);
+        let differ = before.is_infinite() && asked.impulse.iter().any(|impulse| *impulse != 0.0);
         if violation <= ROUND_OFF * size && !differ {
             break;
         }
         if violation > SLOW * before {
             // Where masses are far apart δ is much to some rows.
-            if is_sharp || !newton.factor_inertia_of_independent(system, 0.0, work) {
+            if is_sharp || !newton.factor_inertia_of_independent(system, asked.t, work) {
                 break;
             }
             is_sharp = true;
         }
         newton.unknowns[..n].fill(0.0);
         if differ {
-            newton.unknowns[..n].copy_from_slice(&system.start_impulse);
+            newton.unknowns[..n].copy_from_slice(asked.impulse);
         }
         newton.unknowns[n..].iter_mut().zip(&work.rows).for_each(|(unknown, rate)| *unknown = -rate);
         newton.kkt.solve(&mut newton.unknowns);
         work.end.v[..n].iter_mut().zip(&newton.unknowns).for_each(|(v, step)| *v += step);
     }
-    start.turned = work.end.v.iter().zip(&system.start_velocity).fold(0.0, |m, (v, v0)| f64::max(m, (v - v0).abs()));
+    start.turned = work.end.v.iter().zip(asked.v).fold(0.0, |m, (v, v0)| f64::max(m, (v - v0).abs()));
     match violation <= MET * size {
         true => Ok(()),
         false => Err(StartError::Velocity { rows: worst(system, &work.rows) }),

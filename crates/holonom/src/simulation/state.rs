@@ -33,13 +33,15 @@ pub struct State {
     pub memory: Vec<f64>,
     /// Angles of joints and couplings, counted over all turns, rad.
     pub angle: Vec<f64>,
+    /// The same of the angles that are measured beside the equations.
+    pub measured: Vec<f64>,
 }
 
 impl State {
-    /// The start that a workspace was put at.
-    pub(super) fn new(work: &Workspace) -> Self {
+    /// The start that a workspace was put at, at the time `t` (s).
+    pub(super) fn new(t: f64, work: &Workspace, measured: &[f64]) -> Self {
         Self {
-            t: 0.0,
+            t,
             x: work.end.x.clone(),
             v: work.end.v.clone(),
             a: work.a.clone(),
@@ -50,6 +52,7 @@ impl State {
             last_step: 0.0,
             memory: work.memory.clone(),
             angle: work.start.at.functions.angle.clone(),
+            measured: measured.to_vec(),
         }
     }
 
@@ -60,6 +63,7 @@ impl State {
             && self.a_differences.len() == all
             && [&self.lambda, &self.lambda_change].iter().all(|values| values.len() == system.constraints())
             && self.angle.len() == system.evaluation().functions.angle.len()
+            && self.measured.len() == system.gauge_values().counted().len()
     }
 
     /// Takes over another state of the same run, without allocating.
@@ -72,6 +76,7 @@ impl State {
             (&mut self.lambda_change, &other.lambda_change),
             (&mut self.memory, &other.memory),
             (&mut self.angle, &other.angle),
+            (&mut self.measured, &other.measured),
         ];
         let places = [(&mut self.x, &other.x), (&mut self.v, &other.v)];
         places.into_iter().chain(accelerations).chain(rest).for_each(|(own, other)| own.copy_from_slice(other));

@@ -54,20 +54,17 @@ pub struct GaugeValues {
     pub rate: Vec<f64>,
 }
 
-/// What is kept of measured values: from these measuring goes on.
+/// What is kept of measured values, beside the turns that they were counted to.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Measured {
     value: Vec<f64>,
     rate: Vec<f64>,
-    /// Angles with the turns they have been counted to, rad.
-    counted: Vec<f64>,
 }
 
 impl Measured {
     pub fn keep(&mut self, values: &GaugeValues) {
         self.value.clone_from(&values.value);
         self.rate.clone_from(&values.rate);
-        self.counted.clone_from(&values.functions.angle);
     }
 }
 
@@ -76,7 +73,16 @@ impl GaugeValues {
     pub(crate) fn restore(&mut self, measured: &Measured) {
         self.value.copy_from_slice(&measured.value);
         self.rate.copy_from_slice(&measured.rate);
-        self.functions.angle.copy_from_slice(&measured.counted);
+    }
+
+    /// Angles with the turns that they have been counted to, rad.
+    pub(crate) fn counted(&self) -> &[f64] {
+        &self.functions.angle
+    }
+
+    /// Has angles counted on from these.
+    pub(crate) fn count_on(&mut self, counted: &[f64]) {
+        self.functions.angle.copy_from_slice(counted);
     }
 
     /// The same, of what was measured elsewhere.
