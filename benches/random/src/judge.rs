@@ -91,6 +91,7 @@ fn refusal(error: &StartError) -> &'static str {
         StartError::Velocity { .. } => "velocities at the start cannot be corrected",
         StartError::Nonholonomic { .. } => "rows that hold velocities",
         StartError::Acceleration => "accelerations at the start cannot be found",
+        StartError::Other => "a state of another system",
     }
 }
 
