@@ -54,12 +54,11 @@ fn overview() -> String {
 fn matrix() -> String {
     let header: Vec<&str> = std::iter::once("").chain(INTEGRATORS.iter().map(|entry| entry.name)).collect();
     let rows = FORMULATIONS.iter().map(|line| {
-        let name = line.full_name();
-        let cells = INTEGRATORS.iter().map(|entry| match entry.formulations.contains(&name.as_str()) {
+        let cells = INTEGRATORS.iter().map(|entry| match entry.goes_with(line) {
             true => orders(line, entry, entry.orders[0], " "),
             false => "·".into(),
         });
-        std::iter::once(name.clone()).chain(cells).collect()
+        std::iter::once(line.full_name()).chain(cells).collect()
     });
     table(&header, &rows.collect::<Vec<_>>())
 }
@@ -128,8 +127,7 @@ fn of_method(method: &Method, doc: &str) -> Vec<(&'static str, String)> {
 }
 
 fn of_formulation(line: &Formulation) -> Vec<(&'static str, String)> {
-    let name = line.full_name();
-    let partners = INTEGRATORS.iter().filter(|entry| entry.formulations.contains(&name.as_str())).map(|entry| entry.name);
+    let partners = INTEGRATORS.iter().filter(|entry| entry.goes_with(line)).map(|entry| entry.name);
     let projections = if line.doubled || line.soft { "none" } else { "velocity, acceleration" };
     vec![
         ("is", line.doc.into()),
@@ -161,10 +159,7 @@ fn of_integrator(entry: &Entry) -> Vec<(&'static str, String)> {
         (false, _) => format!("yes, order {}", by_accuracy.join(", ")),
     };
     let convergence = entry.orders.iter().map(|&order| {
-        let of_partners = entry.formulations.iter().map(|name| {
-            let line = FORMULATIONS.iter().find(|line| line.full_name() == *name).expect("the table names it");
-            format!("{name} {}", orders(line, entry, order, " "))
-        });
+        let of_partners = entry.formulations().map(|line| format!("{} {}", line.full_name(), orders(line, entry, order, " ")));
         format!("order {order}: {}", of_partners.collect::<Vec<_>>().join(", "))
     });
     let mut items = vec![

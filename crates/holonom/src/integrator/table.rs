@@ -7,7 +7,7 @@ use super::explicit::{DOP853, DOPRI5, Explicit, RK4};
 use super::generalized_alpha::GeneralizedAlpha;
 use super::runge_kutta::{RungeKutta, Tableau};
 use super::{Integrator, Parameters, bdf, conserving, conserving_ggl, midpoint, newmark, rattle};
-use crate::formulation::{Formulation, SolveSettings};
+use crate::formulation::{FORMULATIONS, Formulation, Level, SolveSettings};
 use crate::system::System;
 
 /// Where the estimate of a step's local error comes from.
@@ -30,8 +30,10 @@ pub struct Entry {
     pub use_for: &'static str,
     /// What it keeps beside what the formulation keeps.
     pub keeps: &'static str,
-    /// Formulations it goes with, by full name.
-    pub formulations: &'static [&'static str],
+    /// What a formulation must be to go with it.
+    pub takes: Takes,
+    /// The formulation where none is named, by full name.
+    pub usual: &'static str,
     /// Iterations it goes with.
     pub iterations: &'static [&'static str],
     /// Whether projections may follow it.
@@ -44,6 +46,8 @@ pub struct Entry {
     pub conserves: bool,
     /// Values of the key `order`, the usual one first.
     pub orders: &'static [u8],
+    /// The usual order of steps by accuracy.
+    pub adaptive_order: u8,
     pub estimate: Estimate,
     /// Whether there is a polynomial through the step, so that results need no steps of their own.
     pub dense: bool,
@@ -53,10 +57,48 @@ pub struct Entry {
     pub make: fn(&System, &SolveSettings, Parameters) -> Box<dyn Integrator>,
 }
 
+/// What a formulation must be to go with an integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Takes {
+    /// Rows at any level, or at both.
+    All,
+    /// Rows at one level.
+    OneLevel,
+    /// Rows at both levels, with a multiplier each.
+    BothLevels,
+    /// Positions on the rows, by multipliers or by a penalty.
+    Positions,
+    /// Positions on the rows by multipliers.
+    PositionMultipliers,
+    /// Rows at one level below that of positions, or a penalty.
+    LowIndex,
+    /// Accelerations from positions and velocities alone.
+    Accelerations,
+}
+
 impl Entry {
+    /// Whether it goes with a formulation.
+    pub fn goes_with(&self, formulation: &Formulation) -> bool {
+        let has_positions = (formulation.level)(1.0, 1.0) == Level::POSITION && !formulation.doubled;
+        match self.takes {
+            Takes::All => true,
+            Takes::OneLevel => !formulation.doubled,
+            Takes::BothLevels => formulation.doubled,
+            Takes::Positions => has_positions,
+            Takes::PositionMultipliers => has_positions && !formulation.soft,
+            Takes::LowIndex => !formulation.doubled && (!has_positions || formulation.soft),
+            Takes::Accelerations => formulation.gives_accelerations(),
+        }
+    }
+
+    /// The formulations that it goes with.
+    pub fn formulations(&self) -> impl Iterator<Item = &'static Formulation> {
+        FORMULATIONS.iter().filter(|line| self.goes_with(line))
+    }
+
     /// Whether a step needs accelerations only and solves no equations.
     pub fn is_explicit(&self) -> bool {
-        self.formulations == ACCELERATIONS
+        self.takes == Takes::Accelerations
     }
 }
 
@@ -65,24 +107,6 @@ fn full(parameters: &Parameters, _: &Formulation, _: bool) -> [u8; 3] {
     [parameters.order; 3]
 }
 
-const ALL_AND_GGL: &[&str] = &[
-    "ggl",
-    "augmented-lagrangian-3",
-    "augmented-lagrangian-2",
-    "augmented-lagrangian-1",
-    "lagrange-3",
-    "lagrange-2",
-    "lagrange-1",
-    "ode",
-    "baumgarte",
-    "penalty",
-    "penalty-stabilized",
-];
-const ALL: &[&str] = ALL_AND_GGL.split_at(1).1;
-const LOW_INDEX: &[&str] =
-    &["ode", "lagrange-2", "lagrange-1", "augmented-lagrangian-2", "augmented-lagrangian-1", "baumgarte", "penalty", "penalty-stabilized"];
-const ACCELERATIONS: &[&str] = &["ode", "lagrange-1", "augmented-lagrangian-1", "baumgarte", "penalty", "penalty-stabilized"];
-const POSITIONS: &[&str] = &["augmented-lagrangian-3", "lagrange-3"];
 const NEWTON: &[&str] = &["newton"];
 const LOOPS: &[&str] = &["newton", "simultaneous", "nested"];
 
@@ -94,13 +118,15 @@ pub const INTEGRATORS: &[Entry] = &[
         doc: "energy and momentum exact, Φ = 0 and Φ̇ = 0 at every step; order 4 and 6 by composition (key order)",
         use_for: "long runs, everything exact",
         keeps: "energy, momentum",
-        formulations: &["ggl"],
+        takes: Takes::BothLevels,
+        usual: "ggl",
         iterations: NEWTON,
         projects: false,
         needs_projection: false,
         ends_on_rows: true,
         conserves: true,
         orders: &[2, 4, 6],
+        adaptive_order: 2,
         estimate: Estimate::History,
         dense: false,
         convergence: full,
@@ -112,13 +138,15 @@ pub const INTEGRATORS: &[Entry] = &[
         doc: "energy and momentum exact, Φ = 0 at every step; order 4 by composition (key order)",
         use_for: "the paper's scheme; long runs",
         keeps: "energy, momentum",
-        formulations: &["augmented-lagrangian-3", "lagrange-3", "penalty"],
+        takes: Takes::Positions,
+        usual: "augmented-lagrangian-3",
         iterations: LOOPS,
         projects: true,
         needs_projection: false,
         ends_on_rows: true,
         conserves: true,
         orders: &[2, 4],
+        adaptive_order: 2,
         estimate: Estimate::History,
         dense: false,
         convergence: |parameters, formulation, projected| match (parameters.order, projected) {
@@ -134,13 +162,15 @@ pub const INTEGRATORS: &[Entry] = &[
         doc: "Newmark with β = 1/4, γ = 1/2; on index 3 unstable without projection",
         use_for: "real time, with projections",
         keeps: "",
-        formulations: ALL,
+        takes: Takes::OneLevel,
+        usual: "augmented-lagrangian-3",
         iterations: LOOPS,
         projects: true,
         needs_projection: true,
         ends_on_rows: true,
         conserves: false,
         orders: &[2],
+        adaptive_order: 2,
         estimate: Estimate::History,
         dense: false,
         convergence: full,
@@ -152,13 +182,15 @@ pub const INTEGRATORS: &[Entry] = &[
         doc: "β and γ as given (keys beta, gamma): γ > 1/2 damps and is of order 1",
         use_for: "comparison with older codes",
         keeps: "",
-        formulations: ALL,
+        takes: Takes::OneLevel,
+        usual: "augmented-lagrangian-3",
         iterations: LOOPS,
         projects: true,
         needs_projection: true,
         ends_on_rows: true,
         conserves: false,
         orders: &[2],
+        adaptive_order: 2,
         estimate: Estimate::None,
         dense: false,
         convergence: |parameters, _, _| if parameters.gamma == 0.5 { [2; 3] } else { [1; 3] },
@@ -170,13 +202,15 @@ pub const INTEGRATORS: &[Entry] = &[
         doc: "generalized-α with α_m = 0, α_f = α (key alpha, 0 … 1/3, usually 0.1)",
         use_for: "structures whose high frequencies are to be damped",
         keeps: "",
-        formulations: ALL,
+        takes: Takes::OneLevel,
+        usual: "augmented-lagrangian-3",
         iterations: LOOPS,
         projects: true,
         needs_projection: false,
         ends_on_rows: true,
         conserves: false,
         orders: &[2],
+        adaptive_order: 2,
         estimate: Estimate::History,
         dense: false,
         convergence: full,
@@ -188,13 +222,15 @@ pub const INTEGRATORS: &[Entry] = &[
         doc: "equations of motion at the end of the step, λ of order 2 (key rho: ρ∞, 0 … 1, usually 0.8)",
         use_for: "stiff, damped mechanisms",
         keeps: "",
-        formulations: ALL,
+        takes: Takes::OneLevel,
+        usual: "augmented-lagrangian-3",
         iterations: LOOPS,
         projects: true,
         needs_projection: false,
         ends_on_rows: true,
         conserves: false,
         orders: &[2],
+        adaptive_order: 2,
         estimate: Estimate::History,
         dense: false,
         convergence: full,
@@ -206,13 +242,15 @@ pub const INTEGRATORS: &[Entry] = &[
         doc: "implicit midpoint rule with the rows at the midpoint; on index 3 unstable without projection",
         use_for: "comparison",
         keeps: "momentum",
-        formulations: ALL,
+        takes: Takes::OneLevel,
+        usual: "augmented-lagrangian-3",
         iterations: LOOPS,
         projects: true,
         needs_projection: true,
         ends_on_rows: false,
         conserves: false,
         orders: &[2],
+        adaptive_order: 2,
         estimate: Estimate::History,
         dense: false,
         convergence: |_, formulation, projected| if projected || !formulation.is_at_position() { [2; 3] } else { [2, 0, 0] },
@@ -224,13 +262,15 @@ pub const INTEGRATORS: &[Entry] = &[
         doc: "symplectic: kick, drift onto Φ = 0, kick onto Φ̇ = 0; forces explicit, stable for h < 2/ω",
         use_for: "long runs of mechanisms without stiff forces, cheaply",
         keeps: "Φ̇; energy up to a band",
-        formulations: POSITIONS,
+        takes: Takes::PositionMultipliers,
+        usual: "augmented-lagrangian-3",
         iterations: NEWTON,
         projects: false,
         needs_projection: false,
         ends_on_rows: true,
         conserves: false,
         orders: &[2],
+        adaptive_order: 2,
         estimate: Estimate::History,
         dense: false,
         convergence: full,
@@ -242,13 +282,15 @@ pub const INTEGRATORS: &[Entry] = &[
         doc: "Radau IIA with 1, 2, 3 stages (key order: 1, 3, 5): dissipative, accurate",
         use_for: "reference solutions; stiff mechanisms",
         keeps: "",
-        formulations: ALL_AND_GGL,
+        takes: Takes::All,
+        usual: "ggl",
         iterations: NEWTON,
         projects: true,
         needs_projection: false,
         ends_on_rows: true,
         conserves: false,
         orders: &[5, 3, 1],
+        adaptive_order: 5,
         estimate: Estimate::Own,
         dense: false,
         convergence: |parameters, formulation, projected| match parameters.order {
@@ -263,13 +305,15 @@ pub const INTEGRATORS: &[Entry] = &[
         doc: "backward differentiation (key order, 1 … 5): order 1 and 2 dissipate; with an accuracy the order varies up to it",
         use_for: "stiff, damped mechanisms",
         keeps: "",
-        formulations: ALL_AND_GGL,
+        takes: Takes::All,
+        usual: "ggl",
         iterations: NEWTON,
         projects: true,
         needs_projection: false,
         ends_on_rows: true,
         conserves: false,
         orders: &[2, 1, 3, 4, 5],
+        adaptive_order: 5,
         estimate: Estimate::Own,
         dense: false,
         convergence: full,
@@ -281,13 +325,15 @@ pub const INTEGRATORS: &[Entry] = &[
         doc: "Gauss collocation with 1, 2, 3 stages (key order: 2, 4, 6)",
         use_for: "high order without damping, on the formulations of index 1 and 0",
         keeps: "",
-        formulations: LOW_INDEX,
+        takes: Takes::LowIndex,
+        usual: "ode",
         iterations: NEWTON,
         projects: true,
         needs_projection: false,
         ends_on_rows: false,
         conserves: false,
         orders: &[6, 4, 2],
+        adaptive_order: 6,
         estimate: Estimate::None,
         dense: false,
         convergence: |parameters, formulation, projected| match parameters.order {
@@ -302,13 +348,15 @@ pub const INTEGRATORS: &[Entry] = &[
         doc: "the classical explicit method of order 4",
         use_for: "quick looks; comparison",
         keeps: "",
-        formulations: ACCELERATIONS,
+        takes: Takes::Accelerations,
+        usual: "ode",
         iterations: NEWTON,
         projects: true,
         needs_projection: false,
         ends_on_rows: false,
         conserves: false,
         orders: &[4],
+        adaptive_order: 4,
         estimate: Estimate::None,
         dense: false,
         convergence: full,
@@ -320,13 +368,15 @@ pub const INTEGRATORS: &[Entry] = &[
         doc: "explicit, order 5(4), dense output of order 4",
         use_for: "mechanisms without stiff forces, at 1e-4 … 1e-8",
         keeps: "",
-        formulations: ACCELERATIONS,
+        takes: Takes::Accelerations,
+        usual: "ode",
         iterations: NEWTON,
         projects: true,
         needs_projection: false,
         ends_on_rows: false,
         conserves: false,
         orders: &[5],
+        adaptive_order: 5,
         estimate: Estimate::Own,
         dense: true,
         convergence: full,
@@ -338,13 +388,15 @@ pub const INTEGRATORS: &[Entry] = &[
         doc: "explicit, order 8(5,3), dense output of order 7",
         use_for: "mechanisms without stiff forces, at 1e-8 and below",
         keeps: "",
-        formulations: ACCELERATIONS,
+        takes: Takes::Accelerations,
+        usual: "ode",
         iterations: NEWTON,
         projects: true,
         needs_projection: false,
         ends_on_rows: false,
         conserves: false,
         orders: &[8],
+        adaptive_order: 8,
         estimate: Estimate::Own,
         dense: true,
         convergence: full,

@@ -286,11 +286,11 @@ pub const LEVELS: &[&[&str]] = &[&[], &["velocity"], &["velocity", "acceleration
 pub fn combinations() -> Vec<Choice> {
     let mut all = Vec::new();
     for entry in INTEGRATORS {
-        for (formulation, &order) in entry.formulations.iter().flat_map(|name| entry.orders.iter().map(move |order| (name, order))) {
+        for (formulation, &order) in entry.formulations().flat_map(|line| entry.orders.iter().map(move |order| (line.full_name(), order))) {
             for (iteration, levels) in entry.iterations.iter().flat_map(|name| LEVELS.iter().map(move |levels| (name, levels))) {
                 let levels = levels.iter().map(|level| level.to_string()).collect();
                 let choice = Choice {
-                    formulation: Some(formulation.to_string()),
+                    formulation: Some(formulation.clone()),
                     integrator: Some(entry.name.into()),
                     order: Some(order),
                     iteration: Some(iteration.to_string()),

@@ -5,9 +5,6 @@ use super::method::{Choice, NAMED, Named, ProjectionChoice};
 use crate::formulation::{FORMULATIONS, Formulation};
 use crate::integrator::{Entry, Estimate, INTEGRATORS};
 
-/// Highest order of the integrators whose order varies with the accuracy, where none is given.
-const HIGHEST: u8 = 5;
-
 /// The parts of a name that is none of [`NAMED`]: an integrator alone, or formulation, integrator and projection levels
 /// joined by strokes, with the order behind the integrator, as in `bdf-3` and `lagrange-2/bdf-3/velocity+acceleration`.
 pub(super) fn spell(choice: &Choice) -> Option<Choice> {
@@ -46,8 +43,7 @@ pub(super) fn partners(choice: &Choice, named: Option<&Named>) -> Result<(&'stat
         (Some(name), _, _) => name,
         (None, Some(named), _) => named.integrator,
         (None, None, Some(given)) => {
-            let full = given.full_name();
-            let fitting = INTEGRATORS.iter().find(|entry| entry.formulations.contains(&full.as_str()));
+            let fitting = INTEGRATORS.iter().find(|entry| entry.goes_with(given));
             fitting.expect("every formulation has an integrator").name
         }
         (None, None, None) => NAMED[0].integrator,
@@ -55,10 +51,18 @@ pub(super) fn partners(choice: &Choice, named: Option<&Named>) -> Result<(&'stat
     let integrator = pick("integrator", integrator, INTEGRATORS, |entry| entry.name)?;
     let usual = match named {
         Some(named) if named.integrator == integrator.name => named.formulation,
-        _ => integrator.formulations[0],
+        _ => integrator.usual,
     };
     let formulation = given.unwrap_or_else(|| FORMULATIONS.iter().find(|line| line.full_name() == usual).expect("the table names it"));
-    together("integrator", integrator.name, "formulation", &formulation.full_name(), integrator.formulations)?;
+    if !integrator.goes_with(formulation) {
+        return Err(MethodError::Pair {
+            kind: "integrator",
+            name: integrator.name.into(),
+            with: "formulation",
+            given: formulation.full_name(),
+            partners: names(integrator.formulations().map(Formulation::full_name)),
+        });
+    }
     Ok((formulation, integrator))
 }
 
@@ -82,7 +86,7 @@ fn formulation(choice: &Choice) -> Result<Option<&'static Formulation>, MethodEr
 }
 
 pub(super) fn order(choice: &Choice, integrator: &Entry) -> Result<u8, MethodError> {
-    let usual = if choice.accuracy.is_some() && integrator.name == "bdf" { HIGHEST } else { integrator.orders[0] };
+    let usual = if choice.accuracy.is_some() { integrator.adaptive_order } else { integrator.orders[0] };
     let order = choice.order.unwrap_or(usual);
     match integrator.orders.contains(&order) {
         true => Ok(order),
