@@ -4,6 +4,7 @@ mod body_load;
 mod bushing;
 mod constant;
 mod coordinate_laws;
+mod drag;
 mod effort;
 mod expression;
 mod force;
@@ -18,6 +19,7 @@ mod torsion;
 
 pub use bushing::Bushing;
 pub use constant::Constant;
+pub use drag::Drag;
 pub use effort::Effort;
 pub use expression::Expression;
 pub use force::Force;
@@ -36,6 +38,7 @@ pub const KINDS: &[Kind] = &[
     Kind::of::<Bushing>(),
     Kind::of::<Force>(),
     Kind::of::<Torque>(),
+    Kind::of::<Drag>(),
     Kind::of::<Effort>(),
     Kind::of::<Friction>(),
     Kind::of::<Stop>(),
