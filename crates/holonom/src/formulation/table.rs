@@ -139,17 +139,6 @@ pub const FORMULATIONS: &[Formulation] = &[
         level: |_, _| Level::ACCELERATION,
     },
     Formulation {
-        name: "drifting-back",
-        index: 2,
-        source: "Baumgarte 1972",
-        doc: "M a + Gᵀλ = Q, Φ̇ + ωΦ = 0 (key omega)",
-        keeps: "Φ and Φ̇ up to the step's error",
-        doubled: false,
-        soft: false,
-        iterations: NEWTON,
-        level: |omega, _| Level { acceleration: 0.0, velocity: 1.0, position: omega },
-    },
-    Formulation {
         name: "baumgarte",
         index: 1,
         source: "Baumgarte 1972",

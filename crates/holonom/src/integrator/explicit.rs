@@ -43,10 +43,6 @@ pub(super) const RK4: Tableau = Tableau {
     dense: Dense::None,
 };
 
-/// Heun's method of order 2.
-pub(super) const HEUN: Tableau =
-    Tableau { nodes: &[0.0, 1.0], rows: &[&[], &[1.0], &[0.5, 0.5]], error: &[], tempering: &[], orders: None, dense: Dense::None };
-
 /// Dormand and Prince 1980, order 5(4).
 pub(super) const DOPRI5: Tableau = Tableau {
     nodes: &[0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0],

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::composed::Composed;
-use super::explicit::{DOP853, DOPRI5, Explicit, HEUN, RK4};
+use super::explicit::{DOP853, DOPRI5, Explicit, RK4};
 use super::generalized_alpha::GeneralizedAlpha;
 use super::runge_kutta::{RungeKutta, Tableau};
 use super::{Integrator, Parameters, bdf, conserving, conserving_ggl, midpoint, newmark, rattle};
@@ -341,26 +341,6 @@ pub const INTEGRATORS: &[Entry] = &[
             order => [order, (order - 2).max(2), (order - 2).max(2)],
         },
         make: |system, settings, parameters| Box::new(RungeKutta::new(system, settings, Tableau::gauss(parameters.order))),
-    },
-    Entry {
-        name: "heun",
-        source: "Hairer, Nørsett and Wanner 1993, §II.1",
-        doc: "the explicit trapezoidal rule, order 2",
-        use_for: "comparison",
-        keeps: "",
-        takes: Takes::Accelerations,
-        usual: "ode",
-        iterations: NEWTON,
-        projects: true,
-        needs_projection: false,
-        ends_on_rows: false,
-        conserves: false,
-        orders: &[2],
-        adaptive_order: 2,
-        estimate: Estimate::None,
-        dense: false,
-        convergence: full,
-        make: |system, _, _| Box::new(Explicit::new(system, HEUN)),
     },
     Entry {
         name: "rk4",

@@ -4,7 +4,6 @@ mod body_load;
 mod bushing;
 mod constant;
 mod coordinate_laws;
-mod drag;
 mod effort;
 mod expression;
 mod force;
@@ -19,7 +18,6 @@ mod torsion;
 
 pub use bushing::Bushing;
 pub use constant::Constant;
-pub use drag::Drag;
 pub use effort::Effort;
 pub use expression::Expression;
 pub use force::Force;
@@ -38,7 +36,6 @@ pub const KINDS: &[Kind] = &[
     Kind::of::<Bushing>(),
     Kind::of::<Force>(),
     Kind::of::<Torque>(),
-    Kind::of::<Drag>(),
     Kind::of::<Effort>(),
     Kind::of::<Friction>(),
     Kind::of::<Stop>(),

@@ -17,7 +17,6 @@ mod linear;
 mod orientation;
 mod parallel;
 mod perpendicular;
-mod pin_slot;
 mod planar;
 mod point_on_curve;
 mod point_on_line;
@@ -44,7 +43,6 @@ pub use orientation::Orientation;
 pub use pair::{Coordinate, JointInfo, Pair};
 pub use parallel::Parallel;
 pub use perpendicular::Perpendicular;
-pub use pin_slot::PinSlot;
 pub use planar::Planar;
 pub use point_on_curve::PointOnCurve;
 pub use point_on_line::PointOnLine;
@@ -166,7 +164,6 @@ pub const JOINTS: &[Kind] = &[
     Kind::of::<Planar>(),
     Kind::of::<Fixed>(),
     Kind::of::<Screw>(),
-    Kind::of::<PinSlot>(),
     Kind::of::<ConstantVelocity>(),
     Kind::of::<PointOnLine>(),
     Kind::of::<PointOnPlane>(),
