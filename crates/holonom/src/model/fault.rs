@@ -116,11 +116,16 @@ impl Sink {
 /// Farthest spelling that still counts as near, as a share of the name's length.
 const NEAR: f64 = 0.5;
 
+/// Characters of a name that are compared.
+const LONGEST: usize = 64;
+
 /// The known name nearest to a misspelt one, unless all are far.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let wanted: Vec<char> = name.chars().take(64).collect();
-    let best = known.into_iter().map(|candidate| (distance(&wanted, candidate), candidate)).min_by_key(|&(d, _)| d)?;
-    let limit = (NEAR * wanted.len().max(best.1.chars().count()) as f64) as usize;
+    let plain = |name: &str| name.chars().take(LONGEST).flat_map(char::to_lowercase).collect::<String>();
+    let wanted = plain(name);
+    let distances = known.into_iter().map(|candidate| (strsim::osa_distance(&wanted, &plain(candidate)), candidate));
+    let best = distances.min_by_key(|&(distance, _)| distance)?;
+    let limit = (NEAR * wanted.chars().count().max(best.1.chars().count()) as f64) as usize;
     (best.0 <= limit.max(1)).then_some(best.1)
 }
 
@@ -137,27 +142,6 @@ pub fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone)
             }
         }
     }
-}
-
-/// Number of insertions, deletions, replacements and swaps of neighbours between two names, upper and lower case alike.
-fn distance(wanted: &[char], candidate: &str) -> usize {
-    let same = |a: char, b: char| a == b || a.to_lowercase().eq(b.to_lowercase());
-    let candidate: Vec<char> = candidate.chars().take(64).collect();
-    let mut before: Vec<usize> = Vec::new();
-    let mut above: Vec<usize> = (0..=candidate.len()).collect();
-    for (i, &a) in wanted.iter().enumerate() {
-        let mut row = vec![i + 1];
-        for (j, &b) in candidate.iter().enumerate() {
-            let replaced = above[j] + usize::from(!same(a, b));
-            let mut best = replaced.min(above[j + 1] + 1).min(row[j] + 1);
-            if i > 0 && j > 0 && same(a, candidate[j - 1]) && same(wanted[i - 1], b) {
-                best = best.min(before[j - 1] + 1);
-            }
-            row.push(best);
-        }
-        before = std::mem::replace(&mut above, row);
-    }
-    above[candidate.len()]
 }
 
 #[cfg(test)]
