@@ -61,7 +61,7 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
     if !quiet && mark.is_none() {
         announce_corrections(model, &simulation);
     }
-    let rank = analysis::rank(&model.system, &simulation.state().x, simulation.state().t);
+    let rank = analysis::rank_of(&simulation);
     let reactions = model.output.reactions.unwrap_or(false);
     if reactions || !model.channels.efforts.is_empty() {
         simulation.find_reactions();

@@ -9,7 +9,7 @@ mod models;
 
 use std::time::{Duration, Instant};
 
-use holonom::linalg::{Plans, Solver};
+use holonom::linalg::{Plan, Plans, Solver};
 use matrices::Matrix;
 use models::{Case, cases};
 
@@ -38,8 +38,9 @@ fn main() {
 fn measure(case: &Case) -> Times {
     let matrix = Matrix::of(&case.model());
     let pattern: Vec<(u32, u32)> = matrix.entries.iter().map(|&(i, j, _)| (i as u32, j as u32)).collect();
-    let mut solver = Solver::new(&Plans::default(), matrix.size, &pattern, &matrix.order);
-    let positions: Vec<usize> = matrix.entries.iter().map(|&(i, j, _)| solver.position(i, j) as usize).collect();
+    let plan = Plan::new(&Plans::default(), matrix.size, &pattern, &matrix.order);
+    let mut solver = Solver::new(plan.clone());
+    let positions: Vec<usize> = matrix.entries.iter().map(|&(i, j, _)| plan.position(i, j) as usize).collect();
     let mut x = matrix.right_side();
     let mut times = Times { bodies: case.bodies(), factor: f64::INFINITY, solve: f64::INFINITY };
     let start = Instant::now();

@@ -12,7 +12,7 @@ use faer::Mat;
 use faer::linalg::solvers::Solve;
 use faer::sparse::SparseColMat;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
-use holonom::linalg::{Plans, Solver};
+use holonom::linalg::{Plan, Plans, Solver};
 use matrices::Matrix;
 use models::{Case, cases};
 
@@ -32,8 +32,9 @@ fn unknowns(matrix: &Matrix) -> ItemsCount {
 fn engine(bencher: Bencher<'_, '_>, case: &Case) {
     let matrix = Matrix::of(&case.model());
     let pattern: Vec<(u32, u32)> = matrix.entries.iter().map(|&(i, j, _)| (i as u32, j as u32)).collect();
-    let mut solver = Solver::new(&Plans::default(), matrix.size, &pattern, &matrix.order);
-    let positions: Vec<usize> = matrix.entries.iter().map(|&(i, j, _)| solver.position(i, j) as usize).collect();
+    let plan = Plan::new(&Plans::default(), matrix.size, &pattern, &matrix.order);
+    let mut solver = Solver::new(plan.clone());
+    let positions: Vec<usize> = matrix.entries.iter().map(|&(i, j, _)| plan.position(i, j) as usize).collect();
     let mut x = matrix.right_side();
     bencher.counter(unknowns(&matrix)).bench_local(|| {
         let values = solver.values_mut();

@@ -1,7 +1,7 @@
 //! Rank of the constraints: which rows are redundant, and how near the others are to being so.
 
 use crate::formulation::{INDEPENDENT, independence};
-use crate::simulation::ModelSize;
+use crate::simulation::{ModelSize, Simulation};
 use crate::system::System;
 
 /// Rank of the rows at a position.
@@ -17,8 +17,17 @@ pub struct Rank {
 
 /// Finds the rank of the rows at the positions `x` of all nodes and time `t`, by their geometry alone.
 pub fn rank(system: &System, x: &[f64], t: f64) -> Rank {
+    counted(system, &independence(system, x, t))
+}
+
+/// The same at the present state of a simulation, by what it has planned.
+pub fn rank_of(simulation: &Simulation) -> Rank {
+    counted(simulation.system(), &simulation.independence())
+}
+
+fn counted(system: &System, shares: &[f64]) -> Rank {
     let mut found = Rank { rank: 0, redundant: Vec::new(), weakest: None };
-    for (name, independence) in system.row_names().iter().zip(independence(system, x, t)) {
+    for (name, &independence) in system.row_names().iter().zip(shares) {
         if independence < INDEPENDENT {
             found.redundant.push(name.clone());
             continue;

@@ -1,7 +1,8 @@
 //! How independent the rows are: geometry alone, whatever the masses and units.
 
 use super::kkt::{ALL, Block, Kkt};
-use crate::system::{Evaluation, Mass, System};
+use super::scales::Scales;
+use crate::system::{Evaluation, System};
 
 /// What a row must add to those before it, squared and over its own size, to count: well above round-off, well below any row
 /// that holds something.
@@ -17,9 +18,7 @@ const PROXIMAL: f64 = 1e-15;
 /// others. Directions are nodes with a length, so that all coordinates are lengths and weigh alike; rows are scaled to unit
 /// gradients (methods §13). The pivots of [1 Gᵀ; G −δ] are minus these numbers.
 pub fn independence(system: &System, x: &[f64], t: f64) -> Vec<f64> {
-    let mut independence = Independence::new(system);
-    independence.measure(system, x, t);
-    independence.shares
+    Independence::new(system).shares(system, x, t)
 }
 
 /// Room for finding that at many positions.
@@ -35,12 +34,22 @@ pub struct Independence {
 impl Independence {
     /// Plans the matrix of a system.
     pub fn new(system: &System) -> Self {
+        Self::like(system, &Kkt::new(system, &Scales::new(system), 1, ALL))
+    }
+
+    /// With the pattern of a matrix of the system with one field.
+    pub fn like(system: &System, kkt: &Kkt) -> Self {
         let rows = system.slots.rows.len();
         let mut at = system.evaluation();
         system.evaluate_again(&system.start_position, 0.0, &mut at);
         let natural = natural_sizes(system, &at);
-        let kkt = Kkt::with_mass(system, &Mass::ones(system.nodes()), &[], 1, ALL);
-        Self { kkt, at, natural, delta: vec![PROXIMAL; rows], shares: vec![0.0; rows] }
+        Self { kkt: kkt.of_ones(), at, natural, delta: vec![PROXIMAL; rows], shares: vec![0.0; rows] }
+    }
+
+    /// What [`independence`] gives at the positions `x` and the time `t`.
+    pub fn shares(mut self, system: &System, x: &[f64], t: f64) -> Vec<f64> {
+        self.measure(system, x, t);
+        self.shares
     }
 
     /// How many rows follow from others at the positions `x` and the time `t`.

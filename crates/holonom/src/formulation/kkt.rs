@@ -4,12 +4,13 @@
 //! Blocks of the first kind are node × node, and mostly multiples of the unit matrix: their factors are summed first
 //! (one number a pair of nodes) and then written to the matrix.
 
-use std::ops::Range;
+use std::ops::{Deref, Range};
 use std::sync::Arc;
 
 use super::failure::{Failure, Unknown};
-use crate::linalg::{Singular, Solver};
-use crate::system::{MAX_ARGUMENTS, Response, Slots, cross, skew};
+use super::scales::Scales;
+use crate::linalg::{Plan, Singular, Solver};
+use crate::system::{MAX_ARGUMENTS, Mass, Response, Slots, System, cross, skew};
 
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -69,9 +70,9 @@ pub(super) const OWN_STAGE: Coupling = |_, node, row| node == row;
 pub(super) const TWO_LEVELS: Coupling =
     |fields, node, row| node % (fields / 2) == row % (fields / 2) && (node < fields / 2 || row >= fields / 2);
 
-/// The planned matrix.
-pub struct Kkt {
-    pub solver: Solver,
+/// Which nodes and rows share a block of the matrix, and where its entries are: the same for all matrices of a kind.
+pub struct Pattern {
+    pub(super) plan: Plan,
     pub(super) dim: usize,
     pub(super) fields: usize,
     pub(super) free: usize,
@@ -80,12 +81,8 @@ pub struct Kkt {
     pub(super) slots: Arc<Slots>,
     /// The nodes of each pair.
     pub(super) pair_nodes: Vec<[u32; 2]>,
-    pub(super) pair_mass: Vec<f64>,
-    pub(super) pair_sum: Vec<f64>,
-    /// The pairs with full blocks; the e of the mass matrix, which quarter turns of the plane make, and of the sum at hand.
+    /// The pairs with full blocks.
     pub(super) full_pairs: Vec<u32>,
-    pub(super) full_mass: Vec<[f64; 3]>,
-    pub(super) full_sum: Vec<[f64; 3]>,
     pub(super) own_pair: Vec<u32>,
     pub(super) diagonal: Vec<u32>,
     pub(super) full_index: Vec<u32>,
@@ -103,12 +100,32 @@ pub struct Kkt {
     /// For each row, and at the end, the first of its second derivatives that are multiples of the unit matrix, and the first
     /// of its entries with one field.
     pub(super) row_first: Vec<[u32; 2]>,
+}
+
+/// The planned matrix.
+pub struct Kkt {
+    pub solver: Solver,
+    pattern: Arc<Pattern>,
+    pair_mass: Vec<f64>,
+    pair_sum: Vec<f64>,
+    /// The e of the mass matrix of the pairs with full blocks, which quarter turns of the plane make, and of the sum at hand.
+    full_mass: Vec<[f64; 3]>,
+    full_sum: Vec<[f64; 3]>,
     /// The rows that enter the part of the coordinates, too.
-    pub(super) augmented: Vec<Augmented>,
+    augmented: Vec<Augmented>,
+}
+
+impl Deref for Kkt {
+    type Target = Pattern;
+
+    fn deref(&self) -> &Pattern {
+        &self.pattern
+    }
 }
 
 /// A row whose square is added to the part of the coordinates, A + ḠᵀWG: the paper's penalty, which leaves the solution where
 /// it is and makes A regular where nodes have hardly any mass (methods §13).
+#[derive(Clone)]
 pub(super) struct Augmented {
     /// W, kg over the square of the row's unit.
     pub weight: f64,
@@ -140,7 +157,7 @@ impl Augmented {
     }
 }
 
-impl Kkt {
+impl Pattern {
     /// Number of unknowns.
     pub fn size(&self) -> usize {
         self.fields * (self.free * self.dim + self.slots.rows.len())
@@ -170,6 +187,65 @@ impl Kkt {
     pub(super) fn are_coupled(&self, node_field: usize, row_field: usize) -> bool {
         (self.coupling)(self.fields, node_field, row_field)
     }
+}
+
+impl Kkt {
+    /// Plans the matrix of a system with `fields` fields a node, of which rows and coordinates share blocks by `coupling`.
+    pub fn new(system: &System, scales: &Scales, fields: usize, coupling: Coupling) -> Self {
+        let pattern = Pattern::new(system, &scales.has_light, fields, coupling);
+        let augmented = (0..system.constraints()).filter(|&row| scales.has_light[row]).flat_map(|row| {
+            let pattern = &pattern;
+            (0..fields).map(move |field| pattern.augment(row, field, 1.0 / scales.softness[row]))
+        });
+        let augmented = augmented.collect();
+        let mut kkt = Self::of(Arc::new(pattern), &system.mass, augmented);
+        let mut units = vec![0.0; kkt.size()];
+        for field in 0..fields {
+            for (node, held) in scales.held.iter().enumerate() {
+                (0..kkt.dim).for_each(|c| units[kkt.coordinate(node, field, c)] = held.sqrt());
+            }
+            for (row, softness) in scales.softness.iter().enumerate() {
+                units[kkt.multiplier(row, field)] = 1.0 / softness.sqrt();
+            }
+        }
+        kkt.solver.set_units(&units);
+        kkt
+    }
+
+    fn of(pattern: Arc<Pattern>, mass: &Mass, augmented: Vec<Augmented>) -> Self {
+        let of_pair = |&[a, b]: &[u32; 2]| mass.row(a as usize).find(|&(c, _)| c == b as usize).map(|(_, block)| block);
+        let pair_mass: Vec<f64> = pattern.pair_nodes.iter().map(|pair| of_pair(pair).map_or(0.0, |block| block.m)).collect();
+        let full = pattern.full_pairs.iter().map(|&pair| of_pair(&pattern.pair_nodes[pair as usize]));
+        let full_mass: Vec<[f64; 3]> = full.map(|block| [0.0, 0.0, block.map_or(0.0, |block| -block.s)]).collect();
+        Self {
+            solver: Solver::new(pattern.plan.clone()),
+            pair_sum: vec![0.0; pair_mass.len()],
+            pair_mass,
+            full_sum: vec![[0.0; 3]; full_mass.len()],
+            full_mass,
+            augmented,
+            pattern,
+        }
+    }
+
+    /// Another matrix for the same, without values.
+    pub fn twin(&self) -> Self {
+        Self {
+            solver: self.solver.twin(),
+            pattern: self.pattern.clone(),
+            pair_mass: self.pair_mass.clone(),
+            pair_sum: self.pair_sum.clone(),
+            full_mass: self.full_mass.clone(),
+            full_sum: self.full_sum.clone(),
+            augmented: self.augmented.clone(),
+        }
+    }
+
+    /// A matrix of the same pattern for a mass of one at each node, in which no row enters the part of the coordinates.
+    pub fn of_ones(&self) -> Self {
+        let nodes = self.slots.nodes.iter().map(|&node| node as usize + 1).fold(self.free, usize::max);
+        Self::of(self.pattern.clone(), &Mass::ones(nodes), Vec::new())
+    }
 
     /// Sets all values to zero.
     pub fn clear(&mut self) {
@@ -190,17 +266,17 @@ impl Kkt {
     pub fn start_with_weights<'a>(&mut self, weights: impl IntoIterator<Item = &'a f64>) {
         self.pair_sum.fill(0.0);
         self.full_sum.fill([0.0; 3]);
-        for (&pair, &weight) in self.own_pair.iter().zip(weights) {
+        for (&pair, &weight) in self.pattern.own_pair.iter().zip(weights) {
             self.pair_sum[pair as usize] = weight;
         }
     }
 
     /// Adds `factor` Σ λ_k H_k of the invariant rows to the sum over pairs, which [`Kkt::write_sum`] has yet to write.
     pub fn add_row_hessians(&mut self, lambda: &[f64], factor: f64) {
-        for &(row, pair, c) in &self.row_isotropic {
+        for &(row, pair, c) in &self.pattern.row_isotropic {
             self.pair_sum[pair as usize] += factor * lambda[row as usize] * c;
         }
-        for &(row, turn) in &self.row_skew {
+        for &(row, turn) in &self.pattern.row_skew {
             turn.add(factor * lambda[row as usize], &mut self.full_sum);
         }
     }
@@ -208,11 +284,12 @@ impl Kkt {
     #[inline]
     fn add_full(&mut self, Block(i, j): Block, pair: u32, value: impl Fn(usize, usize) -> f64, dim: usize) {
         let combination = i * self.fields + j;
-        let first = (self.full_index[pair as usize] as usize * self.fields * self.fields + combination) * dim * dim;
-        let values = self.solver.values_mut();
+        let Self { solver, pattern, .. } = self;
+        let first = (pattern.full_index[pair as usize] as usize * pattern.fields * pattern.fields + combination) * dim * dim;
+        let values = solver.values_mut();
         for c in 0..dim {
             for d in 0..dim {
-                values[self.full[first + c * dim + d] as usize] += value(c, d);
+                values[pattern.full[first + c * dim + d] as usize] += value(c, d);
             }
         }
     }
@@ -232,12 +309,12 @@ impl Kkt {
         motion: &[f64],
     ) {
         let dim = self.dim;
-        for argument in 0..self.law_hessian[law].len() {
-            let weight = factors.force * response.force[argument];
-            for &(pair, c) in &self.law_hessian[law][argument].isotropic {
+        for (hessian, force) in self.pattern.law_hessian[law].iter().zip(&response.force) {
+            let weight = factors.force * force;
+            for &(pair, c) in &hessian.isotropic {
                 self.pair_sum[pair as usize] += weight * c;
             }
-            for turn in &self.law_hessian[law][argument].skew {
+            for turn in &hessian.skew {
                 turn.add(weight, &mut self.full_sum);
             }
         }
@@ -252,16 +329,14 @@ impl Kkt {
 
     /// Adds a dense tangent (k × k over the load's nodes, row-major) times `factor`.
     pub fn add_load(&mut self, block: Block, load: usize, tangent: &[f64], factor: f64) {
-        let pairs = std::mem::take(&mut self.load_pairs);
-        self.add_group(block, &pairs[load], tangent, factor);
-        self.load_pairs = pairs;
+        let pattern = self.pattern.clone();
+        self.add_group(block, &pattern.load_pairs[load], tangent, factor);
     }
 
     /// Adds the second derivatives (k × k over the nodes of a custom entry, row-major) times `factor`.
     pub fn add_custom(&mut self, block: Block, entry: usize, hessian: &[f64], factor: f64) {
-        let pairs = std::mem::take(&mut self.custom_pairs);
-        self.add_group(block, &pairs[entry], hessian, factor);
-        self.custom_pairs = pairs;
+        let pattern = self.pattern.clone();
+        self.add_group(block, &pattern.custom_pairs[entry], hessian, factor);
     }
 
     fn add_group(&mut self, block: Block, pairs: &[u32], matrix: &[f64], factor: f64) {
@@ -282,12 +357,13 @@ impl Kkt {
     }
 
     fn write_sum_in<const D: usize>(&mut self, combination: usize) {
-        let (values, blocks) = (self.solver.values_mut(), self.fields * self.fields);
-        let positions = self.diagonal.as_chunks::<D>().0.iter().skip(combination).step_by(blocks);
+        let Self { solver, pattern, .. } = self;
+        let (values, blocks) = (solver.values_mut(), pattern.fields * pattern.fields);
+        let positions = pattern.diagonal.as_chunks::<D>().0.iter().skip(combination).step_by(blocks);
         for (positions, &sum) in positions.zip(&self.pair_sum) {
             positions.iter().for_each(|&position| values[position as usize] += sum);
         }
-        let positions = self.full.chunks_exact(D * D).skip(combination).step_by(blocks);
+        let positions = pattern.full.chunks_exact(D * D).skip(combination).step_by(blocks);
         for (positions, axis) in positions.zip(&self.full_sum).filter(|(_, axis)| **axis != [0.0; 3]) {
             for (c, line) in skew(axis).iter().take(D).enumerate() {
                 (0..D).for_each(|d| values[positions[c * D + d] as usize] += line[d]);
@@ -327,7 +403,7 @@ impl Kkt {
     }
 
     fn add_gradients(&mut self, Block(i, j): Block, gradient: &[f64], factor: f64, side: usize) {
-        let entries = &self.row_entries[(side * self.fields + i) * self.fields + j];
+        let entries = &self.pattern.row_entries[(side * self.pattern.fields + i) * self.pattern.fields + j];
         let values = self.solver.values_mut();
         for &[slot, position] in entries {
             values[position as usize] += factor * gradient[slot as usize];
@@ -338,7 +414,7 @@ impl Kkt {
     pub fn regularise(&mut self, field: usize, delta: &[f64]) {
         let values = self.solver.values_mut();
         for (row, &delta) in delta.iter().enumerate() {
-            values[self.row_diagonal[row * self.fields + field] as usize] -= delta;
+            values[self.pattern.row_diagonal[row * self.pattern.fields + field] as usize] -= delta;
         }
     }
 
@@ -351,14 +427,15 @@ impl Kkt {
     /// factors times the change of its gradient.
     pub fn change_row(&mut self, row: usize, hessian: f64, [columns, rows]: [f64; 2], change: &[f64]) {
         let start = self.gradient_of(row).start as u32;
-        let values = self.solver.values_mut();
-        let ([isotropic, first], [isotropic_end, end]) = (self.row_first[row], self.row_first[row + 1]);
-        for &(_, pair, c) in &self.row_isotropic[isotropic as usize..isotropic_end as usize] {
-            for &position in &self.diagonal[pair as usize * self.dim..][..self.dim] {
+        let Self { solver, pattern, .. } = self;
+        let values = solver.values_mut();
+        let ([isotropic, first], [isotropic_end, end]) = (pattern.row_first[row], pattern.row_first[row + 1]);
+        for &(_, pair, c) in &pattern.row_isotropic[isotropic as usize..isotropic_end as usize] {
+            for &position in &pattern.diagonal[pair as usize * pattern.dim..][..pattern.dim] {
                 values[position as usize] += hessian * c;
             }
         }
-        for (entries, factor) in self.row_entries.iter().zip([columns, rows]) {
+        for (entries, factor) in pattern.row_entries.iter().zip([columns, rows]) {
             for &[slot, position] in &entries[first as usize..end as usize] {
                 values[position as usize] += factor * change[(slot - start) as usize];
             }
@@ -367,7 +444,8 @@ impl Kkt {
 
     /// Factors the matrix again where some rows changed it.
     pub fn factor_rows(&mut self, rows: &[usize]) -> Result<(), Failure> {
-        let Self { solver, dim, free, slots, .. } = self;
+        let Self { solver, pattern, .. } = self;
+        let Pattern { dim, free, slots, .. } = &**pattern;
         let coordinates = |s: usize| {
             let node = slots.nodes[s] as usize;
             (node * *dim..(node + 1) * *dim).take_while(|q| *q < *free * *dim)

@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::kkt::{Augmented, Coupling, Hessian, Kkt, NONE, OuterTerm, Turn};
-use super::scales::Scales;
-use crate::linalg::{Plans, Solver, fill_reducing_order};
-use crate::system::{HessianBlock, InvariantId, Mass, NodeId, Quantity, Row, System};
+use super::kkt::{Augmented, Coupling, Hessian, NONE, OuterTerm, Pattern, Turn};
+use crate::linalg::{Plan, Plans, fill_reducing_order};
+use crate::system::{HessianBlock, InvariantId, NodeId, Quantity, Row, System};
 
 /// Pairs of free nodes that share a block of the matrix.
 #[derive(Default)]
@@ -47,36 +46,16 @@ impl Pairs {
     }
 }
 
-impl Kkt {
-    /// Plans the matrix of a system with `fields` fields a node, of which rows and coordinates share blocks by `coupling`.
-    pub fn new(system: &System, scales: &Scales, fields: usize, coupling: Coupling) -> Self {
-        let mut kkt = Self::with_mass(system, &system.mass, &scales.has_light, fields, coupling);
-        for row in &mut kkt.augmented {
-            let k = (row.row as usize - kkt.fields * kkt.free * kkt.dim) / kkt.fields;
-            row.weight = 1.0 / scales.softness[k];
-        }
-        let mut units = vec![0.0; kkt.size()];
-        for field in 0..fields {
-            for (node, held) in scales.held.iter().enumerate() {
-                (0..kkt.dim).for_each(|c| units[kkt.coordinate(node, field, c)] = held.sqrt());
-            }
-            for (row, softness) in scales.softness.iter().enumerate() {
-                units[kkt.multiplier(row, field)] = 1.0 / softness.sqrt();
-            }
-        }
-        kkt.solver.set_units(&units);
-        kkt
-    }
-
-    /// The same with another mass matrix than the system's, where the rows `augmented` (r) enter the part of the coordinates.
-    pub fn with_mass(system: &System, mass: &Mass, augmented: &[bool], fields: usize, coupling: Coupling) -> Self {
+impl Pattern {
+    /// The pattern of a system's matrices with `fields` fields a node, where the rows `augmented` (r) enter the part of the coordinates.
+    pub(super) fn new(system: &System, augmented: &[bool], fields: usize, coupling: Coupling) -> Self {
         let (dim, free) = (system.dim, system.free);
         let (slot_nodes, row_slots) = (&system.slots.nodes, &system.slots.rows);
         let is_free = |node: u32| (node as usize) < free;
         let mut pairs = Pairs::default();
         for a in 0..free as u32 {
             pairs.add(a, a, false);
-            mass.row(a as usize).filter(|&(b, _)| b < free).for_each(|(b, block)| pairs.add(a, b as u32, block.s != 0.0));
+            system.mass.row(a as usize).filter(|&(b, _)| b < free).for_each(|(b, block)| pairs.add(a, b as u32, block.s != 0.0));
         }
         let row_invariant = |row: &Row| match row.quantity {
             Quantity::Invariant(id) => Some(id),
@@ -157,29 +136,15 @@ impl Kkt {
         };
         let load_pairs = system.loads.iter().map(|load| group_pairs(&load.nodes)).collect();
         let custom_pairs = system.custom.iter().map(|custom| group_pairs(&custom.nodes)).collect();
-        let pair_mass =
-            pairs.found.keys().map(|&(a, b)| mass.row(a as usize).find(|&(c, _)| c == b as usize).map_or(0.0, |(_, block)| block.m));
-        let pair_mass: Vec<f64> = pair_mass.collect();
         let full_pairs: Vec<u32> = pairs.found.values().filter(|pair| pair.full.is_some()).map(|pair| pair.number).collect();
-        let mut full_mass = vec![[0.0; 3]; full_pairs.len()];
-        for a in 0..free {
-            for (b, block) in mass.row(a).filter(|&(b, block)| b < free && block.s != 0.0) {
-                full_mass[pairs.full_at(a as u32, b as u32) as usize][2] = -block.s;
-            }
-        }
-
-        let mut kkt = Self {
-            solver: Solver::new(&Plans::default(), 0, &[], &[]),
+        let mut pattern = Self {
+            plan: Plan::new(&Plans::default(), 0, &[], &[]),
             dim,
             fields,
             free,
             coupling,
             pair_nodes: pairs.found.keys().map(|&(a, b)| [a, b]).collect(),
-            pair_sum: vec![0.0; pair_mass.len()],
-            pair_mass,
-            full_sum: vec![[0.0; 3]; full_pairs.len()],
             full_pairs,
-            full_mass,
             own_pair: (0..free as u32).map(|a| pairs.at(a, a)).collect(),
             diagonal: Vec::new(),
             full_index: Vec::new(),
@@ -193,17 +158,14 @@ impl Kkt {
             row_entries: Vec::new(),
             row_diagonal: Vec::new(),
             row_first: Vec::new(),
-            augmented: Vec::new(),
             slots: system.slots.clone(),
         };
-        kkt.plan(&pairs, &system.plans);
-        let rows = (0..augmented.len()).filter(|&row| augmented[row]);
-        kkt.augmented =
-            rows.flat_map(|row| (0..fields).map(move |field| (row, field))).map(|(row, field)| kkt.augment(row, field)).collect();
-        kkt
+        pattern.place(&pairs, &system.plans);
+        pattern
     }
 
-    fn augment(&self, row: usize, field: usize) -> Augmented {
+    /// The places that a row whose square weighs `weight` needs.
+    pub(super) fn augment(&self, row: usize, field: usize, weight: f64) -> Augmented {
         let multiplier = self.multiplier(row, field);
         let mut coordinates = Vec::new();
         for slot in self.slots.rows[row].clone().filter(|&slot| self.is_free(slot)) {
@@ -214,9 +176,9 @@ impl Kkt {
         // A function may name a node several times.
         coordinates.sort_unstable();
         coordinates.dedup();
-        let at = |row: usize, column: usize| self.solver.position(row, column);
+        let at = |row: usize, column: usize| self.plan.position(row, column);
         Augmented {
-            weight: 0.0,
+            weight,
             row: multiplier as u32,
             diagonal: at(multiplier, multiplier),
             pairs: coordinates.iter().flat_map(|&a| coordinates.iter().map(move |&b| (a, b))).map(|(a, b)| at(a, b)).collect(),
@@ -225,7 +187,7 @@ impl Kkt {
         }
     }
 
-    fn plan(&mut self, pairs: &Pairs, plans: &Plans) {
+    fn place(&mut self, pairs: &Pairs, plans: &Plans) {
         let (dim, fields, rows) = (self.dim, self.fields, self.slots.rows.len());
         let combinations: Vec<(usize, usize)> = (0..fields).flat_map(|i| (0..fields).map(move |j| (i, j))).collect();
         let mut entries = Vec::new();
@@ -250,15 +212,15 @@ impl Kkt {
                 }
             }
         }
-        self.solver = Solver::new(plans, self.size(), &entries, &self.elimination_order(pairs));
+        self.plan = Plan::new(plans, self.size(), &entries, &self.elimination_order(pairs));
         for (&(a, b), pair) in &pairs.found {
             self.full_index.push(pair.full.unwrap_or(NONE));
             for &(i, j) in &combinations {
                 for c in 0..dim {
                     let row = self.coordinate(a as usize, i, c);
-                    self.diagonal.push(self.solver.position(row, self.coordinate(b as usize, j, c)));
+                    self.diagonal.push(self.plan.position(row, self.coordinate(b as usize, j, c)));
                     for d in (0..dim).filter(|_| pair.full.is_some()) {
-                        self.full.push(self.solver.position(row, self.coordinate(b as usize, j, d)));
+                        self.full.push(self.plan.position(row, self.coordinate(b as usize, j, d)));
                     }
                 }
             }
@@ -269,7 +231,7 @@ impl Kkt {
                 for &(i, j) in combinations.iter().filter(|&&(i, j)| self.are_coupled(i, j)) {
                     for c in 0..dim {
                         let (q, r) = (self.coordinate(self.slots.nodes[s] as usize, i, c), self.multiplier(row, j));
-                        for (side, position) in [self.solver.position(q, r), self.solver.position(r, q)].into_iter().enumerate() {
+                        for (side, position) in [self.plan.position(q, r), self.plan.position(r, q)].into_iter().enumerate() {
                             row_entries[(side * fields + i) * fields + j].push([(s * dim + c) as u32, position]);
                         }
                     }
@@ -277,7 +239,7 @@ impl Kkt {
             }
             for i in 0..fields {
                 let r = self.multiplier(row, i);
-                self.row_diagonal.push(self.solver.position(r, r));
+                self.row_diagonal.push(self.plan.position(r, r));
             }
         }
         self.row_entries = row_entries;

@@ -14,10 +14,9 @@
 use super::coupled::Coupled;
 use super::failure::Failure;
 use super::iteration::{Multipliers, OneStage, predict, restart};
-use super::kkt::{ALL, Block, Kkt};
+use super::kkt::{Block, Kkt};
 use super::newton::{Change, Equations, Newton, RESTARTS, attempt, iterate};
 use super::round_off::are_forces_round_off;
-use super::scales::Scales;
 use super::stage::Stage;
 use super::sweep::Sweeps;
 use super::workspace::Workspace;
@@ -67,11 +66,10 @@ pub struct Stabilized {
 const COUPLED: u32 = 16;
 
 impl Stabilized {
-    /// Allocates everything for a system.
-    pub fn new(system: &System) -> Self {
-        let scales = Scales::new(system);
+    /// Allocates everything for a system, with a matrix like that of `newton`.
+    pub fn new(system: &System, newton: &Newton) -> Self {
         let (r, all) = (system.constraints(), system.nodes() * system.dim);
-        let kkt = Kkt::new(system, &scales, 1, ALL);
+        let kkt = newton.kkt.twin();
         let (slots, size) = (system.slots.nodes.len() * system.dim, kkt.size());
         Self {
             kkt,

@@ -11,8 +11,8 @@ pub(super) struct ConservingGgl {
 }
 
 impl ConservingGgl {
-    pub(super) fn new(system: &System) -> Self {
-        Self { stabilized: Stabilized::new(system) }
+    pub(super) fn new(system: &System, newton: &Newton) -> Self {
+        Self { stabilized: Stabilized::new(system, newton) }
     }
 }
 

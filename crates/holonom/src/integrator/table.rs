@@ -7,7 +7,7 @@ use super::explicit::{DOP853, DOPRI5, Explicit, RK4};
 use super::generalized_alpha::GeneralizedAlpha;
 use super::runge_kutta::{RungeKutta, Tableau};
 use super::{Integrator, Parameters, bdf, conserving, conserving_ggl, midpoint, newmark, rattle};
-use crate::formulation::{FORMULATIONS, Formulation, Level, SolveSettings};
+use crate::formulation::{FORMULATIONS, Formulation, Level, Newton};
 use crate::system::System;
 
 /// Where the estimate of a step's local error comes from.
@@ -54,7 +54,7 @@ pub struct Entry {
     /// Order of convergence of positions, velocities and reactions that can be relied upon, for parameters, a
     /// formulation, and with or without projections.
     pub convergence: fn(&Parameters, &Formulation, bool) -> [u8; 3],
-    pub make: fn(&System, &SolveSettings, Parameters) -> Box<dyn Integrator>,
+    pub make: fn(&System, &Newton, Parameters) -> Box<dyn Integrator>,
 }
 
 /// What a formulation must be to go with an integrator.
@@ -130,7 +130,9 @@ pub const INTEGRATORS: &[Entry] = &[
         estimate: Estimate::History,
         dense: false,
         convergence: full,
-        make: |system, _, parameters| Composed::of(Box::new(conserving_ggl::ConservingGgl::new(system)), parameters.order, system),
+        make: |system, newton, parameters| {
+            Composed::of(Box::new(conserving_ggl::ConservingGgl::new(system, newton)), parameters.order, system)
+        },
     },
     Entry {
         name: "conserving",
@@ -297,7 +299,7 @@ pub const INTEGRATORS: &[Entry] = &[
             order if projected || !formulation.is_at_position() => [order; 3],
             order => [order, order / 2 + 1, order / 2 + 1],
         },
-        make: |system, settings, parameters| Box::new(RungeKutta::new(system, settings, Tableau::radau(parameters.order))),
+        make: |system, newton, parameters| Box::new(RungeKutta::new(system, &newton.settings, Tableau::radau(parameters.order))),
     },
     Entry {
         name: "bdf",
@@ -317,7 +319,7 @@ pub const INTEGRATORS: &[Entry] = &[
         estimate: Estimate::Own,
         dense: false,
         convergence: full,
-        make: |system, settings, parameters| Box::new(bdf::Bdf::new(system, settings, parameters.order, parameters.adapts)),
+        make: |system, newton, parameters| Box::new(bdf::Bdf::new(system, &newton.settings, parameters.order, parameters.adapts)),
     },
     Entry {
         name: "gauss",
@@ -340,7 +342,7 @@ pub const INTEGRATORS: &[Entry] = &[
             order if projected || formulation.index < 2 => [order; 3],
             order => [order, (order - 2).max(2), (order - 2).max(2)],
         },
-        make: |system, settings, parameters| Box::new(RungeKutta::new(system, settings, Tableau::gauss(parameters.order))),
+        make: |system, newton, parameters| Box::new(RungeKutta::new(system, &newton.settings, Tableau::gauss(parameters.order))),
     },
     Entry {
         name: "rk4",

@@ -183,6 +183,12 @@ impl Fronts {
         }
     }
 
+    /// Where an entry of the matrix is among the values; none outside the pattern.
+    pub fn position(&self, row: usize, column: usize) -> Option<usize> {
+        let place = self.find(row, column)?;
+        if self.one_front().is_some() { Some(place) } else { self.entries.binary_search(&(place as u32)).ok() }
+    }
+
     /// Where an entry of the matrix is among the numbers of all tiles; none outside the filled pattern.
     pub fn find(&self, row: usize, column: usize) -> Option<usize> {
         let (row, column) = (self.place[row], self.place[column]);

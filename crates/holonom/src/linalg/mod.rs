@@ -16,11 +16,31 @@ pub use eigen::{inverse, null_space, relative_eigenvalues};
 pub use ordering::fill_reducing_order;
 pub use plans::Plans;
 
+use std::sync::Arc;
+
+use fronts::Fronts;
 use multifrontal::Multifrontal;
+
+/// Where everything goes in the elimination of a matrix of fixed pattern.
+#[derive(Clone)]
+pub struct Plan(Arc<Fronts>);
+
+impl Plan {
+    /// Plans a matrix of `size` rows with the structurally symmetric pattern `entries` (row, column), eliminated in
+    /// the order `order`, but for unknowns that do not know of each other. What is among the `plans` is not planned again.
+    pub fn new(plans: &Plans, size: usize, entries: &[(u32, u32)], order: &[u32]) -> Self {
+        Self(plans.fronts(size, entries, order))
+    }
+
+    /// Where the entry (row, column) of the pattern is among the values.
+    pub fn position(&self, row: usize, column: usize) -> u32 {
+        self.0.position(row, column).expect("the entry is in the pattern") as u32
+    }
+}
 
 /// A square matrix of fixed pattern with its factorisation L U in place.
 ///
-/// Write the values through [`Solver::values_mut`] at the positions [`Solver::position`] gave, then
+/// Write the values through [`Solver::values_mut`] at the positions [`Plan::position`] gave, then
 /// [`Solver::factor`], then [`Solver::solve`] as often as needed. Only the construction allocates.
 pub struct Solver {
     lu: Multifrontal,
@@ -34,20 +54,19 @@ pub struct Singular {
 }
 
 impl Solver {
-    /// Plans a matrix of `size` rows with the structurally symmetric pattern `entries` (row, column), eliminated in
-    /// the order `order`, but for unknowns that do not know of each other. What is among the `plans` is not planned again.
-    pub fn new(plans: &Plans, size: usize, entries: &[(u32, u32)], order: &[u32]) -> Self {
-        Self { lu: Multifrontal::new(plans.fronts(size, entries, order)) }
+    /// A matrix by a plan, its values zero.
+    pub fn new(plan: Plan) -> Self {
+        Self { lu: Multifrontal::new(plan.0) }
     }
 
-    /// Where the entry (row, column) of the pattern is among the values.
-    pub fn position(&self, row: usize, column: usize) -> u32 {
-        self.lu.position(row, column).expect("the entry is in the pattern") as u32
+    /// Another matrix by the same plan, with the same units.
+    pub fn twin(&self) -> Self {
+        Self { lu: self.lu.twin() }
     }
 
     /// The value of an entry, zero outside the pattern.
     pub fn entry(&self, row: usize, column: usize) -> f64 {
-        self.lu.position(row, column).map_or(0.0, |at| self.lu.values()[at])
+        self.lu.plan.position(row, column).map_or(0.0, |at| self.lu.values()[at])
     }
 
     /// The values; [`Solver::factor`] may overwrite them by the factors.
@@ -119,9 +138,10 @@ mod tests {
     fn factored(size: usize, entries: &[(usize, usize, f64)]) -> Solver {
         let pattern: Vec<_> = entries.iter().map(|&(i, j, _)| (i as u32, j as u32)).collect();
         let order: Vec<u32> = (0..size as u32).step_by(2).chain((1..size as u32).step_by(2)).collect();
-        let mut solver = Solver::new(&Plans::default(), size, &pattern, &order);
+        let plan = Plan::new(&Plans::default(), size, &pattern, &order);
+        let mut solver = Solver::new(plan.clone());
         for &(i, j, value) in entries {
-            let at = solver.position(i, j) as usize;
+            let at = plan.position(i, j) as usize;
             solver.values_mut()[at] += value;
         }
         solver.factor().expect("the matrix is regular");
@@ -155,7 +175,7 @@ mod tests {
         let mut solver = factored(200, &entries);
         for place in [13, 14, 151] {
             for (i, j, value) in entries.iter_mut().filter(|(i, j, _)| [*i, *j].contains(&place)) {
-                let at = solver.position(*i, *j) as usize;
+                let at = solver.lu.plan.position(*i, *j).expect("it is in the pattern");
                 solver.values_mut()[at] += 0.5;
                 *value += 0.5;
             }

@@ -76,10 +76,11 @@ impl Multifrontal {
         Self { parts: Parts { lower, upper, rest }, values, plan, numbers, arch: Arch::new() }
     }
 
-    /// Where an entry of the matrix is among the values; none outside the pattern.
-    pub(super) fn position(&self, row: usize, column: usize) -> Option<usize> {
-        let place = self.plan.find(row, column)?;
-        if self.plan.one_front().is_some() { Some(place) } else { self.plan.entries.binary_search(&(place as u32)).ok() }
+    pub(super) fn twin(&self) -> Self {
+        let mut twin = Self::new(self.plan.clone());
+        twin.numbers.units.clone_from(&self.numbers.units);
+        twin.numbers.spread.clone_from(&self.numbers.spread);
+        twin
     }
 
     pub(super) fn values(&self) -> &[f64] {

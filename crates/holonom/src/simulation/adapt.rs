@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::control::Control;
 use super::{Audit, Method, Simulation, State, start};
-use crate::formulation::{Failure, Independence};
+use crate::formulation::{Failure, Independence, Newton};
 use crate::integrator::{Estimate, Step, Work};
 use crate::projection::{Metric, Projection, Solve};
 use crate::system::{GaugeValues, Measured, System};
@@ -104,13 +104,20 @@ const SLOW_LOOKS: u32 = 10;
 const BETWEEN: f64 = 4.0;
 
 impl Pilot {
-    pub(super) fn new(system: &System, method: &Method, state: &State, gauges: &GaugeValues, audit: &Audit) -> Option<Box<Self>> {
+    pub(super) fn new(
+        system: &System,
+        method: &Method,
+        newton: &Newton,
+        state: &State,
+        gauges: &GaugeValues,
+        audit: &Audit,
+    ) -> Option<Box<Self>> {
         let mut measured = Measured::default();
         measured.keep(gauges);
         let moment =
             || Moment { state: state.clone(), v: state.v.clone(), a: state.a.clone(), measured: measured.clone(), audit: audit.clone() };
         let control = Control::new(method.accuracy?, method.order(), method.integrator.estimate, system.coordinates());
-        let mut independence = Independence::new(system);
+        let mut independence = Independence::like(system, &newton.kkt);
         let redundant = independence.count_redundant(system, &state.x, state.t);
         let smooth = smoothing(method);
         Some(Box::new(Self {

@@ -136,7 +136,8 @@ impl Simulation {
     pub fn resume(system: impl Into<Arc<System>>, method: Method, step: f64, checkpoint: impl Into<Checkpoint>) -> Option<Self> {
         let system = system.into();
         let Checkpoint { state, run } = checkpoint.into();
-        let integrator = (method.integrator.make)(&system, &method.settings, method.parameters);
+        let newton = Newton::new(&system, method.settings);
+        let integrator = (method.integrator.make)(&system, &newton, method.parameters);
         if !state.fits(&system) || state.memory.len() != integrator.memory(&system) {
             return None;
         }
@@ -145,7 +146,6 @@ impl Simulation {
         work.memory = state.memory.clone();
         state.load(&mut work);
         system.evaluate_again(&state.x, state.t, &mut work.start.at);
-        let newton = Newton::new(&system, method.settings);
         let mut simulation = Self::assemble(system, method, integrator, step, newton, work, state);
         if let Some(run) = run.filter(|run| run.method == words(&simulation.method)) {
             simulation.go_on(run);

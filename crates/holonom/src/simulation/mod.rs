@@ -27,7 +27,7 @@ pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, Proj
 
 use std::sync::Arc;
 
-use crate::formulation::{Failure, Iteration, Newton, Workspace};
+use crate::formulation::{Failure, Independence, Iteration, Newton, Workspace};
 use crate::integrator::{Integrator, Step};
 use crate::system::{GaugeValues, System};
 use adapt::Pilot;
@@ -151,7 +151,7 @@ impl Simulation {
         work.level = method.settings.level;
         let mut newton = Newton::new(&system, method.settings);
         let start = start::prepare(&system, &method, asked, &mut newton, &mut work)?;
-        let integrator = (method.integrator.make)(&system, &method.settings, method.parameters);
+        let integrator = (method.integrator.make)(&system, &newton, method.parameters);
         work.memory = vec![0.0; integrator.memory(&system)];
         let mut state = State::new(asked.t, &work, system.gauge_values().counted());
         if let Some([_, measured]) = asked.angles {
@@ -174,7 +174,7 @@ impl Simulation {
         gauges.count_on(&state.measured);
         system.measure(&state.x, &state.v, &mut gauges);
         state.measured.copy_from_slice(gauges.counted());
-        let pilot = Pilot::new(&system, &method, &state, &gauges, &audit);
+        let pilot = Pilot::new(&system, &method, &newton, &state, &gauges, &audit);
         Self {
             hints: Hints::of(&newton, &*integrator),
             grid: Grid::new(state.t, step),
@@ -396,6 +396,11 @@ impl Simulation {
     pub fn coordinate(&self, name: &str) -> Option<[f64; 2]> {
         let at = self.system.gauges().iter().position(|known| known == name)?;
         Some([self.gauges.value[at], self.gauges.rate[at]])
+    }
+
+    /// How much each row (r) adds to those before it at the present state, as [`crate::formulation::independence`] has it.
+    pub fn independence(&self) -> Vec<f64> {
+        Independence::like(&self.system, &self.newton.kkt).shares(&self.system, &self.state.x, self.state.t)
     }
 
     /// The energy audit so far.
