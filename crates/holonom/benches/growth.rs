@@ -39,8 +39,9 @@ fn measure(case: &Case) -> Times {
     let matrix = Matrix::of(&case.model());
     let pattern: Vec<(u32, u32)> = matrix.entries.iter().map(|&(i, j, _)| (i as u32, j as u32)).collect();
     let plan = Plan::new(&Plans::default(), matrix.size, &pattern, &matrix.order);
+    let places = plan.places();
     let mut solver = Solver::new(plan.clone());
-    let positions: Vec<usize> = matrix.entries.iter().map(|&(i, j, _)| plan.position(i, j) as usize).collect();
+    let positions: Vec<usize> = matrix.entries.iter().map(|&(i, j, _)| places.position(i, j) as usize).collect();
     let mut x = matrix.right_side();
     let mut times = Times { bodies: case.bodies(), factor: f64::INFINITY, solve: f64::INFINITY };
     let start = Instant::now();

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use holonom::analysis::{Rank, projection_form, rank, undetermined};
+use holonom::analysis::{Rank, projection_form, rank_of, undetermined};
 use holonom::model::{Model, StartChange};
 use holonom::projection::Solve;
 use holonom::record::RecordedJoint;
@@ -27,14 +27,17 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let name = method.name.clone();
     let step = loaded.step().unwrap_or(1e-3);
     let simulation = Simulation::new(system.clone(), method, step).map_err(load::start_failure)?;
+    let size = rank_of(&simulation).size(system);
+    let changes = loaded.model.start_changes(&simulation.state().x, simulation.velocities());
+    let (start, audit) = (simulation.start().clone(), simulation.audit().clone());
+    // The room that it takes is for the next one.
+    drop(simulation);
     // Bodies that share nodes have no rows where they are joined: what holds what is asked of the model without sharing.
     let mut plain = load::overrides(&arguments.model.set);
     plain.set("output.reactions=true");
     let plain = load::load(&arguments.model.model, plain)?;
     let mut held = Held::new(&plain, load::method(&plain.model, None)?, step)?;
-    let size = rank(system, &simulation.state().x, 0.0).size(system);
     let found = &held.rank;
-    let (start, audit) = (simulation.start(), simulation.audit());
     let near = found.weakest.as_ref().filter(|(_, independence)| *independence < NEAR_SINGULAR);
     let form = match arguments.projection {
         true => {
@@ -44,7 +47,6 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
         }
         false => None,
     };
-    let changes = loaded.model.start_changes(&simulation.state().x, simulation.velocities());
     if arguments.json {
         let change = |change: &StartChange| {
             json!({
@@ -144,7 +146,7 @@ impl Held {
         let simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
         let (system, x) = (&model.system, &simulation.state().x);
         let world = system.in_world(x);
-        let rank = rank(system, x, 0.0);
+        let rank = rank_of(&simulation);
         let size = rank.size(&model.system);
         let (mut involved, mut not_unique) = (Vec::new(), Vec::new());
         if let Some(free) = undetermined(&model.system, x, 0.0).filter(|_| !rank.redundant.is_empty()) {

@@ -193,11 +193,11 @@ impl Kkt {
     /// Plans the matrix of a system with `fields` fields a node, of which rows and coordinates share blocks by `coupling`.
     pub fn new(system: &System, scales: &Scales, fields: usize, coupling: Coupling) -> Self {
         let pattern = Pattern::new(system, &scales.has_light, fields, coupling);
-        let augmented = (0..system.constraints()).filter(|&row| scales.has_light[row]).flat_map(|row| {
-            let pattern = &pattern;
-            (0..fields).map(move |field| pattern.augment(row, field, 1.0 / scales.softness[row]))
-        });
-        let augmented = augmented.collect();
+        let places = scales.has_light.contains(&true).then(|| pattern.plan.places());
+        let light = (0..system.constraints()).filter(|&row| scales.has_light[row]);
+        let light = light.flat_map(|row| (0..fields).map(move |field| (row, field)));
+        let augment = |(row, field)| Some(pattern.augment(places.as_ref()?, row, field, 1.0 / scales.softness[row]));
+        let augmented = light.filter_map(augment).collect();
         let mut kkt = Self::of(Arc::new(pattern), &system.mass, augmented);
         let mut units = vec![0.0; kkt.size()];
         for field in 0..fields {

@@ -1,48 +1,49 @@
 //! The pattern of a stage's matrix: which nodes and rows share a block, and in what order they are eliminated.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::kkt::{Augmented, Coupling, Hessian, NONE, OuterTerm, Pattern, Turn};
-use crate::linalg::{Plan, Plans, fill_reducing_order};
+use crate::linalg::{Places, Plan, Plans, fill_reducing_order};
 use crate::system::{HessianBlock, InvariantId, NodeId, Quantity, Row, System};
 
-/// Pairs of free nodes that share a block of the matrix.
+/// Pairs of free nodes that share a block of the matrix, ascending, and whether the block is a full one.
 #[derive(Default)]
 pub(super) struct Pairs {
-    found: BTreeMap<(u32, u32), Pair>,
-}
-
-/// Its number, and that among the pairs with full blocks.
-#[derive(Default)]
-struct Pair {
-    number: u32,
-    full: Option<u32>,
+    found: Vec<(u32, u32, bool)>,
+    /// Of each pair, its number among those with full blocks.
+    full: Vec<Option<u32>>,
+    /// Where those of each first node begin, and the end.
+    begins: Vec<u32>,
 }
 
 impl Pairs {
     fn add(&mut self, a: u32, b: u32, full: bool) {
-        for key in [(a, b), (b, a)] {
-            let pair = self.found.entry(key).or_default();
-            pair.full = pair.full.or(full.then_some(0));
-        }
+        self.found.extend([(a, b, full), (b, a, full)]);
     }
 
-    fn number(&mut self) {
-        for (k, pair) in self.found.values_mut().enumerate() {
-            pair.number = k as u32;
-        }
-        for (k, full) in self.found.values_mut().filter_map(|pair| pair.full.as_mut()).enumerate() {
-            *full = k as u32;
-        }
+    /// Puts them in order, each once, for `nodes` free nodes.
+    fn number(&mut self, nodes: usize) {
+        // A full block comes before one that is not.
+        self.found.sort_unstable_by_key(|&(a, b, full)| (a, b, !full));
+        self.found.dedup_by_key(|&mut (a, b, _)| (a, b));
+        self.begins = (0..=nodes as u32).map(|node| self.found.partition_point(|&(a, ..)| a < node) as u32).collect();
+        let mut count = 0..;
+        self.full = self.found.iter().map(|&(.., full)| full.then(|| count.next().expect("it has no end"))).collect();
     }
 
     fn at(&self, a: u32, b: u32) -> u32 {
-        self.found[&(a, b)].number
+        let first = self.begins[a as usize];
+        let of_node = &self.found[first as usize..self.begins[a as usize + 1] as usize];
+        first + of_node.binary_search_by_key(&b, |&(_, b, _)| b).expect("the pair was added") as u32
     }
 
     fn full_at(&self, a: u32, b: u32) -> u32 {
-        self.found[&(a, b)].full.expect("the pair was added with a full block")
+        self.full[self.at(a, b) as usize].expect("the pair was added with a full block")
+    }
+
+    /// The two nodes, and the number among the pairs with full blocks.
+    fn iter(&self) -> impl Iterator<Item = (u32, u32, Option<u32>)> {
+        self.found.iter().zip(&self.full).map(|(&(a, b, _), &full)| (a, b, full))
     }
 }
 
@@ -97,7 +98,7 @@ impl Pattern {
                 nodes.iter().for_each(|&b| pairs.add(a, b, true));
             }
         }
-        pairs.number();
+        pairs.number(free);
 
         let hessian = |id: InvariantId| {
             let mut hessian = Hessian::default();
@@ -136,14 +137,14 @@ impl Pattern {
         };
         let load_pairs = system.loads.iter().map(|load| group_pairs(&load.nodes)).collect();
         let custom_pairs = system.custom.iter().map(|custom| group_pairs(&custom.nodes)).collect();
-        let full_pairs: Vec<u32> = pairs.found.values().filter(|pair| pair.full.is_some()).map(|pair| pair.number).collect();
+        let full_pairs = (0..).zip(&pairs.full).filter_map(|(pair, full)| full.map(|_| pair)).collect();
         let mut pattern = Self {
             plan: Plan::new(&Plans::default(), 0, &[], &[]),
             dim,
             fields,
             free,
             coupling,
-            pair_nodes: pairs.found.keys().map(|&(a, b)| [a, b]).collect(),
+            pair_nodes: pairs.iter().map(|(a, b, _)| [a, b]).collect(),
             full_pairs,
             own_pair: (0..free as u32).map(|a| pairs.at(a, a)).collect(),
             diagonal: Vec::new(),
@@ -165,7 +166,7 @@ impl Pattern {
     }
 
     /// The places that a row whose square weighs `weight` needs.
-    pub(super) fn augment(&self, row: usize, field: usize, weight: f64) -> Augmented {
+    pub(super) fn augment(&self, places: &Places<'_>, row: usize, field: usize, weight: f64) -> Augmented {
         let multiplier = self.multiplier(row, field);
         let mut coordinates = Vec::new();
         for slot in self.slots.rows[row].clone().filter(|&slot| self.is_free(slot)) {
@@ -176,7 +177,7 @@ impl Pattern {
         // A function may name a node several times.
         coordinates.sort_unstable();
         coordinates.dedup();
-        let at = |row: usize, column: usize| self.plan.position(row, column);
+        let at = |row: usize, column: usize| places.position(row, column);
         Augmented {
             weight,
             row: multiplier as u32,
@@ -191,10 +192,10 @@ impl Pattern {
         let (dim, fields, rows) = (self.dim, self.fields, self.slots.rows.len());
         let combinations: Vec<(usize, usize)> = (0..fields).flat_map(|i| (0..fields).map(move |j| (i, j))).collect();
         let mut entries = Vec::new();
-        for (&(a, b), pair) in &pairs.found {
+        for (a, b, full) in pairs.iter() {
             for &(i, j) in &combinations {
                 for c in 0..dim {
-                    for d in (0..dim).filter(|&d| pair.full.is_some() || d == c) {
+                    for d in (0..dim).filter(|&d| full.is_some() || d == c) {
                         entries.push((self.coordinate(a as usize, i, c) as u32, self.coordinate(b as usize, j, d) as u32));
                     }
                 }
@@ -213,14 +214,17 @@ impl Pattern {
             }
         }
         self.plan = Plan::new(plans, self.size(), &entries, &self.elimination_order(pairs));
-        for (&(a, b), pair) in &pairs.found {
-            self.full_index.push(pair.full.unwrap_or(NONE));
+        drop(entries);
+        let plan = self.plan.clone();
+        let places = plan.places();
+        for (a, b, full) in pairs.iter() {
+            self.full_index.push(full.unwrap_or(NONE));
             for &(i, j) in &combinations {
                 for c in 0..dim {
                     let row = self.coordinate(a as usize, i, c);
-                    self.diagonal.push(self.plan.position(row, self.coordinate(b as usize, j, c)));
-                    for d in (0..dim).filter(|_| pair.full.is_some()) {
-                        self.full.push(self.plan.position(row, self.coordinate(b as usize, j, d)));
+                    self.diagonal.push(places.position(row, self.coordinate(b as usize, j, c)));
+                    for d in (0..dim).filter(|_| full.is_some()) {
+                        self.full.push(places.position(row, self.coordinate(b as usize, j, d)));
                     }
                 }
             }
@@ -231,7 +235,7 @@ impl Pattern {
                 for &(i, j) in combinations.iter().filter(|&&(i, j)| self.are_coupled(i, j)) {
                     for c in 0..dim {
                         let (q, r) = (self.coordinate(self.slots.nodes[s] as usize, i, c), self.multiplier(row, j));
-                        for (side, position) in [self.plan.position(q, r), self.plan.position(r, q)].into_iter().enumerate() {
+                        for (side, position) in [places.position(q, r), places.position(r, q)].into_iter().enumerate() {
                             row_entries[(side * fields + i) * fields + j].push([(s * dim + c) as u32, position]);
                         }
                     }
@@ -239,7 +243,7 @@ impl Pattern {
             }
             for i in 0..fields {
                 let r = self.multiplier(row, i);
-                self.row_diagonal.push(self.plan.position(r, r));
+                self.row_diagonal.push(places.position(r, r));
             }
         }
         self.row_entries = row_entries;
@@ -256,7 +260,7 @@ impl Pattern {
     /// Nodes by least fill-in, each row right after the last of its nodes: its pivot is then minus what the row's
     /// gradient adds to those before it, and never the bare regularisation unless the row is redundant.
     fn elimination_order(&self, pairs: &Pairs) -> Vec<u32> {
-        let mut edges: Vec<(u32, u32)> = pairs.found.keys().copied().filter(|&(a, b)| a < b).collect();
+        let mut edges: Vec<(u32, u32)> = pairs.iter().filter(|&(a, b, _)| a < b).map(|(a, b, _)| (a, b)).collect();
         let free_nodes =
             |slots: &Range<usize>| -> Vec<u32> { slots.clone().filter(|&s| self.is_free(s)).map(|s| self.slots.nodes[s]).collect() };
         for slots in &self.slots.rows {

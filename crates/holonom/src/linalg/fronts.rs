@@ -138,9 +138,9 @@ impl Fronts {
 
     fn place_entries(&mut self, entries: &[(u32, u32)]) {
         let find = |&(row, column): &(u32, u32)| self.find(row as usize, column as usize).expect("the pattern is in the fronts");
-        let mut places: Vec<u32> = entries.iter().map(|entry| find(entry) as u32).collect();
-        places.sort_unstable();
-        places.dedup();
+        let mut is_entry = vec![false; (self.tiles.lower + self.tiles.upper) * TILE];
+        entries.iter().for_each(|entry| is_entry[find(entry)] = true);
+        let places: Vec<u32> = (0..).zip(is_entry).filter_map(|(place, is_entry)| is_entry.then_some(place)).collect();
         let before = |tile: usize| places.partition_point(|&place| (place as usize) < tile * TILE);
         for (front, sources) in self.fronts.iter().zip(&mut self.sources) {
             let upper = self.tiles.lower + front.upper;
@@ -187,6 +187,17 @@ impl Fronts {
     pub fn position(&self, row: usize, column: usize) -> Option<usize> {
         let place = self.find(row, column)?;
         if self.one_front().is_some() { Some(place) } else { self.entries.binary_search(&(place as u32)).ok() }
+    }
+
+    /// Where each number of all tiles is among the values; anything where it is none of the pattern.
+    pub fn positions(&self) -> Vec<u32> {
+        let numbers = (self.tiles.lower + self.tiles.upper) * TILE;
+        if self.one_front().is_some() {
+            return (0..numbers as u32).collect();
+        }
+        let mut positions = vec![0; numbers];
+        (0..).zip(&self.entries).for_each(|(position, &place)| positions[place as usize] = position);
+        positions
     }
 
     /// Where an entry of the matrix is among the numbers of all tiles; none outside the filled pattern.

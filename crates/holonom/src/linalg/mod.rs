@@ -32,15 +32,28 @@ impl Plan {
         Self(plans.fronts(size, entries, order))
     }
 
+    /// To look many entries up.
+    pub fn places(&self) -> Places<'_> {
+        Places { fronts: &self.0, positions: self.0.positions() }
+    }
+}
+
+/// Where the entries of a planned matrix are.
+pub struct Places<'a> {
+    fronts: &'a Fronts,
+    positions: Vec<u32>,
+}
+
+impl Places<'_> {
     /// Where the entry (row, column) of the pattern is among the values.
     pub fn position(&self, row: usize, column: usize) -> u32 {
-        self.0.position(row, column).expect("the entry is in the pattern") as u32
+        self.positions[self.fronts.find(row, column).expect("the entry is in the pattern")]
     }
 }
 
 /// A square matrix of fixed pattern with its factorisation L U in place.
 ///
-/// Write the values through [`Solver::values_mut`] at the positions [`Plan::position`] gave, then
+/// Write the values through [`Solver::values_mut`] at the positions [`Places::position`] gave, then
 /// [`Solver::factor`], then [`Solver::solve`] as often as needed. Only the construction allocates.
 pub struct Solver {
     lu: Multifrontal,
@@ -141,7 +154,7 @@ mod tests {
         let plan = Plan::new(&Plans::default(), size, &pattern, &order);
         let mut solver = Solver::new(plan.clone());
         for &(i, j, value) in entries {
-            let at = plan.position(i, j) as usize;
+            let at = plan.places().position(i, j) as usize;
             solver.values_mut()[at] += value;
         }
         solver.factor().expect("the matrix is regular");
