@@ -7,6 +7,7 @@ use holonom::simulation::{Choice, Method, NAMED, Named, Observer, Simulation, St
 use holonom::system::Evaluation;
 
 use crate::mechanism::{Mechanism, STEPS};
+use crate::natural;
 
 /// Largest energy, momentum or violation of a row that no promise allows, over what it is measured by.
 pub const BROKEN: f64 = 1e-9;
@@ -19,6 +20,10 @@ const STIRRED: f64 = 1e-20;
 
 /// Share of the mechanism's speed by which velocities are measured where nothing moves: what rounding leaves of increments.
 const SLOWEST: f64 = 1e-2;
+
+/// Gradient of a row over its natural size beside which rounding of Φ alone, which goes with that size, comes to what is broken:
+/// 1e3 roundings.
+const VANISHED: f64 = 1e3 * f64::EPSILON / BROKEN;
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -159,8 +164,7 @@ impl Observer for Watch<'_> {
         let gradients = analysis::constraint_jacobian(system, &state.x, state.t);
         for ((worst, gradient), phi) in self.rows.iter_mut().zip(&gradients).zip(&self.phi) {
             let rate: f64 = gradient.iter().zip(simulation.velocities()).map(|(g, v)| g * v).sum();
-            let size = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
-            *worst = [larger(worst[0], *phi), larger(worst[1], rate), larger(worst[2], size)];
+            *worst = [larger(worst[0], *phi), larger(worst[1], rate), larger(worst[2], natural::length(gradient))];
         }
         self.speed = simulation.velocities().iter().fold(self.speed, |m, v| larger(m, *v));
         (self.kinetic, self.work) = (larger(self.kinetic, audit.kinetic), larger(self.work, audit.work));
@@ -178,8 +182,8 @@ fn larger(size: f64, number: f64) -> f64 {
 impl Watch<'_> {
     /// Energy is measured by what was exchanged: the largest kinetic energy, the range of the potential one and the work.
     /// What rounding of weights and increments may come to counts where next to nothing is, as with structures and with
-    /// light parts beside heavy ones. Rows are measured in lengths, by their gradients, and over the size and the speed of
-    /// the mechanism.
+    /// light parts beside heavy ones. Rows are measured in lengths, by their gradients or, where these vanish, by what they are
+    /// elsewhere, and over the size and the speed of the mechanism. Rows that hold nothing anywhere are left out.
     fn figures(&self, mechanism: &Mechanism, model: &Model, simulation: &Simulation) -> Figures {
         let audit = simulation.audit();
         let mass: f64 = model.bodies.iter().map(|body| body.mass).chain(model.points.iter().map(|point| point.mass)).sum();
@@ -190,9 +194,10 @@ impl Watch<'_> {
         let units = [exchanged + rounded / BROKEN, mass * speed, mechanism.size, speed];
         let drift = audit.momentum_summary();
         let momentum = drift.linear_drift + drift.angular_drift / mechanism.size;
+        let natural = natural::gradients(&model.system, mechanism.size);
         let worst = |which: usize| {
-            let in_lengths = |row: &[f64; 3]| if row[2] > 0.0 { row[which] / row[2] } else { row[which] };
-            self.rows.iter().map(in_lengths).fold(0.0, larger)
+            let in_lengths = |(row, natural): (&[f64; 3], &f64)| row[which] / if row[2] > VANISHED * natural { row[2] } else { *natural };
+            self.rows.iter().zip(&natural).map(in_lengths).fold(0.0, larger)
         };
         let figures = [audit.energy_summary().max_drift, momentum, worst(0), worst(1)];
         Figures { over_their_units: std::array::from_fn(|k| figures[k] / units[k]), units }

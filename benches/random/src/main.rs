@@ -11,6 +11,7 @@ mod joints;
 mod judge;
 mod layout;
 mod mechanism;
+mod natural;
 mod random;
 mod rank;
 mod report;
@@ -146,11 +147,12 @@ mod tests {
     use super::*;
     use holonom::simulation::{Choice, Method, Simulation};
 
-    /// Seeds that were completed and wrong: energy, constraints or rank, by one of the conserving methods.
-    const ONCE_WRONG: [u64; 66] = [
+    /// Seeds that were completed and wrong, by one of the conserving methods or by the judge: energy, constraints, rank or start.
+    const ONCE_WRONG: [u64; 81] = [
         1, 2, 3, 11, 13, 25, 31, 36, 43, 44, 46, 48, 63, 64, 66, 86, 89, 99, 100, 112, 117, 123, 139, 146, 155, 172, 173, 177, 186, 204,
         214, 220, 246, 263, 268, 286, 299, 339, 345, 380, 405, 439, 443, 483, 497, 530, 537, 583, 589, 606, 611, 617, 666, 686, 688, 711,
-        717, 722, 738, 744, 789, 796, 797, 798, 502, 1268,
+        717, 722, 738, 744, 789, 796, 797, 798, 502, 1268, 100125, 102503, 106705, 108321, 109255, 110721, 117703, 117992, 118419, 123386,
+        127362, 132034, 133691, 134613, 135621,
     ];
 
     #[test]

@@ -4,6 +4,8 @@ use faer::Mat;
 use holonom::analysis;
 use holonom::model::Model;
 
+use crate::natural;
+
 /// What became of the comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Agreement {
@@ -20,7 +22,7 @@ const THRESHOLD: f64 = 1e-9;
 /// Ratio of the singular values beside the threshold that is a clear gap.
 const GAP: f64 = 1e3;
 
-/// Gradient of a row, over that of rows of lengths or of numbers, whichever is less, that may be round-off.
+/// Gradient of a row over its natural size that may be round-off.
 const VANISHING: f64 = 1e-9;
 
 /// Singular value from which on its square is clear, too: what rows leave undetermined is found from their products.
@@ -38,7 +40,8 @@ struct Dense {
 pub fn compare(model: &Model, size: f64) -> Agreement {
     let system = &model.system;
     let x = system.start_position();
-    let Some(dense) = dense_rank(analysis::constraint_jacobian(system, x, 0.0), system.coordinates(), size) else {
+    let (rows, natural) = (analysis::constraint_jacobian(system, x, 0.0), natural::gradients(system, size));
+    let Some(dense) = dense_rank(rows, &natural, system.coordinates()) else {
         return Agreement::Unclear;
     };
     let (rank, [weakest, below]) = (dense.rank, dense.gap);
@@ -59,12 +62,16 @@ pub fn compare(model: &Model, size: f64) -> Agreement {
     }
 }
 
-/// The rank of rows scaled to unit gradients, if it is clear. Columns are all lengths: directions are nodes of the length of
+/// The rank of rows scaled to unit gradients, if it is clear. Rows that hold nothing are none. Columns are all lengths: directions are nodes of the length of
 /// the mechanism.
-fn dense_rank(mut rows: Vec<Vec<f64>>, columns: usize, size: f64) -> Option<Dense> {
-    for row in &mut rows {
-        let length = row.iter().map(|g| g * g).sum::<f64>().sqrt();
-        if length.is_nan() || length <= VANISHING * size.min(1.0) {
+fn dense_rank(mut rows: Vec<Vec<f64>>, natural: &[f64], columns: usize) -> Option<Dense> {
+    for (row, natural) in rows.iter_mut().zip(natural) {
+        if natural.is_infinite() {
+            row.fill(0.0);
+            continue;
+        }
+        let length = natural::length(row);
+        if length.is_nan() || length <= VANISHING * natural {
             return None;
         }
         row.iter_mut().for_each(|g| *g /= length);
@@ -75,6 +82,9 @@ fn dense_rank(mut rows: Vec<Vec<f64>>, columns: usize, size: f64) -> Option<Dens
     let values = Mat::from_fn(rows.len(), columns, |i, j| rows[i][j]).singular_values().ok()?;
     let rank = values.iter().filter(|&&value| value > THRESHOLD * values[0]).count();
     let below = values.get(rank).copied().unwrap_or(0.0);
+    if rank == 0 {
+        return Some(Dense { rank, gap: [1.0, 0.0] });
+    }
     let gap = [values[rank - 1], below];
     (gap[1] * GAP <= gap[0]).then_some(Dense { rank, gap })
 }
@@ -86,7 +96,7 @@ mod tests {
     #[test]
     fn the_rank_is_said_where_it_is_clear() {
         let rows = |last: f64| vec![vec![1.0, 0.0, 0.0], vec![0.0, 2.0, 0.0], vec![3.0, 4.0, last]];
-        let rank = |rows| dense_rank(rows, 3, 1.0).map(|dense| dense.rank);
+        let rank = |rows| dense_rank(rows, &[1.0; 3], 3).map(|dense| dense.rank);
         assert_eq!((rank(rows(0.0)), rank(rows(1.0)), rank(rows(1e-6))), (Some(2), Some(3), Some(3)));
         assert_eq!((rank(vec![vec![0.0; 3]]), rank(rows(1e-12))), (None, Some(2)));
     }

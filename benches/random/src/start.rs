@@ -4,7 +4,7 @@ use faer::Mat;
 use faer::linalg::solvers::Solve;
 use holonom::analysis;
 use holonom::model::{BodyInfo, Model};
-use holonom::simulation::{Choice, Method, Simulation};
+use holonom::simulation::{Choice, Method, Simulation, StartError};
 use nalgebra::Vector3;
 
 use crate::mechanism::Mechanism;
@@ -18,7 +18,7 @@ const ROUND_OFF: f64 = 1e-12;
 /// Singular value over the largest below which rows leave a motion free.
 const FREE: f64 = 1e-9;
 
-/// Least mass of a free motion over the largest that is no round-off.
+/// Mass of a free motion over the largest of a node that is no round-off.
 const MASSLESS: f64 = 1e-14;
 
 /// The motion of a body: velocity of its centre, m/s, and angular velocity, rad/s.
@@ -27,7 +27,7 @@ type Motion = [Vector3<f64>; 2];
 /// Compares the start with those of the same mechanism written in other orders, with and without nodes that bodies share, and
 /// with a dense solution.
 pub fn compare(seed: u64, mechanism: &Mechanism, model: &Model) -> Agreement {
-    let Some(motions) = motions(mechanism, model) else { return Agreement::Unclear };
+    let Ok(motions) = motions(mechanism, model) else { return Agreement::Unclear };
     let as_written: Vec<Motion> = model.bodies.iter().map(|body| [body.velocity.into(), body.angular_velocity.into()]).collect();
     let energy = kinetic(model, &as_written);
     if energy == 0.0 {
@@ -53,7 +53,10 @@ pub fn compare(seed: u64, mechanism: &Mechanism, model: &Model) -> Agreement {
             Ok(written) => written,
             Err(message) => return Agreement::Differ("of a start that is refused", format!("{how}: {message}")),
         };
-        let Some(found) = self::motions(other, &written) else { return Agreement::Differ("of a start that is refused", how.into()) };
+        let found = match self::motions(other, &written) {
+            Ok(found) => found,
+            Err(error) => return Agreement::Differ("of a start that is refused", format!("{how}: {error}")),
+        };
         let difference: Vec<Motion> = model
             .bodies
             .iter()
@@ -78,15 +81,15 @@ fn shuffled(seed: u64, mechanism: &Mechanism) -> Vec<crate::mechanism::Entry> {
     entries
 }
 
-fn start(mechanism: &Mechanism, model: &Model) -> Option<Simulation> {
+fn start(mechanism: &Mechanism, model: &Model) -> Result<Simulation, StartError> {
     let method = Method::resolve(&Choice::default()).expect("the default goes together");
-    Simulation::new(model.system.clone(), method, mechanism.step()).ok()
+    Simulation::new(model.system.clone(), method, mechanism.step())
 }
 
-fn motions(mechanism: &Mechanism, model: &Model) -> Option<Vec<Motion>> {
+fn motions(mechanism: &Mechanism, model: &Model) -> Result<Vec<Motion>, StartError> {
     let simulation = start(mechanism, model)?;
     let (x, v) = (&simulation.state().x, simulation.velocities());
-    Some(model.bodies.iter().map(|body| body.recorded.velocity(x, v, model.dimension)).collect())
+    Ok(model.bodies.iter().map(|body| body.recorded.velocity(x, v, model.dimension)).collect())
 }
 
 /// The largest mass over the smallest, of a body also that which its least moment of inertia has at the size of the mechanism.
@@ -108,7 +111,7 @@ fn kinetic(model: &Model, motions: &[Motion]) -> f64 {
 /// with N, the columns of which are a basis of these motions, that of y in NᵀMN y = NᵀM (v − v₀). Nothing where a motion has no
 /// mass, or the rows have no clear rank.
 fn left(mechanism: &Mechanism, model: &Model) -> Option<f64> {
-    let (simulation, system) = (start(mechanism, model)?, &model.system);
+    let (simulation, system) = (start(mechanism, model).ok()?, &model.system);
     let n = system.coordinates();
     let rows = analysis::constraint_jacobian(system, &simulation.state().x, 0.0);
     if rows.is_empty() {
@@ -123,7 +126,8 @@ fn left(mechanism: &Mechanism, model: &Model) -> Option<f64> {
     let mass = Mat::from_fn(n, n, |i, j| entry(model, i, j));
     let (pull, inertia) = (basis.transpose() * &mass * &change, basis.transpose() * &mass * &basis);
     let masses = inertia.self_adjoint_eigenvalues(faer::Side::Lower).ok()?;
-    if masses.first()? <= &(MASSLESS * masses.last()?) {
+    let heaviest = (0..n).map(|i| entry(model, i, i)).fold(0.0, f64::max);
+    if masses.first()? <= &(MASSLESS * heaviest) {
         return None;
     }
     let y = inertia.llt(faer::Side::Lower).ok()?.solve(&pull);

@@ -321,3 +321,63 @@ fn methods_say_what_they_keep() {
     assert_eq!(kept("radau"), "energy that something supplies, Φ, Φ̇");
     assert_eq!(kept("penalty/conserving"), "energy that something supplies");
 }
+
+/// Redundant rows leave round-off, which must not be divided by round-off in the rows after them.
+#[test]
+fn rows_after_redundant_ones_add_what_they_add() {
+    let text = r#"
+gravity = [0.0, 0.0, -9.81]
+[body.b0]
+mass = 0.0002816755966356792
+position = [0.33667123997382375, -0.18499437244172967, 0.8288160847355875]
+orientation = { quat_wxyz = [-0.6480273583010607, 0.44730832693735, 0.49145866106416375, -0.37208088906967096] }
+inertia = [3.3543408314045745e-6, 4.0937406825527726e-7, 3.763714899659852e-6]
+[body.b1]
+mass = 1.0112973191410906
+position = [0.5775089514357208, -0.468274712204371, 0.2513398866384495]
+orientation = { quat_wxyz = [-0.6620406997332541, 0.5346649795816834, -0.5249307019839993, 0.01682942720972189] }
+shape = { rod = 0.17280645294972674 }
+[joint.j1]
+type = "spherical"
+between = ["b0", "b1"]
+at = [0.4530248631218594, -0.6153436321034402, 0.3363067472898725]
+[joint.j2]
+type = "revolute"
+between = ["b0", "b1"]
+at = [0.6577111645927314, -0.41759564009139105, 0.30046087292163426]
+axis = [-0.32605455438414743, 0.8999948938672173, -0.28930540710171887]
+[output]
+reactions = true
+"#;
+    assert_eq!(freedom(&model(text)), [6, 2]);
+}
+
+/// The distance row adds 1e-6 of itself, squared, to those before it, and one row after it nothing.
+#[test]
+fn rows_after_weak_ones_are_seen_as_redundant() {
+    let text = r#"
+gravity = [7.842308168755432, -5.63682501458379, -1.720612199548257]
+[body.b0]
+mass = 1.2311608553357236
+position = [0.013713757691406387, 0.008441657042866377, 0.011693190463562668]
+velocity = [-0.32366206286084903, 1.1234299826728646, 1.3334627692832974]
+angular_velocity = [-47.48557639470845, 35.00857691192027, 30.59493843193126]
+inertia = [1.8709373569126255e-5, 3.449895416941714e-5, 5.320832773854339e-5]
+[joint.j0]
+type = "point-on-line"
+between = ["ground", "b0"]
+at = [-0.006112506909286355, 0.008905917449979216, 0.008106983497911375]
+axis = [0.10990197216794875, 0.9287986998277413, -0.35391316973502535]
+[joint.j1]
+type = "distance"
+between = ["ground", "b0"]
+at = [[-0.006112506909286355, 0.008905917449979216, 0.008106983497911375], [-0.02481615272028311, -0.00295728682749361, -0.0050377307212893015]]
+[joint.j2]
+type = "generic"
+between = ["ground", "b0"]
+at = [0.015624331473324453, 0.020403594801397487, 0.0029681058615208707]
+axes = [[0.10990197216794875, 0.9287986998277413, -0.35391316973502535], [-0.041264356628367124, -0.3514994695929109, -0.9352782344029765]]
+locks = ["x", "z", "ry", "rz"]
+"#;
+    assert_eq!(freedom(&model(text)), [0, 1]);
+}

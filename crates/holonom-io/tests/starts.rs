@@ -74,3 +74,31 @@ fn potential_energy_counts_from_the_origin_whatever_is_shared() {
         assert!((initial - 4.905).abs() < 1e-12, "{initial}");
     }
 }
+
+/// A rod whose directions across are held by the ground alone: they have no mass, and nothing that hangs on them has.
+#[test]
+fn directions_that_the_ground_holds_need_no_mass() {
+    let text = "[body.ball]\nmass = 1\nposition = [-0.5, 0, 0]\nshape = { sphere = 0.1 }\n\
+                [body.rod]\nmass = 1\nposition = [0.3, 0, 0]\nvelocity = [2, 1, 0]\nshape = { rod = 0.6 }\n\
+                [joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"rod\"]\nat = [-0.3, 0, 0]\naxis = [1, 0, 0]\n\
+                [joint.slide]\ntype = \"prismatic\"\nbetween = [\"ground\", \"rod\"]\nat = [-0.2, 0, 0]\naxis = [1, 0, 0]\n";
+    for text in with_reactions(text) {
+        let model = model(&text);
+        let (simulation, rod) = (start(&model), model.bodies.iter().find(|body| body.name == "rod").unwrap());
+        let [velocity, spin] = rod.recorded.velocity(&simulation.state().x, simulation.velocities(), model.dimension);
+        assert!(velocity.norm() < 1e-12 && spin.norm() < 1e-12, "{velocity} {spin}");
+    }
+}
+
+/// A light ball on the ground that a heavy point drags by a rod: its own motion is not lost beside what moves the point.
+#[test]
+fn light_parts_start_as_exactly_as_heavy_ones() {
+    let text = "[body.ball]\nmass = 1e-6\nposition = [-22, -13, -51]\nvelocity = [-11, -9, -3]\nangular_velocity = [-0.08, 0.11, 0.07]\n\
+                shape = { sphere = 23 }\n\
+                [joint.socket]\ntype = \"spherical\"\nbetween = [\"ground\", \"ball\"]\nat = [-23, 31, -33]\n\
+                [point.load]\nmass = 3e5\nposition = [-82, -87, 16]\nvelocity = [-2, -9, 11]\n\
+                [joint.rod]\ntype = \"distance\"\nbetween = [\"ball\", \"load\"]\nat = [[4, -55, -49], [-82, -87, 16]]\n";
+    let [shared, apart] = with_reactions(text).map(|text| spin(&model(&text), "ball"));
+    let off = (shared - apart).norm() / apart.norm();
+    assert!(off < 1e-11, "{off:e}");
+}

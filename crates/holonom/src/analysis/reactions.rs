@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::constraint_jacobian;
-use crate::formulation::extent;
+use crate::formulation::{VANISHED, extent, natural_sizes};
 use crate::linalg::null_space;
 use crate::simulation::wrench;
 use crate::system::{Evaluation, NodeId, System};
@@ -33,9 +33,12 @@ pub fn undetermined<'s>(system: &'s System, x: &[f64], t: f64) -> Option<Undeter
     }
     let mut scaled = Vec::with_capacity(rows * n);
     let mut sizes = Vec::with_capacity(rows);
-    for line in constraint_jacobian(system, x, t) {
-        let size = line.iter().map(|g| g * g).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
-        scaled.extend(line.iter().map(|g| g / size));
+    let mut at = system.evaluation();
+    for (line, natural) in constraint_jacobian(system, x, t).iter().zip(natural_sizes(system, &at)) {
+        let size = line.iter().map(|g| g * g).sum::<f64>().sqrt();
+        // A gradient that has vanished is round-off, which points anywhere.
+        let [factor, size] = if size > VANISHED * natural { [1.0 / size, size] } else { [0.0, 1.0] };
+        scaled.extend(line.iter().map(|g| g * factor));
         sizes.push(size);
     }
     let product = |k: usize| -> f64 {
@@ -45,7 +48,6 @@ pub fn undetermined<'s>(system: &'s System, x: &[f64], t: f64) -> Option<Undeter
     let gram: Vec<f64> = (0..rows * rows).map(product).collect();
     let mut spaces = null_space(rows, &gram, NOTHING);
     spaces.iter_mut().for_each(|space| space.iter_mut().zip(&sizes).for_each(|(lambda, size)| *lambda /= size));
-    let mut at = system.evaluation();
     system.evaluate_again(x, t, &mut at);
     Some(Undetermined { system, spaces, at, x: x.to_vec() })
 }

@@ -9,14 +9,12 @@ use crate::system::{Evaluation, System};
 pub const INDEPENDENT: f64 = 1e-9;
 
 /// Gradients below this share of what they become when the mechanism moves by its own size have vanished.
-const VANISHED: f64 = 1e-9;
+pub const VANISHED: f64 = 1e-9;
 
-/// What is left to the pivot of a redundant row.
-const PROXIMAL: f64 = 1e-15;
-
-/// How much each row (r) adds to those eliminated before it, squared: 1 for a row of its own, 0 for one that follows from
+/// How much each row (r) adds to those before it that count, squared: 1 for a row of its own, 0 for one that follows from
 /// others. Directions are nodes with a length, so that all coordinates are lengths and weigh alike; rows are scaled to unit
-/// gradients (methods §13). The pivots of [1 Gᵀ; G −δ] are minus these numbers.
+/// gradients (methods §13). The pivots of [1 Gᵀ; G 0] are minus these numbers. Rows that do not count are dropped: what they leave
+/// is round-off, and would be divided by round-off in the rows after them.
 pub fn independence(system: &System, x: &[f64], t: f64) -> Vec<f64> {
     Independence::new(system).shares(system, x, t)
 }
@@ -26,7 +24,6 @@ pub struct Independence {
     kkt: Kkt,
     at: Evaluation,
     natural: Vec<f64>,
-    delta: Vec<f64>,
     /// Of each row (r), when last measured.
     shares: Vec<f64>,
 }
@@ -43,7 +40,7 @@ impl Independence {
         let mut at = system.evaluation();
         system.evaluate_again(&system.start_position, 0.0, &mut at);
         let natural = natural_sizes(system, &at);
-        Self { kkt: kkt.of_ones(), at, natural, delta: vec![PROXIMAL; rows], shares: vec![0.0; rows] }
+        Self { kkt: kkt.of_ones(), at, natural, shares: vec![0.0; rows] }
     }
 
     /// What [`independence`] gives at the positions `x` and the time `t`.
@@ -60,7 +57,7 @@ impl Independence {
 
     /// Measures at the positions `x` and the time `t`.
     fn measure(&mut self, system: &System, x: &[f64], t: f64) {
-        let Self { kkt, at, natural, delta, shares } = self;
+        let Self { kkt, at, natural, shares } = self;
         system.evaluate_again(x, t, at);
         for (row, natural) in natural.iter().enumerate() {
             let free = system.slots.rows[row].clone().filter(|&slot| kkt.is_free(slot));
@@ -75,8 +72,7 @@ impl Independence {
         kkt.write_sum(block);
         kkt.add_columns(block, &at.gradient, 1.0);
         kkt.add_rows(block, &at.gradient, 1.0);
-        kkt.regularise(0, delta);
-        let is_factored = kkt.factor().is_ok();
+        let is_factored = kkt.solver.factor_dropping(INDEPENDENT).is_ok();
         for (row, share) in shares.iter_mut().enumerate() {
             *share = if is_factored { kkt.solver.pivot(kkt.multiplier(row, 0)) } else { 0.0 };
         }
@@ -92,7 +88,7 @@ impl Independence {
 
 /// By how much the gradient of each row (r) changes when all nodes move by the size of the mechanism, here and there: the
 /// largest of its nodes. From a thousandth of such a move beside an evaluation at the start.
-pub(super) fn natural_sizes(system: &System, at: &Evaluation) -> Vec<f64> {
+pub fn natural_sizes(system: &System, at: &Evaluation) -> Vec<f64> {
     let (share, dim) = (1e-3, system.dim);
     let reach = share * extent(system);
     let start = system.start_position.iter().enumerate();

@@ -35,7 +35,7 @@ pub use collocation::{Collocation, Timing};
 pub use dampers::Fit;
 pub use failure::{Failure, Unknown};
 pub(crate) use independence::extent;
-pub use independence::{INDEPENDENT, Independence, independence};
+pub use independence::{INDEPENDENT, Independence, VANISHED, independence, natural_sizes};
 pub use iteration::{ITERATIONS, Iteration, Multipliers, SolveSettings, predict, solve};
 pub use kkt::{ALL, Block, Kkt, LawFactors};
 pub use level::Level;

@@ -103,7 +103,8 @@ impl Scales {
 }
 
 /// The largest mass in the mechanism that each free node belongs to, all that rows and mass hold together, kg: what a light node
-/// counts as, but no more than 1e12 of its own mass.
+/// counts as, but no more than 1e12 of its own mass. Where all that hangs together has none, as directions of a rod that are held
+/// by the ground alone, the largest of the system stands in.
 fn around(system: &System, own: &[f64]) -> Vec<f64> {
     let mut root: Vec<usize> = (0..own.len()).collect();
     let mut join = |a: usize, b: usize| {
@@ -122,8 +123,10 @@ fn around(system: &System, own: &[f64]) -> Vec<f64> {
         let root = find(&mut root, node);
         heaviest[root] = heaviest[root].max(mass);
     }
+    let any = own.iter().copied().fold(0.0, f64::max);
+    let around = |node: usize| Some(heaviest[node]).filter(|mass| *mass > 0.0).unwrap_or(any);
     let most = |own: f64| if own > 0.0 { own / LEAST_SHARE } else { f64::INFINITY };
-    (0..own.len()).map(|node| heaviest[find(&mut root, node)].min(most(own[node]))).collect()
+    (0..own.len()).map(|node| around(find(&mut root, node)).min(most(own[node]))).collect()
 }
 
 fn find(root: &mut [usize], mut node: usize) -> usize {

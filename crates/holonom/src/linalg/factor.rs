@@ -7,14 +7,35 @@ use super::fronts::{Front, Fronts};
 use super::multifrontal::{Numbers, OneFront, Parts, with_blocks};
 use super::tile::{Block, Factors, LANES, TILE, Tile, above_tiny, add_product, diagonal, lower, of_columns, packed, product, raise};
 
-pub(super) struct Factor<'a> {
+pub(super) struct Factor<'a, const DROPS: bool> {
     pub(super) plan: &'a Fronts,
     pub(super) parts: &'a mut Parts,
     pub(super) values: &'a [f64],
     pub(super) numbers: &'a mut Numbers,
+    pub(super) pivoting: Pivoting,
 }
 
-impl WithSimd for Factor<'_> {
+/// What becomes of pivots that are small.
+#[derive(Clone, Copy)]
+pub(super) struct Pivoting {
+    /// Size below which they are dropped.
+    least: f64,
+    /// Largest number in L, each row in its unit, without an exchange of rows.
+    most: f64,
+    /// The largest unit of the front's rows over the smallest.
+    spread: f64,
+}
+
+impl Pivoting {
+    pub(super) const EXCHANGE: Self = Self { least: 0.0, most: 1.0 / SMALL, spread: 1.0 };
+
+    /// Drops those smaller than `least`, and takes all others as they come.
+    pub(super) fn drop_below(least: f64) -> Self {
+        Self { least, most: f64::INFINITY, spread: 1.0 }
+    }
+}
+
+impl<const DROPS: bool> WithSimd for Factor<'_, DROPS> {
     type Output = Result<(), Singular>;
 
     #[inline(always)]
@@ -23,7 +44,7 @@ impl WithSimd for Factor<'_> {
             return with_blocks(self, simd, blocks);
         }
         let Numbers { stale, exchange, exchanged, reciprocal, rows, units, own_units, spread, .. } = self.numbers;
-        let (plan, Parts { lower, upper, rest }) = (self.plan, self.parts);
+        let (plan, Parts { lower, upper, rest }, pivoting) = (self.plan, self.parts, self.pivoting);
         for (k, (front, exchanged)) in plan.fronts.iter().zip(exchanged).enumerate() {
             if !std::mem::take(&mut stale[k]) {
                 continue;
@@ -49,8 +70,9 @@ impl WithSimd for Factor<'_> {
             let exchange = &mut exchange[front.block * LANES..front.block * LANES + front.pivots];
             let own_units = &mut own_units[..front.head];
             own_units.copy_from_slice(&units[front.blocks()]);
-            *exchanged = eliminate(simd, front, &mut square, exchange, rows, own_units, spread[k])
-                .map_err(|pivot| Singular { pivot: plan.row[front.block * LANES + pivot] as usize })?;
+            *exchanged =
+                eliminate::<S, DROPS>(simd, front, &mut square, exchange, rows, own_units, Pivoting { spread: spread[k], ..pivoting })
+                    .map_err(|pivot| Singular { pivot: plan.row[front.block * LANES + pivot] as usize })?;
             let diagonals = square.columns.iter().step_by(front.size + 1);
             reciprocal[front.blocks()].iter_mut().zip(diagonals).for_each(|(out, tile)| *out = diagonal(tile));
         }
@@ -58,7 +80,7 @@ impl WithSimd for Factor<'_> {
     }
 }
 
-impl OneFront for Factor<'_> {
+impl<const DROPS: bool> OneFront for Factor<'_, DROPS> {
     /// Leaves the inverse of L in its place.
     #[inline(always)]
     fn one<S: Simd, const B: usize>(self, simd: S) -> Self::Output {
@@ -67,8 +89,16 @@ impl OneFront for Factor<'_> {
         let tiles = &mut self.parts.lower[..B * B];
         let mut own_units: [Block; B] = std::array::from_fn(|k| units[k]);
         let mut square = Square { columns: &mut *tiles, beside: &mut [], rest: &mut [] };
-        exchanged[0] = eliminate(simd, &front, &mut square, &mut exchange[..front.pivots], rows, &mut own_units, spread[0])
-            .map_err(|pivot| Singular { pivot: self.plan.row[pivot] as usize })?;
+        exchanged[0] = eliminate::<S, DROPS>(
+            simd,
+            &front,
+            &mut square,
+            &mut exchange[..front.pivots],
+            rows,
+            &mut own_units,
+            Pivoting { spread: spread[0], ..self.pivoting },
+        )
+        .map_err(|pivot| Singular { pivot: self.plan.row[pivot] as usize })?;
         (0..B).for_each(|k| reciprocal[k] = diagonal(&tiles[k * (B + 1)]));
         let inverse: [Tile; B] = std::array::from_fn(|k| lower(&tiles[k * (B + 1)]));
         for k in 0..B {
@@ -105,14 +135,14 @@ const SMALL: f64 = 1e-3;
 
 /// Eliminates the pivots of a front, a block at a time; whether rows changed places, or the pivot that cannot be one.
 #[inline(always)]
-fn eliminate<S: Simd>(
+fn eliminate<S: Simd, const DROPS: bool>(
     simd: S,
     front: &Front,
     square: &mut Square,
     exchange: &mut [u32],
     rows: &mut [Block],
     units: &mut [Block],
-    spread: f64,
+    pivoting: Pivoting,
 ) -> Result<bool, usize> {
     let Square { columns, beside, rest } = square;
     let (head, size, tail) = (front.head, front.size, front.tail());
@@ -122,7 +152,7 @@ fn eliminate<S: Simd>(
     let mut exchanged = false;
     for block in 0..head {
         let pivots = block * (size + 1)..block * size + head;
-        let factors = match in_order(simd, &columns[pivots.clone()], &units[block..], spread, 1.0 / SMALL) {
+        let factors = match in_order::<S, DROPS>(simd, &columns[pivots.clone()], &units[block..], pivoting) {
             Some(factors) => factors,
             None => {
                 if !exchanged {
@@ -131,7 +161,8 @@ fn eliminate<S: Simd>(
                 exchanged = true;
                 exchange_rows(block, front, [columns, beside], exchange, rows, units)?;
                 // Round-off may put what was exchanged a little above.
-                in_order(simd, &columns[pivots], &units[block..], spread, 2.0 / SMALL).ok_or(block * LANES)?
+                in_order::<S, DROPS>(simd, &columns[pivots], &units[block..], Pivoting { most: 2.0 * pivoting.most, ..pivoting })
+                    .ok_or(block * LANES)?
             }
         };
         let inverse = factors.lower_inverse();
@@ -159,11 +190,12 @@ fn eliminate<S: Simd>(
 }
 
 /// The factors of the first of a column of tiles, where in the order as it is all pivots are fit: nothing in L is larger than
-/// `most`, where each row has its unit.
+/// the pivoting allows, where each row has its unit.
 #[inline(always)]
-fn in_order<S: Simd>(simd: S, panel: &[Tile], units: &[Block], spread: f64, most: f64) -> Option<Factors> {
+fn in_order<S: Simd, const DROPS: bool>(simd: S, panel: &[Tile], units: &[Block], pivoting: Pivoting) -> Option<Factors> {
     let (diagonal, below) = panel.split_first()?;
-    let factors = Factors::of(simd, diagonal, &[1.0; LANES]);
+    let Pivoting { least, most, spread } = pivoting;
+    let factors = Factors::of::<S, DROPS>(simd, diagonal, &[1.0; LANES], least);
     let mut largest = factors.largest()?;
     for tile in below {
         factors.over_upper(simd, tile).iter().for_each(|column| raise(&mut largest, column, 1.0));
@@ -179,7 +211,7 @@ fn in_order<S: Simd>(simd: S, panel: &[Tile], units: &[Block], spread: f64, most
 #[inline(never)]
 fn in_units<S: Simd>(simd: S, panel: &[Tile], units: &[Block], most: f64) -> bool {
     let per_unit = units[0].map(|unit| 1.0 / unit);
-    let factors = Factors::of(simd, &panel[0], &per_unit);
+    let factors = Factors::of::<S, false>(simd, &panel[0], &per_unit, 0.0);
     let fits = |largest: &Block, units: &Block| largest.iter().zip(units).all(|(l, unit)| l * unit <= most);
     let of_tile = |(tile, units): (&Tile, &Block)| {
         let mut largest = [0.0; LANES];

@@ -97,6 +97,12 @@ impl Solver {
         self.lu.factor()
     }
 
+    /// Factors the matrix in the order that was planned, without exchanges. A pivot smaller than `least` is dropped with what it
+    /// would take from those after it.
+    pub fn factor_dropping(&mut self, least: f64) -> Result<(), Singular> {
+        self.lu.factor_dropping(least)
+    }
+
     /// Whether it can be factored in part.
     pub fn has_parts(&self) -> bool {
         self.lu.plan.one_front().is_none()
@@ -112,7 +118,7 @@ impl Solver {
         self.lu.solve(b);
     }
 
-    /// Size of the pivot met at a row of the matrix.
+    /// Size of the pivot met at a row of the matrix, none where it was dropped.
     pub fn pivot(&self, row: usize) -> f64 {
         self.lu.pivot(row)
     }
@@ -180,6 +186,26 @@ mod tests {
             let left = residual(size, &entries, &mut factored(size, &entries));
             assert!(left < 1e-10, "size {size}: {left}");
         }
+    }
+
+    /// Three rows on two coordinates, the second a multiple of the first.
+    #[test]
+    fn small_pivots_are_dropped() {
+        let mut entries = vec![(0, 0, 1.0), (1, 1, 1.0)];
+        for (row, g) in [[0.1, 0.3], [0.7 * 0.1, 0.7 * 0.3], [0.3, -0.1]].into_iter().enumerate() {
+            entries.extend((0..2).flat_map(|k| [(k, 2 + row, g[k]), (2 + row, k, g[k])]));
+            entries.push((2 + row, 2 + row, 0.0));
+        }
+        let pattern: Vec<_> = entries.iter().map(|&(i, j, _)| (i as u32, j as u32)).collect();
+        let plan = Plan::new(&Plans::default(), 5, &pattern, &[0, 1, 2, 3, 4]);
+        let mut solver = Solver::new(plan.clone());
+        for (i, j, value) in entries {
+            let at = plan.places().position(i, j) as usize;
+            solver.values_mut()[at] = value;
+        }
+        solver.factor_dropping(1e-9).expect("pivots that are nothing are dropped");
+        let pivots = [2, 3, 4].map(|row| solver.pivot(row));
+        assert!((pivots[0] - 0.1).abs() < 1e-15 && pivots[1] == 0.0 && (pivots[2] - 0.1).abs() < 1e-15, "{pivots:?}");
     }
 
     #[test]

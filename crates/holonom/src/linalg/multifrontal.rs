@@ -8,11 +8,11 @@ use std::sync::Arc;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::Singular;
-use super::factor::Factor;
+use super::factor::{Factor, Pivoting};
 use super::fronts::Fronts;
 use super::groups::ONE_FRONT;
 use super::solve::Solve;
-use super::tile::{Block, LANES, TILE, Tile};
+use super::tile::{Block, DROPPED, LANES, TILE, Tile};
 
 pub(super) struct Multifrontal {
     pub(super) plan: Arc<Fronts>,
@@ -105,7 +105,12 @@ impl Multifrontal {
 
     pub(super) fn factor(&mut self) -> Result<(), Singular> {
         self.numbers.stale.fill(true);
-        self.factor_stale()
+        self.factor_stale::<false>(Pivoting::EXCHANGE)
+    }
+
+    pub(super) fn factor_dropping(&mut self, least: f64) -> Result<(), Singular> {
+        self.numbers.stale.fill(true);
+        self.factor_stale::<true>(Pivoting::drop_below(least))
     }
 
     /// Factors the fronts of some unknowns and those above them anew.
@@ -113,21 +118,22 @@ impl Multifrontal {
         for unknown in unknowns {
             self.numbers.stale[self.plan.front_of(unknown)] = true;
         }
-        self.factor_stale()
+        self.factor_stale::<false>(Pivoting::EXCHANGE)
     }
 
-    fn factor_stale(&mut self) -> Result<(), Singular> {
+    fn factor_stale<const DROPS: bool>(&mut self, pivoting: Pivoting) -> Result<(), Singular> {
         let Self { plan, parts, values, numbers, arch } = self;
-        arch.dispatch(Factor { plan, parts, values, numbers })
+        arch.dispatch(Factor::<DROPS> { plan, parts, values, numbers, pivoting })
     }
 
     pub(super) fn solve(&mut self, b: &mut [f64]) {
         self.arch.dispatch(Solve { plan: &self.plan, parts: &self.parts, numbers: &mut self.numbers, b });
     }
 
-    /// Size of the pivot met at a row of the matrix.
+    /// Size of the pivot met at a row of the matrix, none where it was dropped.
     pub(super) fn pivot(&self, row: usize) -> f64 {
-        1.0 / self.numbers.reciprocal.as_flattened()[self.plan.place[row] as usize].abs()
+        let size = 1.0 / self.numbers.reciprocal.as_flattened()[self.plan.place[row] as usize].abs();
+        if size < 0.5 * DROPPED { size } else { 0.0 }
     }
 }
 

@@ -16,6 +16,9 @@ pub(super) type Tile = [f64; TILE];
 /// A block of a vector.
 pub(super) type Block = [f64; LANES];
 
+/// A pivot beside which all others are nothing: it takes nothing from them. Its square and its inverse are numbers still.
+pub(super) const DROPPED: f64 = 1e150;
+
 /// L and U of a tile without exchanges, on their way to their inverses.
 pub(super) struct Factors {
     /// Columns of what is left of the tile, in the end U.
@@ -30,23 +33,26 @@ pub(super) struct Factors {
 
 impl Factors {
     #[inline(always)]
-    pub(super) fn of<S: Simd>(simd: S, tile: &Tile, units: &Block) -> Self {
+    pub(super) fn of<S: Simd, const DROPS: bool>(simd: S, tile: &Tile, units: &Block, least: f64) -> Self {
         let mut factors = Self {
             upper: std::array::from_fn(|k| *column(tile, k)),
             lower: std::array::from_fn(unit),
             reciprocal: [0.0; LANES],
             largest: [0.0; LANES],
         };
-        factors.eliminate::<S, 0>(simd, units);
-        factors.eliminate::<S, 1>(simd, units);
-        factors.eliminate::<S, 2>(simd, units);
-        factors.eliminate::<S, 3>(simd, units);
+        factors.eliminate::<S, DROPS, 0>(simd, units, least);
+        factors.eliminate::<S, DROPS, 1>(simd, units, least);
+        factors.eliminate::<S, DROPS, 2>(simd, units, least);
+        factors.eliminate::<S, DROPS, 3>(simd, units, least);
         factors
     }
 
-    /// Takes pivot K out of the columns after it, and out of those of the inverse of L.
+    /// Takes pivot K out of the columns after it, and out of those of the inverse of L. One that is smaller than `least` may be dropped.
     #[inline(always)]
-    fn eliminate<S: Simd, const K: usize>(&mut self, simd: S, units: &Block) {
+    fn eliminate<S: Simd, const DROPS: bool, const K: usize>(&mut self, simd: S, units: &Block, least: f64) {
+        if DROPS && self.upper[K][K].abs() < least {
+            self.upper[K][K] = DROPPED;
+        }
         self.reciprocal[K] = 1.0 / self.upper[K][K];
         let l = std::array::from_fn(|row| if row > K { self.upper[K][row] * self.reciprocal[K] } else { 0.0 });
         raise(&mut self.largest, &l, units[K]);
