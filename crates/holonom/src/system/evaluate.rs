@@ -142,7 +142,7 @@ impl System {
     }
 
     /// Φ̇ = G v + Φ_t (r), `v` over all nodes.
-    pub fn constraint_rates(&self, slots: &[RowSlot], at: &Evaluation, v: &[f64], t: f64, out: &mut [f64]) {
+    pub(crate) fn constraint_rates(&self, slots: &[RowSlot], at: &Evaluation, v: &[f64], t: f64, out: &mut [f64]) {
         out.iter_mut().enumerate().for_each(|(row, out)| *out = self.explicit_rate(row, at, t));
         add_along_rows(self.dim, slots, 1.0, &at.gradient, v, out);
     }

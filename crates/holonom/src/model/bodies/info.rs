@@ -27,7 +27,7 @@ pub struct BodyInfo {
 
 impl BodyInfo {
     /// Has the angle of a planar body measured, too, from the first axis of the plane to the body's.
-    pub fn new(body: &RigidBody, frame: &Frame, axes: Axes, builder: &mut SystemBuilder) -> Self {
+    pub(in crate::model) fn new(body: &RigidBody, frame: &Frame, axes: Axes, builder: &mut SystemBuilder) -> Self {
         if axes.dimension() == 2 {
             let moving = frame.vector(body.direction(unit(0)));
             let product = |k| [vec![(Place::Fixed(unit(k)), 1.0).into()], moving.clone()];
