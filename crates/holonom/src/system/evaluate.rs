@@ -36,9 +36,13 @@ impl Evaluation {
 /// Two positions of all nodes and the times they belong to.
 #[derive(Clone, Copy)]
 pub struct Between<'a> {
+    /// All positions at the start (D × nodes), m.
     pub from: &'a [f64],
+    /// All positions at the end (D × nodes), m.
     pub to: &'a [f64],
+    /// Time of the first, s.
     pub start: f64,
+    /// Time between them, s.
     pub step: f64,
 }
 

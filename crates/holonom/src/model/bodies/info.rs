@@ -12,6 +12,7 @@ use crate::system::{Form, Place, SystemBuilder};
 /// A body of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyInfo {
+    /// With its index where it is repeated.
     pub name: String,
     /// kg
     pub mass: f64,

@@ -81,6 +81,7 @@ pub struct Layout {
     /// Degrees of freedom that two bodies keep against each other, in space and in the plane; none where a planar model
     /// has no such joint.
     pub freedom: [Option<usize>; 2],
+    /// Whether it needs a place, and how many.
     pub at: Seat,
     /// How many directions it has, in space and in the plane: none, one of both bodies (`axis`), or one of each (`axes`).
     pub directions: [usize; 2],
