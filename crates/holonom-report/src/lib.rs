@@ -27,7 +27,9 @@ pub use stability::{Search, StabilityReport};
 pub struct Run<'a> {
     /// How the run is called in legends and table headings; unique within a report.
     pub label: &'a str,
+    /// What the plots and the viewer show.
     pub recording: &'a Recording,
+    /// How the viewer draws the mechanism.
     pub scene: &'a Scene,
     /// Content of `summary.json`.
     pub summary: &'a serde_json::Value,
@@ -35,9 +37,11 @@ pub struct Run<'a> {
 
 /// A page about one run, or about several that are compared.
 pub struct Report<'a> {
+    /// Heading of the page, as plain text.
     pub title: &'a str,
     /// The model file, shown at the bottom.
     pub model_text: &'a str,
+    /// One run, or those that are compared.
     pub runs: &'a [Run<'a>],
 }
 

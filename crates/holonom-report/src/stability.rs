@@ -6,6 +6,7 @@ use std::io;
 
 /// What the search found for one method; steps in s.
 pub struct Search<'a> {
+    /// Name of the method.
     pub method: &'a str,
     /// Largest step that completes; zero when none did.
     pub completes: f64,
@@ -17,6 +18,7 @@ pub struct Search<'a> {
 
 /// A page about the largest step with which each method completes a run.
 pub struct StabilityReport<'a> {
+    /// Heading of the page, as plain text.
     pub title: &'a str,
     /// The model file, shown at the bottom.
     pub model_text: &'a str,
@@ -30,6 +32,7 @@ pub struct StabilityReport<'a> {
     pub ratio: f64,
     /// Drift over |E(0)| + |W| + 1 J beyond which a run counts as failed; a power of ten.
     pub exploded: f64,
+    /// One for each method, in the order of the page.
     pub searches: &'a [Search<'a>],
 }
 

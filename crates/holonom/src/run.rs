@@ -6,10 +6,16 @@ use crate::simulation::{Choice, Method, MethodError, Simulation, StartError};
 /// Why a model does not run as it says.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RunError {
+    /// A time that the model does not give.
     #[error("the model has no `{key}` in [simulation]")]
-    Missing { key: &'static str },
+    Missing {
+        /// `step` or `end`.
+        key: &'static str,
+    },
+    /// There is no method of this name, or its parts do not go together.
     #[error(transparent)]
     Method(#[from] MethodError),
+    /// The method cannot begin where the model starts.
     #[error(transparent)]
     Start(#[from] StartError),
 }

@@ -24,26 +24,70 @@ const FARTHEST: f64 = 1e50;
 /// Why bytes are no mesh.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum MeshError {
+    /// A name that does not say how to read the file.
     #[error("`{name}` ends in neither .stl nor .obj, and other meshes are not read")]
-    Ending { name: String },
+    Ending {
+        /// The name of the file.
+        name: String,
+    },
+    /// Nothing but blanks, or not even these.
     #[error("the file is empty")]
     Empty,
+    /// More bytes than [`LARGEST_MESH`].
     #[error("the file has {bytes} bytes, and at most {} MB are read", LARGEST_MESH / (1024 * 1024))]
-    TooLarge { bytes: usize },
+    TooLarge {
+        /// How many it has.
+        bytes: usize,
+    },
+    /// More triangles than [`MOST_TRIANGLES`].
     #[error("the mesh has more than {MOST_TRIANGLES} triangles")]
     TooMany,
+    /// Something every mesh of its format has is missing.
     #[error("the file is no mesh: {missing}")]
-    NotMesh { missing: &'static str },
+    NotMesh {
+        /// What it lacks, in words.
+        missing: &'static str,
+    },
+    /// A binary STL file that is shorter than its header says.
     #[error("the file is truncated, or no STL file: as a binary one it announces {announced} triangles and has {found}")]
-    Truncated { announced: u32, found: usize },
+    Truncated {
+        /// Triangles, by the number in its header.
+        announced: u32,
+        /// Whole triangles that its length has room for.
+        found: usize,
+    },
+    /// An ASCII STL file that ends too early.
     #[error("the file is truncated: it ends within {within}")]
-    Unfinished { within: &'static str },
+    Unfinished {
+        /// What is not closed.
+        within: &'static str,
+    },
+    /// A line that does not follow from those before.
     #[error("line {line}: `{found}` stands where {expected} is expected")]
-    Unexpected { line: usize, found: String, expected: &'static str },
+    Unexpected {
+        /// Counted from 1.
+        line: usize,
+        /// The start of what stands there, with control characters escaped.
+        found: String,
+        /// What would be right, in words.
+        expected: &'static str,
+    },
+    /// A face of an OBJ file with a vertex that there is not.
     #[error("line {line}: the face names vertex {vertex}, and {vertices} vertices are above it")]
-    NoVertex { line: usize, vertex: i64, vertices: usize },
+    NoVertex {
+        /// Counted from 1.
+        line: usize,
+        /// As it is written: from 1 on, or negative from the last one back.
+        vertex: i64,
+        /// How many there are so far.
+        vertices: usize,
+    },
+    /// A triangle of a binary STL file that is not finite, or far too large.
     #[error("triangle {triangle} has a coordinate that is no number below {FARTHEST:e} m")]
-    NoNumber { triangle: usize },
+    NoNumber {
+        /// Its place in the file, counted from 0.
+        triangle: usize,
+    },
 }
 
 /// What a file says before its vertices are welded.

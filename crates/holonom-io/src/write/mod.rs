@@ -20,10 +20,15 @@ pub type WriteTable = fn(&Table, &mut dyn Write) -> io::Result<()>;
 
 /// A format for recordings, and where it can hold them for tables with words.
 pub struct Writer {
+    /// As a user names it.
     pub name: &'static str,
+    /// Ending of its files, without the dot.
     pub extension: &'static str,
+    /// What it is good for, in one line.
     pub doc: &'static str,
+    /// Writes a recording.
     pub write: fn(&Recording, &mut dyn Write) -> io::Result<()>,
+    /// Writes a table with words; `None` where the format holds numbers only.
     pub write_table: Option<WriteTable>,
 }
 

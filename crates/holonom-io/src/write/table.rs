@@ -3,14 +3,18 @@
 /// Columns of equal length, by name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
+    /// Headings and cells, in order.
     pub columns: Vec<(String, Cells)>,
 }
 
 /// The cells of a column; `None` where there is nothing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cells {
+    /// Counts and other whole numbers.
     Whole(Vec<Option<i64>>),
+    /// Other numbers, whose text reads back to the same bits.
     Numbers(Vec<Option<f64>>),
+    /// Names and other words.
     Words(Vec<Option<String>>),
 }
 

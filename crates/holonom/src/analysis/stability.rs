@@ -7,6 +7,7 @@ pub struct LargestStep {
     pub completes: f64,
     /// Smallest step found to fail, s; none when every step up to the limit completed.
     pub fails: Option<f64>,
+    /// How many runs that took.
     pub runs: usize,
 }
 

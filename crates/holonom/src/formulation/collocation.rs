@@ -28,7 +28,9 @@ use equations::Stages;
 /// When the stages are: t_i = start + c_i step.
 #[derive(Clone, Copy, Debug)]
 pub struct Timing<'a> {
+    /// Time at the start of the step, s.
     pub start: f64,
+    /// Length of the step, s.
     pub step: f64,
     /// c (s)
     pub nodes: &'a [f64],

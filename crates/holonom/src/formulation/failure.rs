@@ -5,20 +5,44 @@ use crate::system::System;
 /// Why a step was not taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Failure {
-    /// Newton's iteration ended without an answer; the last increment was this share of the mechanism's size.
-    NotConverged { iterations: usize, increment: f64 },
+    /// Newton's iteration ended without an answer.
+    NotConverged {
+        /// How many there were.
+        iterations: usize,
+        /// The last increment, over the size of the mechanism.
+        increment: f64,
+    },
     /// The matrix of the step has no inverse, or none with finite numbers: the unknown whose pivot is none.
     Singular(Unknown),
     /// Positions, velocities or forces that are not finite.
     NotFinite,
     /// No step is short enough for the accuracy.
     TooSmall,
-    /// A step whose result misses what the method promises: what, by how much, by how much it may, and which row.
-    Broken { promise: &'static str, by: f64, bound: f64, row: Option<usize> },
-    /// Energy that nothing supplied, J, is several times all there was to move: the error of the method is all that is left.
-    Unsupplied { excess: f64, supply: f64 },
-    /// A recorded angle turns so far in a step, rad, that its turns are not counted for sure.
-    Turned { gauge: usize, by: f64 },
+    /// A step whose result misses what the method promises.
+    Broken {
+        /// What is promised, in words.
+        promise: &'static str,
+        /// By how much it is missed, J or the unit of the row.
+        by: f64,
+        /// By how much it may be, as round-off explains that much, in the same unit.
+        bound: f64,
+        /// The row that misses it; `None` where it is the energy.
+        row: Option<usize>,
+    },
+    /// Energy that nothing supplied is several times all there was to move: the error of the method is all that is left.
+    Unsupplied {
+        /// What there is more than at the start and all work that was put in, J.
+        excess: f64,
+        /// All there was to move, J.
+        supply: f64,
+    },
+    /// A recorded angle turns so far in a step that its turns are not counted for sure.
+    Turned {
+        /// Which of the system's gauges.
+        gauge: usize,
+        /// How far it turns, rad.
+        by: f64,
+    },
 }
 
 /// An unknown of a step.

@@ -42,7 +42,9 @@ pub struct SolveSettings {
     pub doubled: bool,
     /// The condition the rows stand for.
     pub level: Level,
+    /// Whether λ is sought or follows from a penalty.
     pub multipliers: Multipliers,
+    /// How λ is sought.
     pub iteration: Iteration,
     /// Newton: estimated remaining increment relative to the size of the mechanism. The paper's loops: 2-norm of the
     /// increment, m (and of Φ in the outer loop).

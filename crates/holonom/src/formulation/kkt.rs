@@ -21,9 +21,13 @@ pub struct Block(pub usize, pub usize);
 /// Factors of the four parts of a law's tangent: by f itself, by values, by rates, and by the motion of rates.
 #[derive(Clone, Copy, Debug)]
 pub struct LawFactors {
+    /// Of f, which second derivatives of the invariants are multiplied by.
     pub force: f64,
+    /// Of ∂f/∂π.
     pub value: f64,
+    /// Of ∂f/∂π̇, as velocities change with positions.
     pub rate: f64,
+    /// Of ∂f/∂π̇, as gradients turn with the motion.
     pub motion: f64,
 }
 
@@ -104,6 +108,7 @@ pub struct Pattern {
 
 /// The planned matrix.
 pub struct Kkt {
+    /// Its numbers and their factors.
     pub solver: Solver,
     pattern: Arc<Pattern>,
     pair_mass: Vec<f64>,

@@ -3,8 +3,11 @@
 /// Weights of Φ̈, Φ̇ (1/s) and Φ (1/s²) in the condition that replaces the rows; of one unit less where Φ̈ is absent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Level {
+    /// Of Φ̈.
     pub acceleration: f64,
+    /// Of Φ̇.
     pub velocity: f64,
+    /// Of Φ.
     pub position: f64,
 }
 

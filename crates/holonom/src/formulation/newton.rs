@@ -12,6 +12,7 @@ use crate::system::System;
 
 /// What solves the stages of a method: its settings, the matrix, and what is counted.
 pub struct Newton {
+    /// Numbers of the method that steer the solve.
     pub settings: SolveSettings,
     /// The matrix of a single stage.
     pub kkt: Kkt,
@@ -25,8 +26,9 @@ pub struct Newton {
     pub fit: Fit,
     /// What the factors were last made of.
     pub(super) kept: Kept,
-    /// Newton iterations and factorisations so far, those of failed attempts included.
+    /// Newton iterations so far, those of failed attempts included.
     pub iterations: u64,
+    /// Factorisations so far, those of failed attempts included.
     pub factorizations: u64,
 }
 

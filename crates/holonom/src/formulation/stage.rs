@@ -29,7 +29,9 @@ pub enum RowsAt {
 /// ϖ a = d − drift, and the velocity at which forces are taken is rate·d + offset.
 #[derive(Clone, Copy, Debug)]
 pub struct Stage {
+    /// Where forces and gradients are taken.
     pub sampling: Sampling,
+    /// Which positions are put on the rows.
     pub rows: RowsAt,
     /// Time at the start, s.
     pub start: f64,

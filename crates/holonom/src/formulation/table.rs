@@ -8,8 +8,11 @@ pub struct Formulation {
     pub name: &'static str,
     /// Differentiation index, as the key `index` has it; 0 for ordinary differential equations.
     pub index: u8,
+    /// Equations of the paper, or who published it and when.
     pub source: &'static str,
+    /// Its equations, in one line.
     pub doc: &'static str,
+    /// Which of Φ, Φ̇, Φ̈ it keeps, and how well.
     pub keeps: &'static str,
     /// Rows at position and velocity level, with a multiplier each.
     pub doubled: bool,

@@ -14,6 +14,7 @@ pub struct Moment {
     pub x: Vec<f64>,
     /// Velocities (full), m/s.
     pub v: Vec<f64>,
+    /// Values and gradients of invariants and rows there.
     pub at: Evaluation,
 }
 
@@ -87,9 +88,11 @@ pub struct Workspace {
     pub scales: Scales,
     /// The condition that the rows of a stage stand for.
     pub level: Level,
-    /// Both ends of the step, and where forces are taken.
+    /// Where the step begins.
     pub start: Moment,
+    /// Where it ends.
     pub end: Moment,
+    /// Where forces are taken.
     pub sampled: Moment,
     /// Acceleration (full), the known nodes' in place.
     pub a: Vec<f64>,
@@ -97,19 +100,27 @@ pub struct Workspace {
     pub d: Vec<f64>,
     /// Multipliers λ (r).
     pub lambda: Vec<f64>,
+    /// What the integrator expects of the step.
     pub prediction: Prediction,
+    /// Forces where they are taken.
     pub forces: Forces,
+    /// How gradients turn with velocities and accelerations.
     pub turned: Turned,
-    /// Φ as the stage enforces it (r), and at the start.
+    /// Φ as the stage enforces it (r).
     pub phi: Vec<f64>,
+    /// Φ at the start of the step (r).
     pub phi_start: Vec<f64>,
+    /// Local errors of the step, where the integrator estimates them.
     pub estimate: LocalErrors,
     /// Numbers that an integrator keeps from step to step.
     pub memory: Vec<f64>,
-    /// Scratch: full, of the free coordinates (n), of the rows (r), and sizes of gradients (D a slot).
+    /// Scratch of all coordinates (full).
     pub full: Vec<f64>,
+    /// Scratch of the free coordinates (n).
     pub inertial: Vec<f64>,
+    /// Scratch of the rows (r), in which their violation is left.
     pub rows: Vec<f64>,
+    /// Sizes of gradients (D a slot).
     pub(super) sizes: Vec<f64>,
     works: bool,
     /// Whether a stage between two positions looks at their gradients and nothing else.

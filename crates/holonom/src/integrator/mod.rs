@@ -52,10 +52,12 @@ pub trait Integrator: Send {
     }
 }
 
-/// What a step cost, and where its forces were taken.
+/// Where the forces of a step were taken, and what is known of its work and errors.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
+    /// The last stage whose forces the workspace holds.
     pub stage: Stage,
+    /// Where the work of the step is read from.
     pub work: Work,
     /// Where the workspace has an estimate of the local errors: the order in use, and that of the estimate.
     pub estimate: Option<[u8; 2]>,
@@ -75,8 +77,9 @@ pub enum Work {
 /// Numbers that the families of integrators take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters {
-    /// Newmark's β and γ.
+    /// Newmark's β.
     pub beta: f64,
+    /// Newmark's γ.
     pub gamma: f64,
     /// HHT's α, 0 … 1/3.
     pub alpha: f64,

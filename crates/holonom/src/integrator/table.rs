@@ -23,8 +23,11 @@ pub enum Estimate {
 
 /// One line of the table of integrators.
 pub struct Entry {
+    /// Name, as the key `integrator` has it.
     pub name: &'static str,
+    /// Equations of the paper, or who published it and when.
     pub source: &'static str,
+    /// What it is, in one line.
     pub doc: &'static str,
     /// When to take it.
     pub use_for: &'static str,
@@ -48,12 +51,14 @@ pub struct Entry {
     pub orders: &'static [u8],
     /// The usual order of steps by accuracy.
     pub adaptive_order: u8,
+    /// How its steps can be chosen by an accuracy.
     pub estimate: Estimate,
     /// Whether there is a polynomial through the step, so that results need no steps of their own.
     pub dense: bool,
     /// Order of convergence of positions, velocities and reactions that can be relied upon, for parameters, a
     /// formulation, and with or without projections.
     pub convergence: fn(&Parameters, &Formulation, bool) -> [u8; 3],
+    /// Makes it for a system, with all the room that it needs.
     pub make: fn(&System, &Newton, Parameters) -> Box<dyn Integrator>,
 }
 

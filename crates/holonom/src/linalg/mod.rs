@@ -63,6 +63,7 @@ pub struct Solver {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("pivot {pivot} of the matrix is zero or not a number")]
 pub struct Singular {
+    /// The unknown whose pivot it is, by its row in the pattern.
     pub pivot: usize,
 }
 

@@ -154,7 +154,7 @@ impl Assembly<'_> {
     }
 
     /// The frame of a side of a joint.
-    pub fn frame(&self, member: Member) -> Frame {
+    pub(in crate::model) fn frame(&self, member: Member) -> Frame {
         match member {
             Member::Ground => Frame::Ground,
             Member::Point(k) => Frame::Particle(self.points[k].end.place().expect("a point is a node")),

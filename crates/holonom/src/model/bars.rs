@@ -25,7 +25,9 @@ pub struct Bar {
 /// A bar of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BarInfo {
+    /// With its index where it is repeated.
     pub name: String,
+    /// Nodes at both ends, or where one is fixed.
     pub ends: [system::Place; 2],
     /// kg
     pub mass: f64,

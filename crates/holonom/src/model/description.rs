@@ -23,14 +23,23 @@ pub struct Description {
     pub model: ModelKeys,
     /// Named numbers and formulas for all others.
     pub parameters: Table,
+    /// `[point.NAME]`: particles, and places that stay or are driven.
     pub points: Entries<Point>,
+    /// `[body.NAME]`: rigid bodies.
     pub bodies: Entries<Body>,
+    /// `[bar.NAME]`: bars with mass between two points.
     pub bars: Entries<Bar>,
+    /// `[joint.NAME]`: joints between bodies, and couplers of their coordinates.
     pub joints: Entries<Boxed>,
+    /// `[constraint.NAME]`: what holds points.
     pub constraints: Entries<Boxed>,
+    /// `[drive.NAME]`: motions that are given over time.
     pub drives: Entries<Boxed>,
+    /// `[force.NAME]`: springs, dampers, loads and other forces.
     pub forces: Entries<Boxed>,
+    /// `[simulation]`: how it is run; `None` leaves that to who runs it.
     pub simulation: Option<SimulationKeys>,
+    /// `[output]`: what is recorded of it; `None` is motion at every step.
     pub output: Option<OutputKeys>,
 }
 

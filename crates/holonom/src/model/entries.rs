@@ -9,9 +9,11 @@ pub struct Entries<T>(Vec<Named<T>>);
 /// An entry with its name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Named<T> {
+    /// As in `[section.NAME]`, unique among all sections.
     pub name: String,
     /// Makes `NAME[0]`, `NAME[1]`, …: `"i = 0 to N"`, also nested: `"i = 0 to N, j = 1 to M"`.
     pub repeat: Option<String>,
+    /// What its table says.
     pub entry: T,
 }
 

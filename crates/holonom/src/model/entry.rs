@@ -11,7 +11,9 @@ use super::value::{Table, Value, item_path, key_path};
 /// A key of an entry, or an item of the list there.
 #[derive(Clone, Copy, Debug)]
 pub struct Spot<'a> {
+    /// The key in the table of the entry.
     pub key: &'a str,
+    /// Which item of the list there; `None` for the value as a whole.
     pub item: Option<usize>,
 }
 
@@ -40,6 +42,7 @@ pub struct Entry<'a> {
     pub name: &'a str,
     /// Where the table is in the description, e.g. `point.P`.
     pub path: &'a str,
+    /// What stands at its keys, to be quoted in faults.
     pub written: &'a dyn Written,
     pub(super) scope: Scope<'a>,
     pub(super) sink: &'a Sink,

@@ -8,7 +8,9 @@ use super::{constraints, drives, forces};
 
 /// A key of a table in a model file.
 pub struct Key {
+    /// What stands before the equals sign.
     pub name: &'static str,
+    /// What may stand behind it.
     pub shape: Shape,
     /// Whether it must be there.
     pub required: bool,
@@ -16,15 +18,20 @@ pub struct Key {
     pub default: &'static str,
     /// Unit, empty for what has none.
     pub unit: &'static str,
+    /// What it is for, in one line.
     pub doc: &'static str,
 }
 
 /// What the value of a key looks like. A number may always be written as an expression over `[parameters]` in a text.
 #[derive(Clone, Copy)]
 pub enum Shape {
+    /// One number.
     Number,
+    /// A number without a fraction.
     Whole,
+    /// Any words between quotes.
     Text,
+    /// `true` or `false`.
     Flag,
     /// One of some words.
     Choice(&'static [&'static str]),
@@ -99,6 +106,7 @@ impl Key {
 /// A kind of joint, constraint, drive or force: what `type` may say.
 #[derive(Clone, Copy)]
 pub struct Kind {
+    /// As `type` has it, such as `revolute`.
     pub name: &'static str,
     /// One line.
     pub doc: &'static str,
@@ -131,9 +139,13 @@ impl Kind {
 /// The kinds of elements that a reader knows, by section; of one's own are pushed to these.
 #[derive(Clone)]
 pub struct Kinds {
+    /// Of `[joint.NAME]`: joints, then couplers.
     pub joints: Vec<Kind>,
+    /// Of `[constraint.NAME]`.
     pub constraints: Vec<Kind>,
+    /// Of `[drive.NAME]`.
     pub drives: Vec<Kind>,
+    /// Of `[force.NAME]`.
     pub forces: Vec<Kind>,
 }
 

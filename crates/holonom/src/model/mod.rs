@@ -70,6 +70,7 @@ pub const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 /// A point of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointInfo {
+    /// With its index where it is repeated.
     pub name: String,
     /// Its node, or where it is fixed, m.
     pub place: system::Place,
@@ -77,11 +78,13 @@ pub struct PointInfo {
     pub mass: f64,
     /// Velocity at the start as it was written, m/s; `None` where it is fixed or driven.
     pub velocity: Option<[f64; 3]>,
+    /// What moves it, if anything.
     pub kind: PointKind,
 }
 
 /// A model that is sound: compiled, with what is needed to run it and to name what comes out.
 pub struct Model {
+    /// One line for people; empty where it has none.
     pub title: String,
     /// Coordinates of a point: 3 in space, 2 in the plane.
     pub dimension: usize,
@@ -91,7 +94,9 @@ pub struct Model {
     pub gravity: [f64; 3],
     /// Shared with the simulations of it.
     pub system: Arc<System>,
+    /// How it is run, as far as it says.
     pub settings: Settings,
+    /// What is recorded of it, as far as it says.
     pub output: Output,
     /// How it is drawn.
     pub scene: Scene,

@@ -13,6 +13,7 @@ use super::value::{Table, Value, key_path};
 /// A table while it is read, and where its faults go.
 #[derive(Clone, Copy)]
 pub struct Reader<'a> {
+    /// Its keys, as far as they are written.
     pub table: &'a Table,
     entry: Entry<'a>,
 }

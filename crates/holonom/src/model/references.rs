@@ -81,7 +81,7 @@ impl Assembly<'_> {
     }
 
     /// A side of a joint: a body, a point or the ground.
-    pub fn member(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<Member> {
+    pub(in crate::model) fn member(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<Member> {
         if name == GROUND {
             return Ok(Member::Ground);
         }

@@ -5,10 +5,15 @@ use std::collections::HashMap;
 /// One value of a description.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
+    /// Whole numbers, too.
     Number(f64),
+    /// A name, a word or a formula.
     Text(String),
+    /// `true` or `false`.
     Bool(bool),
+    /// In square brackets, values of any sort.
     List(Vec<Value>),
+    /// A section, or keys in braces.
     Table(Table),
 }
 

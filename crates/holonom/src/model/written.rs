@@ -9,6 +9,7 @@ use crate::system::Place;
 /// By how much the start has changed the velocity that was written of a body or point, so that constraints are met.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StartChange {
+    /// Of the body or point.
     pub name: String,
     /// Of the centre of mass, or of the point, m/s.
     pub velocity: f64,

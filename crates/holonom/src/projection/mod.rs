@@ -29,9 +29,13 @@ pub enum Solve {
 /// Projections after each step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Projection {
+    /// Whether velocities are projected (10).
     pub velocity: bool,
+    /// Whether accelerations are projected (12).
     pub acceleration: bool,
+    /// The matrix A, of both.
     pub metric: Metric,
+    /// By multipliers or by a penalty.
     pub solve: Solve,
     /// θ: v ← v* − θ(v* − v) (methods §18); 1 is the full projection.
     pub strength: f64,

@@ -10,6 +10,7 @@ use crate::system::{NodeId, Place, Signal, Term};
 /// A point whose motion is recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedPoint {
+    /// With its index where it is repeated; of a place of a body `BODY.PLACE`.
     pub name: String,
     /// The nodes it is made of.
     pub terms: Vec<Term>,
@@ -18,6 +19,7 @@ pub struct RecordedPoint {
 /// A body whose motion is recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedBody {
+    /// With its index where it is repeated.
     pub name: String,
     /// Its centre of mass.
     pub centre: Vec<Term>,
@@ -30,6 +32,7 @@ pub struct RecordedBody {
 /// A joint whose force is recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedJoint {
+    /// With its index where it is repeated.
     pub name: String,
     /// Its rows among those of the system.
     pub rows: std::ops::Range<usize>,
@@ -78,8 +81,11 @@ impl RecordedJoint {
 /// A drive whose effort is recorded: −λ of its row, times a length where the row is one of half a square.
 #[derive(Clone)]
 pub struct RecordedEffort {
+    /// Of the drive.
     pub name: String,
+    /// Its row among those of the system.
     pub row: usize,
+    /// Length that −λ is multiplied by, m over time; `None` where −λ is the effort.
     pub length: Option<Arc<dyn Signal>>,
 }
 
@@ -88,9 +94,13 @@ pub struct RecordedEffort {
 pub struct Channels {
     /// World axes of the coordinates, `"xyz"` or two of them.
     pub axes: String,
+    /// Position and velocity of points, then of named places of bodies.
     pub points: Vec<RecordedPoint>,
+    /// Position and velocity of the centre of mass, in space also orientation and angular velocity.
     pub bodies: Vec<RecordedBody>,
+    /// Force and moment, where reactions are recorded.
     pub joints: Vec<RecordedJoint>,
+    /// Force (N) or moment (N·m) of drives.
     pub efforts: Vec<RecordedEffort>,
 }
 

@@ -11,36 +11,53 @@ pub struct Scene {
     pub axes: String,
     /// Direction and size of gravity in world axes (3), m/s².
     pub gravity: [f64; 3],
+    /// Points of the model, in file order.
     pub points: Vec<ScenePoint>,
+    /// Bars, rods, springs and guides.
     pub lines: Vec<Line>,
+    /// Rigid bodies, in file order.
     pub bodies: Vec<SceneBody>,
+    /// Joints between bodies.
     pub joints: Vec<SceneJoint>,
 }
 
+/// A point of the model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ScenePoint {
+    /// As in the columns of its motion.
     pub name: String,
+    /// What moves it, if anything.
     pub kind: PointKind,
     /// kg; 0 for a point whose mass comes from bars.
     pub mass: f64,
 }
 
+/// What moves a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PointKind {
+    /// The forces on it: its motion is sought.
     Free,
+    /// A drive: its motion is given over time.
     Driven,
+    /// Nothing: it stays where it is.
     Fixed,
 }
 
+/// A straight line between two places.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Line {
+    /// Of the bar, force, drive, joint or constraint that it stands for.
     pub name: String,
+    /// What it stands for, and so what it looks like.
     pub kind: LineKind,
+    /// Where it begins.
     pub from: Anchor,
+    /// Where it ends.
     pub to: Anchor,
 }
 
+/// What a line stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LineKind {
@@ -62,13 +79,19 @@ pub enum Anchor {
     Point(String),
     /// A fixed place in world axes (3), m.
     Fixed([f64; 3]),
-    /// A place of a rigid body, in its axes from its centre of mass (3), m.
-    Body { body: String, at: [f64; 3] },
+    /// A place of a rigid body, which moves with it.
+    Body {
+        /// Name of the body.
+        body: String,
+        /// Place in body axes from the centre of mass (3), m.
+        at: [f64; 3],
+    },
 }
 
 /// A rigid body. Places are in body axes from the centre of mass, m; in a planar model these are the world axes turned by the angle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SceneBody {
+    /// As in the columns of its motion.
     pub name: String,
     /// kg.
     pub mass: f64,
@@ -85,29 +108,39 @@ pub struct SceneBody {
 pub enum SceneShape {
     /// Full edges along x, y, z.
     Box {
+        /// Lengths of the edges.
         size: [f64; 3],
     },
     /// Axis along z.
     Cylinder {
+        /// From the axis to the surface.
         radius: f64,
+        /// From one flat end to the other.
         length: f64,
     },
+    /// A full ball.
     Sphere {
+        /// From the centre to the surface.
         radius: f64,
     },
     /// Slender, along x.
     Rod {
+        /// From end to end.
         length: f64,
     },
     /// A cylinder along z of the given length, with half a ball on either end.
     Capsule {
+        /// Of the cylinder and of both half balls.
         radius: f64,
+        /// Of the cylinder alone.
         length: f64,
     },
     /// Triangles as indices of vertices, counter-clockwise seen from outside.
     Mesh {
+        /// Places of the corners (3 each), written in single precision.
         #[serde(serialize_with = "as_singles")]
         vertices: Vec<[f64; 3]>,
+        /// Three vertices each.
         triangles: Vec<[u32; 3]>,
     },
 }
@@ -115,6 +148,7 @@ pub enum SceneShape {
 /// A joint, drawn as a symbol of its kind.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SceneJoint {
+    /// As in the model, with its index where it is repeated.
     pub name: String,
     /// As in a model file: `"revolute"`, `"point-on-line"`, ...
     pub kind: String,

@@ -15,19 +15,23 @@ const ROUNDED: f64 = 64.0 * f64::EPSILON;
 /// Everything that is booked of a run. Energies in J; sums over parts of a step where it was taken in parts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Audit {
-    /// T and V at the present state.
+    /// T at the present state.
     pub kinetic: f64,
+    /// V at the present state; springs of a penalty formulation belong to it.
     pub potential: f64,
     /// What V is more when points are counted from the world's origin.
     pub lift: f64,
     /// Work done on the system since the start.
     pub work: f64,
-    /// ΔE_i and ΔE_p of the last nominal step (21).
+    /// ΔE_i of the last nominal step (21).
     pub integrator: f64,
+    /// ΔE_p of the last nominal step (21).
     pub projection: f64,
-    /// 2-norms of Φ, Φ̇, Φ̈ after the last step.
+    /// ‖Φ‖ after the last step.
     pub phi: f64,
+    /// ‖Φ̇‖ after the last step.
     pub phi_dot: f64,
+    /// ‖Φ̈‖ after the last step, where the integrator takes its forces.
     pub phi_ddot: f64,
     /// Iterations of the last nominal step.
     pub iterations: u64,

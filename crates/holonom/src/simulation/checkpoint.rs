@@ -13,6 +13,7 @@ use crate::system::{Measured, System};
 /// A run between two nominal steps. It is plain data: what is written and read again is the same.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
+    /// Where the run is.
     pub state: State,
     /// What goes on beside the state, where that is a run of the same method.
     run: Option<Run>,

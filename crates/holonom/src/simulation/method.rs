@@ -11,32 +11,43 @@ use crate::projection::{METRICS, Metric, Projection, SOLVES, Solve};
 pub struct Choice {
     /// One of [`NAMED`], an integrator, parts joined by strokes such as `lagrange-2/trapezoidal/velocity`, or nothing.
     pub method: Option<String>,
+    /// One of [`FORMULATIONS`], with or without its index; else the method's, or the first that goes with the integrator.
     pub formulation: Option<String>,
+    /// Which formulation of that name: its differentiation index. Without a formulation, of the augmented Lagrangian.
     pub index: Option<u8>,
+    /// One of [`INTEGRATORS`]; else the method's, or the first that goes with the formulation.
     pub integrator: Option<String>,
     /// Order of an integrator that has several.
     pub order: Option<u8>,
     /// Relative error of position that the steps are to be chosen for.
     pub accuracy: Option<f64>,
+    /// One of [`ITERATIONS`], `newton` without.
     pub iteration: Option<String>,
     /// Penalty α in the paper's sense.
     pub penalty: Option<f64>,
+    /// Newmark's β, ¼ without.
     pub beta: Option<f64>,
+    /// Newmark's γ, ½ without.
     pub gamma: Option<f64>,
     /// HHT's α, 0 … 1/3.
     pub alpha: Option<f64>,
     /// ρ∞ of generalized-α, 0 … 1.
     pub rho: Option<f64>,
-    /// ω (1/s) and ξ of the stabilised formulations.
+    /// ω of the stabilised formulations, 1/s; [`OMEGA`] without.
     pub omega: Option<f64>,
+    /// ξ of the stabilised formulations; [`XI`] without.
     pub xi: Option<f64>,
     /// `"end"` or `"mean"`: which positions the conserving scheme puts on the constraints.
     pub constraint_at: Option<String>,
+    /// See [`SolveSettings::tolerance`]; [`TOLERANCE`] without, [`LOOP_TOLERANCE`] in the paper's loops.
     pub tolerance: Option<f64>,
+    /// Most iterations of a step, [`MAX_ITERATIONS`] without.
     pub max_iterations: Option<usize>,
     /// Newton iterations of every step, no more and no fewer.
     pub iterations: Option<usize>,
+    /// Whether a step that fails is retried in halves; `true` without, and never with a number of `iterations`.
     pub subdivide: Option<bool>,
+    /// What differs from the projections of the method.
     pub projection: Option<ProjectionChoice>,
 }
 
@@ -45,10 +56,15 @@ pub struct Choice {
 pub struct ProjectionChoice {
     /// `"velocity"`, `"acceleration"`.
     pub levels: Option<Vec<String>>,
+    /// The metric A: one of [`METRICS`], `mass` without.
     pub matrix: Option<String>,
+    /// One of [`SOLVES`], `exact` without.
     pub solve: Option<String>,
+    /// α of the solve by penalty, [`PENALTY`] without.
     pub penalty: Option<f64>,
+    /// θ: share of the way to the constraints that is taken, 1 without.
     pub strength: Option<f64>,
+    /// Whether projected values are only shown, and the run goes on with the others; `false` without.
     pub shadow: Option<bool>,
     /// A weight for each free node, for the matrix `custom`.
     pub weights: Option<Vec<f64>>,
@@ -64,10 +80,15 @@ impl Choice {
 
 /// A method with a name.
 pub struct Named {
+    /// What people call it.
     pub name: &'static str,
+    /// Name of its formulation, with index where there are several of the name.
     pub formulation: &'static str,
+    /// Name of its integrator, which has its usual order.
     pub integrator: &'static str,
+    /// What is projected after each step: `velocity`, `acceleration`.
     pub levels: &'static [&'static str],
+    /// What it is for, in one line.
     pub doc: &'static str,
 }
 
@@ -137,19 +158,27 @@ pub const MAX_ITERATIONS: usize = 50;
 /// Penalty of the penalty formulation where none is given: the paper's.
 pub const PENALTY: f64 = 1e7;
 
-/// Natural frequency ω (1/s) and damping ratio ξ of stabilised rows where none are given.
+/// Natural frequency ω of stabilised rows where none is given, 1/s.
 pub const OMEGA: f64 = 10.0;
+/// Damping ratio ξ of stabilised rows where none is given.
 pub const XI: f64 = 1.0;
 
 /// A method that can be run.
 #[derive(Clone)]
 pub struct Method {
+    /// One of [`NAMED`], or its parts joined by strokes, such as `lagrange-2/bdf-3/velocity`.
     pub name: String,
+    /// Its line in the table of formulations.
     pub formulation: &'static Formulation,
+    /// Its line in the table of integrators.
     pub integrator: &'static Entry,
+    /// Name of the iteration in the settings.
     pub iteration: &'static str,
+    /// What steers the solution of a step.
     pub settings: SolveSettings,
+    /// What its integrator is made with.
     pub parameters: Parameters,
+    /// What is projected after each step, and how.
     pub projection: Projection,
     /// Whether it is unstable on rows at position level for want of a projection.
     pub is_unstable: bool,

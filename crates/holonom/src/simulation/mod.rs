@@ -37,32 +37,79 @@ use promise::Judge;
 /// Why words do not make a method.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MethodError {
+    /// A name that nothing has.
     #[error("there is no {kind} `{given}`; there are: {known}")]
-    Unknown { kind: &'static str, given: String, known: String },
+    Unknown {
+        /// What was to be named: `method`, `formulation`, …
+        kind: &'static str,
+        /// The name that there is not.
+        given: String,
+        /// All names that there are, with commas between them.
+        known: String,
+    },
+    /// Two parts of a method that do not go together.
     #[error("the {kind} `{name}` does not go with the {with} `{given}`; it goes with: {partners}")]
-    Pair { kind: &'static str, name: String, with: &'static str, given: String, partners: String },
+    Pair {
+        /// What the first of the two is: `integrator`, `projection`, …
+        kind: &'static str,
+        /// The first of the two.
+        name: String,
+        /// What the second is: `formulation`, `iteration`, …
+        with: &'static str,
+        /// The second of the two.
+        given: String,
+        /// All that the first goes with in place of it, with commas between them.
+        partners: String,
+    },
+    /// A value that a key cannot have.
     #[error("`{key}` cannot be {given}; it can be: {allowed}")]
-    Value { key: &'static str, given: String, allowed: String },
+    Value {
+        /// Key of `[simulation]`, such as `order` or `projection.levels`.
+        key: &'static str,
+        /// The value that it cannot have.
+        given: String,
+        /// What it may be, in words.
+        allowed: String,
+    },
+    /// An accuracy, and an integrator that cannot choose steps by it.
     #[error("the integrator `{integrator}` has no error estimate to choose steps by accuracy; these have: {partners}")]
-    NoEstimate { integrator: String, partners: String },
+    NoEstimate {
+        /// Its name, with the order where that is what is wrong.
+        integrator: String,
+        /// The integrators that have an estimate, with commas between them.
+        partners: String,
+    },
+    /// An accuracy, and an integrator that is unstable without projection of velocities.
     #[error(
         "the integrator `{integrator}` is unstable on index 3 without projection, so that no step gives an accuracy; project velocities"
     )]
-    Unstable { integrator: &'static str },
+    Unstable {
+        /// Its name.
+        integrator: &'static str,
+    },
 }
 
 /// How a run ended.
 #[must_use]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Status {
+    /// The time it was to reach is reached.
     Completed,
-    Stopped { at: f64, reason: String },
+    /// It ended before: a step could not be taken, or an observer wanted no more.
+    Stopped {
+        /// Time that was reached, s.
+        at: f64,
+        /// Why, in words; `interrupted` by an observer.
+        reason: String,
+    },
 }
 
 /// What an observer answers after each step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
+    /// The run takes the next step.
     GoOn,
+    /// The run ends here, as [stopped](Status::Stopped).
     Stop,
 }
 

@@ -35,15 +35,31 @@ impl<'a> Asked<'a> {
 /// Why a model cannot start.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StartError {
+    /// Positions that miss Φ = 0 by too much.
     #[error("the positions at the start miss their constraints and cannot be corrected; worst: {rows}")]
-    Position { rows: String },
+    Position {
+        /// The three rows that are missed most, by name, and by how much.
+        rows: String,
+    },
+    /// Velocities that cannot be put on Φ̇ = 0.
     #[error("the velocities at the start cannot meet their constraints; worst: {rows}")]
-    Velocity { rows: String },
+    Velocity {
+        /// The three rows that are missed most, by name, and by how much.
+        rows: String,
+    },
+    /// A penalty on Φ, and rows that come of no Φ (methods §14).
     #[error("the formulation `{formulation}` holds positions only, and these rows hold velocities: {rows}")]
-    Nonholonomic { formulation: &'static str, rows: String },
+    Nonholonomic {
+        /// Its name.
+        formulation: &'static str,
+        /// All rows that hold velocities only, by name.
+        rows: String,
+    },
+    /// Inertia that is zero where nothing holds it.
     #[error("the accelerations at the start cannot be found: the mass matrix is singular where nothing holds it")]
     Acceleration,
-    #[error("the state is one of another system or method")]
+    /// The state has other numbers of nodes, rows or angles than the system.
+    #[error("the state is one of another system")]
     Other,
 }
 

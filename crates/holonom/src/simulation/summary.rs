@@ -5,12 +5,15 @@ use serde::{Deserialize, Serialize};
 /// Everything a run is judged by. Keys are stable; additions are allowed.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
+    /// Name that the run was given; the command takes that of the model file.
     pub model: String,
+    /// How the run was computed.
     pub method: MethodSummary,
     /// `"completed"` or `"stopped"`.
     pub status: String,
     /// Time the run reached when it stopped early, s.
     pub stopped_at: Option<f64>,
+    /// Why it stopped, in words; `None` when completed.
     pub reason: Option<String>,
     /// Nominal step, s.
     pub step: f64,
@@ -18,62 +21,89 @@ pub struct Summary {
     pub end: f64,
     /// Nominal steps taken.
     pub steps: u64,
+    /// How many unknowns and conditions it had.
     #[serde(flatten)]
     pub size: ModelSize,
+    /// What became of the energy.
     pub energy: EnergySummary,
+    /// What became of the momenta that nothing outside changes.
     pub momentum: MomentumSummary,
+    /// How far it was off its constraints.
     pub violation: ViolationSummary,
+    /// What it took.
     pub work: WorkSummary,
 }
 
+/// The method of a run, in the words of `[simulation]`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MethodSummary {
+    /// A method that has a name, or its parts joined by strokes, such as `lagrange-2/bdf-3/velocity`.
     pub name: String,
+    /// Without its index, such as `lagrange`.
     pub formulation: String,
+    /// Differentiation index of the formulation, 0 … 3.
     pub index: u8,
+    /// Without its order, such as `bdf`.
     pub integrator: String,
+    /// Order of the integrator; the highest one where it changes from step to step.
     pub order: u8,
+    /// `newton`, `simultaneous` or `nested`.
     pub iteration: String,
     /// Error of positions that steps were chosen for.
     pub accuracy: Option<f64>,
+    /// What was projected after each step, and how.
     pub projection: ProjectionSummary,
 }
 
+/// The projections of a run (10)–(13), in the words of `[simulation.projection]`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProjectionSummary {
+    /// `velocity`, `acceleration`, both or none.
     pub levels: Vec<String>,
+    /// The metric A: `mass`, `identity`, `tangent` or `custom`.
     pub matrix: String,
+    /// `exact` or `penalty`.
     pub solve: String,
 }
 
+/// Unknowns and conditions of a system, ranked at one position.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct ModelSize {
-    /// n
+    /// n: coordinates of the free nodes.
     pub coordinates: usize,
-    /// r
+    /// r: constraint rows.
     pub constraints: usize,
+    /// Independent constraint rows.
     pub rank: usize,
+    /// Constraint rows that follow from the others: r less the rank.
     pub redundant: usize,
+    /// Degrees of freedom: n less the rank.
     pub dof: usize,
 }
 
-/// All in J.
+/// The balance of the energy E over a run, all in J.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct EnergySummary {
+    /// E at the start.
     pub initial: f64,
+    /// E at the end of the run.
     #[serde(rename = "final")]
     pub last: f64,
     /// max |E(t) − E(0) − work done on the system|
     pub max_drift: f64,
     /// Largest rise of E in one step beyond the work done in it.
     pub max_rise: f64,
+    /// ΣΔE_i: what the integrator made or lost of itself (21).
     pub integrator_total: f64,
+    /// ΣΔE_p: what the projections made or lost (29).
     pub projection_total: f64,
+    /// Work that loads, dampers and drives did on the system.
     pub work_total: f64,
     /// |E(end) − E(0) − work − ΣΔE_i − ΣΔE_p|
     pub audit_residual: f64,
 }
 
+/// How well momenta are kept; zero in directions in which something outside acts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct MomentumSummary {
     /// Largest change of linear momentum, kg·m/s, in directions in which nothing outside acts.
@@ -82,20 +112,28 @@ pub struct MomentumSummary {
     pub angular_drift: f64,
 }
 
-/// Largest 2-norm over the run.
+/// Largest 2-norm of all rows over the run, in their units.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ViolationSummary {
+    /// ‖Φ‖
     pub position: f64,
+    /// ‖Φ̇‖, after projections.
     pub velocity: f64,
+    /// ‖Φ̈‖, after projections, where the integrator takes its forces.
     pub acceleration: f64,
 }
 
+/// Counts of what a run took.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct WorkSummary {
     /// Steps of the integrator: more than the nominal ones where these were taken in parts, fewer with dense output.
     pub steps_taken: u64,
+    /// Newton iterations, those of failed and rejected attempts included.
     pub iterations: u64,
+    /// The same over the nominal steps.
     pub iterations_per_step: f64,
+    /// Factorisations of the matrix of a step, those of projections, failed and rejected attempts included.
     pub factorizations: u64,
+    /// Attempts that were taken back: failed ones that were halved, and those that erred by more than the accuracy.
     pub rejected_steps: u64,
 }

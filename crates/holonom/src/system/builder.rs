@@ -23,6 +23,7 @@ impl NodeId {
 /// Something with a position: a node, or a place that never moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
+    /// Where a node is.
     Node(NodeId),
     /// World coordinates (the first D are used), m.
     Fixed([f64; 3]),
@@ -31,6 +32,7 @@ pub enum Place {
 /// A summand of a point or direction: f x + g J x, with J the quarter turn of a planar model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Term {
+    /// x: a node, or a place that never moves.
     pub place: Place,
     /// f
     pub factor: f64,

@@ -13,6 +13,7 @@ pub trait SmoothFunction: Send + Sync {
 /// Value, gradient and Hessian of a function of m numbers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Derivatives {
+    /// g; zero for a condition on velocities, which has none.
     pub value: f64,
     /// ∂g/∂π_i; between two positions its discrete derivative D_i.
     pub gradient: [f64; MAX_ARGUMENTS],

@@ -36,9 +36,13 @@ impl Evaluation {
 /// Two positions of all nodes and the times they belong to.
 #[derive(Clone, Copy)]
 pub struct Between<'a> {
+    /// All positions at the start (D × nodes), m.
     pub from: &'a [f64],
+    /// All positions at the end (D × nodes), m.
     pub to: &'a [f64],
+    /// Time of the first, s.
     pub start: f64,
+    /// Time between them, s.
     pub step: f64,
 }
 
@@ -142,7 +146,7 @@ impl System {
     }
 
     /// Φ̇ = G v + Φ_t (r), `v` over all nodes.
-    pub fn constraint_rates(&self, slots: &[RowSlot], at: &Evaluation, v: &[f64], t: f64, out: &mut [f64]) {
+    pub(crate) fn constraint_rates(&self, slots: &[RowSlot], at: &Evaluation, v: &[f64], t: f64, out: &mut [f64]) {
         out.iter_mut().enumerate().for_each(|(row, out)| *out = self.explicit_rate(row, at, t));
         add_along_rows(self.dim, slots, 1.0, &at.gradient, v, out);
     }

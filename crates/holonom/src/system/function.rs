@@ -17,7 +17,9 @@ pub struct FunctionId(pub(crate) u32);
 /// What a row keeps, what a law acts on, what is recorded: an invariant or a function of some.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
+    /// A quadratic form of nodes, as it is.
     Invariant(InvariantId),
+    /// A sum of invariants, of angles and of smooth functions of them.
     Function(FunctionId),
 }
 
@@ -40,13 +42,33 @@ pub enum Part {
     Invariant(InvariantId),
     /// The angle whose cosine and sine are two invariants, times whatever they have in common. It is counted over any
     /// number of turns from where it was.
-    Angle { cosine: InvariantId, sine: InvariantId },
+    Angle {
+        /// ρ cos θ, with any ρ > 0.
+        cosine: InvariantId,
+        /// ρ sin θ, with the same ρ.
+        sine: InvariantId,
+    },
     /// A smooth function of some invariants.
-    Smooth { of: Vec<InvariantId>, function: Arc<dyn Smooth> },
+    Smooth {
+        /// Its arguments, in order.
+        of: Vec<InvariantId>,
+        /// Its value and derivatives by them.
+        function: Arc<dyn Smooth>,
+    },
     /// A condition on the rates of some invariants.
-    Pfaffian { of: Vec<InvariantId>, form: Arc<dyn Pfaffian> },
+    Pfaffian {
+        /// The invariants π_i, in order.
+        of: Vec<InvariantId>,
+        /// The coefficients f_i(π) in Σ f_i π̇_i = 0.
+        form: Arc<dyn Pfaffian>,
+    },
     /// A function of some invariants with a number that is followed.
-    Followed { of: Vec<InvariantId>, function: Arc<dyn Followed> },
+    Followed {
+        /// Its arguments, in order.
+        of: Vec<InvariantId>,
+        /// Finds the number, and value and derivatives where it is known.
+        function: Arc<dyn Followed>,
+    },
 }
 
 #[derive(Clone)]

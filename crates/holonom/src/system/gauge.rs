@@ -14,9 +14,19 @@ pub enum Form {
     /// U·W
     Product([Vec<Term>; 2]),
     /// The angle with these products as cosine and sine.
-    Angle { cosine: [Vec<Term>; 2], sine: [Vec<Term>; 2] },
+    Angle {
+        /// U and W of ρ cos θ, with any ρ > 0.
+        cosine: [Vec<Term>; 2],
+        /// U and W of ρ sin θ, with the same ρ.
+        sine: [Vec<Term>; 2],
+    },
     /// A function of some products with a number that is followed.
-    Followed { of: Vec<[Vec<Term>; 2]>, function: Arc<dyn Followed> },
+    Followed {
+        /// U and W of each argument, in order.
+        of: Vec<[Vec<Term>; 2]>,
+        /// Finds the number, and value and derivatives where it is known.
+        function: Arc<dyn Followed>,
+    },
 }
 
 impl Form {

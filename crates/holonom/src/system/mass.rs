@@ -15,8 +15,9 @@ pub struct Mass {
 /// The block m 1 + s J of a pair of nodes, kg.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MassBlock {
+    /// Factor of the unit matrix.
     pub m: f64,
-    /// 0 in space.
+    /// Factor of the quarter turn J of the plane; 0 in space.
     pub s: f64,
 }
 

@@ -36,7 +36,7 @@ pub use invariant::{InvariantId, Invariants};
 pub use law::{Law, Load, MAX_ARGUMENTS, Reach, Response};
 pub use mass::{Mass, MassBlock};
 pub use motion::{Constant, Signal};
-pub use slots::RowSlot;
+pub(crate) use slots::RowSlot;
 pub(crate) use slots::{Slots, add_along_rows, along, scatter, scatter_rows};
 
 use std::borrow::Cow;

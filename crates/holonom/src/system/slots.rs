@@ -26,7 +26,7 @@ pub(crate) fn scatter(dim: usize, nodes: &[u32], factor: f64, gradient: &[f64], 
 
 /// A slot of a constraint row.
 #[derive(Clone, Copy, Debug)]
-pub struct RowSlot {
+pub(crate) struct RowSlot {
     pub row: u32,
     pub slot: u32,
     pub node: u32,

@@ -12,6 +12,7 @@ use crate::system::{Form, Place, SystemBuilder};
 /// A body of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyInfo {
+    /// With its index where it is repeated.
     pub name: String,
     /// kg
     pub mass: f64,
@@ -27,7 +28,7 @@ pub struct BodyInfo {
 
 impl BodyInfo {
     /// Has the angle of a planar body measured, too, from the first axis of the plane to the body's.
-    pub fn new(body: &RigidBody, frame: &Frame, axes: Axes, builder: &mut SystemBuilder) -> Self {
+    pub(in crate::model) fn new(body: &RigidBody, frame: &Frame, axes: Axes, builder: &mut SystemBuilder) -> Self {
         if axes.dimension() == 2 {
             let moving = frame.vector(body.direction(unit(0)));
             let product = |k| [vec![(Place::Fixed(unit(k)), 1.0).into()], moving.clone()];

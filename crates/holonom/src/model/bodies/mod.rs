@@ -1,11 +1,11 @@
 //! `[body.NAME]`: rigid bodies in natural coordinates.
 
-pub mod frame;
+pub(super) mod frame;
 pub mod inertia;
 mod inertia_key;
 mod info;
 mod mesh;
-pub mod nodes;
+pub(super) mod nodes;
 mod orientation;
 mod read;
 mod rigid;

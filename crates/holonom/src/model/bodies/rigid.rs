@@ -8,6 +8,7 @@ use crate::record::SceneShape;
 /// A rigid body at the start.
 #[derive(Clone, Debug)]
 pub struct RigidBody {
+    /// With its index where it is repeated.
     pub name: String,
     /// Where it is in the description.
     pub path: String,
@@ -27,6 +28,7 @@ pub struct RigidBody {
     pub points: Vec<(String, Vec3)>,
     /// Named directions at the start.
     pub axes: Vec<(String, Vec3)>,
+    /// How it is drawn; `None` where only mass and inertia are known.
     pub shape: Option<SceneShape>,
 }
 

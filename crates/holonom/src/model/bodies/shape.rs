@@ -21,23 +21,31 @@ pub struct MassProperties {
 pub enum Shape {
     /// Edges along x, y, z.
     Box {
+        /// Lengths of the edges.
         size: [f64; 3],
     },
     /// Axis along z.
     Cylinder {
+        /// From the axis to the surface.
         radius: f64,
+        /// From one flat end to the other.
         length: f64,
     },
+    /// A full ball.
     Sphere {
+        /// From the centre to the surface.
         radius: f64,
     },
     /// Slender, along x.
     Rod {
+        /// From end to end.
         length: f64,
     },
     /// Axis along z; the length of the cylindrical part, without the two half spheres.
     Capsule {
+        /// Of the cylinder and of both half spheres.
         radius: f64,
+        /// Of the cylinder alone.
         length: f64,
     },
     /// Closed, without flaw.

@@ -37,6 +37,7 @@ pub struct ProfileTable {
 pub struct Row {
     /// s
     pub time: Number,
+    /// In the unit of what is driven.
     pub value: Number,
 }
 

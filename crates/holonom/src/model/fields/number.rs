@@ -7,7 +7,9 @@ use crate::model::value::Value;
 /// A number, or a formula over parameters and, where a key says so, other variables.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Number {
+    /// The number itself.
     Given(f64),
+    /// As an expression, evaluated when the model is compiled.
     Formula(String),
 }
 

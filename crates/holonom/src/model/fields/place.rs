@@ -6,7 +6,9 @@ use crate::model::value::Value;
 /// The name of a point, of a body or of a place of one, `"ground"`, or a fixed place.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
+    /// By name, such as `P`, `door`, `door.handle` or `ground`.
     Named(String),
+    /// Coordinates in the axes of the model, m.
     Fixed(List<Number>),
 }
 

@@ -6,7 +6,9 @@ use crate::model::value::Value;
 /// A vector of rotation: three numbers or formulas in space, in a planar model one about the normal.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Turn {
+    /// One component for each of the three axes.
     InSpace(List<Number>),
+    /// About the normal, from the first axis of the plane towards the second.
     InPlane(Number),
 }
 

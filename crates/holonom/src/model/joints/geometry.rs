@@ -13,7 +13,7 @@ use crate::model::value::Value;
 /// A joint at the start, first and second side: reference coordinates in the axes of the model.
 #[derive(Clone, Debug)]
 pub struct Geometry {
-    pub members: [Member; 2],
+    pub(in crate::model) members: [Member; 2],
     /// Where it sits, m.
     pub at: [Vec3; 2],
     /// Unit vectors u, v, w: the axis and two across it. In the plane u and its quarter turn.
@@ -98,7 +98,7 @@ pub fn survey(assembly: &Assembly<'_>, joint: &dyn AnyJoint, geometry: &Geometry
 const SAME: f64 = 1e-12;
 
 impl Geometry {
-    pub fn of(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> Read<Self> {
+    pub(in crate::model) fn of(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> Read<Self> {
         let members = members(assembly, entry, joint);
         let layout = joint.layout();
         let dim = assembly.dimension();

@@ -37,7 +37,8 @@ pub use distance::Distance;
 pub use fixed::Fixed;
 pub use gear::Gear;
 pub use generic::Generic;
-pub use geometry::{Geometry, Survey, survey};
+pub use geometry::Geometry;
+pub(super) use geometry::{Survey, survey};
 pub use linear::{Linear, Term};
 pub use orientation::Orientation;
 pub use pair::{Coordinate, JointInfo, Pair};
@@ -80,6 +81,7 @@ pub struct Layout {
     /// Degrees of freedom that two bodies keep against each other, in space and in the plane; none where a planar model
     /// has no such joint.
     pub freedom: [Option<usize>; 2],
+    /// Whether it needs a place, and how many.
     pub at: Seat,
     /// How many directions it has, in space and in the plane: none, one of both bodies (`axis`), or one of each (`axes`).
     pub directions: [usize; 2],

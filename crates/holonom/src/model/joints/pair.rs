@@ -19,6 +19,7 @@ pub struct Coordinate {
     pub joint: String,
     /// `"angle"`, `"displacement"`, …
     pub name: &'static str,
+    /// How it follows from the nodes of both sides.
     pub form: Form,
     /// Whether it is an angle (rad) and not a displacement (m).
     pub is_angle: bool,
@@ -27,10 +28,13 @@ pub struct Coordinate {
 /// A joint of the model.
 #[derive(Clone)]
 pub struct JointInfo {
+    /// As in the model, with its index where it is repeated.
     pub name: String,
     /// What `type` says.
     pub kind: &'static str,
+    /// Where it is at the start.
     pub geometry: Geometry,
+    /// What couplers, drives and forces can name of it, such as `hinge.angle`.
     pub coordinates: Vec<Coordinate>,
     /// Its rows among those of the system.
     pub rows: std::ops::Range<usize>,
@@ -40,9 +44,13 @@ pub struct JointInfo {
 
 /// Two bodies at a joint.
 pub struct Pair<'a, 'b> {
+    /// The system so far, which takes the rows.
     pub assembly: &'a mut Assembly<'b>,
+    /// The entry of the joint, which records what is wrong with its keys.
     pub entry: &'a Entry<'a>,
+    /// Where it is on both sides at the start.
     pub geometry: Geometry,
+    /// Those that were added so far.
     pub coordinates: Vec<Coordinate>,
     frames: [Frame; 2],
     names: usize,
@@ -103,6 +111,7 @@ fn draw(assembly: &mut Assembly<'_>, entry: &Entry<'_>, kind: &str, geometry: &G
 }
 
 impl Pair<'_, '_> {
+    /// Whether the model is in a plane, in which all axes of rotation are its normal.
     pub fn is_planar(&self) -> bool {
         self.assembly.dimension() == 2
     }
@@ -225,6 +234,7 @@ impl Pair<'_, '_> {
         self.coordinate(name, form, false);
     }
 
+    /// Adds a coordinate, measured as `JOINT.NAME`: an angle in rad, or a displacement in m.
     pub fn coordinate(&mut self, name: &'static str, form: Form, is_angle: bool) {
         self.coordinates.push(Coordinate { joint: self.entry.name.to_string(), name, form, is_angle });
     }
