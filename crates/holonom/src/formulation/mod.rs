@@ -13,6 +13,7 @@ mod collocation;
 mod coupled;
 mod dampers;
 mod failure;
+mod hubs;
 mod independence;
 mod iteration;
 mod kept;

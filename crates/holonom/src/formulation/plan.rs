@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::hubs::early_rows;
 use super::kkt::{Augmented, Coupling, Hessian, NONE, OuterTerm, Pattern, Turn};
 use crate::linalg::{Places, Plan, Plans, fill_reducing_order};
 use crate::system::{HessianBlock, InvariantId, NodeId, Quantity, Row, System};
@@ -161,7 +162,7 @@ impl Pattern {
             row_first: Vec::new(),
             slots: system.slots.clone(),
         };
-        pattern.place(&pairs, &system.plans);
+        pattern.place(system, &pairs);
         pattern
     }
 
@@ -188,7 +189,7 @@ impl Pattern {
         }
     }
 
-    fn place(&mut self, pairs: &Pairs, plans: &Plans) {
+    fn place(&mut self, system: &System, pairs: &Pairs) {
         let (dim, fields, rows) = (self.dim, self.fields, self.slots.rows.len());
         let combinations: Vec<(usize, usize)> = (0..fields).flat_map(|i| (0..fields).map(move |j| (i, j))).collect();
         let mut entries = Vec::new();
@@ -213,7 +214,7 @@ impl Pattern {
                 }
             }
         }
-        self.plan = Plan::new(plans, self.size(), &entries, &self.elimination_order(pairs));
+        self.plan = Plan::new(&system.plans, self.size(), &entries, &self.elimination_order(system, pairs));
         drop(entries);
         let plan = self.plan.clone();
         let places = plan.places();
@@ -258,8 +259,9 @@ impl Pattern {
     }
 
     /// Nodes by least fill-in, each row right after the last of its nodes: its pivot is then minus what the row's
-    /// gradient adds to those before it, and never the bare regularisation unless the row is redundant.
-    fn elimination_order(&self, pairs: &Pairs) -> Vec<u32> {
+    /// gradient adds to those before it, and never the bare regularisation unless the row is redundant. Some rows need not wait
+    /// for hubs.
+    fn elimination_order(&self, system: &System, pairs: &Pairs) -> Vec<u32> {
         let mut edges: Vec<(u32, u32)> = pairs.iter().filter(|&(a, b, _)| a < b).map(|(a, b, _)| (a, b)).collect();
         let free_nodes =
             |slots: &Range<usize>| -> Vec<u32> { slots.clone().filter(|&s| self.is_free(s)).map(|s| self.slots.nodes[s]).collect() };
@@ -269,13 +271,15 @@ impl Pattern {
                 edges.extend(nodes.iter().filter(|&&b| a < b).map(|&b| (a, b)));
             }
         }
+        let hubs = early_rows(self, system, &mut edges);
+        let waits_for = |row: usize, node: u32| hubs.as_ref().is_none_or(|(is_hub, is_early)| !(is_early[row] && is_hub[node as usize]));
         let nodes = fill_reducing_order(self.free, &edges);
         let mut place = vec![0; self.free];
         nodes.iter().enumerate().for_each(|(k, &node)| place[node as usize] = k);
         let mut rows_after: Vec<Vec<usize>> = vec![Vec::new(); self.free];
         let mut first = Vec::new();
         for (row, slots) in self.slots.rows.iter().enumerate() {
-            match free_nodes(slots).into_iter().map(|node| place[node as usize]).max() {
+            match free_nodes(slots).into_iter().filter(|&node| waits_for(row, node)).map(|node| place[node as usize]).max() {
                 Some(last) => rows_after[last].push(row),
                 None => first.push(row),
             }

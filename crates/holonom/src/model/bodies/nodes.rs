@@ -60,7 +60,8 @@ pub fn make(builder: &mut SystemBuilder, wanted: &Wanted<'_>) -> Vec<Frame> {
     let groups = groups(wanted);
     let sharing = Sharing::new(wanted, &groups);
     let mut places: Vec<Option<Found>> = wanted.shared.iter().map(|shared| known_place(shared, wanted)).collect();
-    sharing.spread(wanted, (0..groups.len()).collect(), &mut places);
+    let mut compared: Vec<Vec<bool>> = sharing.of_group.iter().map(|shared| vec![false; shared.len()]).collect();
+    sharing.spread(wanted, (0..groups.len()).collect(), &mut places, &mut compared);
     let mut needed = vec![Vec::new(); wanted.bodies.len()];
     wanted.needed.iter().for_each(|&(body, direction)| needed[body].push(direction));
     let mut kept = HashSet::new();
@@ -68,7 +69,7 @@ pub fn make(builder: &mut SystemBuilder, wanted: &Wanted<'_>) -> Vec<Frame> {
     for (root, members) in groups.iter().enumerate().filter(|(_, members)| !members.is_empty()) {
         let group = Group { members, shared: &sharing.of_group[root], needed: &needed, lead: &wanted.bodies[root], wanted };
         let basis = group.basis(builder, &mut places);
-        sharing.spread(wanted, sharing.beside(root), &mut places);
+        sharing.spread(wanted, sharing.beside(root), &mut places, &mut compared);
         let frame = Frame::new(builder.dimension(), basis.clone());
         group.add_mass(builder, &frame, &basis);
         keep_rigid(builder, &group.lead.name, &basis, &mut kept);
@@ -143,14 +144,16 @@ impl Sharing {
     }
 
     /// Gives what is shared at one joint of a body the node of another joint that has the same point or a parallel direction
-    /// there, from body to body as far as it goes, beginning with the groups `open`.
-    fn spread(&self, wanted: &Wanted<'_>, mut open: BTreeSet<usize>, places: &mut [Option<Found>]) {
+    /// there, from body to body as far as it goes, beginning with the groups `open`. What has a node is `compared` with the others of each
+    /// group once.
+    fn spread(&self, wanted: &Wanted<'_>, mut open: BTreeSet<usize>, places: &mut [Option<Found>], compared: &mut [Vec<bool>]) {
         let mut from = 0;
         while let Some(group) = open.range(from..).next().or(open.first()).copied() {
             open.remove(&group);
             from = group + 1;
-            for &(known, at) in &self.of_group[group] {
-                let Some((place, sense)) = places[known] else { continue };
+            for (&(known, at), is_compared) in self.of_group[group].iter().zip(&mut compared[group]) {
+                let Some((place, sense)) = places[known].filter(|_| !*is_compared) else { continue };
+                *is_compared = true;
                 for &(other, there) in self.of_group[group].iter().filter(|&&(other, _)| other != known) {
                     if places[other].is_none() && wanted.shared[known].is_point == wanted.shared[other].is_point {
                         places[other] = alike(wanted.shared[known].is_point, at, there, wanted.extent).map(|same| (place, sense * same));
