@@ -85,7 +85,7 @@ pub enum MeshError {
     /// A triangle of a binary STL file that is not finite, or far too large.
     #[error("triangle {triangle} has a coordinate that is no number below {FARTHEST:e} m")]
     NoNumber {
-        /// Its place in the file, counted from 0.
+        /// Its place in the file, counted from 1.
         triangle: usize,
     },
 }

@@ -1,6 +1,6 @@
 //! The level at which a formulation puts the rows on: a weighted sum of Φ̈, Φ̇ and Φ.
 
-/// Weights of Φ̈, Φ̇ (1/s) and Φ (1/s²) in the condition that replaces the rows; of one unit less where Φ̈ is absent.
+/// Weights of Φ̈, Φ̇ and Φ in the condition that replaces the rows: each has a unit of 1/s more than the one before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Level {
     /// Of Φ̈.

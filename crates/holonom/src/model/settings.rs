@@ -189,7 +189,7 @@ impl ProjectionKeys {
             matrix: self.matrix.clone(),
             solve: self.solve.clone(),
             penalty: entry.optional("penalty", &self.penalty, Number::positive).unwrap_or(None),
-            strength: entry.optional("strength", &self.strength, Number::not_negative).unwrap_or(None),
+            strength: entry.optional("strength", &self.strength, Number::positive).unwrap_or(None),
             shadow: self.shadow,
             weights: entry
                 .optional("weights", &self.weights, |weights, entry, key| node_weights(weights, entry, key, assembly))

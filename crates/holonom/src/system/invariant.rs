@@ -1,4 +1,4 @@
-//! Quadratic forms of nodes: values, gradients and constant Hessians (design: the idea).
+//! Quadratic forms of nodes: values, gradients and constant Hessians.
 //!
 //! Every invariant is one product of two sums of nodes, `f U·W` or `f e·(U × W)`, with `U = Σ u_a x_a + u₀`. Differences of
 //! nodes are taken before they are multiplied, so that a row far from the origin loses no digits.

@@ -40,7 +40,7 @@ fn binary(bytes: &[u8]) -> Result<Soup, MeshError> {
         let number = |at: usize| f64::from(f32::from_le_bytes([record[at], record[at + 1], record[at + 2], record[at + 3]]));
         let corners = [12, 24, 36].map(|at| [number(at), number(at + 4), number(at + 8)]);
         if !corners.as_flattened().iter().copied().all(sound) {
-            return Err(MeshError::NoNumber { triangle });
+            return Err(MeshError::NoNumber { triangle: triangle + 1 });
         }
         soup.add_corners(corners)?;
     }

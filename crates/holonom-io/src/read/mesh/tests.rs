@@ -221,7 +221,7 @@ fn what_is_wrong_on_a_line_is_told_with_its_number() {
     }
     let mut bytes = binary_stl(&box_mesh());
     bytes[84 + 50 + 12..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
-    assert_eq!(told("a.stl", bytes), "triangle 1 has a coordinate that is no number below 1e50 m");
+    assert_eq!(told("a.stl", bytes), "triangle 2 has a coordinate that is no number below 1e50 m");
 }
 
 #[test]

@@ -1,12 +1,9 @@
-//! Inertia tensors: whether a body can have them, their principal axes, and the second moments of mass behind them.
+//! Inertia tensors: whether a body can have them, and their principal axes.
 
 use std::cmp::Ordering;
 
 /// Part of the largest entry by which a tensor may miss symmetry or the triangle inequality: what decimals in a file leave.
 const TOLERANCE: f64 = 1e-9;
-
-/// Part of the largest moment below which a second moment is what rounding leaves of zero.
-const ROUND_OFF: f64 = 1e-14;
 
 /// Most sweeps over the three entries beside the diagonal; some six are needed.
 const SWEEPS: usize = 32;
@@ -121,15 +118,6 @@ fn forwards(axis: [f64; 3]) -> [f64; 3] {
     if main < 0.0 { axis.map(|c| -c) } else { axis }
 }
 
-/// Second moments of mass ∫x² dm, ∫y² dm, ∫z² dm along the principal axes in the order of [`principal`], kg m²:
-/// J_i = ½ (I_j + I_k − I_i), where what rounding leaves of nothing is zero.
-pub fn pseudo(inertia: [[f64; 3]; 3]) -> [f64; 3] {
-    let [x, y, z] = principal(inertia).0;
-    let least = ROUND_OFF * z.abs();
-    // Differences of near moments first: they are exact.
-    [y - x + z, x - y + z, x - z + y].map(|twice| if 0.5 * twice > least { 0.5 * twice } else { 0.0 })
-}
-
 fn largest(inertia: [[f64; 3]; 3]) -> f64 {
     inertia.as_flattened().iter().fold(0.0, |largest, entry| entry.abs().max(largest))
 }
@@ -233,24 +221,6 @@ mod tests {
         skew[0][1] = 0.1;
         assert_eq!(told(skew), "the inertia is not symmetric: Ixy = 0.1, but Iyx = 0");
         assert_eq!(told(diagonal([1.0, f64::NAN, 1.0])), "an entry of the inertia is not a finite number");
-    }
-
-    #[test]
-    fn second_moments_are_those_of_the_solids() {
-        // A box of 12 kg and edges 1, 2, 3: m l²/12 along each.
-        let near = |found: [f64; 3], expected: [f64; 3]| {
-            assert!(found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-13), "{found:?}");
-        };
-        near(pseudo(diagonal([13.0, 10.0, 5.0])), [9.0, 4.0, 1.0]);
-        near(pseudo(turned([13.0, 10.0, 5.0], [1.0, 0.0, 2.0], 1.1).0), [9.0, 4.0, 1.0]);
-        // A rod and a plate have none across, however they lie.
-        assert_eq!(pseudo(diagonal([0.0, 0.1, 0.1])), [0.1, 0.0, 0.0]);
-        for angle in [0.2, 1.0, 2.5] {
-            let rod = pseudo(turned([0.0, 0.1, 0.1], [3.0, 1.0, 2.0], angle).0);
-            assert_eq!(rod[1..], [0.0, 0.0]);
-            let plate = pseudo(turned([0.1, 0.2, 0.1 + 0.2], [3.0, 1.0, 2.0], angle).0);
-            assert_eq!(plate[2], 0.0);
-        }
     }
 
     #[test]
