@@ -8,13 +8,21 @@ use crate::system::{Evaluation, System};
 /// that holds something.
 pub const INDEPENDENT: f64 = 1e-9;
 
+/// What a row must add for the pivots of the rows after it to be known better than [`INDEPENDENT`]. What adds less is measured
+/// again, after all others.
+const PLAIN: f64 = 1e-5;
+
+/// Pivots below this are nothing beside [`INDEPENDENT`], after rows that are plain.
+const NOTHING: f64 = 0.1 * INDEPENDENT;
+
 /// Gradients below this share of what they become when the mechanism moves by its own size have vanished.
 pub const VANISHED: f64 = 1e-9;
 
 /// How much each row (r) adds to those before it that count, squared: 1 for a row of its own, 0 for one that follows from
 /// others. Directions are nodes with a length, so that all coordinates are lengths and weigh alike; rows are scaled to unit
-/// gradients (methods §13). The pivots of [1 Gᵀ; G 0] are minus these numbers. Rows that do not count are dropped: what they leave
-/// is round-off, and would be divided by round-off in the rows after them.
+/// gradients (methods §13). The pivots of [1 Gᵀ; G 0] are minus these numbers. Rows that add little are dropped from it, as what
+/// they leave is near round-off, which would be divided by it in the rows after them; what they add to all others is the
+/// part of their gradients that these leave, and that those measured before leave of it.
 pub fn independence(system: &System, x: &[f64], t: f64) -> Vec<f64> {
     Independence::new(system).shares(system, x, t)
 }
@@ -26,6 +34,9 @@ pub struct Independence {
     natural: Vec<f64>,
     /// Of each row (r), when last measured.
     shares: Vec<f64>,
+    /// What the plain rows leave of a gradient, and what all rows leave of those of the others, each of length one.
+    left: Vec<f64>,
+    others: Vec<Vec<f64>>,
 }
 
 impl Independence {
@@ -40,7 +51,8 @@ impl Independence {
         let mut at = system.evaluation();
         system.evaluate_again(&system.start_position, 0.0, &mut at);
         let natural = natural_sizes(system, &at);
-        Self { kkt: kkt.of_ones(), at, natural, shares: vec![0.0; rows] }
+        let kkt = kkt.of_ones();
+        Self { left: vec![0.0; kkt.size()], kkt, at, natural, shares: vec![0.0; rows], others: Vec::new() }
     }
 
     /// What [`independence`] gives at the positions `x` and the time `t`.
@@ -57,7 +69,7 @@ impl Independence {
 
     /// Measures at the positions `x` and the time `t`.
     fn measure(&mut self, system: &System, x: &[f64], t: f64) {
-        let Self { kkt, at, natural, shares } = self;
+        let Self { kkt, at, natural, shares, left, others } = self;
         system.evaluate_again(x, t, at);
         for (row, natural) in natural.iter().enumerate() {
             let free = system.slots.rows[row].clone().filter(|&slot| kkt.is_free(slot));
@@ -72,9 +84,16 @@ impl Independence {
         kkt.write_sum(block);
         kkt.add_columns(block, &at.gradient, 1.0);
         kkt.add_rows(block, &at.gradient, 1.0);
-        let is_factored = kkt.solver.factor_dropping(INDEPENDENT).is_ok();
+        if kkt.solver.factor_dropping(PLAIN).is_err() {
+            shares.fill(0.0);
+            return;
+        }
+        others.clear();
         for (row, share) in shares.iter_mut().enumerate() {
-            *share = if is_factored { kkt.solver.pivot(kkt.multiplier(row, 0)) } else { 0.0 };
+            *share = kkt.solver.pivot(kkt.multiplier(row, 0));
+            if kkt.solver.is_dropped(kkt.multiplier(row, 0)) {
+                *share = if *share < NOTHING { 0.0 } else { beside_others(kkt, &at.gradient, row, left, others) };
+            }
         }
     }
 
@@ -84,6 +103,31 @@ impl Independence {
         self.shares.sort_unstable_by(f64::total_cmp);
         self.shares.get(redundant).copied().unwrap_or(1.0)
     }
+}
+
+/// What a row adds to the plain ones and to the `others` that were measured before, squared. Becomes one of them where it counts.
+fn beside_others(kkt: &mut Kkt, gradient: &[f64], row: usize, left: &mut [f64], others: &mut Vec<Vec<f64>>) -> f64 {
+    let coordinates = kkt.free * kkt.dim;
+    left.fill(0.0);
+    for slot in kkt.slots.rows[row].clone().filter(|&slot| kkt.is_free(slot)) {
+        let node = kkt.slots.nodes[slot] as usize;
+        (0..kkt.dim).for_each(|c| left[kkt.coordinate(node, 0, c)] += gradient[slot * kkt.dim + c]);
+    }
+    // Twice, as the round-off of the first pass is large where little is left.
+    for _ in 0..2 {
+        left[coordinates..].fill(0.0);
+        kkt.solver.solve(left);
+        for other in &*others {
+            let along: f64 = other.iter().zip(&*left).map(|(other, left)| other * left).sum();
+            left.iter_mut().zip(other).for_each(|(left, other)| *left -= along * other);
+        }
+    }
+    let left = &left[..coordinates];
+    let share: f64 = left.iter().map(|left| left * left).sum();
+    if share > INDEPENDENT {
+        others.push(left.iter().map(|left| left / share.sqrt()).collect());
+    }
+    share
 }
 
 /// By how much the gradient of each row (r) changes when all nodes move by the size of the mechanism, here and there: the

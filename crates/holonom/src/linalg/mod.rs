@@ -119,9 +119,14 @@ impl Solver {
         self.lu.solve(b);
     }
 
-    /// Size of the pivot met at a row of the matrix, none where it was dropped.
+    /// Size of the pivot met at a row of the matrix.
     pub fn pivot(&self, row: usize) -> f64 {
-        self.lu.pivot(row)
+        self.lu.pivot(row).0
+    }
+
+    /// Whether the pivot of a row of the matrix was dropped.
+    pub fn is_dropped(&self, row: usize) -> bool {
+        self.lu.pivot(row).1
     }
 }
 
@@ -206,7 +211,8 @@ mod tests {
         }
         solver.factor_dropping(1e-9).expect("pivots that are nothing are dropped");
         let pivots = [2, 3, 4].map(|row| solver.pivot(row));
-        assert!((pivots[0] - 0.1).abs() < 1e-15 && pivots[1] == 0.0 && (pivots[2] - 0.1).abs() < 1e-15, "{pivots:?}");
+        assert!((pivots[0] - 0.1).abs() < 1e-15 && pivots[1] < 1e-15 && (pivots[2] - 0.1).abs() < 1e-15, "{pivots:?}");
+        assert_eq!([2, 3, 4].map(|row| solver.is_dropped(row)), [false, true, false]);
     }
 
     #[test]

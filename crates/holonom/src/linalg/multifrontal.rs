@@ -130,10 +130,11 @@ impl Multifrontal {
         self.arch.dispatch(Solve { plan: &self.plan, parts: &self.parts, numbers: &mut self.numbers, b });
     }
 
-    /// Size of the pivot met at a row of the matrix, none where it was dropped.
-    pub(super) fn pivot(&self, row: usize) -> f64 {
+    /// Size of the pivot met at a row of the matrix, and whether it was dropped.
+    pub(super) fn pivot(&self, row: usize) -> (f64, bool) {
         let size = 1.0 / self.numbers.reciprocal.as_flattened()[self.plan.place[row] as usize].abs();
-        if size < 0.5 * DROPPED { size } else { 0.0 }
+        let is_dropped = size > DROPPED.sqrt();
+        (if is_dropped { size / DROPPED } else { size }, is_dropped)
     }
 }
 

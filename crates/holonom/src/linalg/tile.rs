@@ -16,8 +16,12 @@ pub(super) type Tile = [f64; TILE];
 /// A block of a vector.
 pub(super) type Block = [f64; LANES];
 
-/// A pivot beside which all others are nothing: it takes nothing from them. Its square and its inverse are numbers still.
+/// What a pivot is multiplied by when it is dropped: beside it all others are nothing then, and it takes nothing from them. Its
+/// square and its inverse are numbers still.
 pub(super) const DROPPED: f64 = 1e150;
+
+/// Size that a pivot is dropped with where it is less.
+const NOTHING: f64 = 1e-30;
 
 /// L and U of a tile without exchanges, on their way to their inverses.
 pub(super) struct Factors {
@@ -51,7 +55,7 @@ impl Factors {
     #[inline(always)]
     fn eliminate<S: Simd, const DROPS: bool, const K: usize>(&mut self, simd: S, units: &Block, least: f64) {
         if DROPS && self.upper[K][K].abs() < least {
-            self.upper[K][K] = DROPPED;
+            self.upper[K][K] = self.upper[K][K].abs().max(NOTHING) * DROPPED;
         }
         self.reciprocal[K] = 1.0 / self.upper[K][K];
         let l = std::array::from_fn(|row| if row > K { self.upper[K][row] * self.reciprocal[K] } else { 0.0 });
