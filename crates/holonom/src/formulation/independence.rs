@@ -15,6 +15,9 @@ const PLAIN: f64 = 1e-5;
 /// Pivots below this are nothing beside [`INDEPENDENT`], after rows that are plain.
 const NOTHING: f64 = 0.1 * INDEPENDENT;
 
+/// Rows that are measured again without room being made for them.
+const FEW: usize = 4;
+
 /// Gradients below this share of what they become when the mechanism moves by its own size have vanished.
 pub const VANISHED: f64 = 1e-9;
 
@@ -34,9 +37,9 @@ pub struct Independence {
     natural: Vec<f64>,
     /// Of each row (r), when last measured.
     shares: Vec<f64>,
-    /// What the plain rows leave of a gradient, and what all rows leave of those of the others, each of length one.
+    /// What the plain rows leave of a gradient, and what all rows leave of those of the others, each of length one and one after the other.
     left: Vec<f64>,
-    others: Vec<Vec<f64>>,
+    others: Vec<f64>,
 }
 
 impl Independence {
@@ -52,7 +55,8 @@ impl Independence {
         system.evaluate_again(&system.start_position, 0.0, &mut at);
         let natural = natural_sizes(system, &at);
         let kkt = kkt.of_ones();
-        Self { left: vec![0.0; kkt.size()], kkt, at, natural, shares: vec![0.0; rows], others: Vec::new() }
+        let others = Vec::with_capacity(FEW * kkt.free * kkt.dim);
+        Self { left: vec![0.0; kkt.size()], kkt, at, natural, shares: vec![0.0; rows], others }
     }
 
     /// What [`independence`] gives at the positions `x` and the time `t`.
@@ -106,7 +110,7 @@ impl Independence {
 }
 
 /// What a row adds to the plain ones and to the `others` that were measured before, squared. Becomes one of them where it counts.
-fn beside_others(kkt: &mut Kkt, gradient: &[f64], row: usize, left: &mut [f64], others: &mut Vec<Vec<f64>>) -> f64 {
+fn beside_others(kkt: &mut Kkt, gradient: &[f64], row: usize, left: &mut [f64], others: &mut Vec<f64>) -> f64 {
     let coordinates = kkt.free * kkt.dim;
     left.fill(0.0);
     for slot in kkt.slots.rows[row].clone().filter(|&slot| kkt.is_free(slot)) {
@@ -117,7 +121,7 @@ fn beside_others(kkt: &mut Kkt, gradient: &[f64], row: usize, left: &mut [f64], 
     for _ in 0..2 {
         left[coordinates..].fill(0.0);
         kkt.solver.solve(left);
-        for other in &*others {
+        for other in others.chunks_exact(coordinates) {
             let along: f64 = other.iter().zip(&*left).map(|(other, left)| other * left).sum();
             left.iter_mut().zip(other).for_each(|(left, other)| *left -= along * other);
         }
@@ -125,7 +129,7 @@ fn beside_others(kkt: &mut Kkt, gradient: &[f64], row: usize, left: &mut [f64], 
     let left = &left[..coordinates];
     let share: f64 = left.iter().map(|left| left * left).sum();
     if share > INDEPENDENT {
-        others.push(left.iter().map(|left| left / share.sqrt()).collect());
+        others.extend(left.iter().map(|left| left / share.sqrt()));
     }
     share
 }
