@@ -10,7 +10,7 @@ use std::sync::atomic::AtomicBool;
 use cpu_time::ProcessTime;
 use holonom::analysis;
 use holonom::model::{Model, StartChange};
-use holonom::record::{COLUMNS, Recorder, Recording};
+use holonom::record::{COLUMNS, Column, Recorder, Recording};
 use holonom::simulation::{Method, Simulation, Status};
 use holonom_io::{WriteTable, Writer};
 use holonom_report::{Report, Run};
@@ -148,12 +148,12 @@ pub fn table_writers(formats: &[String]) -> Result<Vec<(&'static Writer, WriteTa
 /// A recording without the points and bodies that are not among `points`, which come in this order.
 fn only(recording: &Recording, points: &[String], model: &Model) -> Recording {
     let names = columns(recording, points, model);
-    let columns: Vec<&[f64]> = names.iter().filter_map(|name| recording.column(name)).collect();
-    let mut kept = Recording::new(names);
+    let columns: Vec<&Column> = names.iter().filter_map(|name| recording.find(name)).collect();
+    let mut kept = Recording::new(columns.iter().map(|column| column.heading.clone()));
     let mut row = Vec::new();
     for k in 0..recording.rows() {
         row.clear();
-        row.extend(columns.iter().map(|column| column[k]));
+        row.extend(columns.iter().map(|column| column.values[k]));
         kept.push(&row);
     }
     kept
@@ -161,7 +161,7 @@ fn only(recording: &Recording, points: &[String], model: &Model) -> Recording {
 
 /// Names of the columns without the points and bodies that are not among `points`, which come in this order.
 pub fn columns(recording: &Recording, points: &[String], model: &Model) -> Vec<String> {
-    let all = || recording.columns().iter().map(|column| column.name.as_str());
+    let all = || recording.columns().iter().map(|column| column.heading.name.as_str());
     let owners = model.points.iter().map(|point| &point.name).chain(model.bodies.iter().map(|body| &body.name));
     let owners = owners.chain(model.channels.points.iter().map(|point| &point.name));
     let owners: HashSet<&str> = owners.map(String::as_str).collect();
@@ -218,7 +218,7 @@ impl Folder {
         for writer in writers {
             self.write(&format!("{prefix}.{}", writer.extension), |out| (writer.write)(recording, out))?;
         }
-        Ok(())
+        self.write("columns.json", |out| holonom_io::write_json(&holonom_io::headings(recording), out))
     }
 
     /// Writes the report of some runs.

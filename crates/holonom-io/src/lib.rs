@@ -6,4 +6,4 @@ mod write;
 
 pub use json::to_json;
 pub use read::{DEEPEST, LARGEST_FILE, LARGEST_MESH, MOST_TRIANGLES, MeshError, Source, read_mesh, read_value};
-pub use write::{Cells, Table, WRITERS, WriteTable, Writer, csv_cells, csv_line, write_json};
+pub use write::{Cells, Table, WRITERS, WriteTable, Writer, csv_cells, csv_line, headings, write_json};

@@ -91,7 +91,7 @@ impl Case<'_> {
         let (kept, mark) = (serde_json::to_string(&simulation.checkpoint()).unwrap(), watch.recorder.mark());
         let before = watch.recorder.finish();
         if !matches!(&status, Status::Stopped { reason, .. } if reason == "interrupted") {
-            return ([before.clone(), Recording::new([])], written(&simulation, &status));
+            return ([before.clone(), Recording::default()], written(&simulation, &status));
         }
         let kept: Checkpoint = serde_json::from_str(&kept).unwrap();
         let mut simulation = Simulation::resume(self.model.system.clone(), self.method().unwrap(), self.step, kept).unwrap();
@@ -119,7 +119,7 @@ fn difference(whole: &Recording, [before, after]: &[Recording; 2]) -> Option<Str
             let of_parts = [first.get(row), row.checked_sub(join - 1 + usize::from(rest.is_empty())).and_then(|at| rest.get(at))];
             for found in of_parts.into_iter().flatten() {
                 if found.to_bits() != value.to_bits() && !(found.is_nan() && value.is_nan()) {
-                    return Some(format!("{} in row {row}: {value:e} and {found:e}", column.name));
+                    return Some(format!("{} in row {row}: {value:e} and {found:e}", column.heading.name));
                 }
             }
         }

@@ -93,7 +93,7 @@ fn is_of_key(fault: &Fault, plan: &Plan, source: &Source) -> bool {
 fn columns(model: &Model, asked: &[String]) -> Result<Vec<String>, Failure> {
     let reactions = model.output.reactions.unwrap_or(false);
     let recorder = Recorder::new(&model.channels, &model.system, 1, reactions);
-    let all: Vec<&str> = recorder.recording().columns().iter().map(|column| column.name.as_str()).collect();
+    let all: Vec<&str> = recorder.recording().columns().iter().map(|column| column.heading.name.as_str()).collect();
     if let Some(unknown) = asked.iter().find(|name| !all.contains(&name.as_str())) {
         let cure = match nearest(unknown, all.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),

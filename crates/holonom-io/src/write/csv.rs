@@ -9,9 +9,14 @@ use super::Table;
 /// Writes a header and one line a row. Numbers are the shortest that read back to the same bits.
 pub(super) fn write(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
-    table.write_record(recording.columns().iter().map(|column| &column.name))?;
+    table.write_record(recording.columns().iter().map(|column| &column.heading.name))?;
+    let mut number = zmij::Buffer::new();
     for row in 0..recording.rows() {
-        table.write_record(recording.columns().iter().map(|column| column.values[row].to_string()))?;
+        for column in recording.columns() {
+            let digits = number.format(column.values[row]);
+            table.write_field(digits.strip_suffix(".0").unwrap_or(digits))?;
+        }
+        table.write_record(None::<&[u8]>)?;
     }
     table.flush()
 }
@@ -55,7 +60,7 @@ mod tests {
 
     #[test]
     fn numbers_read_back_to_the_same_bits() {
-        let mut recording = Recording::new(["t".to_string(), "a,b".to_string()]);
+        let mut recording = Recording::new(["t", "a,b"].map(String::from));
         let values = [0.1, -1.0 / 3.0, 5e-324, 1.7976931348623157e308, 0.0];
         for (k, value) in values.iter().enumerate() {
             recording.push(&[k as f64, *value]);

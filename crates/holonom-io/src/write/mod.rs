@@ -12,7 +12,7 @@ use std::io::{self, Write};
 use holonom::record::Recording;
 
 pub use csv::{csv_cells, csv_line};
-pub use json::write_json;
+pub use json::{headings, write_json};
 pub use table::{Cells, Table};
 
 /// How a table with words is written.

@@ -11,7 +11,7 @@ pub(super) fn write(recording: &Recording, out: &mut dyn Write) -> io::Result<()
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
     for column in recording.columns() {
-        archive.start_file(format!("{}.npy", column.name), options)?;
+        archive.start_file(format!("{}.npy", column.heading.name), options)?;
         archive.write_all(&header(column.values.len()))?;
         for value in &column.values {
             archive.write_all(&value.to_le_bytes())?;
@@ -35,12 +35,13 @@ fn header(length: usize) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use std::io::Read;
+
+    use super::*;
 
     #[test]
     fn columns_read_back() {
-        let mut recording = Recording::new(["t".to_string(), "m1.x".to_string()]);
+        let mut recording = Recording::new(["t", "m1.x"].map(String::from));
         recording.push(&[0.0, 1.5]);
         recording.push(&[0.1, -2.5]);
         let mut bytes = Vec::new();

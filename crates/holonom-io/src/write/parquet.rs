@@ -8,16 +8,19 @@ use holonom::record::Recording;
 use parquet::basic::{ConvertedType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::Type;
 
+use super::json::headings;
 use super::{Cells, Table};
 
 /// Writes the columns of a recording, all of doubles.
 pub(super) fn write(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
-    let fields = recording.columns().iter().map(|column| (column.name.as_str(), Physical::DOUBLE, Repetition::REQUIRED));
-    write_columns(fields, out, |group| {
+    let fields = recording.columns().iter().map(|column| (column.heading.name.as_str(), Physical::DOUBLE, Repetition::REQUIRED));
+    let headings = KeyValue::new("columns".to_string(), headings(recording).to_string());
+    write_columns(fields, vec![headings], out, |group| {
         recording.columns().iter().try_for_each(|column| write_column::<DoubleType>(group, &column.values, None))
     })
 }
@@ -30,19 +33,20 @@ pub(super) fn write_table(table: &Table, out: &mut dyn Write) -> io::Result<()> 
         Cells::Words(_) => Physical::BYTE_ARRAY,
     };
     let fields = table.columns.iter().map(|(name, cells)| (name.as_str(), physical(cells), Repetition::OPTIONAL));
-    write_columns(fields, out, |group| table.columns.iter().try_for_each(|(_, cells)| write_cells(group, cells)))
+    write_columns(fields, Vec::new(), out, |group| table.columns.iter().try_for_each(|(_, cells)| write_cells(group, cells)))
 }
 
 /// Writes a file with one group of rows.
 fn write_columns<'a>(
     fields: impl Iterator<Item = (&'a str, Physical, Repetition)>,
+    metadata: Vec<KeyValue>,
     out: &mut dyn Write,
     write: impl FnOnce(&mut SerializedRowGroupWriter<'_, Vec<u8>>) -> Result<(), ParquetError>,
 ) -> io::Result<()> {
     let bytes = || {
         let fields = fields.map(|(name, physical, repetition)| field(name, physical, repetition)).collect::<Result<_, _>>()?;
         let schema = Type::group_type_builder("holonom").with_fields(fields).build()?;
-        let properties = WriterProperties::builder().set_dictionary_enabled(false).build();
+        let properties = WriterProperties::builder().set_dictionary_enabled(false).set_key_value_metadata(Some(metadata)).build();
         let mut file = SerializedFileWriter::new(Vec::new(), Arc::new(schema), Arc::new(properties))?;
         let mut group = file.next_row_group()?;
         write(&mut group)?;
@@ -100,7 +104,7 @@ mod tests {
 
     #[test]
     fn recordings_read_back_to_the_same_bits() {
-        let mut recording = Recording::new(["t".to_string(), "m.1.x".to_string()]);
+        let mut recording = Recording::new(["t", "m.1.x"].map(String::from));
         VALUES.iter().enumerate().for_each(|(k, value)| recording.push(&[k as f64, *value]));
         let mut bytes = Vec::new();
         write(&recording, &mut bytes).unwrap();

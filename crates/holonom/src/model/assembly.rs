@@ -6,12 +6,13 @@ use std::sync::Arc;
 use super::bodies::RigidBody;
 use super::bodies::frame::Frame;
 use super::bodies::nodes::Member;
+use super::element::AnyElement;
 use super::ends::End;
 use super::entry::Entry;
 use super::fault::{Read, Sink};
 use super::geometry::Vec3;
 use super::joints::{Geometry, JointInfo};
-use crate::record::{Anchor, Line, LineKind, SceneJoint};
+use crate::record::{Anchor, Line, LineKind, RecordedForce, SceneJoint, Shows};
 use crate::system::{Signal, SystemBuilder};
 
 /// The name of the origin.
@@ -103,6 +104,9 @@ pub struct Assembly<'a> {
     pub(in crate::model) scene_joints: Vec<SceneJoint>,
     /// Efforts of the drives.
     pub(in crate::model) efforts: Vec<Effort>,
+    /// What forces do, and what is to be shown of that which is built.
+    pub(in crate::model) forces: Vec<RecordedForce>,
+    shows: Shows,
     /// Where the joints of the entry are that is built.
     pub(in crate::model) geometries: std::vec::IntoIter<Geometry>,
 }
@@ -113,6 +117,7 @@ pub struct Effort {
     pub name: String,
     pub row: usize,
     pub length: Option<Arc<dyn Signal>>,
+    pub is_moment: bool,
 }
 
 impl<'a> Assembly<'a> {
@@ -137,6 +142,8 @@ impl<'a> Assembly<'a> {
             faulty_joints: HashSet::new(),
             scene_joints: Vec::new(),
             efforts: Vec::new(),
+            forces: Vec::new(),
+            shows: Shows::Power,
             geometries: Vec::new().into_iter(),
         }
     }
@@ -160,6 +167,23 @@ impl Assembly<'_> {
             Member::Point(k) => Frame::Particle(self.points[k].end.place().expect("a point is a node")),
             Member::Body(k) => self.frames[k].clone(),
         }
+    }
+
+    /// Has this recorded of the laws and loads of the entry that is built. Of those of which nothing is said it is the power alone.
+    pub fn show(&mut self, shows: Shows) {
+        self.shows = shows;
+    }
+
+    /// Builds an entry, and has recorded what its laws and loads do.
+    pub(in crate::model) fn build(&mut self, entry: &Entry<'_>, element: &dyn AnyElement) -> Read<()> {
+        let (laws, loads) = (self.builder.laws(), self.builder.loads());
+        let built = element.build(self, entry);
+        let shows = std::mem::replace(&mut self.shows, Shows::Power);
+        let (laws, loads) = (laws..self.builder.laws(), loads..self.builder.loads());
+        if !(laws.is_empty() && loads.is_empty()) {
+            self.forces.push(RecordedForce { name: entry.name.to_string(), laws, loads, shows });
+        }
+        built
     }
 
     /// Draws a line between two ends.

@@ -176,7 +176,7 @@ impl Compiler<'_> {
             for (named, of_entry) in entries.iter().zip(&mut geometries).filter(|(named, _)| named.entry.0.needs_joints() == late) {
                 let Some(of_entry) = of_entry.take() else { continue };
                 assembly.geometries = of_entry.into_iter();
-                if self.instances("joint", named, &mut |entry, element: &Boxed| element.0.build(assembly, entry)).is_err() {
+                if self.instances("joint", named, &mut |entry, element: &Boxed| assembly.build(entry, &*element.0)).is_err() {
                     assembly.faulty_joints.insert(named.name.clone());
                 }
             }
@@ -184,7 +184,7 @@ impl Compiler<'_> {
     }
 
     fn build(&self, section: &str, entries: &Entries<Boxed>, assembly: &mut Assembly<'_>) {
-        self.each(section, entries, |entry, element| element.0.build(assembly, entry));
+        self.each(section, entries, |entry, element| assembly.build(entry, &*element.0));
     }
 
     fn settings(&self, description: &Description, assembly: &Assembly<'_>) -> (Settings, Output) {

@@ -9,7 +9,7 @@ use crate::system::Place;
 
 /// Puts together what has been read without a fault.
 pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, output: Output, bars: Vec<BarInfo>) -> Model {
-    let Assembly { mut builder, axes, gravity, points, lines, bodies, frames, body_places, joints, scene_joints, efforts, .. } = assembly;
+    let Assembly { mut builder, axes, gravity, points, lines, bodies, frames, body_places, joints, scene_joints, efforts, forces, .. } = assembly;
     let place = |point: &assembly::PlacedPoint| point.end.place().expect("a point is a node");
     let kind = |point: &assembly::PlacedPoint| match (place(point), point.end.free) {
         (Place::Fixed(_), _) => PointKind::Fixed,
@@ -49,6 +49,7 @@ pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, 
         bars,
         channels: Channels {
             bodies: bodies.iter().map(|body| body.recorded.clone()).collect(),
+            forces,
             efforts: recorded_efforts(efforts),
             ..channels
         },
@@ -58,7 +59,7 @@ pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, 
 }
 
 fn recorded_efforts(efforts: Vec<assembly::Effort>) -> Vec<RecordedEffort> {
-    efforts.into_iter().map(|assembly::Effort { name, row, length }| RecordedEffort { name, row, length }).collect()
+    efforts.into_iter().map(|assembly::Effort { name, row, length, is_moment }| RecordedEffort { name, row, length, is_moment }).collect()
 }
 
 /// Points, named points of bodies, and the forces of joints.
@@ -90,11 +91,16 @@ fn channels(
             at: second.point(joint.geometry.at[1]),
         }
     };
+    let of_joint = |joint: &joints::JointInfo| {
+        let angles = joint.coordinates.iter().filter(|coordinate| coordinate.is_angle);
+        angles.map(|coordinate| format!("{}.{}", joint.name, coordinate.name)).collect::<Vec<_>>()
+    };
+    let of_bodies = bodies.iter().filter(|_| axes.dimension() == 2).map(|body| format!("{}.angle", body.name));
     Channels {
         axes: axes.name.to_string(),
         points: own.chain(named).collect(),
-        bodies: Vec::new(),
         joints: joints.iter().map(joint).collect(),
-        efforts: Vec::new(),
+        angles: joints.iter().flat_map(of_joint).chain(of_bodies).collect(),
+        ..Channels::default()
     }
 }

@@ -1,9 +1,12 @@
 //! What is recorded of a model, by name: points, bodies, coordinates of joints and their forces.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
+use super::force::{self, RecordedForce};
+use super::heading::{Heading, Units};
 use crate::simulation::Simulation;
 use crate::system::{NodeId, Place, Signal, Term};
 
@@ -61,6 +64,16 @@ impl RecordedJoint {
         Self::components(axes.len()).iter().map(|&k| (k, ending(k))).collect()
     }
 
+    fn headings(&self, axes: &str) -> impl Iterator<Item = Heading> {
+        let (name, letters) = (self.name.clone(), axes.to_string());
+        Self::columns(axes).into_iter().map(move |(k, ending)| {
+            let along = letters.chars().nth(k % 3).filter(|_| k < 3 || letters.len() == 3);
+            let along = along.map_or(String::new(), |axis| format!(", along {axis} of the world"));
+            let (unit, what) = if k < 3 { ("N", "force on the second body") } else { ("N·m", "moment on the second body about the joint") };
+            Heading::new(format!("{name}.{ending}"), unit, format!("{what}{along}"))
+        })
+    }
+
     /// Where it is at the positions `x` of all nodes in the world, m.
     pub fn place(&self, x: &[f64], dim: usize) -> [f64; 3] {
         at(&self.at, x, dim)
@@ -87,6 +100,8 @@ pub struct RecordedEffort {
     pub row: usize,
     /// Length that −λ is multiplied by, m over time; `None` where −λ is the effort.
     pub length: Option<Arc<dyn Signal>>,
+    /// Whether the effort is a moment and not a force.
+    pub is_moment: bool,
 }
 
 /// All that is recorded of a model, in the order of the columns.
@@ -100,61 +115,100 @@ pub struct Channels {
     pub bodies: Vec<RecordedBody>,
     /// Force and moment, where reactions are recorded.
     pub joints: Vec<RecordedJoint>,
+    /// What forces do.
+    pub forces: Vec<RecordedForce>,
     /// Force (N) or moment (N·m) of drives.
     pub efforts: Vec<RecordedEffort>,
+    /// The coordinates of joints and bodies, as `hinge.angle`, that are angles (rad) and not displacements (m).
+    pub angles: HashSet<String>,
 }
 
 /// Suffixes of the columns of a body in space behind those of its centre: the unit quaternion of its orientation (from
 /// body axes to the world's), and its angular velocity in world axes.
-const TURNED: [&str; 7] = ["qw", "qx", "qy", "qz", "wx", "wy", "wz"];
+const TURNED: [(&str, &str, &str); 7] = [
+    ("qw", "1", "unit quaternion from body to world axes, w"),
+    ("qx", "1", "unit quaternion from body to world axes, x"),
+    ("qy", "1", "unit quaternion from body to world axes, y"),
+    ("qz", "1", "unit quaternion from body to world axes, z"),
+    ("wx", "rad/s", "angular velocity about x of the world"),
+    ("wy", "rad/s", "angular velocity about y of the world"),
+    ("wz", "rad/s", "angular velocity about z of the world"),
+];
 
 impl Channels {
-    /// Names of the columns of motion.
-    pub fn motion_columns(&self) -> Vec<String> {
-        let mut names = Vec::new();
+    /// The columns of motion.
+    pub(super) fn motion_headings(&self) -> Vec<Heading> {
+        let mut headings = Vec::new();
         for point in &self.points {
-            names.extend(self.of_point(&point.name));
+            headings.extend(self.of_point(&point.name, "point"));
         }
         for body in &self.bodies {
-            names.extend(self.of_point(&body.name));
+            headings.extend(self.of_point(&body.name, "centre of mass"));
             if self.axes.len() == 3 {
-                names.extend(TURNED.map(|suffix| format!("{}.{suffix}", body.name)));
+                headings.extend(TURNED.map(|(suffix, unit, meaning)| Heading::new(format!("{}.{suffix}", body.name), unit, meaning)));
             }
         }
-        names
+        headings
     }
 
-    fn of_point(&self, name: &str) -> Vec<String> {
-        let position = self.axes.chars().map(|axis| format!("{name}.{axis}"));
-        position.chain(self.axes.chars().map(|axis| format!("{name}.v{axis}"))).collect()
+    fn of_point(&self, name: &str, what: &str) -> Vec<Heading> {
+        let position = self.axes.chars().map(|axis| Heading::new(format!("{name}.{axis}"), "m", format!("position of the {what}, {axis}")));
+        let velocity =
+            self.axes.chars().map(|axis| Heading::new(format!("{name}.v{axis}"), "m/s", format!("velocity of the {what} along {axis}")));
+        position.chain(velocity).collect()
     }
 
-    /// Names of the columns of efforts, N or N·m.
-    pub fn effort_columns(&self) -> impl Iterator<Item = String> + '_ {
-        self.efforts.iter().map(|effort| format!("{}.effort", effort.name))
+    /// The columns of the coordinates of joints, `names`, and their rates.
+    pub(super) fn coordinate_headings<'a>(&'a self, names: &'a [String]) -> impl Iterator<Item = Heading> + 'a {
+        names.iter().flat_map(|name| {
+            let is_angle = self.angles.contains(name);
+            let (units, what) = (Units::of(is_angle), if is_angle { "angle" } else { "displacement" });
+            [
+                Heading::new(name.clone(), units.value, format!("{what}, from the start")),
+                Heading::new(format!("{name}_rate"), units.rate, format!("rate of the {what}")),
+            ]
+        })
     }
 
-    /// Appends the columns of efforts, where the simulation finds forces.
-    pub fn efforts(&self, simulation: &Simulation, row: &mut Vec<f64>) {
+    /// The columns of what forces and drives do.
+    pub(super) fn force_headings(&self) -> Vec<Heading> {
+        let mut headings: Vec<Heading> = self.forces.iter().flat_map(|force| force.headings(&self.axes)).collect();
+        headings.extend(self.efforts.iter().flat_map(|RecordedEffort { name, is_moment, .. }| {
+            let (unit, what) = if *is_moment { ("N·m", "moment") } else { ("N", "force") };
+            [
+                Heading::new(format!("{name}.effort"), unit, format!("{what} that the drive exerts along its motion")),
+                Heading::new(format!("{name}.power"), "W", "power that the drive gives to the mechanism"),
+            ]
+        }));
+        headings
+    }
+
+    /// Appends the columns of what forces do, and of drives where the simulation finds forces.
+    pub(super) fn forces(&self, simulation: &Simulation, row: &mut Vec<f64>) {
+        if !self.forces.is_empty() {
+            force::append(&self.forces, simulation, &simulation.system().in_world(&simulation.state().x), row);
+        }
         let t = simulation.state().t;
         for effort in &self.efforts {
             let lambda = simulation.reactions().map_or(f64::NAN, |reactions| reactions.lambda[effort.row]);
-            row.push(-lambda * effort.length.as_ref().map_or(1.0, |length| length.at(t)[0]));
+            let length = effort.length.as_ref().map_or(1.0, |length| length.at(t)[0]);
+            // The target of the row moves with the length times the rate.
+            row.extend([-lambda * length, lambda * simulation.system().explicit_rate(effort.row, simulation.evaluation(), t)]);
         }
     }
 
-    /// Names of the columns of forces: the multiplier of each row of the system, the force of the constraints on each
+    /// The columns of the forces of constraints: the multiplier of each row of the system, the force of the constraints on each
     /// point that is a free node, and force and moment of each joint on its second body, about its place there; no numbers where
     /// bodies share nodes at the joint.
-    pub fn reaction_columns(&self, rows: &[String]) -> Vec<String> {
-        let mut names: Vec<String> = rows.iter().map(|row| format!("{row}.lambda")).collect();
+    pub(super) fn reaction_headings(&self, rows: &[String]) -> Vec<Heading> {
+        let lambda = |row: &String| Heading::new(format!("{row}.lambda"), "1", "multiplier of the row");
+        let mut headings: Vec<Heading> = rows.iter().map(lambda).collect();
         for point in self.points.iter().filter(|point| node(point).is_some()) {
-            names.extend(self.axes.chars().map(|axis| format!("{}.r{axis}", point.name)));
+            let force = |axis| Heading::new(format!("{}.r{axis}", point.name), "N", format!("force of the constraints along {axis}"));
+            headings.extend(self.axes.chars().map(force));
         }
-        for joint in &self.joints {
-            names.extend(RecordedJoint::columns(&self.axes).iter().map(|(_, column)| format!("{}.{column}", joint.name)));
-        }
-        names
+        self.joints.iter().for_each(|joint| headings.extend(joint.headings(&self.axes)));
+        headings
     }
 
     /// Appends the columns of motion.

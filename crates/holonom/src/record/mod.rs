@@ -1,10 +1,14 @@
 //! What is kept of a run: named columns in memory, one row per recorded step, and how the mechanism is drawn.
 
 pub(crate) mod channels;
+pub(crate) mod force;
+pub(crate) mod heading;
 mod recorder;
 mod scene;
 
 pub use channels::{Channels, RecordedBody, RecordedEffort, RecordedJoint, RecordedPoint};
+pub use force::{Along, Exerts, RecordedForce, Shows};
+pub use heading::Heading;
 pub use recorder::{COLUMNS, Recorder, RecorderMark};
 pub use scene::{Anchor, Line, LineKind, PointKind, Scene, SceneBody, SceneJoint, ScenePoint, SceneShape};
 
@@ -16,21 +20,21 @@ pub struct Recording {
     by_name: Vec<u32>,
 }
 
-/// One channel over time, in SI units.
+/// One channel over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// Name as in the header of `trajectory.csv`, e.g. `energy` or `m1.x`.
-    pub name: String,
+    /// What it shows.
+    pub heading: Heading,
     /// Values, one per recorded step.
     pub values: Vec<f64>,
 }
 
 impl Recording {
-    /// An empty table with the given column names.
-    pub fn new(names: impl IntoIterator<Item = String>) -> Self {
-        let columns: Vec<Column> = names.into_iter().map(|name| Column { name, values: Vec::new() }).collect();
+    /// An empty table with the given columns.
+    pub fn new(headings: impl IntoIterator<Item = impl Into<Heading>>) -> Self {
+        let columns: Vec<Column> = headings.into_iter().map(|heading| Column { heading: heading.into(), values: Vec::new() }).collect();
         let mut by_name: Vec<u32> = (0..columns.len() as u32).collect();
-        by_name.sort_by_key(|&k| &columns[k as usize].name);
+        by_name.sort_by_key(|&k| &columns[k as usize].heading.name);
         Self { columns, by_name }
     }
 
@@ -52,8 +56,13 @@ impl Recording {
 
     /// The values of one column, if there is one of that name.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
-        let at = self.by_name.binary_search_by_key(&name, |&k| &self.columns[k as usize].name).ok()?;
-        Some(&self.columns[self.by_name[at] as usize].values)
+        self.find(name).map(|column| column.values.as_slice())
+    }
+
+    /// One column, if there is one of that name.
+    pub fn find(&self, name: &str) -> Option<&Column> {
+        let at = self.by_name.binary_search_by_key(&name, |&k| &self.columns[k as usize].heading.name).ok()?;
+        Some(&self.columns[self.by_name[at] as usize])
     }
 
     /// Number of rows.

@@ -3,13 +3,28 @@
 use nalgebra::{Quaternion, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
-use super::{Channels, Recording};
+use super::{Channels, Heading, Recording};
 use crate::simulation::{Observer, Simulation, Verdict};
 use crate::system::System;
 
 /// The columns that every recording begins with.
 pub const COLUMNS: [&str; 11] =
     ["t", "energy", "kinetic", "potential", "work", "dE_integrator", "dE_projection", "phi", "phi_dot", "phi_ddot", "iterations"];
+
+/// Units and meanings of these.
+const MEANINGS: [(&str, &str); 11] = [
+    ("s", "time"),
+    ("J", "kinetic and potential energy"),
+    ("J", "kinetic energy"),
+    ("J", "potential energy"),
+    ("J", "work done on the mechanism since the start"),
+    ("J", "energy that the integrator has made since the last row"),
+    ("J", "energy that projections have made since the last row"),
+    ("1", "violation of the constraints, Euclidean norm of Φ"),
+    ("1/s", "violation of their rates"),
+    ("1/s²", "violation of their accelerations"),
+    ("1", "iterations of the step"),
+];
 
 /// What a recording goes on from when a run is resumed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -43,11 +58,11 @@ impl<'a> Recorder<'a> {
     /// Records channels of a system: motion, then the coordinates of joints and their rates, then with `reactions` the
     /// forces, where the simulation finds them.
     pub fn new(channels: &'a Channels, system: &System, every: u64, reactions: bool) -> Self {
-        let common = COLUMNS.iter().map(|name| name.to_string());
-        let gauges = system.gauges().iter().flat_map(|name| [name.clone(), format!("{name}_rate")]);
-        let forces = if reactions { channels.reaction_columns(system.row_names()) } else { Vec::new() };
-        let recording =
-            Recording::new(common.chain(channels.motion_columns()).chain(gauges).chain(channels.effort_columns()).chain(forces));
+        let common = COLUMNS.iter().zip(MEANINGS).map(|(&name, (unit, meaning))| Heading::new(name, unit, meaning));
+        let constraints = if reactions { channels.reaction_headings(system.row_names()) } else { Vec::new() };
+        let coordinates = channels.coordinate_headings(system.gauges());
+        let headings = common.chain(channels.motion_headings()).chain(coordinates).chain(channels.force_headings()).chain(constraints);
+        let recording = Recording::new(headings);
         Self {
             row: Vec::with_capacity(recording.columns().len()),
             orientations: vec![UnitQuaternion::identity(); channels.bodies.len()],
@@ -97,7 +112,7 @@ impl<'a> Recorder<'a> {
         self.channels.motion(simulation, &mut self.orientations, &mut self.row);
         let gauges = simulation.gauges();
         gauges.value.iter().zip(&gauges.rate).for_each(|(&value, &rate)| self.row.extend([value, rate]));
-        self.channels.efforts(simulation, &mut self.row);
+        self.channels.forces(simulation, &mut self.row);
         if self.has_reactions {
             self.channels.reactions(simulation, &mut self.row);
         }

@@ -29,7 +29,7 @@ use std::sync::Arc;
 
 use crate::formulation::{Failure, Independence, Iteration, Newton, Workspace};
 use crate::integrator::{Integrator, Step};
-use crate::system::{GaugeValues, System};
+use crate::system::{Evaluation, GaugeValues, System};
 use adapt::Pilot;
 use checkpoint::{Grid, Hints};
 use promise::Judge;
@@ -427,6 +427,11 @@ impl Simulation {
     /// Velocities to show (D × nodes), m/s: the state's, or with shadow projections the projected ones.
     pub fn velocities(&self) -> &[f64] {
         &self.shown_v
+    }
+
+    /// Values and gradients at the present state.
+    pub(crate) fn evaluation(&self) -> &Evaluation {
+        &self.work.start.at
     }
 
     /// Accelerations to show (D × nodes), m/s².

@@ -321,6 +321,16 @@ impl SystemBuilder {
         }
     }
 
+    /// Number of laws so far.
+    pub(crate) fn laws(&self) -> usize {
+        self.laws.len()
+    }
+
+    /// Number of loads so far.
+    pub(crate) fn loads(&self) -> usize {
+        self.loads.len()
+    }
+
     /// Adds a function of time at whose zeros forces or motions change abruptly: steps by accuracy end there.
     pub fn switch(&mut self, of_time: Arc<dyn Signal>) {
         self.switches.push(of_time);

@@ -43,6 +43,12 @@ pub trait ForceFunction: Send + Sync {
     fn evaluate<N: Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]);
 }
 
+impl<F: ForceFunction> ForceFunction for std::sync::Arc<F> {
+    fn evaluate<N: Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
+        (**self).evaluate(x, v, t, force);
+    }
+}
+
 /// A load as a closure of coordinates `x` and velocities `v` of its nodes, D numbers a node, and the time; its derivatives, which only steer
 /// the iteration, are central differences.
 pub struct Differences<F>(pub F);

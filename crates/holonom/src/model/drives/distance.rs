@@ -59,7 +59,8 @@ impl Element for Distance {
         let contradiction = || format!("the distance is {given} m at t = 0, but `{}` and `{}` are {start} m apart", a.name, b.name);
         assembly.check_start(entry, start - given, given, contradiction)?;
         let half_square = assembly.builder.square(&from_to(&a, &b));
-        assembly.efforts.push(Effort { name: entry.name.to_string(), row: assembly.builder.rows(), length: Some(Arc::clone(&profile)) });
+        let length = Some(Arc::clone(&profile));
+        assembly.efforts.push(Effort { name: entry.name.to_string(), row: assembly.builder.rows(), length, is_moment: false });
         assembly.builder.row(entry.name, half_square, Arc::new(HalfSquare(profile)));
         assembly.draw(entry, LineKind::Rod, &a, &b);
         Ok(())

@@ -57,7 +57,8 @@ impl Element for Point {
         for (c, program) in profile.into_iter().enumerate() {
             let axis = char::from(assembly.axes.name.as_bytes()[c]);
             let component = assembly.builder.linear(unit(c), &point.terms);
-            assembly.efforts.push(Effort { name: format!("{}.{axis}", entry.name), row: assembly.builder.rows(), length: None });
+            let name = format!("{}.{axis}", entry.name);
+            assembly.efforts.push(Effort { name, row: assembly.builder.rows(), length: None, is_moment: false });
             assembly.builder.row(format!("{}[{axis}]", entry.name), component, Arc::new(TimeProgram(program)));
         }
         Ok(())

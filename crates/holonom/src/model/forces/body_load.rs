@@ -14,6 +14,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{List, Number, Turn};
 use crate::model::geometry::unit;
 use crate::model::value::Value;
+use crate::record::{Exerts, Shows};
 use crate::system::{Differentiated, ForceFunction, NodeId, Number as AnyNumber, Place, Term};
 
 /// Time, place, its velocity, and angular velocity of the body.
@@ -138,28 +139,40 @@ impl BodyLoad {
         }
         std::array::from_fn(|c| axes[0][c] * given[0] + axes[1][c] * given[1] + axes[2][c] * given[2])
     }
-}
 
-impl ForceFunction for BodyLoad {
-    fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
+    /// The force or torque in the axes of the model; a torque in the plane last.
+    fn exerted<N: AnyNumber>(&self, x: &[N], v: &[N], t: N) -> [N; 3] {
         let (dim, zero) = (self.dim, N::from(0.0));
         let mut axes = [[zero; 3]; 3];
         axes.iter_mut().zip(&self.axes).for_each(|(axis, sum)| *axis = sum.at(x, dim, 1.0));
         let axes = &axes[..self.axes.len()];
-        let mut given = self.given(x, v, t, axes);
-        force.fill(zero);
-        if self.in_body_axes && !(dim == 2 && self.is_torque) {
-            given = self.in_world(given, axes);
+        let given = self.given(x, v, t, axes);
+        match (dim, self.is_torque) {
+            (2, true) => [zero, zero, given[0]],
+            _ if self.in_body_axes => self.in_world(given, axes),
+            _ => given,
         }
+    }
+}
+
+impl Exerts for BodyLoad {
+    fn exerted(&self, x: &[f64], v: &[f64], t: f64) -> [f64; 3] {
+        self.exerted(x, v, t)
+    }
+}
+
+impl ForceFunction for BodyLoad {
+    fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
+        let (dim, exerted) = (self.dim, self.exerted(x, v, t));
+        force.fill(N::from(0.0));
         if !self.is_torque {
-            self.point.spread(given, dim, force);
+            self.point.spread(exerted, dim, force);
             return;
         }
-        let torque = if dim == 2 { [zero, zero, given[0]] } else { given };
         let share = if dim == 2 { 1.0 } else { 0.5 };
         for (sums, sign) in [(&self.axes, share), (&self.other, -share)] {
             for sum in sums {
-                sum.spread(cross(torque, sum.at(x, dim, 1.0)).map(|c| c * sign), dim, force);
+                sum.spread(cross(exerted, sum.at(x, dim, 1.0)).map(|c| c * sign), dim, force);
             }
         }
     }
@@ -210,7 +223,9 @@ pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, given: Given<'
     let own = axes(given.body);
     let other = given.other.map_or(Vec::new(), axes);
     let load = BodyLoad { dim, point, axes: own, other, formulas, is_torque, in_body_axes };
-    assembly.builder.load(entry.name, &nodes, Arc::new(Differentiated(load)));
+    let load = Arc::new(load);
+    assembly.builder.load(entry.name, &nodes, Arc::new(Differentiated(load.clone())));
+    assembly.show(Shows::Load { nodes, is_moment: is_torque, exerts: load });
     Ok(())
 }
 

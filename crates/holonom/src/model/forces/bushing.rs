@@ -10,7 +10,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number, Place};
 use crate::model::geometry::unit;
 use crate::model::key::Shape;
-
+use crate::record::{Along, Shows};
 use crate::system::{FunctionId, Part};
 
 /// a rubber bearing between two bodies: springs and dampers along and about three axes of the first body, which are those of the
@@ -65,6 +65,7 @@ impl Element for Bushing {
             return Err(entry.refuse_all(format!("the bushing `{}` does nothing", entry.name), "give it a stiffness or a damping above 0"));
         }
         let coordinates = coordinates(assembly, members, at);
+        assembly.show(Shows::Along(shown(&coordinates, assembly.axes.name)));
         for (k, &q) in coordinates.iter().enumerate() {
             if stiffness[k] > 0.0 {
                 assembly.builder.law(entry.name, &[q], Arc::new(Spring { stiffness: stiffness[k], rest: 0.0 }));
@@ -105,6 +106,26 @@ fn numbers(entry: &Entry<'_>, key: &str, items: &[Number], count: usize) -> Read
         ));
     }
     all(items.iter().enumerate().map(|(k, item)| item.not_negative(entry, Spot { key, item: Some(k) })))
+}
+
+/// The coordinates with the names of their columns.
+fn shown(coordinates: &[FunctionId], axes: &str) -> Vec<Along> {
+    let letters: Vec<String> = axes.chars().map(String::from).collect();
+    let turns = if letters.len() == 2 { vec![String::new()] } else { letters.clone() };
+    let of = |is_angle: bool, letter: &String| {
+        let about = if letter.is_empty() { "about the normal".into() } else { format!("about {letter} of the first body") };
+        let along = format!("along {letter} of the first body");
+        match is_angle {
+            true => [[format!("r{letter}"), format!("sine of the rotation {about}")], [format!("t{letter}"), format!("moment on the second body {about}")]],
+            false => [[format!("d{letter}"), format!("deflection {along}")], [format!("f{letter}"), format!("force on the second body {along}")]],
+        }
+    };
+    let all = letters.iter().map(|letter| (false, letter)).chain(turns.iter().map(|letter| (true, letter)));
+    let along = all.zip(coordinates).map(|((is_angle, letter), &coordinate)| {
+        let [value, effort] = of(is_angle, letter);
+        Along { coordinate, value: Some(value), effort, is_angle }
+    });
+    along.collect()
 }
 
 /// Displacements and rotations, zero at the start.

@@ -1,13 +1,11 @@
-use std::sync::Arc;
-
-use super::point_load::PointLoad;
+use super::point_load;
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
 use crate::model::key::Shape;
-use crate::system::{self, Differentiated, ForceFunction};
+use crate::system::{self, ForceFunction};
 
 /// a force on a point, or on a place of a body, that never changes, booked as work
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -37,9 +35,7 @@ pub struct Constant {
 impl Element for Constant {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let (point, force) = (assembly.point(entry, "point", &self.point), self.force.vector(entry, "force", assembly.dimension()));
-        let (load, nodes) = PointLoad::new(entry, &point?, Steady(force?))?;
-        assembly.builder.load(entry.name, &nodes, Arc::new(Differentiated(load)));
-        Ok(())
+        point_load::add(assembly, entry, &point?, Steady(force?))
     }
 }
 

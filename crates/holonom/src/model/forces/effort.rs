@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use super::coordinate_laws;
-use super::joint::quantity;
+use super::joint::{acted_on, quantity};
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::Entry;
@@ -94,7 +94,8 @@ impl Element for Effort {
                 "it must be finite",
             ));
         }
-        let quantities: Vec<_> = coordinates.iter().map(|coordinate| quantity(assembly, coordinate)).collect();
+        let mut quantities = vec![acted_on(assembly, &coordinates[0])];
+        quantities.extend(coordinates[1..].iter().map(|coordinate| quantity(assembly, coordinate)));
         assembly.builder.law(entry.name, &quantities, Arc::new(coordinate_laws::Effort(effort)));
         Ok(())
     }

@@ -1,6 +1,4 @@
-use std::sync::Arc;
-
-use super::point_load::PointLoad;
+use super::point_load;
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::{Entry, Spot};
@@ -8,7 +6,7 @@ use crate::model::expression::Program;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
 use crate::model::key::Shape;
-use crate::system::{self, Differentiated, ForceFunction};
+use crate::system::{self, ForceFunction};
 
 /// Time, and position and velocity in world axes.
 const VARIABLES: &[&str] = &["t", "x", "y", "z", "vx", "vy", "vz"];
@@ -59,9 +57,7 @@ impl Element for Expression {
                 ));
             }
         }
-        let (load, nodes) = PointLoad::new(entry, &point, Formula(force))?;
-        assembly.builder.load(entry.name, &nodes, Arc::new(Differentiated(load)));
-        Ok(())
+        point_load::add(assembly, entry, &point, Formula(force))
     }
 }
 

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use super::coordinate_laws::{Dry, Resisting, Viscous};
-use super::joint::quantity;
+use super::joint::acted_on;
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::Entry;
@@ -57,7 +57,7 @@ impl Element for Friction {
         let (effort, speed) = (self.effort.not_negative(entry, "effort"), self.speed.positive(entry, "speed"));
         let damping = entry.optional("damping", &self.damping, Number::not_negative);
         let (coordinate, effort, speed, damping) = (coordinate?, effort?, speed?, damping?);
-        let q = quantity(assembly, &coordinate);
+        let q = acted_on(assembly, &coordinate);
         assembly.builder.law(entry.name, &[q], Arc::new(Resisting(Dry { effort, speed })));
         if let Some(damping) = damping.filter(|&damping| damping > 0.0) {
             assembly.builder.law(entry.name, &[q], Arc::new(Resisting(Viscous(damping))));

@@ -10,7 +10,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number, Place};
 use crate::model::geometry::norm;
 use crate::model::key::Shape;
-use crate::record::LineKind;
+use crate::record::{LineKind, Shows};
 use crate::system::Law;
 
 /// a spring, a damper, or both, between two points; linear or as a formula
@@ -90,6 +90,7 @@ impl Element for Spring {
         for law in laws {
             assembly.builder.law(entry.name, &[half_square], law);
         }
+        assembly.show(Shows::Tension);
         assembly.draw(entry, LineKind::Spring, &a, &b);
         Ok(())
     }

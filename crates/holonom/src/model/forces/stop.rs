@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use super::coordinate_laws::{Buffer, Impact};
-use super::joint::quantity;
+use super::joint::acted_on;
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::Entry;
@@ -71,7 +71,7 @@ impl Element for Stop {
             }
             _ => (),
         }
-        let q = quantity(assembly, &coordinate);
+        let q = acted_on(assembly, &coordinate);
         for (limit, sign) in [(lower, -1.0), (upper, 1.0)] {
             let Some(limit) = limit else { continue };
             let buffer = || Buffer { stiffness, limit, sign };

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use super::coordinate_laws::{Resisting, Spring, Viscous};
-use super::joint::quantity;
+use super::joint::acted_on;
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::Entry;
@@ -71,7 +71,7 @@ impl Element for Torsion {
         if let Some(damping) = damping {
             laws.push(Arc::new(Resisting(Viscous(damping))));
         }
-        let q = quantity(assembly, &coordinate);
+        let q = acted_on(assembly, &coordinate);
         laws.into_iter().for_each(|law| assembly.builder.law(entry.name, &[q], law));
         Ok(())
     }

@@ -1,0 +1,181 @@
+//! What forces do: how long a spring is and how it pulls, what acts along a coordinate, what a load exerts, and their power.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::heading::{Heading, Units};
+use crate::simulation::Simulation;
+use crate::system::{Evaluation, FunctionId, LawEntry, LoadEntry, MAX_ARGUMENTS, NodeId, Quantity, Response, System, gather};
+
+/// A force whose effect is recorded.
+#[derive(Clone)]
+pub struct RecordedForce {
+    /// With its index where it is repeated.
+    pub name: String,
+    /// Its laws and its loads among those of the system.
+    pub(crate) laws: Range<usize>,
+    pub(crate) loads: Range<usize>,
+    pub(crate) shows: Shows,
+}
+
+/// What is shown of a force beside its power.
+#[derive(Clone)]
+pub enum Shows {
+    /// Nothing.
+    Power,
+    /// Length, its rate and the tension of laws of half the square of a length.
+    Tension,
+    /// What its laws exert along some coordinates.
+    Along(Vec<Along>),
+    /// What its loads exert.
+    Load {
+        /// The nodes that it follows from, in this order.
+        nodes: Vec<NodeId>,
+        /// Whether it is a moment (N·m) and not a force (N).
+        is_moment: bool,
+        /// Finds it.
+        exerts: Arc<dyn Exerts>,
+    },
+}
+
+/// A coordinate that laws act along.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Along {
+    /// The first argument of the laws.
+    pub coordinate: FunctionId,
+    /// Suffix of the column of the coordinate itself, and what it is in words, where it is shown.
+    pub value: Option<[String; 2]>,
+    /// Suffix of the column of the effort along it, and what that is in words.
+    pub effort: [String; 2],
+    /// Whether it is an angle, or counts as one, and not a displacement.
+    pub is_angle: bool,
+}
+
+/// A force or moment that follows from nodes.
+pub trait Exerts: Send + Sync {
+    /// The force or moment in the axes of the model, in the plane a moment last, at positions `x` and velocities `v` of its nodes and the time `t`.
+    fn exerted(&self, x: &[f64], v: &[f64], t: f64) -> [f64; 3];
+}
+
+/// The state that forces are looked at in.
+struct At<'a> {
+    system: &'a System,
+    at: &'a Evaluation,
+    x: &'a [f64],
+    v: &'a [f64],
+    t: f64,
+}
+
+impl At<'_> {
+    /// Rates of the arguments of a law, and what it responds with.
+    fn response(&self, law: &LawEntry) -> ([f64; MAX_ARGUMENTS], Response) {
+        let mut rates = [0.0; MAX_ARGUMENTS];
+        rates.iter_mut().zip(&law.arguments).for_each(|(rate, &quantity)| *rate = self.rate(quantity));
+        let (m, mut response) = (law.arguments.len(), Response::default());
+        law.law.at(&self.system.arguments(law, self.at)[..m], &rates[..m], self.t, &mut response);
+        (rates, response)
+    }
+
+    fn rate(&self, quantity: Quantity) -> f64 {
+        self.system.along(&self.system.slots_of(quantity), &self.system.slots.nodes, self.at, self.v)
+    }
+
+    fn value(&self, quantity: Quantity) -> f64 {
+        self.at.value[self.system.value_index(quantity)]
+    }
+
+    /// What a load does, W.
+    fn power(&self, load: &LoadEntry) -> f64 {
+        let [x, v] = [self.x, self.v].map(|of| gather(self.system.dim, &load.nodes, of));
+        let mut force = vec![0.0; x.len()];
+        load.load.force(&x, &v, self.t, &mut force);
+        force.iter().zip(&v).map(|(force, v)| force * v).sum()
+    }
+}
+
+impl RecordedForce {
+    /// Its columns, for a model with these axes.
+    pub(super) fn headings(&self, axes: &str) -> Vec<Heading> {
+        let of = |suffix: &str, unit, meaning: String| Heading::new(format!("{}.{suffix}", self.name), unit, meaning);
+        let mut headings = Vec::new();
+        match &self.shows {
+            Shows::Power => (),
+            Shows::Tension => headings.extend([
+                of("length", "m", "distance of its ends".into()),
+                of("length_rate", "m/s", "rate of the length".into()),
+                of("force", "N", "tension: above zero it pulls its ends together".into()),
+            ]),
+            Shows::Along(coordinates) => {
+                let shown = |along: &Along| along.value.clone().map(|[suffix, words]| (suffix, words, Units::of(along.is_angle)));
+                headings.extend(coordinates.iter().filter_map(shown).map(|(suffix, words, units)| of(&suffix, units.value, words)));
+                headings.extend(coordinates.iter().map(|along| {
+                    let [suffix, words] = &along.effort;
+                    of(suffix, Units::of(along.is_angle).effort, words.clone())
+                }));
+            }
+            Shows::Load { is_moment, .. } => {
+                let [letter, unit, what] = if *is_moment { ["t", "N·m", "moment"] } else { ["f", "N", "force"] };
+                match (axes.len(), is_moment) {
+                    (2, true) => headings.push(of("t", unit, "moment that it exerts".into())),
+                    _ => headings.extend(
+                        axes.chars().map(|axis| of(&format!("{letter}{axis}"), unit, format!("{what} that it exerts, along {axis} of the world"))),
+                    ),
+                }
+            }
+        }
+        headings.push(of("power", "W", "power that it gives to the mechanism".into()));
+        headings
+    }
+
+    fn values(&self, at: &At<'_>, dim: usize, row: &mut Vec<f64>) {
+        let laws = &at.system.laws[self.laws.clone()];
+        let responses: Vec<_> = laws.iter().map(|law| at.response(law)).collect();
+        match &self.shows {
+            Shows::Power => (),
+            Shows::Tension => {
+                let Some(&half_square) = laws.first().and_then(|law| law.arguments.first()) else { return };
+                let (length, rate) = length(at.value(half_square), at.rate(half_square));
+                let tension: f64 = responses.iter().map(|(_, response)| response.force[0] * length).sum();
+                row.extend([length, rate, tension]);
+            }
+            Shows::Along(coordinates) => {
+                let shown = coordinates.iter().filter(|along| along.value.is_some());
+                row.extend(shown.map(|along| at.value(along.coordinate.into())));
+                row.extend(coordinates.iter().map(|along| {
+                    let own = |law: &LawEntry| law.arguments.first() == Some(&along.coordinate.into());
+                    let efforts = laws.iter().zip(&responses).filter(|(law, _)| own(law)).map(|(_, (_, response))| -response.force[0]);
+                    0.0 + efforts.sum::<f64>()
+                }));
+            }
+            Shows::Load { nodes, is_moment, exerts } => {
+                let [x, v] = [at.x, at.v].map(|of| gather(dim, nodes, of));
+                let exerted = exerts.exerted(&x, &v, at.t);
+                row.extend_from_slice(if dim == 2 && *is_moment { &exerted[2..] } else { &exerted[..dim] });
+            }
+        }
+        let of_law = |(law, (rates, response)): (&LawEntry, &([f64; MAX_ARGUMENTS], Response))| -> f64 {
+            (0..law.arguments.len()).map(|k| -response.force[k] * rates[k]).sum()
+        };
+        let of_laws: f64 = laws.iter().zip(&responses).map(of_law).sum();
+        let of_loads: f64 = at.system.loads[self.loads.clone()].iter().map(|load| at.power(load)).sum();
+        row.push(0.0 + of_laws + of_loads);
+    }
+}
+
+/// Distances below this count as this, m: as the laws of springs have it.
+const SHORTEST: f64 = 1e-9;
+
+/// A length and its rate, from half its square and the rate of that.
+fn length(half_square: f64, rate: f64) -> (f64, f64) {
+    let length = (2.0 * half_square).sqrt();
+    // Also taken when rounding has made the square negative.
+    let length = if length > SHORTEST { length } else { SHORTEST };
+    (length, rate / length)
+}
+
+/// Appends what forces do at the present state, of which `x` are the positions of all nodes in the world.
+pub(super) fn append(forces: &[RecordedForce], simulation: &Simulation, x: &[f64], row: &mut Vec<f64>) {
+    let system = simulation.system();
+    let at = At { system, at: simulation.evaluation(), x, v: simulation.velocities(), t: simulation.state().t };
+    forces.iter().for_each(|force| force.values(&at, system.dim, row));
+}

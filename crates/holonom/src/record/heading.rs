@@ -1,0 +1,43 @@
+//! What a column of a recording shows.
+
+/// Name, unit and meaning of a column.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Heading {
+    /// As in the header of `trajectory.csv`, e.g. `energy` or `m1.x`.
+    pub name: String,
+    /// SI unit; `"1"` of numbers without one.
+    pub unit: &'static str,
+    /// What it shows, in a line.
+    pub meaning: String,
+}
+
+impl Heading {
+    pub(crate) fn new(name: impl Into<String>, unit: &'static str, meaning: impl Into<String>) -> Self {
+        Self { name: name.into(), unit, meaning: meaning.into() }
+    }
+}
+
+/// Of a column of which only the name is known.
+impl From<String> for Heading {
+    fn from(name: String) -> Self {
+        Self::new(name, "1", "")
+    }
+}
+
+/// Units of a coordinate and of what goes with it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Units {
+    pub value: &'static str,
+    pub rate: &'static str,
+    pub effort: &'static str,
+}
+
+impl Units {
+    /// Of an angle, or of a displacement.
+    pub const fn of(is_angle: bool) -> Self {
+        match is_angle {
+            true => Self { value: "rad", rate: "rad/s", effort: "N·m" },
+            false => Self { value: "m", rate: "m/s", effort: "N" },
+        }
+    }
+}
