@@ -38,4 +38,8 @@ impl<O: Observer> Observer for Clock<'_, O> {
         self.begun = Some(Instant::now());
         verdict
     }
+
+    fn wants_forces(&self) -> bool {
+        self.watched.wants_forces()
+    }
 }

@@ -100,6 +100,13 @@ pub fn load(argument: &str, overrides: Overrides) -> Result<Loaded, Failure> {
     Ok(Loaded { model, name, text: source.text().to_string() })
 }
 
+/// The same for a run that records forces.
+pub fn load_to_run(argument: &str, overrides: Overrides) -> Result<Loaded, Failure> {
+    let (source, name) = open(argument, &overrides)?;
+    let model = source.model_with_forces().map_err(Failure::Model)?;
+    Ok(Loaded { model, name, text: source.text().to_string() })
+}
+
 /// Reads a model file, or an example, as a description with the overrides of the command line; and its name.
 pub fn open(argument: &str, overrides: &Overrides) -> Result<(Source, String), Failure> {
     let (name, shown, bytes) = match argument.strip_prefix("example:") {

@@ -10,7 +10,7 @@ use std::sync::atomic::AtomicBool;
 use cpu_time::ProcessTime;
 use holonom::analysis;
 use holonom::model::{Model, StartChange};
-use holonom::record::{COLUMNS, Column, Recorder, Recording};
+use holonom::record::{COLUMNS, Column, Constraints, Peaks, Recorder, Recording};
 use holonom::simulation::{Method, Simulation, Status};
 use holonom_io::{WriteTable, Writer};
 use holonom_report::{Report, Run};
@@ -62,11 +62,15 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
         announce_corrections(model, &simulation);
     }
     let rank = analysis::rank_of(&simulation);
-    let reactions = model.output.reactions.unwrap_or(false);
-    if reactions || !model.channels.efforts.is_empty() {
-        simulation.find_reactions();
+    let constraints = match model.output.reactions {
+        Some(false) => Constraints::Nothing,
+        None => Constraints::Joints,
+        Some(true) => Constraints::Rows,
+    };
+    if constraints != Constraints::Nothing || !model.channels.efforts.is_empty() {
+        model.find_reactions(&mut simulation);
     }
-    let recorder = Recorder::new(&model.channels, &model.system, every, reactions);
+    let recorder = Recorder::new(&model.channels, &model.system, every, constraints);
     let recorder = if let Some(mark) = &mark { recorder.resume(mark) } else { recorder };
     let mut watched = Watched::new(recorder, end, quiet, interrupted.clone());
     let (wall, cpu) = (std::time::Instant::now(), ProcessTime::now());
@@ -89,7 +93,9 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
         value["time"]["step_us"] = step_us;
     }
     let kept = Kept { run: simulation.checkpoint(), recorder: watched.recorder.mark() };
-    Ok(Finished { method: name, recording: watched.finish(), summary: value, completed: status == Status::Completed, kept })
+    let recording = watched.finish();
+    value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording)).expect("peaks are plain data");
+    Ok(Finished { method: name, recording, summary: value, completed: status == Status::Completed, kept })
 }
 
 /// Says on standard error what was put right before the start.

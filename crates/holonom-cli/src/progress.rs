@@ -54,6 +54,10 @@ impl Observer for Watched<'_> {
         }
         Verdict::GoOn
     }
+
+    fn wants_forces(&self) -> bool {
+        self.recorder.wants_forces()
+    }
 }
 
 /// A bar that counts runs, of which some are done already.

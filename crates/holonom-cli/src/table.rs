@@ -16,10 +16,14 @@ pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     [line(header.to_vec()), rule].into_iter().chain(body).collect::<Vec<_>>().join("\n")
 }
 
-/// Names and values, one a line.
+/// Names and values, one a line; the further lines of a value under its first.
 pub fn list(items: &[(&str, String)]) -> String {
     let width = items.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
-    items.iter().map(|(name, value)| format!("  {name:width$}  {value}")).collect::<Vec<_>>().join("\n")
+    items
+        .iter()
+        .map(|(name, value)| format!("  {name:width$}  {}", value.replace('\n', &format!("\n{:width$}    ", ""))))
+        .collect::<Vec<_>>()
+        .join("\n")
 }
 
 /// A number short enough for a table.

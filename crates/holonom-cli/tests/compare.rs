@@ -18,7 +18,7 @@ fn compare_puts_every_method_and_step_into_one_report() {
         assert!(out.contains(label) && report.contains(label), "{label}\n{out}");
     }
     let tables: Vec<String> = tables.iter().map(|name| format!("{name}.csv")).collect();
-    let expected: Vec<&str> = tables.iter().map(String::as_str).chain(["report.html", "summary.json"]).collect();
+    let expected: Vec<&str> = tables.iter().map(String::as_str).chain(["columns.json", "report.html", "summary.json"]).collect();
     assert_eq!(files(&results), names(&expected));
     assert_eq!(csv(results.join("conserving-0.02s.csv")).1.len(), 11);
     let summaries = read_json(results.join("summary.json"));

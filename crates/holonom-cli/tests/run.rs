@@ -15,7 +15,7 @@ fn run_leaves_what_is_documented() {
         assert!(out.contains(word), "{word}\n{out}");
     }
     let results = folder.path().join("results/spherical-compound-pendulum-conserving-ggl");
-    assert_eq!(files(&results), names(&["checkpoint.json", "report.html", "summary.json", "trajectory.csv"]));
+    assert_eq!(files(&results), names(&["checkpoint.json", "columns.json", "report.html", "summary.json", "trajectory.csv"]));
 
     let summary = read_json(results.join("summary.json"));
     assert_summary(&summary);
@@ -25,7 +25,8 @@ fn run_leaves_what_is_documented() {
 
     let (header, rows) = csv(results.join("trajectory.csv"));
     let of_points = "m1.x,m1.y,m1.z,m1.vx,m1.vy,m1.vz,m2.x,m2.y,m2.z,m2.vx,m2.vy,m2.vz";
-    assert_eq!(header, format!("{COMMON},{of_points}"));
+    let accelerations = "m1.ax,m1.ay,m1.az,m2.ax,m2.ay,m2.az";
+    assert_eq!(header, format!("{COMMON},{of_points},{accelerations}"));
     assert_eq!(rows.len(), 21);
     assert_eq!(rows[0][0], 0.0);
     assert_eq!(&rows[0][11..17], [1.0, 0.0, 0.0, 0.0, 0.5, 0.0]);
@@ -58,13 +59,13 @@ fn formats_rows_and_report_are_chosen() {
     let folder = folder();
     prints(&folder, &format!("run {PAPER} --end 0.5 --out a --format npz --format csv --every 5 --no-report"), 0);
     let out = folder.path().join("a");
-    assert_eq!(files(&out), names(&["checkpoint.json", "summary.json", "trajectory.csv", "trajectory.npz"]));
+    assert_eq!(files(&out), names(&["checkpoint.json", "columns.json", "summary.json", "trajectory.csv", "trajectory.npz"]));
     let times: Vec<f64> = csv(out.join("trajectory.csv")).1.iter().map(|row| row[0]).collect();
     assert_eq!(times, [0.0, 0.125, 0.25, 0.375, 0.5]);
     assert!(fs::read(out.join("trajectory.npz")).unwrap().starts_with(b"PK"));
 
     prints(&folder, &format!("run {PAPER} --end 0.1 --out b --format npz --no-report"), 0);
-    assert_eq!(files(folder.path().join("b")), names(&["checkpoint.json", "summary.json", "trajectory.npz"]));
+    assert_eq!(files(folder.path().join("b")), names(&["checkpoint.json", "columns.json", "summary.json", "trajectory.npz"]));
 
     if cfg!(feature = "parquet") {
         prints(&folder, &format!("run {PAPER} --end 0.1 --out b --format parquet --no-report"), 0);
@@ -81,11 +82,14 @@ fn output_says_which_points_and_rows() {
     let folder = folder();
     prints(&folder, &format!("run {PAPER} --end 0.5 --out a --set output.points=[\"m2\"] --set output.every=10"), 0);
     let (header, rows) = csv(folder.path().join("a/trajectory.csv"));
-    assert_eq!(header, format!("{COMMON},m2.x,m2.y,m2.z,m2.vx,m2.vy,m2.vz"));
-    assert_eq!((rows.len(), &rows[0][11..]), (3, &[2.0, 0.0, 0.0, 0.0, 1.0, 0.0][..]));
+    assert_eq!(header, format!("{COMMON},m2.x,m2.y,m2.z,m2.vx,m2.vy,m2.vz,m2.ax,m2.ay,m2.az"));
+    assert_eq!((rows.len(), &rows[0][11..]), (3, &[2.0, 0.0, 0.0, 0.0, 1.0, 0.0, -0.5, 0.0, -11.772][..]));
 
     prints(&folder, "run example:double-pendulum --end 0.1 --out b --set output.points=[\"m2\",\"m1\"]", 0);
-    assert_eq!(csv(folder.path().join("b/trajectory.csv")).0, format!("{COMMON},m2.x,m2.y,m2.vx,m2.vy,m1.x,m1.y,m1.vx,m1.vy"));
+    assert_eq!(
+        csv(folder.path().join("b/trajectory.csv")).0,
+        format!("{COMMON},m2.x,m2.y,m2.vx,m2.vy,m2.ax,m2.ay,m1.x,m1.y,m1.vx,m1.vy,m1.ax,m1.ay")
+    );
 }
 
 #[test]
@@ -107,7 +111,7 @@ fn a_run_that_stops_keeps_its_results() {
     let out = prints(&folder, &format!("run {PAPER} --method trapezoidal {words} --out a"), 3);
     assert!(out.contains("stopped at"), "{out}");
     let results = folder.path().join("a");
-    assert_eq!(files(&results), names(&["checkpoint.json", "report.html", "summary.json", "trajectory.csv"]));
+    assert_eq!(files(&results), names(&["checkpoint.json", "columns.json", "report.html", "summary.json", "trajectory.csv"]));
     let summary = read_json(results.join("summary.json"));
     assert_summary(&summary);
     let at = summary["stopped_at"].as_f64().unwrap();

@@ -56,7 +56,9 @@ fn a_row_holds_what_the_run_alone_gives() {
         assert_eq!(number(name), summary.pointer(path).and_then(Value::as_f64).unwrap(), "{name}");
     }
     let (names, trajectory) = csv(folder.path().join("alone/trajectory.csv"));
-    for (name, value) in names.split(',').zip(trajectory.last().unwrap()).filter(|(name, _)| name.starts_with('m') || *name == "energy") {
+    // Of many runs accelerations are not recorded.
+    let is_of_sweep = |name: &str| name == "energy" || (name.starts_with('m') && !name.contains(".a"));
+    for (name, value) in names.split(',').zip(trajectory.last().unwrap()).filter(|(name, _)| is_of_sweep(name)) {
         assert_eq!(number(name).to_bits(), value.to_bits(), "{name}");
     }
 }

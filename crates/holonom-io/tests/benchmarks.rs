@@ -2,7 +2,7 @@
 
 use holonom::analysis;
 use holonom::model::Model;
-use holonom::record::{Recorder, Recording};
+use holonom::record::{Constraints, Recorder, Recording};
 use holonom::simulation::{Choice, Method, NAMED, Simulation, Status, Summary};
 use holonom_io::Source;
 
@@ -195,7 +195,7 @@ fn run(name: &str, set: &[(&str, &str)], method: &str, accuracy: Option<f64>, st
     let method = Method::resolve(&choice).unwrap_or_else(|error| panic!("{error}"));
     let label = format!("{name}, {}, step {step}", method.name);
     let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap_or_else(|error| panic!("{label}: {error}"));
-    let mut recorder = Recorder::new(&model.channels, &model.system, 1, false);
+    let mut recorder = Recorder::new(&model.channels, &model.system, 1, Constraints::Nothing);
     let status = simulation.run(end, &mut recorder);
     assert_eq!(status, Status::Completed, "{label}");
     let size = analysis::rank(&model.system, &simulation.state().x, end).size(&model.system);

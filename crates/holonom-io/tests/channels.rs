@@ -1,7 +1,7 @@
 //! What forces and drives do is recorded: against formulas of the motion that is recorded beside it, and by what their power adds up to.
 
 use holonom::model::{Kind, Model, drives, forces};
-use holonom::record::{Recorder, Recording};
+use holonom::record::{Constraints, Recorder, Recording};
 use holonom::simulation::{Choice, Method, Simulation, Status};
 use holonom_io::Source;
 
@@ -13,7 +13,7 @@ fn run(model: &Model, step: f64, end: f64) -> (Simulation, Recording) {
     let method = Method::resolve(&Choice { method: Some("radau".into()), ..Choice::default() }).unwrap();
     let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
     simulation.find_reactions();
-    let mut recorder = Recorder::new(&model.channels, &model.system, 1, false);
+    let mut recorder = Recorder::new(&model.channels, &model.system, 1, Constraints::Nothing);
     assert_eq!(simulation.run(end, &mut recorder), Status::Completed);
     (simulation, recorder.finish())
 }

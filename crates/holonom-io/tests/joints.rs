@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use holonom::analysis;
 use holonom::model::{Model, joints};
-use holonom::record::{Recorder, Recording};
+use holonom::record::{Constraints, Recorder, Recording};
 use holonom::simulation::{Choice, Method, NAMED, Simulation, Status, Summary};
 use holonom_io::Source;
 use serde_json::Value;
@@ -40,7 +40,7 @@ fn run(model: &Model, method: &str, accuracy: Option<f64>, step: f64, end: f64, 
     if reactions {
         simulation.find_reactions();
     }
-    let mut recorder = Recorder::new(&model.channels, &model.system, 1, reactions);
+    let mut recorder = Recorder::new(&model.channels, &model.system, 1, if reactions { Constraints::Rows } else { Constraints::Nothing });
     let status = simulation.run(end, &mut recorder);
     assert_eq!(status, Status::Completed, "{label}");
     let size = analysis::rank(&model.system, &simulation.state().x, end).size(&model.system);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use holonom::analysis;
 use holonom::model::Model;
-use holonom::record::{Recorder, Recording};
+use holonom::record::{Constraints, Recorder, Recording};
 use holonom::simulation::{Checkpoint, Choice, Method, NAMED, Observer, Simulation, Status, Verdict};
 use holonom_io::Source;
 
@@ -68,7 +68,7 @@ impl Case<'_> {
 
     fn watch(&self, simulation: &mut Simulation, left: u64) -> Until<'_> {
         simulation.find_reactions();
-        Until { recorder: Recorder::new(&self.model.channels, &self.model.system, self.every, true), left }
+        Until { recorder: Recorder::new(&self.model.channels, &self.model.system, self.every, Constraints::Rows), left }
     }
 
     fn end(&self) -> f64 {

@@ -64,12 +64,20 @@ impl Model {
         Ok(Simulation::new(self.system.clone(), Method::resolve(&self.choice(None))?, self.step()?)?)
     }
 
+    /// Has a simulation of this model find the forces of its constraints.
+    pub fn find_reactions(&self, simulation: &mut Simulation) {
+        match &self.channels.apart {
+            Some(apart) => simulation.find_reactions_apart(&apart.0),
+            None => simulation.find_reactions(),
+        }
+    }
+
     /// Force and moment that the joint `name` transmits at the present state. `None` where there is no such joint, where the
-    /// simulation was not asked for forces ([`Simulation::find_reactions`]), and where the bodies share nodes at the joint, which
-    /// `reactions = true` in `[output]` prevents.
+    /// simulation was not asked for forces ([`Model::find_reactions`]), and where the bodies share nodes at the joint and the model was not
+    /// [told](Model::tell_forces) how to find its force.
     pub fn reaction(&self, simulation: &Simulation, name: &str) -> Option<Reaction> {
-        let joint = self.channels.joints.iter().find(|joint| joint.name == name)?;
-        let (force, moment) = joint.wrench(simulation, &self.system.in_world(&simulation.state().x))?;
+        let joint = self.channels.told().joints.iter().find(|joint| joint.name == name)?;
+        let (force, moment) = joint.wrench(simulation, &simulation.reacting_positions())?;
         Some(Reaction { force, moment })
     }
 }

@@ -55,7 +55,7 @@ fn models(arguments: &CompareArguments) -> Result<Vec<Loaded>, Failure> {
         let mut overrides = load::overrides(&arguments.model.set);
         overrides.number("simulation.step", step);
         overrides.number("simulation.end", arguments.end.as_deref());
-        load::load(&arguments.model.model, overrides)
+        load::load_to_run(&arguments.model.model, overrides)
     };
     match arguments.steps.is_empty() {
         true => Ok(vec![with_step(None)?]),

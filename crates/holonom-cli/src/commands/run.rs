@@ -18,7 +18,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let mut overrides = load::overrides(&arguments.model.set);
     overrides.number("simulation.step", arguments.method.step.as_deref());
     overrides.number("simulation.end", arguments.method.end.as_deref());
-    let loaded = load::load(&arguments.model.model, overrides)?;
+    let loaded = load::load_to_run(&arguments.model.model, overrides)?;
     let output = &arguments.output;
     let writers = writers(&output.formats)?;
     let order = Order {
@@ -55,6 +55,23 @@ fn write(folder: &Folder, loaded: &Loaded, finished: &Finished, writers: &[&Writ
     Ok(())
 }
 
+/// Rounded to five figures.
+fn figures(value: f64) -> f64 {
+    format!("{value:.4e}").parse().unwrap_or(value)
+}
+
+/// The largest of what acts, one after the other.
+fn peaks(of_sort: &Value) -> String {
+    let peak = |peak: &Value| {
+        let [value, at] = ["value", "at"].map(|key| short(figures(peak[key].as_f64().unwrap_or(f64::NAN))));
+        [peak["name"].as_str().unwrap_or("").to_string(), value, format!("{} at {at} s", peak["unit"].as_str().unwrap_or(""))]
+    };
+    let peaks: Vec<[String; 3]> = of_sort.as_array().into_iter().flatten().map(peak).collect();
+    let width = |k: usize| peaks.iter().map(|peak| peak[k].chars().count()).max().unwrap_or(0);
+    let (names, values) = (width(0), width(1));
+    peaks.iter().map(|[name, value, rest]| format!("{name:names$}  {value:>values$} {rest}")).collect::<Vec<_>>().join("\n")
+}
+
 /// The summary as people read it.
 fn describe(loaded: &Loaded, summary: &Value) -> String {
     let number = |group: &str, key: &str| short(summary[group][key].as_f64().unwrap_or(f64::NAN));
@@ -63,9 +80,12 @@ fn describe(loaded: &Loaded, summary: &Value) -> String {
         Some(at) => format!("stopped at {} s: {}", short(at), summary["reason"].as_str().unwrap_or("")),
     };
     let time = |key: &str| summary["time"][key].as_f64().map_or("–".into(), measured);
-    let mut items = vec![
-        ("method", summary["method"]["name"].as_str().unwrap_or("").to_string()),
-        ("status", status),
+    let mut items = vec![("method", summary["method"]["name"].as_str().unwrap_or("").to_string()), ("status", status)];
+    items.extend(
+        [("drives", "drives"), ("forces", "forces"), ("joints", "joints")].map(|(word, sort)| (word, peaks(&summary["peaks"][sort]))),
+    );
+    items.retain(|(_, text)| !text.is_empty());
+    items.extend([
         (
             "size",
             format!(
@@ -112,7 +132,7 @@ fn describe(loaded: &Loaded, summary: &Value) -> String {
         ),
         ("momentum", format!("linear drift {}, angular drift {}", number("momentum", "linear_drift"), number("momentum", "angular_drift"))),
         ("time", format!("{} µs a step, {} times real time", time("us_per_step"), time("realtime_factor"))),
-    ];
+    ]);
     if let Value::Object(step) = &summary["time"]["step_us"] {
         let time = |key: &str| measured(step[key].as_f64().unwrap_or(f64::NAN));
         let text =

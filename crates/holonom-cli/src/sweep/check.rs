@@ -5,7 +5,7 @@ use holonom::record::{COLUMNS, Recorder};
 use holonom_io::Source;
 
 use super::plan::Plan;
-use super::run::Task;
+use super::run::{Task, constraints};
 use super::vary::Vary;
 use crate::failure::Failure;
 use crate::load::{self, Overrides};
@@ -91,8 +91,7 @@ fn is_of_key(fault: &Fault, plan: &Plan, source: &Source) -> bool {
 
 /// The columns asked for, or the energy and all of the motion.
 fn columns(model: &Model, asked: &[String]) -> Result<Vec<String>, Failure> {
-    let reactions = model.output.reactions.unwrap_or(false);
-    let recorder = Recorder::new(&model.channels, &model.system, 1, reactions);
+    let recorder = Recorder::new(&model.channels, &model.system, 1, constraints(model));
     let all: Vec<&str> = recorder.recording().columns().iter().map(|column| column.heading.name.as_str()).collect();
     if let Some(unknown) = asked.iter().find(|name| !all.contains(&name.as_str())) {
         let cure = match nearest(unknown, all.iter().copied()) {

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use holonom::linalg::Plans;
 use holonom::model::{Model, Value};
-use holonom::record::{Recorder, Recording};
+use holonom::record::{Constraints, Recorder, Recording};
 use holonom::simulation::{Method, Observer, Simulation, Status, Verdict};
 use holonom_io::Source;
 
@@ -102,9 +102,6 @@ impl Runner<'_> {
     fn simulate(&self, model: &Model) -> Result<Option<Outcome>, Failure> {
         let Task { method, step, end } = Task::new(model, self.method)?;
         let mut simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
-        if model.output.reactions.unwrap_or(false) || !model.channels.efforts.is_empty() {
-            simulation.find_reactions();
-        }
         let mut looks = 0_u64;
         let status = simulation.run(end, &mut |_: &Simulation| {
             looks += 1;
@@ -115,6 +112,9 @@ impl Runner<'_> {
         });
         if self.interrupted.load(Ordering::Relaxed) {
             return Ok(None);
+        }
+        if constraints(model) != Constraints::Nothing || !model.channels.efforts.is_empty() {
+            simulation.find_reactions();
         }
         let figures = Some(self.figures(model, &simulation));
         Ok(Some(match status {
@@ -152,9 +152,14 @@ impl Task {
     }
 }
 
+/// What is recorded of the forces of constraints: of many runs nothing that was not asked for.
+pub fn constraints(model: &Model) -> Constraints {
+    if model.output.reactions == Some(true) { Constraints::Rows } else { Constraints::Nothing }
+}
+
 /// One row of the trajectory: the present state.
 fn present(model: &Model, simulation: &Simulation) -> Recording {
-    let mut recorder = Recorder::new(&model.channels, &model.system, 1, model.output.reactions.unwrap_or(false));
+    let mut recorder = Recorder::new(&model.channels, &model.system, 1, constraints(model));
     recorder.after_step(simulation);
     recorder.finish()
 }

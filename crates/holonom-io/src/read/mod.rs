@@ -87,6 +87,19 @@ impl Source {
         self.compile(&self.value).map_err(|faults| self.render(&faults))
     }
 
+    /// The same, with what tells the forces of joints whose bodies share nodes.
+    ///
+    /// # Errors
+    /// Every fault of it, ready to be shown.
+    pub fn model_with_forces(&self) -> Result<Model, String> {
+        let mut model = self.model()?;
+        if model.shares_nodes() && model.output.reactions != Some(false) {
+            let apart = self.model_with(&[("output.reactions", Value::Bool(true))]);
+            model.tell_forces(apart.map_err(|faults| self.render(&faults))?);
+        }
+        Ok(model)
+    }
+
     /// Reads the description with some keys set to other values as a model, and stays as it is.
     ///
     /// # Errors

@@ -9,6 +9,7 @@ pub mod drives;
 pub mod forces;
 pub mod joints;
 
+mod apart;
 mod assembly;
 mod bars;
 mod compile;
@@ -56,6 +57,7 @@ pub use written::StartChange;
 
 use std::sync::Arc;
 
+use bodies::frame::Frame;
 use fault::Sink;
 
 use crate::record::{Channels, PointKind, Scene};
@@ -110,6 +112,7 @@ pub struct Model {
     pub joints: Vec<joints::JointInfo>,
     /// What is recorded of it.
     pub channels: Channels,
+    frames: Vec<Frame>,
 }
 
 impl Model {

@@ -117,8 +117,9 @@ pub struct OutputKeys {
     /// points to record, in this order
     #[key(default = "all")]
     pub points: Option<List<String>>,
-    /// record the multiplier of each row and the constraints' force on each point
-    #[key(default = "false")]
+    /// of the constraints: true records the multiplier of each row and the force on each point, too; false neither forces of joints nor
+    /// accelerations
+    #[key(default = "forces of joints and accelerations")]
     pub reactions: Option<bool>,
 }
 

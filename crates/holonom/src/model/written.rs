@@ -3,8 +3,7 @@
 use nalgebra::Vector3;
 
 use super::Model;
-use crate::record::channels::rate;
-use crate::system::Place;
+use crate::system::{Place, rate_of};
 
 /// By how much the start has changed the velocity that was written of a body or point, so that constraints are met.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +37,7 @@ impl Model {
         });
         let points = self.points.iter().filter_map(|point| {
             let (Place::Node(_), Some(written)) = (point.place, point.velocity) else { return None };
-            let found = rate(&[(point.place, 1.0).into()], v, dim);
+            let found = rate_of(&[(point.place, 1.0).into()], v, dim);
             Some((&point.name, [written, found].map(|velocity| [velocity.into(), Vector3::zeros()])))
         });
         let all: Vec<(&String, Pair)> = bodies.chain(points).collect();

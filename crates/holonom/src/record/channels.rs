@@ -7,8 +7,8 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use super::force::{self, RecordedForce};
 use super::heading::{Heading, Units};
-use crate::simulation::Simulation;
-use crate::system::{NodeId, Place, Signal, Term};
+use crate::simulation::{Apart, Simulation};
+use crate::system::{NodeId, Place, Signal, System, Term, place_of, rate_of};
 
 /// A point whose motion is recorded.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,18 +69,20 @@ impl RecordedJoint {
         Self::columns(axes).into_iter().map(move |(k, ending)| {
             let along = letters.chars().nth(k % 3).filter(|_| k < 3 || letters.len() == 3);
             let along = along.map_or(String::new(), |axis| format!(", along {axis} of the world"));
-            let (unit, what) = if k < 3 { ("N", "force on the second body") } else { ("N·m", "moment on the second body about the joint") };
+            let (unit, what) =
+                if k < 3 { ("N", "force on the second body") } else { ("N·m", "moment on the second body about the joint") };
             Heading::new(format!("{name}.{ending}"), unit, format!("{what}{along}"))
         })
     }
 
     /// Where it is at the positions `x` of all nodes in the world, m.
     pub fn place(&self, x: &[f64], dim: usize) -> [f64; 3] {
-        at(&self.at, x, dim)
+        place_of(&self.at, x, dim)
     }
 
     /// Force (N) on its second body and moment (N·m) on it about the joint's place there, in world axes, at the present state, of which `x`
-    /// are the positions of all nodes in the world. `None` where the simulation finds no forces or bodies share nodes at the joint.
+    /// are the [positions of all nodes](Simulation::reacting_positions). `None` where the simulation finds no forces or bodies share nodes
+    /// at the joint.
     pub fn wrench(&self, simulation: &Simulation, x: &[f64]) -> Option<([f64; 3], [f64; 3])> {
         if !self.is_known {
             return None;
@@ -121,6 +123,8 @@ pub struct Channels {
     pub efforts: Vec<RecordedEffort>,
     /// The coordinates of joints and bodies, as `hinge.angle`, that are angles (rad) and not displacements (m).
     pub angles: HashSet<String>,
+    /// The system that the forces of the constraints are found in and the same of it, where it is another one.
+    pub apart: Option<Arc<(Apart, Self)>>,
 }
 
 /// Suffixes of the columns of a body in space behind those of its centre: the unit quaternion of its orientation (from
@@ -136,6 +140,11 @@ const TURNED: [(&str, &str, &str); 7] = [
 ];
 
 impl Channels {
+    /// The channels that forces of the constraints and accelerations are of.
+    pub fn told(&self) -> &Self {
+        self.apart.as_ref().map_or(self, |apart| &apart.1)
+    }
+
     /// The columns of motion.
     pub(super) fn motion_headings(&self) -> Vec<Heading> {
         let mut headings = Vec::new();
@@ -149,6 +158,38 @@ impl Channels {
             }
         }
         headings
+    }
+
+    /// The columns of accelerations.
+    pub(super) fn acceleration_headings(&self) -> Vec<Heading> {
+        let linear = |name: &str, what: &str| {
+            let heading = |axis: char| Heading::new(format!("{name}.a{axis}"), "m/s²", format!("acceleration of the {what} along {axis}"));
+            self.axes.chars().map(heading).collect::<Vec<_>>()
+        };
+        let angular = |name: &str| match self.axes.len() {
+            2 => vec![Heading::new(format!("{name}.alpha"), "rad/s²", "angular acceleration")],
+            _ => {
+                let heading = |axis: char| {
+                    Heading::new(format!("{name}.alpha{axis}"), "rad/s²", format!("angular acceleration about {axis} of the world"))
+                };
+                self.axes.chars().map(heading).collect()
+            }
+        };
+        let points = self.points.iter().flat_map(|point| linear(&point.name, "point"));
+        points.chain(self.bodies.iter().flat_map(|body| [linear(&body.name, "centre of mass"), angular(&body.name)].concat())).collect()
+    }
+
+    /// Appends the columns of accelerations, where the simulation finds forces.
+    pub(super) fn accelerations(&self, simulation: &Simulation, row: &mut Vec<f64>) {
+        let Some(reactions) = simulation.reactions() else { return };
+        let (told, dim) = (self.told(), self.axes.len());
+        let (x, v, a) = (simulation.reacting_positions(), simulation.reacting_v(), &reactions.a);
+        told.points.iter().for_each(|point| row.extend_from_slice(&rate_of(&point.terms, a, dim)[..dim]));
+        for body in &told.bodies {
+            row.extend_from_slice(&rate_of(&body.centre, a, dim)[..dim]);
+            let angular = body.angular_acceleration(&x, v, a, dim);
+            row.extend_from_slice(&angular.as_slice()[if dim == 2 { 2..3 } else { 0..3 }]);
+        }
     }
 
     fn of_point(&self, name: &str, what: &str) -> Vec<Heading> {
@@ -173,7 +214,7 @@ impl Channels {
     /// The columns of what forces and drives do.
     pub(super) fn force_headings(&self) -> Vec<Heading> {
         let mut headings: Vec<Heading> = self.forces.iter().flat_map(|force| force.headings(&self.axes)).collect();
-        headings.extend(self.efforts.iter().flat_map(|RecordedEffort { name, is_moment, .. }| {
+        headings.extend(self.told().efforts.iter().flat_map(|RecordedEffort { name, is_moment, .. }| {
             let (unit, what) = if *is_moment { ("N·m", "moment") } else { ("N", "force") };
             [
                 Heading::new(format!("{name}.effort"), unit, format!("{what} that the drive exerts along its motion")),
@@ -189,25 +230,29 @@ impl Channels {
             force::append(&self.forces, simulation, &simulation.system().in_world(&simulation.state().x), row);
         }
         let t = simulation.state().t;
-        for effort in &self.efforts {
+        for effort in &self.told().efforts {
             let lambda = simulation.reactions().map_or(f64::NAN, |reactions| reactions.lambda[effort.row]);
             let length = effort.length.as_ref().map_or(1.0, |length| length.at(t)[0]);
             // The target of the row moves with the length times the rate.
-            row.extend([-lambda * length, lambda * simulation.system().explicit_rate(effort.row, simulation.evaluation(), t)]);
+            let (system, at) = simulation.reacting();
+            row.extend([-lambda * length, lambda * system.explicit_rate(effort.row, at, t)]);
         }
     }
 
-    /// The columns of the forces of constraints: the multiplier of each row of the system, the force of the constraints on each
-    /// point that is a free node, and force and moment of each joint on its second body, about its place there; no numbers where
-    /// bodies share nodes at the joint.
-    pub(super) fn reaction_headings(&self, rows: &[String]) -> Vec<Heading> {
+    /// Force and moment of each joint on its second body, about its place there.
+    pub(super) fn joint_headings(&self) -> impl Iterator<Item = Heading> + '_ {
+        self.told().joints.iter().flat_map(|joint| joint.headings(&self.axes))
+    }
+
+    /// The multiplier of each row of the system, and the force of the constraints on each point that is a free node.
+    pub(super) fn multiplier_headings(&self, system: &System) -> Vec<Heading> {
+        let rows = self.apart.as_ref().map_or(system, |apart| apart.0.system()).row_names();
         let lambda = |row: &String| Heading::new(format!("{row}.lambda"), "1", "multiplier of the row");
         let mut headings: Vec<Heading> = rows.iter().map(lambda).collect();
-        for point in self.points.iter().filter(|point| node(point).is_some()) {
+        for point in self.told().points.iter().filter(|point| node(point).is_some()) {
             let force = |axis| Heading::new(format!("{}.r{axis}", point.name), "N", format!("force of the constraints along {axis}"));
             headings.extend(self.axes.chars().map(force));
         }
-        self.joints.iter().for_each(|joint| headings.extend(joint.headings(&self.axes)));
         headings
     }
 
@@ -216,12 +261,12 @@ impl Channels {
         let x = simulation.system().in_world(&simulation.state().x);
         let (x, v, dim) = (&x[..], simulation.velocities(), self.axes.len());
         for terms in self.points.iter().map(|point| &point.terms) {
-            row.extend_from_slice(&at(terms, x, dim)[..dim]);
-            row.extend_from_slice(&rate(terms, v, dim)[..dim]);
+            row.extend_from_slice(&place_of(terms, x, dim)[..dim]);
+            row.extend_from_slice(&rate_of(terms, v, dim)[..dim]);
         }
         for (body, last) in self.bodies.iter().zip(last) {
-            row.extend_from_slice(&at(&body.centre, x, dim)[..dim]);
-            row.extend_from_slice(&rate(&body.centre, v, dim)[..dim]);
+            row.extend_from_slice(&place_of(&body.centre, x, dim)[..dim]);
+            row.extend_from_slice(&rate_of(&body.centre, v, dim)[..dim]);
             if dim == 3 {
                 let (orientation, omega) = body.turned(x, v);
                 // Of the two quaternions of an orientation the one near the last.
@@ -235,19 +280,23 @@ impl Channels {
         }
     }
 
-    /// Appends the columns of forces.
-    pub fn reactions(&self, simulation: &Simulation, row: &mut Vec<f64>) {
+    /// Appends the columns of the joints' forces; no numbers where bodies share nodes at the joint.
+    pub(super) fn joint_forces(&self, simulation: &Simulation, row: &mut Vec<f64>) {
+        let (dim, x) = (self.axes.len(), simulation.reacting_positions());
+        for joint in &self.told().joints {
+            let (force, moment) = joint.wrench(simulation, &x).unwrap_or(([f64::NAN; 3], [f64::NAN; 3]));
+            let components = [force[0], force[1], force[2], moment[0], moment[1], moment[2]];
+            row.extend(RecordedJoint::components(dim).iter().map(|&k| components[k]));
+        }
+    }
+
+    /// Appends the columns of the multipliers, and of what the constraints exert on points.
+    pub(super) fn multipliers(&self, simulation: &Simulation, row: &mut Vec<f64>) {
         let Some(reactions) = simulation.reactions() else { return };
         let dim = self.axes.len();
-        let x = simulation.system().in_world(&simulation.state().x);
         row.extend_from_slice(&reactions.lambda);
-        for node in self.points.iter().filter_map(node) {
+        for node in self.told().points.iter().filter_map(node) {
             row.extend_from_slice(&reactions.force[node.index() * dim..(node.index() + 1) * dim]);
-        }
-        for joint in &self.joints {
-            let (force, moment) = joint.wrench(simulation, &x).unwrap_or(([f64::NAN; 3], [f64::NAN; 3]));
-            let components = [force, moment].concat();
-            row.extend(RecordedJoint::components(dim).iter().map(|&k| components[k]));
         }
     }
 }
@@ -260,45 +309,37 @@ fn node(point: &RecordedPoint) -> Option<NodeId> {
     }
 }
 
-fn sum(terms: &[Term], x: &[f64], dim: usize, fixed: f64) -> [f64; 3] {
-    let mut sum = [0.0; 3];
-    for term in terms {
-        let mut part = [0.0; 3];
-        match term.place {
-            Place::Node(node) => part[..dim].copy_from_slice(&x[node.index() * dim..(node.index() + 1) * dim]),
-            Place::Fixed(x) => (0..dim).for_each(|c| part[c] = fixed * x[c]),
-        }
-        (0..dim).for_each(|c| sum[c] += term.factor * part[c]);
-        sum[0] -= term.turn * part[1];
-        sum[1] += term.turn * part[0];
-    }
-    sum
-}
-
-/// Where a sum of nodes is.
-fn at(terms: &[Term], x: &[f64], dim: usize) -> [f64; 3] {
-    sum(terms, x, dim, 1.0)
-}
-
-/// How fast a sum of nodes moves.
-pub(crate) fn rate(terms: &[Term], v: &[f64], dim: usize) -> [f64; 3] {
-    sum(terms, v, dim, 0.0)
-}
-
 impl RecordedBody {
     /// Velocity of the centre (m/s) and angular velocity (rad/s, of a rod that across it) at positions `x` and velocities `v` of all
     /// nodes.
     pub fn velocity(&self, x: &[f64], v: &[f64], dim: usize) -> [Vector3<f64>; 2] {
         let spin = match (&self.directions[..], dim) {
-            ([(_, terms)], _) => Vector3::from(at(terms, x, dim)).cross(&Vector3::from(rate(terms, v, dim))),
+            ([(_, terms)], _) => Vector3::from(place_of(terms, x, dim)).cross(&Vector3::from(rate_of(terms, v, dim))),
             _ => self.turned(x, v).1,
         };
-        [rate(&self.centre, v, dim).into(), spin]
+        [rate_of(&self.centre, v, dim).into(), spin]
+    }
+
+    /// Angular acceleration (rad/s², of a rod that across it) at positions `x`, velocities `v` and accelerations `a` of all nodes.
+    fn angular_acceleration(&self, x: &[f64], v: &[f64], a: &[f64], dim: usize) -> Vector3<f64> {
+        let of = |terms: &[Term]| {
+            (Vector3::from(place_of(terms, x, dim)), Vector3::from(rate_of(terms, v, dim)), Vector3::from(rate_of(terms, a, dim)))
+        };
+        let directions: Vec<_> = self.directions.iter().map(|(_, terms)| of(terms)).collect();
+        match directions[..] {
+            [(e, _, bend)] => e.cross(&bend),
+            [(e, e_rate, e_bend), (f, f_rate, f_bend)] => {
+                let (g, bend) = (e.cross(&f), e_bend.cross(&f) + 2.0 * e_rate.cross(&f_rate) + e.cross(&f_bend));
+                0.5 * (e.cross(&e_bend) + f.cross(&f_bend) + g.cross(&bend))
+            }
+            // ë = α × e + ω × (ω × e), the last part of which has no sum.
+            _ => 0.5 * directions.iter().map(|(e, _, bend)| e.cross(bend)).sum::<Vector3<f64>>(),
+        }
     }
 
     /// Where its centre is at the positions `x` of all nodes in the world, m.
     pub fn place(&self, x: &[f64], dim: usize) -> Vector3<f64> {
-        at(&self.centre, x, dim).into()
+        place_of(&self.centre, x, dim).into()
     }
 
     /// From body axes to the world's at the positions `x` of all nodes, in space.
@@ -308,8 +349,8 @@ impl RecordedBody {
 
     /// Orientation and angular velocity in space.
     fn turned(&self, x: &[f64], v: &[f64]) -> (UnitQuaternion<f64>, Vector3<f64>) {
-        let world: Vec<Vector3<f64>> = self.directions.iter().map(|(_, terms)| at(terms, x, 3).into()).collect();
-        let rates: Vec<Vector3<f64>> = self.directions.iter().map(|(_, terms)| rate(terms, v, 3).into()).collect();
+        let world: Vec<Vector3<f64>> = self.directions.iter().map(|(_, terms)| place_of(terms, x, 3).into()).collect();
+        let rates: Vec<Vector3<f64>> = self.directions.iter().map(|(_, terms)| rate_of(terms, v, 3).into()).collect();
         let local: Vec<Vector3<f64>> = self.directions.iter().map(|&(local, _)| local.into()).collect();
         match world[..] {
             [axis] => {

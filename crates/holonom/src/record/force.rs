@@ -118,7 +118,8 @@ impl RecordedForce {
                 match (axes.len(), is_moment) {
                     (2, true) => headings.push(of("t", unit, "moment that it exerts".into())),
                     _ => headings.extend(
-                        axes.chars().map(|axis| of(&format!("{letter}{axis}"), unit, format!("{what} that it exerts, along {axis} of the world"))),
+                        axes.chars()
+                            .map(|axis| of(&format!("{letter}{axis}"), unit, format!("{what} that it exerts, along {axis} of the world"))),
                     ),
                 }
             }

@@ -1,15 +1,17 @@
 //! What is kept of a run: named columns in memory, one row per recorded step, and how the mechanism is drawn.
 
-pub(crate) mod channels;
-pub(crate) mod force;
-pub(crate) mod heading;
+mod channels;
+mod force;
+mod heading;
+mod peaks;
 mod recorder;
 mod scene;
 
 pub use channels::{Channels, RecordedBody, RecordedEffort, RecordedJoint, RecordedPoint};
 pub use force::{Along, Exerts, RecordedForce, Shows};
 pub use heading::Heading;
-pub use recorder::{COLUMNS, Recorder, RecorderMark};
+pub use peaks::{Peak, Peaks};
+pub use recorder::{COLUMNS, Constraints, Recorder, RecorderMark};
 pub use scene::{Anchor, Line, LineKind, PointKind, Scene, SceneBody, SceneJoint, ScenePoint, SceneShape};
 
 /// A table of columns of equal length; row 0 is the start.

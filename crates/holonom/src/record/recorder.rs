@@ -38,6 +38,17 @@ pub struct RecorderMark {
     orientations: Vec<[f64; 4]>,
 }
 
+/// What is recorded of the forces of constraints, and of the accelerations, which are found with them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Constraints {
+    /// Neither.
+    Nothing,
+    /// Accelerations, and force and moment of each joint.
+    Joints,
+    /// The multiplier of each row and the forces on points, too.
+    Rows,
+}
+
 /// Records the start, every `every`-th step and nothing else. ΔE_i and ΔE_p of the steps between are summed into the
 /// row that follows them, so that the columns add up whatever is left out.
 pub struct Recorder<'a> {
@@ -48,20 +59,29 @@ pub struct Recorder<'a> {
     since: [f64; 2],
     last: [f64; 2],
     resumed: bool,
-    has_reactions: bool,
+    constraints: Constraints,
     orientations: Vec<UnitQuaternion<f64>>,
     row: Vec<f64>,
     recording: Recording,
 }
 
 impl<'a> Recorder<'a> {
-    /// Records channels of a system: motion, then the coordinates of joints and their rates, then with `reactions` the
-    /// forces, where the simulation finds them.
-    pub fn new(channels: &'a Channels, system: &System, every: u64, reactions: bool) -> Self {
+    /// Records channels of a system: motion, accelerations, the coordinates of joints and their rates, what forces and drives do, then
+    /// `constraints`, where the simulation finds forces.
+    pub fn new(channels: &'a Channels, system: &System, every: u64, constraints: Constraints) -> Self {
         let common = COLUMNS.iter().zip(MEANINGS).map(|(&name, (unit, meaning))| Heading::new(name, unit, meaning));
-        let constraints = if reactions { channels.reaction_headings(system.row_names()) } else { Vec::new() };
-        let coordinates = channels.coordinate_headings(system.gauges());
-        let headings = common.chain(channels.motion_headings()).chain(coordinates).chain(channels.force_headings()).chain(constraints);
+        let mut headings: Vec<Heading> = common.chain(channels.motion_headings()).collect();
+        if constraints != Constraints::Nothing {
+            headings.extend(channels.acceleration_headings());
+        }
+        headings.extend(channels.coordinate_headings(system.gauges()));
+        headings.extend(channels.force_headings());
+        if constraints != Constraints::Nothing {
+            headings.extend(channels.joint_headings());
+        }
+        if constraints == Constraints::Rows {
+            headings.extend(channels.multiplier_headings(system));
+        }
         let recording = Recording::new(headings);
         Self {
             row: Vec::with_capacity(recording.columns().len()),
@@ -72,7 +92,7 @@ impl<'a> Recorder<'a> {
             since: [0.0; 2],
             last: [0.0; 2],
             resumed: false,
-            has_reactions: reactions,
+            constraints,
             recording,
         }
     }
@@ -110,17 +130,27 @@ impl<'a> Recorder<'a> {
         self.row.extend([state.t, audit.energy() + lift, audit.kinetic, audit.potential + lift, audit.work, integrator, projection]);
         self.row.extend([audit.phi, audit.phi_dot, audit.phi_ddot, audit.iterations as f64]);
         self.channels.motion(simulation, &mut self.orientations, &mut self.row);
+        if self.constraints != Constraints::Nothing {
+            self.channels.accelerations(simulation, &mut self.row);
+        }
         let gauges = simulation.gauges();
         gauges.value.iter().zip(&gauges.rate).for_each(|(&value, &rate)| self.row.extend([value, rate]));
         self.channels.forces(simulation, &mut self.row);
-        if self.has_reactions {
-            self.channels.reactions(simulation, &mut self.row);
+        if self.constraints != Constraints::Nothing {
+            self.channels.joint_forces(simulation, &mut self.row);
+        }
+        if self.constraints == Constraints::Rows {
+            self.channels.multipliers(simulation, &mut self.row);
         }
         self.recording.push(&self.row);
     }
 }
 
 impl Observer for Recorder<'_> {
+    fn wants_forces(&self) -> bool {
+        self.seen.is_multiple_of(self.every)
+    }
+
     fn after_step(&mut self, simulation: &Simulation) -> Verdict {
         if std::mem::take(&mut self.resumed) {
             // Where the run was left, that row is the first once more.

@@ -18,8 +18,8 @@ pub use method::{
     Choice, LEVELS, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, OMEGA, PENALTY, ProjectionChoice, TOLERANCE, XI, combinations,
 };
 pub use promise::Promise;
-pub use reactions::Reactions;
 pub(crate) use reactions::wrench;
+pub use reactions::{Apart, Reactions};
 use start::Asked;
 pub use start::{Start, StartError};
 pub use state::State;
@@ -117,6 +117,11 @@ pub enum Verdict {
 pub trait Observer {
     /// Looks at the simulation after a step.
     fn after_step(&mut self, simulation: &Simulation) -> Verdict;
+
+    /// Whether it will look at the forces of the constraints after the step to come, where the simulation finds them. They take time.
+    fn wants_forces(&self) -> bool {
+        true
+    }
 }
 
 impl<F: FnMut(&Simulation) -> Verdict> Observer for F {
@@ -159,8 +164,10 @@ pub struct Simulation {
     /// Measured at the present state, and at the end of the step that is tried.
     gauges: GaugeValues,
     next_gauges: GaugeValues,
-    /// Multipliers (r) and accelerations (D × nodes) of the index-1 system at the present state, where they are wanted.
+    /// Forces of the constraints at the last state that was looked at, where they are wanted.
     reactions: Option<Reactions>,
+    /// What finds them where the system itself does not tell all of them.
+    apart: Option<Box<reactions::Elsewhere>>,
     /// What was known after the last step that was taken.
     hints: Hints,
 }
@@ -186,9 +193,11 @@ impl Simulation {
         let impulse = vec![0.0; self.system.coordinates()];
         let asked = Asked { t: state.t, x: &state.x, v: &state.v, impulse: &impulse, angles: Some([&state.angle, &state.measured]) };
         let found = Self::begin(Arc::clone(&self.system), self.method.clone(), self.step, &asked)?;
-        let reacts = std::mem::replace(self, found).reactions.is_some();
-        if reacts {
-            self.find_reactions();
+        let before = std::mem::replace(self, found);
+        match before.apart {
+            Some(elsewhere) => self.find_reactions_apart(&elsewhere.apart),
+            None if before.reactions.is_some() => self.find_reactions(),
+            None => (),
         }
         Ok(())
     }
@@ -244,6 +253,7 @@ impl Simulation {
             next_gauges: gauges.clone(),
             gauges,
             reactions: None,
+            apart: None,
         }
     }
 
@@ -265,7 +275,7 @@ impl Simulation {
         self.begin_adapting(end);
         while self.state.t < end {
             let target = self.grid.next(self.state.t, end);
-            if let Err(failure) = self.advance(target) {
+            if let Err(failure) = self.advance(target, observer.wants_forces()) {
                 self.grid.back();
                 // Shorter attempts may profit from what failed ones learned of the rows; what comes after the run may not.
                 self.hints.restore(&mut self.newton, &mut *self.integrator);
@@ -283,7 +293,7 @@ impl Simulation {
     }
 
     /// Takes the nominal step to `target`.
-    fn advance(&mut self, target: f64) -> Result<(), Failure> {
+    fn advance(&mut self, target: f64, reacts: bool) -> Result<(), Failure> {
         let from = self.state.t;
         self.audit.begin_step();
         match self.pilot.take() {
@@ -303,7 +313,9 @@ impl Simulation {
         self.judge.supply(h, known, &self.audit, &self.work)?;
         self.steps += 1;
         self.audit.end_step(&self.system, &mut self.work, &self.state, self.steps);
-        self.react();
+        if reacts {
+            self.react();
+        }
         Ok(())
     }
 

@@ -1,11 +1,14 @@
 //! Forces of the constraints, by the index-1 system (3) at the states shown (methods §17).
 
+use std::borrow::Cow;
 use std::ops::Range;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::Simulation;
-use crate::system::{NodeId, System};
+use super::{Method, Simulation, State};
+use crate::formulation::{Newton, Workspace};
+use crate::system::{Evaluation, NodeId, Quantity, System, Term, place_of, rate_of};
 
 /// Forces of the constraints at a state, of the order of its positions and velocities.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,16 +21,106 @@ pub struct Reactions {
     pub force: Vec<f64>,
 }
 
-impl Simulation {
-    /// Has the forces of the constraints found at the start and at every nominal step. A run that is resumed has them already
-    /// where the one before had them.
-    pub fn find_reactions(&mut self) {
-        if self.reactions.is_some() {
-            return;
+/// The same mechanism as that of a system in which bodies share nodes, with nodes of its own for each body: what the shared ones stand
+/// for are rows here, whose multipliers tell the forces of all joints.
+#[derive(Clone)]
+pub struct Apart {
+    system: Arc<System>,
+    /// Each free node as a sum of the nodes of the other system.
+    nodes: Arc<[Vec<Term>]>,
+}
+
+impl Apart {
+    /// # Panics
+    /// When there is not one sum for each free node.
+    pub(crate) fn new(system: Arc<System>, nodes: Vec<Vec<Term>>) -> Self {
+        assert_eq!(nodes.len(), system.free, "a sum for each free node");
+        Self { system, nodes: nodes.into() }
+    }
+
+    /// The system with nodes of its own for each body.
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+}
+
+/// Where the forces of the constraints are found in another system than the one that moves.
+pub(super) struct Elsewhere {
+    pub apart: Apart,
+    newton: Newton,
+    work: Workspace,
+}
+
+impl Elsewhere {
+    fn new(apart: Apart, method: &Method) -> Self {
+        let newton = Newton::new(&apart.system, method.settings);
+        Self { work: Workspace::new(&apart.system), newton, apart }
+    }
+
+    /// Puts its nodes where those of `own` are and finds the forces.
+    fn react(&mut self, own: &System, state: &State, v: &[f64], angles: &Evaluation, reactions: &mut Reactions) {
+        let Self { apart: Apart { system, nodes }, newton, work } = self;
+        let (dim, x) = (system.dim, own.in_world(&state.x));
+        for (k, terms) in nodes.iter().enumerate() {
+            let origin = if system.is_point[k] { system.origin } else { [0.0; 3] };
+            let (position, velocity) = (place_of(terms, &x, dim), rate_of(terms, v, dim));
+            for c in 0..dim {
+                work.end.x[k * dim + c] = position[c] - origin[c];
+                work.end.v[k * dim + c] = velocity[c];
+            }
         }
-        let (r, all) = (self.system.constraints(), self.state.x.len());
-        self.reactions = Some(Reactions { lambda: vec![0.0; r], a: vec![0.0; all], force: vec![0.0; all] });
-        self.react();
+        system.place_known(state.t, &mut work.end.x, &mut work.end.v, &mut work.a);
+        // The forces along angles may depend on how often these have turned.
+        for (law, theirs) in system.laws.iter().zip(&own.laws) {
+            for (mine, theirs) in law.arguments.iter().zip(&theirs.arguments) {
+                if let (&Quantity::Function(mine), &Quantity::Function(theirs)) = (mine, theirs) {
+                    let (mine, theirs) = (system.functions.angles_of(mine), own.functions.angles_of(theirs));
+                    work.start.at.functions.angle[mine].copy_from_slice(&angles.functions.angle[theirs]);
+                }
+            }
+        }
+        system.evaluate_again(&work.end.x, state.t, &mut work.start.at);
+        work.lambda.copy_from_slice(&reactions.lambda);
+        let outcome = newton.react(system, state.t, work);
+        reactions.take(system, outcome.is_ok(), work);
+    }
+}
+
+impl Reactions {
+    fn new(system: &System) -> Self {
+        let (r, all) = (system.constraints(), system.nodes() * system.dim);
+        Self { lambda: vec![0.0; r], a: vec![0.0; all], force: vec![0.0; all] }
+    }
+
+    fn take(&mut self, system: &System, are_known: bool, work: &mut Workspace) {
+        if !are_known {
+            work.lambda.fill(f64::NAN);
+        }
+        self.lambda.copy_from_slice(&work.lambda);
+        self.a.copy_from_slice(&work.a);
+        work.constraint_forces(system, &mut self.force);
+    }
+}
+
+impl Simulation {
+    /// Has the forces of the constraints found at the start and after the steps whose [observer](super::Observer) wants them. A run that is
+    /// resumed has them already where the one before had them.
+    pub fn find_reactions(&mut self) {
+        if self.reactions.is_none() {
+            self.reactions = Some(Reactions::new(&self.system));
+            self.react();
+        }
+    }
+
+    /// The same for a system in which bodies share nodes, by one in which they do not: multipliers and accelerations are then those of that
+    /// system.
+    pub fn find_reactions_apart(&mut self, apart: &Apart) {
+        let mut elsewhere = Box::new(Elsewhere::new(apart.clone(), &self.method));
+        let kept = self.reactions.take().filter(|reactions| reactions.lambda.len() == apart.system.constraints());
+        let mut reactions = Reactions::new(&apart.system);
+        elsewhere.react(&self.system, &self.state, &self.shown_v, &self.work.start.at, &mut reactions);
+        self.reactions = Some(kept.unwrap_or(reactions));
+        self.apart = Some(elsewhere);
     }
 
     /// Forces of the constraints at the present state, if they were asked for.
@@ -35,19 +128,45 @@ impl Simulation {
         self.reactions.as_ref()
     }
 
+    /// The system whose forces of the constraints are found, its values and gradients at the present state.
+    pub(crate) fn reacting(&self) -> (&System, &Evaluation) {
+        match &self.apart {
+            Some(elsewhere) => (&elsewhere.apart.system, &elsewhere.work.start.at),
+            None => (&self.system, &self.work.start.at),
+        }
+    }
+
+    fn reacting_x(&self) -> &[f64] {
+        self.apart.as_ref().map_or(&self.state.x, |elsewhere| &elsewhere.work.end.x)
+    }
+
+    /// Velocities of its nodes (D × nodes), m/s.
+    pub(crate) fn reacting_v(&self) -> &[f64] {
+        self.apart.as_ref().map_or(&self.shown_v, |elsewhere| &elsewhere.work.end.v)
+    }
+
+    /// Positions of all nodes in the world (D × nodes), m, of the system whose forces of the constraints are found.
+    pub fn reacting_positions(&self) -> Cow<'_, [f64]> {
+        self.reacting().0.in_world(self.reacting_x())
+    }
+
     /// Force (3) and moment about a place (3) of some rows on some nodes, points or directions, at the present state, N
     /// and N·m. `None` unless forces of the constraints were asked for.
     pub fn wrench(&self, rows: Range<usize>, nodes: &[(NodeId, bool)], about: [f64; 3]) -> Option<([f64; 3], [f64; 3])> {
         let reactions = self.reactions.as_ref()?;
-        let gradient = &self.work.start.at.gradient;
-        let about = self.system.of_world(about);
-        Some(wrench(&self.system, rows, &reactions.lambda, gradient, nodes, about, &self.state.x))
+        let (system, at) = self.reacting();
+        Some(wrench(system, rows, &reactions.lambda, &at.gradient, nodes, system.of_world(about), self.reacting_x()))
     }
 
     /// Finds the forces of the constraints at the present state, where they are wanted.
     pub(super) fn react(&mut self) {
         let Some(reactions) = &mut self.reactions else { return };
+        if let Some(elsewhere) = &mut self.apart {
+            elsewhere.react(&self.system, &self.state, &self.shown_v, &self.work.start.at, reactions);
+            return;
+        }
         let (system, newton, work, state) = (&*self.system, &mut self.newton, &mut self.work, &self.state);
+        let counters = (newton.iterations, newton.factorizations);
         work.end.x.copy_from_slice(&state.x);
         work.end.v.copy_from_slice(&self.shown_v);
         work.a.copy_from_slice(&state.a);
@@ -58,12 +177,10 @@ impl Simulation {
             true => newton.accelerate(system, state.t, work),
             false => newton.react(system, state.t, work),
         };
-        if outcome.is_err() {
-            work.lambda.fill(f64::NAN);
-        }
-        reactions.lambda.copy_from_slice(&work.lambda);
-        reactions.a.copy_from_slice(&work.a);
-        work.constraint_forces(system, &mut reactions.force);
+        reactions.take(system, outcome.is_ok(), work);
+        // The next step is the same as if nobody had looked.
+        self.hints.restore(&mut self.newton, &mut *self.integrator);
+        (self.newton.iterations, self.newton.factorizations) = counters;
     }
 }
 

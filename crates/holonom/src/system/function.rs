@@ -175,6 +175,12 @@ impl Functions {
         FunctionValues { local: vec![Derivatives::default(); self.items.len()], angle: vec![0.0; self.angles] }
     }
 
+    /// The angles of a function among those of all.
+    pub fn angles_of(&self, id: FunctionId) -> std::ops::Range<usize> {
+        let k = id.0 as usize;
+        self.items[k].angle..self.items.get(k + 1).map_or(self.angles, |next| next.angle)
+    }
+
     /// Values and derivatives at the invariants `pi`, with angles counted from those that `out` holds.
     pub fn evaluate(&self, pi: &[f64], out: &mut FunctionValues) {
         for (function, local) in self.items.iter().zip(&mut out.local) {

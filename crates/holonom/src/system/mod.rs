@@ -19,6 +19,7 @@ mod potential;
 mod respond;
 mod slots;
 mod switches;
+mod terms;
 
 pub use builder::{NodeId, Place, SystemBuilder, Term};
 pub use custom::{ConstraintFunction, CustomRows, Differences, Differentiated, ForceFunction, Number, SIZE};
@@ -38,6 +39,7 @@ pub use mass::{Mass, MassBlock};
 pub use motion::{Constant, Signal};
 pub(crate) use slots::RowSlot;
 pub(crate) use slots::{Slots, add_along_rows, along, scatter, scatter_rows};
+pub(crate) use terms::{place_of, rate_of};
 
 use std::borrow::Cow;
 use std::sync::Arc;

@@ -116,8 +116,13 @@ fn shown(coordinates: &[FunctionId], axes: &str) -> Vec<Along> {
         let about = if letter.is_empty() { "about the normal".into() } else { format!("about {letter} of the first body") };
         let along = format!("along {letter} of the first body");
         match is_angle {
-            true => [[format!("r{letter}"), format!("sine of the rotation {about}")], [format!("t{letter}"), format!("moment on the second body {about}")]],
-            false => [[format!("d{letter}"), format!("deflection {along}")], [format!("f{letter}"), format!("force on the second body {along}")]],
+            true => [
+                [format!("r{letter}"), format!("sine of the rotation {about}")],
+                [format!("t{letter}"), format!("moment on the second body {about}")],
+            ],
+            false => {
+                [[format!("d{letter}"), format!("deflection {along}")], [format!("f{letter}"), format!("force on the second body {along}")]]
+            }
         }
     };
     let all = letters.iter().map(|letter| (false, letter)).chain(turns.iter().map(|letter| (true, letter)));

@@ -1,0 +1,101 @@
+//! What acts most in a run: the largest efforts of drives, forces of springs and other forces, and forces of joints.
+
+use serde::Serialize;
+
+use super::channels::{Channels, RecordedJoint};
+use super::force::Shows;
+use super::{Column, Recording};
+
+/// The largest value of something that acts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Peak {
+    /// Of the drive, the force or the joint.
+    pub name: String,
+    /// `"force"` or `"moment"`.
+    pub what: &'static str,
+    /// With the sign of its column; of several components their size, which has none.
+    pub value: f64,
+    /// N or N·m.
+    pub unit: &'static str,
+    /// When it acts, s.
+    pub at: f64,
+}
+
+/// The largest values of a recording, the largest first.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Peaks {
+    /// Of what drives exert.
+    pub drives: Vec<Peak>,
+    /// Of what springs and other forces exert.
+    pub forces: Vec<Peak>,
+    /// Of what joints transmit.
+    pub joints: Vec<Peak>,
+}
+
+/// Peaks of a sort that are kept.
+const MOST: usize = 10;
+
+/// Share of the largest that is round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+impl Peaks {
+    /// Looks at all recorded rows. What was not recorded, or is not known, has no peak.
+    pub fn of(channels: &Channels, recording: &Recording) -> Self {
+        let Some(times) = recording.column("t") else { return Self::default() };
+        let peak = |name: &str, columns: &[String]| peak(name, columns, times, recording);
+        let joint = |joint: &RecordedJoint| {
+            let columns = RecordedJoint::columns(&channels.axes);
+            let of = |is_moment: bool| -> Vec<String> {
+                columns.iter().filter(|(k, _)| (*k > 2) == is_moment).map(|(_, ending)| format!("{}.{ending}", joint.name)).collect()
+            };
+            [peak(&joint.name, &of(false)), peak(&joint.name, &of(true))]
+        };
+        let told = channels.told();
+        let drives = told.efforts.iter().filter_map(|effort| peak(&effort.name, &[format!("{}.effort", effort.name)]));
+        let forces = channels.forces.iter().flat_map(|force| {
+            let column = |suffix: &str| format!("{}.{suffix}", force.name);
+            match &force.shows {
+                Shows::Power => Vec::new(),
+                Shows::Tension => vec![peak(&force.name, &[column("force")])],
+                Shows::Along(along) => along.iter().map(|along| peak(&force.name, &[column(&along.effort[0])])).collect(),
+                Shows::Load { is_moment, .. } => {
+                    let letter = if *is_moment { 't' } else { 'f' };
+                    let components: Vec<String> = match (channels.axes.len(), is_moment) {
+                        (2, true) => vec![column("t")],
+                        _ => channels.axes.chars().map(|axis| column(&format!("{letter}{axis}"))).collect(),
+                    };
+                    vec![peak(&force.name, &components)]
+                }
+            }
+        });
+        Self {
+            drives: largest(drives.collect()),
+            forces: largest(forces.flatten().collect()),
+            joints: largest(told.joints.iter().flat_map(joint).flatten().collect()),
+        }
+    }
+}
+
+/// The row in which some columns of a unit are largest together; none where that is nothing.
+fn peak(name: &str, columns: &[String], times: &[f64], recording: &Recording) -> Option<Peak> {
+    let columns: Vec<&Column> = columns.iter().filter_map(|column| recording.find(column)).collect();
+    let unit = columns.first()?.heading.unit;
+    let size = |row: usize| columns.iter().map(|column| column.values[row] * column.values[row]).sum::<f64>();
+    let (row, square) = (0..times.len()).map(|row| (row, size(row))).filter(|(_, size)| *size > 0.0).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let value = if let [column] = columns[..] { column.values[row] } else { square.sqrt() };
+    Some(Peak { name: name.into(), what: if unit == "N" { "force" } else { "moment" }, value, unit, at: times[row] })
+}
+
+/// The largest of each unit, as these cannot be compared.
+fn largest(mut peaks: Vec<Peak>) -> Vec<Peak> {
+    peaks.sort_by(|a, b| (a.unit, b.value.abs()).partial_cmp(&(b.unit, a.value.abs())).expect("peaks are numbers"));
+    let mut kept: Vec<Peak> = Vec::new();
+    for peak in peaks {
+        let mut alike = kept.iter().filter(|kept| kept.unit == peak.unit);
+        let is_nothing = alike.next().is_some_and(|largest| peak.value.abs() < ROUND_OFF * largest.value.abs());
+        if !is_nothing && alike.count() + 1 < MOST {
+            kept.push(peak);
+        }
+    }
+    kept
+}
