@@ -121,8 +121,7 @@ struct Watch<'a> {
     clock: ThreadTime,
     limit: f64,
     is_late: bool,
-    /// At the last step and at this, for angles that are counted on.
-    at: [Evaluation; 2],
+    at: Evaluation,
     phi: Vec<f64>,
     /// Largest |Φ|, |Φ̇| and gradient of each row so far.
     rows: Vec<[f64; 3]>,
@@ -135,15 +134,13 @@ struct Watch<'a> {
 impl<'a> Watch<'a> {
     fn new(model: &'a Model, clock: ThreadTime, limit: f64) -> Self {
         let system = &model.system;
-        let mut first = system.evaluation();
-        system.evaluate_again(system.start_position(), 0.0, &mut first);
         let rows = system.constraints();
         Self {
             model,
             clock,
             limit,
             is_late: false,
-            at: [first.clone(), first],
+            at: system.evaluation(),
             phi: vec![0.0; rows],
             rows: vec![[0.0; 3]; rows],
             speed: 0.0,
@@ -157,10 +154,10 @@ impl<'a> Watch<'a> {
 impl Observer for Watch<'_> {
     fn after_step(&mut self, simulation: &Simulation) -> Verdict {
         let (system, state, audit) = (&self.model.system, simulation.state(), simulation.audit());
-        let [last, now] = &mut self.at;
-        system.evaluate(&state.x, state.t, last, now);
-        system.constraint_values(now, state.t, &mut self.phi);
-        self.at.swap(0, 1);
+        // Between nominal steps, which may be taken in parts, angles may make half a turn and more.
+        self.at.count_on(&state.angle);
+        system.evaluate_again(&state.x, state.t, &mut self.at);
+        system.constraint_values(&self.at, state.t, &mut self.phi);
         let gradients = analysis::constraint_jacobian(system, &state.x, state.t);
         for ((worst, gradient), phi) in self.rows.iter_mut().zip(&gradients).zip(&self.phi) {
             let rate: f64 = gradient.iter().zip(simulation.velocities()).map(|(g, v)| g * v).sum();

@@ -88,7 +88,7 @@ fn start(mechanism: &Mechanism, model: &Model) -> Result<Simulation, StartError>
 
 fn motions(mechanism: &Mechanism, model: &Model) -> Result<Vec<Motion>, StartError> {
     let simulation = start(mechanism, model)?;
-    let (x, v) = (&simulation.state().x, simulation.velocities());
+    let (x, v) = (&*model.system.in_world(&simulation.state().x), simulation.velocities());
     Ok(model.bodies.iter().map(|body| body.recorded.velocity(x, v, model.dimension)).collect())
 }
 

@@ -1,6 +1,7 @@
 //! The energy audit: T, V, what was done on the system, and momenta (the paper's §6).
 
 use crate::formulation::{Sampling, Stage, Workspace};
+use crate::linalg::largest;
 use crate::system::{Evaluation, System};
 
 /// Kinetic energy ½ vᵀ M v, J.
@@ -139,53 +140,42 @@ pub fn momenta(system: &System, x: &[f64], v: &[f64], scratch: &mut [f64]) -> [f
     sum
 }
 
+/// Moment or push that is round-off, over the sizes of its terms: some thousand roundings of each.
+const CANCELLED: f64 = 1e-12;
+
 /// Which of the six momenta nothing outside changes at the state sampled: the forces of gravity, laws, rows and loads
-/// neither push nor turn that way, whatever their size. `kept` loses those that do.
+/// neither push nor turn that way, whatever their size. `kept` loses those that do. Places are rounded by their distance from the
+/// origin and by the size of the mechanism: levers are compared with these, as a short one is no less of a lever.
 pub fn drop_driven_momenta(system: &System, work: &Workspace, x: &[f64], kept: &mut [bool; 6]) {
-    let dim = system.dim;
-    let flow = |k: usize, node: usize, x: &[f64]| -> [f64; 3] {
-        let at = |c: usize| if c < dim { x[c] } else { 0.0 };
-        let mut flow = [0.0; 3];
-        if k < 3 {
-            flow[k] = f64::from(u8::from(system.is_point[node]));
-        } else {
-            let (i, j) = ((k - 2) % 3, (k - 1) % 3);
-            flow[j] = at(i);
-            flow[i] = -at(j);
-        }
-        flow
-    };
-    let moves_out = |k: usize| (dim == 2 && (2..5).contains(&k)) && k != 5;
+    let (dim, length) = (system.dim, work.scales.length);
     for (k, kept) in kept.iter_mut().enumerate() {
-        if moves_out(k) || system.free < system.nodes() || !system.loads.is_empty() {
+        let moves_out = dim == 2 && (2..5).contains(&k);
+        if moves_out || system.free < system.nodes() || !system.loads.is_empty() {
             *kept = false;
+        }
+        if !*kept {
             continue;
         }
-        let pushes = |slots: std::ops::Range<usize>| {
-            let (mut sum, mut size) = (0.0_f64, 0.0_f64);
-            for s in slots {
-                let node = system.slots.nodes[s] as usize * dim;
-                let direction = flow(k, node / dim, &x[node..node + dim]);
-                for c in 0..dim {
-                    sum += work.start.at.gradient[s * dim + c] * direction[c];
-                    size += work.start.at.gradient[s * dim + c].abs() * (1.0 + direction[c].abs());
-                }
+        // What a force on a node adds to the momentum, and the size of what it is a sum of.
+        let push = |node: usize, force: &[f64]| -> [f64; 2] {
+            let (x, is_point) = (&x[node * dim..(node + 1) * dim], f64::from(u8::from(system.is_point[node])));
+            let at = |v: &[f64], c: usize| if c < dim { v[c] } else { 0.0 };
+            if k < 3 {
+                return [at(force, k) * is_point, largest(force) * is_point];
             }
-            sum.abs() > 1e-9 * size
+            let (i, j) = ((k - 2) % 3, (k - 1) % 3);
+            [at(x, i) * at(force, j) - at(x, j) * at(force, i), largest(force) * (largest(x) + length)]
+        };
+        let is_driven = |pushes: &mut dyn Iterator<Item = [f64; 2]>| {
+            let [sum, size] = pushes.fold([0.0, 0.0], |[sum, size]: [f64; 2], push| [sum + push[0], size + push[1]]);
+            sum.abs() > CANCELLED * size
         };
         let rows = system.slots.rows.iter().cloned();
         let laws = system.laws.iter().flat_map(|law| law.invariants.iter().map(|&id| system.invariants.slots_of(id)));
-        let pushed = rows.chain(laws).any(pushes);
-        let turned: f64 = x
-            .chunks_exact(dim)
-            .zip(work.forces.weight.chunks_exact(dim))
-            .enumerate()
-            .map(|(node, (x, w))| {
-                let direction = flow(k, node, x);
-                (0..dim).map(|c| w[c] * direction[c]).sum::<f64>()
-            })
-            .sum();
-        let size: f64 = work.forces.weight.iter().map(|w| w.abs()).sum();
-        *kept &= !pushed && turned.abs() <= 1e-9 * size;
+        let gradient = &work.start.at.gradient;
+        let of_slot = |s: usize| push(system.slots.nodes[s] as usize, &gradient[s * dim..(s + 1) * dim]);
+        let is_pushed = rows.chain(laws).any(|slots| is_driven(&mut slots.map(of_slot)));
+        let mut weights = work.forces.weight.chunks_exact(dim).enumerate().map(|(node, weight)| push(node, weight));
+        *kept = !is_pushed && !is_driven(&mut weights);
     }
 }

@@ -173,6 +173,12 @@ pub(super) fn attempt(
 /// Increments of this share of the mechanism are the rounding of positions; what they leave of the energy is for its audit.
 const ROUNDED: f64 = 2.0 * f64::EPSILON;
 
+/// Increments no longer shrink where one is more than this share of that before. Near a singular position they fall slowly, and what
+/// they leave is no round-off: only near the rounding of positions a fall may be chance.
+const SLOW: f64 = 0.7;
+const CHANCE: f64 = 0.1;
+const NEAR_ROUNDED: f64 = 64.0 * f64::EPSILON;
+
 /// Round-off moves light nodes by up to this share of the mechanism: their residual says sooner than their increments that
 /// nothing else is left.
 const NEAR: f64 = 1e-11;
@@ -205,7 +211,7 @@ struct Convergence {
     /// Share of an increment that the next one with the same factors came to.
     contraction: f64,
     stalls: bool,
-    /// Smallest increment so far, and the iterations since it was halved.
+    /// The increment that was last less than half of the one here before, and the iterations since.
     best: f64,
     since: usize,
 }
@@ -269,9 +275,8 @@ impl Convergence {
         let remaining = increment * contraction.max(multipliers).max(self.stale);
         self.left_over = increment * multipliers.max(self.stale);
         self.contraction = if self.stale > 0.0 { self.contraction.max(contraction) } else { 0.0 };
-        self.stalls = increment > 0.1 * self.increment;
-        self.since = if increment < 0.5 * self.best { 0 } else { self.since + 1 };
-        self.best = self.best.min(increment);
+        (self.best, self.since) = if increment < 0.5 * self.best { (increment, 0) } else { (self.best, self.since + 1) };
+        self.stalls = increment > self.increment * if increment > NEAR_ROUNDED { SLOW } else { CHANCE };
         (self.increment, self.turn) = (increment, (increment / self.shortest).max(multipliers));
         remaining <= self.tolerance
     }

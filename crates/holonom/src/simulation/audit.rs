@@ -35,7 +35,7 @@ pub struct Audit {
     pub phi_ddot: f64,
     /// Iterations of the last nominal step.
     pub iterations: u64,
-    /// Linear and angular momentum about the origin.
+    /// Linear and angular momentum about [`System::origin`].
     pub momenta: [f64; 6],
     first_momenta: [f64; 6],
     kept_momenta: [bool; 6],

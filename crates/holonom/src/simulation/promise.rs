@@ -97,7 +97,7 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 const SUMMED: f64 = 2.0 * f64::EPSILON;
 
 /// Share of the energies of the mechanism that a nominal step may be off by, however many parts it was taken in.
-const WHOLE: f64 = 1e-9;
+const WHOLE: f64 = 1e-10;
 
 /// Energy of nothing over all there was to move from which on nothing is left of a motion: as much as there is.
 const SUPPLY: f64 = 1.0;

@@ -69,6 +69,10 @@ const MET: f64 = 1e-9;
 /// Violation that is left alone: round-off.
 const ROUND_OFF: f64 = 1e-14;
 
+/// Violation of positions that rounding of these makes at least: what is more becomes a velocity in the first step, unless a
+/// correction does not halve it.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
+
 /// Most passes at the velocities: each leaves what δ lets the rows miss, much of it where parts are light.
 const PASSES: usize = 30;
 
@@ -118,12 +122,16 @@ fn correct_positions(
     start: &mut Start,
 ) -> Result<(), StartError> {
     let n = system.coordinates();
+    let mut before = f64::INFINITY;
     for _ in 0..30 {
         system.evaluate_again(&work.end.x, asked.t, &mut work.end.at);
         system.constraint_values(&work.end.at, asked.t, &mut work.phi);
-        if work.scaled_violation() <= ROUND_OFF || !newton.factor_inertia(work) {
+        let violation = work.scaled_violation();
+        let is_met = violation <= ROUNDED || violation <= ROUND_OFF && violation > 0.5 * before;
+        if is_met || !newton.factor_inertia(work) {
             break;
         }
+        before = violation;
         newton.unknowns[..n].fill(0.0);
         newton.unknowns[n..].iter_mut().zip(&work.phi).for_each(|(unknown, phi)| *unknown = -phi);
         newton.kkt.solve(&mut newton.unknowns);

@@ -109,8 +109,8 @@ fn share_velocities(dim: usize, free: usize, moving: &[Moving], velocities: &mut
     impulse
 }
 
-/// So many times farther away than large, a mechanism is counted from its own middle.
-const FAR: f64 = 1e3;
+/// So many times farther away than large, a mechanism is counted from its own middle: a digit of its places would be lost.
+const FAR: f64 = 10.0;
 
 impl SystemBuilder {
     /// An empty system of `dim` = 2 or 3 coordinates a node with gravity in its axes, m/s².
@@ -357,7 +357,7 @@ impl SystemBuilder {
             // Of few digits, so that differences from it have no round-off.
             middle[c] = f64::from((0.5 * (low + high)) as f32);
         }
-        let [shortest, longest] = self.invariants.lengths(&self.position);
+        let [shortest, longest] = self.invariants.lengths(is_point, &self.position);
         // A single point shows no size; what holds it does.
         let extent = if extent > 0.0 { extent } else { shortest };
         // Rows of coordinates in the world have all their digits in these.

@@ -22,6 +22,11 @@ pub struct Evaluation {
 }
 
 impl Evaluation {
+    /// Has angles counted on from these, as a state has them.
+    pub fn count_on(&mut self, angles: &[f64]) {
+        self.functions.angle.copy_from_slice(angles);
+    }
+
     /// Takes over the numbers of another evaluation of the same system, without allocating.
     pub fn copy_from(&mut self, other: &Self) {
         self.value.copy_from_slice(&other.value);

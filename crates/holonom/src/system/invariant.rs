@@ -113,15 +113,26 @@ impl Invariants {
         Sum { start, end: self.term_node.len() as u32, constant: self.vector(constant) }
     }
 
-    /// Lengths of the shortest sum of nodes that is not nothing and of the longest, m.
-    pub(crate) fn lengths(&self, x: &[f64]) -> [f64; 2] {
+    /// Length of the shortest sum of nodes that is not nothing, and of the longest that moves with all points (one flag a node) over
+    /// its share of their motion, m: how far these are from where they are held to.
+    pub(crate) fn lengths(&self, is_point: &[bool], x: &[f64]) -> [f64; 2] {
         let sums = self.items.iter().flat_map(|item| [item.u, item.w]).filter(|sum| sum.start < sum.end);
         let length = |sum: Sum| match self.dim {
             2 => self.sum_at::<2>(&sum, 1.0, x.as_chunks().0).iter().map(|c| c * c).sum::<f64>().sqrt(),
             _ => self.sum_at::<3>(&sum, 1.0, x.as_chunks().0).iter().map(|c| c * c).sum::<f64>().sqrt(),
         };
-        let lengths = sums.map(length).filter(|length| *length > 0.0);
-        lengths.fold([f64::INFINITY, 0.0], |[shortest, longest], length| [shortest.min(length), longest.max(length)])
+        sums.fold([f64::INFINITY, 0.0], |[shortest, longest], sum| {
+            let (length, [factor, turn]) = (length(sum), self.of_points(&sum, is_point));
+            let share = factor.hypot(turn);
+            let shortest = if length > 0.0 { shortest.min(length) } else { shortest };
+            [shortest, if share > 0.0 { longest.max(length / share) } else { longest }]
+        })
+    }
+
+    /// What a sum moves by when all points move by one.
+    fn of_points(&self, sum: &Sum, is_point: &[bool]) -> [f64; 2] {
+        let slots = (sum.start as usize..sum.end as usize).filter(|&s| is_point[self.term_node[s] as usize]);
+        slots.fold([0.0; 2], |[f, g], s| [f + self.term_factors[s][0], g + self.term_factors[s][1]]).map(whole)
     }
 
     /// Has the points among the nodes (one flag a node) counted from another origin: what the sums are stays as it is.
@@ -135,8 +146,7 @@ impl Invariants {
 
     /// The constant of a sum whose points are counted from another origin.
     fn moved(&mut self, sum: &Sum, is_point: &[bool], origin: [f64; 3]) -> u32 {
-        let slots = (sum.start as usize..sum.end as usize).filter(|&s| is_point[self.term_node[s] as usize]);
-        let [factor, turn] = slots.fold([0.0; 2], |[f, g], s| [f + self.term_factors[s][0], g + self.term_factors[s][1]]).map(whole);
+        let [factor, turn] = self.of_points(sum, is_point);
         let mut constant = self.vectors[sum.constant as usize];
         (0..self.dim).for_each(|c| constant[c] += factor * origin[c]);
         constant[0] -= turn * origin[1];
