@@ -4,9 +4,9 @@ use crate::Run;
 use crate::base64;
 use crate::outcome::Outcome;
 use crate::thin::{Keep, Thinning};
-use holonom::record::{Recording, Scene};
+use holonom::record::{Column, Recording, Scene};
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 /// Columns that go into the page as they are, and how they are thinned.
 const COLUMNS: [(&str, Keep); 11] = [
@@ -28,7 +28,7 @@ const COLUMNS: [(&str, Keep); 11] = [
 pub struct RunData<'a> {
     pub label: &'a str,
     /// Axes are scaled to the runs that are sound.
-    sound: bool,
+    pub sound: bool,
     /// None: that of the first run.
     scene: Option<&'a Scene>,
     /// Rows in the recording, before thinning.
@@ -43,7 +43,22 @@ pub struct RunData<'a> {
     /// Name of a body → coordinates of its centre of mass along `scene.axes` and its orientation (`qw`, `qx`, `qy`, `qz`; in a plane
     /// `angle`), row after row, base64 of 32-bit floats.
     bodies: BTreeMap<&'a str, String>,
+    /// What else was recorded: what acts and joint coordinates first, then motion.
+    channels: Vec<ChannelData<'a>>,
 }
+
+/// A column that may be plotted.
+#[derive(Serialize)]
+struct ChannelData<'a> {
+    name: &'a str,
+    unit: &'a str,
+    meaning: &'a str,
+    /// Base64 of 32-bit floats.
+    values: String,
+}
+
+/// Numbers that a page holds per run for these; what comes last is left out where there are more.
+const MAX_NUMBERS: usize = 600_000;
 
 impl<'a> RunData<'a> {
     /// `first` is the first run of the report.
@@ -62,6 +77,7 @@ impl<'a> RunData<'a> {
             columns: columns(recording, &thinning),
             points: paths(recording, scene.points.iter().map(|point| point.name.as_str()), &place, &thinning),
             bodies: paths(recording, scene.bodies.iter().map(|body| body.name.as_str()), &pose, &thinning),
+            channels: channels(recording, scene, &thinning),
         }
     }
 }
@@ -80,6 +96,27 @@ fn columns(recording: &Recording, thinning: &Thinning) -> BTreeMap<&'static str,
     ];
     let derived = derived.into_iter().filter_map(|(name, values, keep)| Some((name, values?, keep)));
     recorded.chain(derived).map(|(name, values, keep)| (name, base64::doubles(&thinning.apply(&values, keep)))).collect()
+}
+
+/// All columns with a unit but those of the run itself.
+fn channels<'a>(recording: &'a Recording, scene: &Scene, thinning: &Thinning) -> Vec<ChannelData<'a>> {
+    let bodies = scene.bodies.iter().map(|body| body.name.as_str());
+    let moving: HashSet<&str> = scene.points.iter().map(|point| point.name.as_str()).chain(bodies).collect();
+    let is_motion = |column: &&Column| column.heading.name.rsplit_once('.').is_some_and(|(owner, _)| moving.contains(owner));
+    let shown = recording.columns().iter().filter(|column| {
+        let heading = &column.heading;
+        heading.unit != "1" && COLUMNS.iter().all(|(name, _)| *name != heading.name) && !column.values.iter().all(|value| value.is_nan())
+    });
+    let (motion, others): (Vec<&Column>, Vec<&Column>) = shown.partition(is_motion);
+    let most = MAX_NUMBERS / thinning.kept().max(1);
+    let channel = |column: &'a Column| {
+        let heading = &column.heading;
+        // What acts is asked for its peaks.
+        let keep = if ["N", "N·m", "W"].contains(&heading.unit) { Keep::Extreme } else { Keep::Last };
+        let values: Vec<f32> = thinning.apply(&column.values, keep).into_iter().map(|value| value as f32).collect();
+        ChannelData { name: &heading.name, unit: heading.unit, meaning: &heading.meaning, values: base64::singles(&values) }
+    };
+    others.into_iter().chain(motion).take(most).map(channel).collect()
 }
 
 /// E − E(0) − W, J; a recording without the column `work` has W = 0.

@@ -26,6 +26,7 @@ pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
 
 fn one(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
     writeln!(out, r#"<p class="method">{} {}{}</p>"#, badge(run.summary), method(run.summary), reason(run.summary))?;
+    peaks(run.summary, out)?;
     writeln!(out, r#"<dl class="figures">"#)?;
     for (pointer, name, unit) in FIGURES.into_iter().filter(|(pointer, ..)| known(run.summary, pointer)) {
         let value = figure(run.summary, pointer);
@@ -33,6 +34,39 @@ fn one(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
         writeln!(out, "<div><dt>{name}</dt><dd>{value}{unit}</dd></div>")?;
     }
     writeln!(out, "</dl>")
+}
+
+/// Sorts of what acts, as the summary has them, and what to call them.
+const PEAKS: [(&str, &str); 3] = [("drives", "Drives"), ("forces", "Forces"), ("joints", "Joints")];
+
+/// Peaks of a sort and a unit that are shown.
+const ROWS: usize = 5;
+
+/// The largest of what acts in the mechanism.
+fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
+    let of = |sort: &str| summary.pointer(&format!("/peaks/{sort}")).and_then(Value::as_array).filter(|peaks| !peaks.is_empty());
+    if PEAKS.iter().all(|(sort, _)| of(sort).is_none()) {
+        return Ok(());
+    }
+    writeln!(out, r#"<div class="peaks">"#)?;
+    for (sort, name) in PEAKS {
+        let Some(peaks) = of(sort) else { continue };
+        writeln!(out, "<table><caption>{name}: the largest</caption><tbody>")?;
+        let is_among_first = |k: usize| peaks[..k].iter().filter(|peak| peak.get("unit") == peaks[k].get("unit")).count() < ROWS;
+        for peak in (0..peaks.len()).filter(|&k| is_among_first(k)).map(|k| &peaks[k]) {
+            let text = |key: &str| peak.get(key).map_or(String::new(), |value| html(&format::value(value)));
+            let number = |key: &str| format::figure(peak.get(key).and_then(Value::as_f64).unwrap_or(f64::NAN));
+            let (value, at) = (number("value"), number("at"));
+            writeln!(
+                out,
+                r#"<tr><th scope="row">{}</th><td class="number">{value} <small>{}</small></td><td class="number"><small>at {at} s</small></td></tr>"#,
+                text("name"),
+                text("unit"),
+            )?;
+        }
+        writeln!(out, "</tbody></table>")?;
+    }
+    writeln!(out, "</div>")
 }
 
 /// Whether a summary says anything there.

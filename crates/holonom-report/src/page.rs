@@ -91,7 +91,13 @@ fn stage(runs: &[RunData], out: &mut dyn Write) -> io::Result<()> {
         r#"<noscript><p class="note">The moving picture and the plots need JavaScript.</p></noscript>
 <nav id="legend" aria-label="Runs"></nav>
 <section id="motion" aria-label="Motion"></section>
-<section id="plots" aria-label="Plots"></section>"#
+<section id="machine" aria-label="Machine"></section>"#
+    )?;
+    // Of a single run that is sound nobody asks for the solver's health first.
+    let is_open = if runs.len() == 1 && runs[0].sound { "" } else { " open" };
+    writeln!(
+        out,
+        "<details id=\"health\"{is_open}><summary>Energy, violations and iterations</summary>\n<section id=\"plots\" aria-label=\"Plots\"></section></details>"
     )?;
     for run in runs.iter().filter(|run| run.stride > 1) {
         let label = if runs.len() > 1 { format!("{}: ", html(run.label)) } else { String::new() };

@@ -28,6 +28,21 @@ fn one_run() {
 }
 
 #[test]
+fn what_the_machine_does_comes_first() {
+    let seen = open("machine", &[sample::motor()]);
+    // Efforts and angles; the solver's health is folded away, and a column is plotted when it is asked for.
+    let health = 3;
+    loads(&seen, 2 + health);
+    let machine = &seen["machine"];
+    assert_eq!(
+        (&machine["first"], &machine["healthIsOpen"]),
+        (&Value::from(vec!["Efforts (N·m)", "Joint angles (rad)"]), &Value::from(false))
+    );
+    assert_eq!((&machine["asked"], &machine["left"]), (&Value::from("crank.power (W)"), &Value::from(2)), "{seen:#}");
+    assert_eq!(machine["options"], 3, "{seen:#}");
+}
+
+#[test]
 fn two_runs_compared() {
     let runs = [sample::pendulum("conserving-ggl", 0.025, 800, 1.0), sample::pendulum("trapezoidal", 0.04, 500, 30.0)];
     let seen = open("compare", &runs);

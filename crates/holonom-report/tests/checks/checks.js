@@ -63,6 +63,17 @@
       if (readout) seen.readout.left = readout.hidden;
     }
 
+    const field = document.querySelector(".picker input");
+    if (field) {
+      const titles = () => [...document.querySelectorAll("#machine .plot h3")].map((node) => node.textContent);
+      seen.machine = { first: titles(), healthIsOpen: document.querySelector("#health").open, options: document.querySelectorAll("#channels option").length };
+      field.value = "crank.power";
+      field.dispatchEvent(new Event("input"));
+      seen.machine.asked = titles()[0];
+      document.querySelector(".asked .remove").click();
+      seen.machine.left = titles().length;
+    }
+
     const before = plots();
     await frames(3);
     const legend = document.querySelector("#legend button, button.entry");

@@ -2,7 +2,7 @@
 
 pub mod bodies;
 
-use holonom::record::{Anchor, Line, LineKind, PointKind, Recording, Scene, ScenePoint};
+use holonom::record::{Anchor, Heading, Line, LineKind, PointKind, Recording, Scene, ScenePoint};
 use serde_json::{Value, json};
 
 const GRAVITY: f64 = 9.81;
@@ -38,6 +38,30 @@ pub fn empty() -> Sample {
     let mut sample = slider();
     sample.recording = Recording::new(["t", "energy", "phi"].map(str::to_owned));
     sample.scene = Scene { axes: "xyz".to_owned(), ..Scene::default() };
+    sample
+}
+
+/// The slider with a motor, of which effort, power and angle are recorded; it completes.
+pub fn motor() -> Sample {
+    let mut sample = slider();
+    let heading = |name: &str, unit, meaning: &str| Heading { name: name.to_owned(), unit, meaning: meaning.to_owned() };
+    let own = sample.recording.columns().iter().map(|column| column.heading.clone());
+    let others = [
+        heading("crank.effort", "N·m", "moment that the drive exerts along its motion"),
+        heading("crank.power", "W", "power that the drive gives to the mechanism"),
+        heading("hinge.angle", "rad", "angle, from the start"),
+    ];
+    let mut recording = Recording::new(own.chain(others));
+    for row in 0..sample.recording.rows() {
+        let mut values: Vec<f64> = sample.recording.columns().iter().map(|column| column.values[row]).collect();
+        let t = values[0];
+        values.extend([2.0 * t.sin(), 2.0 * t.sin() * 0.3, 0.3 * t]);
+        recording.push(&values);
+    }
+    sample.recording = recording;
+    sample.summary["status"] = json!("completed");
+    sample.summary["stopped_at"] = json!(null);
+    sample.summary["reason"] = json!(null);
     sample
 }
 

@@ -5,6 +5,7 @@ import "./licences";
 import "./viewer.css";
 import { Clock } from "./clock";
 import { element, place } from "./dom";
+import { buildMachine } from "./machine";
 import { Motion } from "./motion";
 import { readPayload, type Vec3 } from "./payload";
 import { charts } from "./plots/charts";
@@ -59,6 +60,8 @@ function build(motions: Motion[], clock: Clock, visibility: Visibility): void {
   const stage = element("div", { class: "stage" });
   place("motion").append(stage, buildTransport(clock));
   buildStage(stage, motions, clock, visibility);
+
+  buildMachine(place("machine"), runs, clock, visibility);
 
   const plots = element("div", { class: "plots" });
   place("plots").append(plots);

@@ -55,6 +55,16 @@ export interface Run {
   bodies: Map<string, Float32Array>;
   /** Times of the rows, s. */
   times: Float64Array;
+  /** What acts and joint coordinates, then motion. */
+  channels: Channel[];
+}
+
+/** A recorded column that may be plotted. */
+export interface Channel {
+  name: string;
+  unit: string;
+  meaning: string;
+  values: Float64Array;
 }
 
 interface RawRun {
@@ -65,6 +75,7 @@ interface RawRun {
   columns: Record<string, string>;
   points: Record<string, string>;
   bodies: Record<string, string>;
+  channels: (Omit<Channel, "values"> & { values: string })[];
 }
 
 export function readPayload(): Run[] {
@@ -76,7 +87,8 @@ export function readPayload(): Run[] {
     const columns = decodeAll(raw.columns, (bytes) => new Float64Array(bytes));
     const points = decodeAll(raw.points, (bytes) => new Float32Array(bytes));
     const bodies = decodeAll(raw.bodies, (bytes) => new Float32Array(bytes));
-    return [{ label: raw.label, sound: raw.sound, scene, columns, points, bodies, times: columns.get("t") ?? new Float64Array() }];
+    const channels = raw.channels.map((channel) => ({ ...channel, values: Float64Array.from(new Float32Array(bytesOf(channel.values))) }));
+    return [{ label: raw.label, sound: raw.sound, scene, columns, points, bodies, times: columns.get("t") ?? new Float64Array(), channels }];
   });
 }
 

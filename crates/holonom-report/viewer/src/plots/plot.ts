@@ -84,7 +84,8 @@ class Drawing {
     this.on("setSize", mark);
     clock.onTime(mark);
     onThemeChange(() => this.plot.redraw(false));
-    new ResizeObserver(() => this.plot.setSize({ width: place.clientWidth, height: HEIGHT })).observe(place);
+    // A drawing that is folded away has no width.
+    new ResizeObserver(() => place.clientWidth > 0 && this.plot.setSize({ width: place.clientWidth, height: HEIGHT })).observe(place);
     mark();
   }
 
