@@ -36,7 +36,7 @@ fn what_the_machine_does_comes_first() {
     let machine = &seen["machine"];
     assert_eq!(
         (&machine["first"], &machine["healthIsOpen"]),
-        (&Value::from(vec!["Efforts (N·m)", "Joint angles (rad)"]), &Value::from(false))
+        (&Value::from(vec!["crank.effort (N·m)", "hinge.angle (rad)"]), &Value::from(false))
     );
     assert_eq!((&machine["asked"], &machine["left"]), (&Value::from("crank.power (W)"), &Value::from(2)), "{seen:#}");
     assert_eq!(machine["options"], 3, "{seen:#}");

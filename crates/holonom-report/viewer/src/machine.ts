@@ -34,7 +34,10 @@ export function buildMachine(container: HTMLElement, runs: Run[], clock: Clock, 
     const single = groups.flatMap(([, group]) => group).slice(0, MOST_COMPARED);
     for (const channel of single) build(plots, chartOf(titleOf(channel), [channel.name], runs), clock, visibility);
   } else {
-    for (const [title, group] of groups) build(plots, chartOf(title, group.map((channel) => channel.name), runs), clock, visibility);
+    for (const [title, group] of groups) {
+      const named = group.length > 1 ? title : titleOf(group[0]);
+      build(plots, chartOf(named, group.map((channel) => channel.name), runs), clock, visibility);
+    }
   }
   const add = (channel: Channel): void => {
     const place = element("div", { class: "asked" });
@@ -59,7 +62,8 @@ function first(channels: Channel[]): [string, Channel[]][] {
   ]);
   const found = groups.filter(([, group]) => group.length > 0);
   if (found.length > 0) return found;
-  return [["Positions (m)", channels.filter((channel) => channel.unit === "m").slice(0, 3)]];
+  const places = channels.filter((channel) => channel.unit === "m").slice(0, 3);
+  return places.length > 0 ? [["Positions (m)", places]] : [];
 }
 
 /** A chart of some channels: a curve each, or one of each run. */
