@@ -19,6 +19,9 @@ pub struct StartChange {
 /// Change of a velocity, over the largest of the model, that is round-off.
 const ROUND_OFF: f64 = 1e-9;
 
+/// Share of its size by which a mechanism is moved, or angle, that is none.
+const STILL: f64 = 1e-12;
+
 /// Velocity and angular velocity as written and as found.
 type Pair = [[Vector3<f64>; 2]; 2];
 
@@ -42,7 +45,10 @@ impl Model {
         });
         let all: Vec<(&String, Pair)> = bodies.chain(points).collect();
         let largest = |k: usize| all.iter().flat_map(|(_, pair)| pair.iter().map(move |v| v[k].norm())).fold(0.0, f64::max);
-        let least = [ROUND_OFF * largest(0), ROUND_OFF * largest(1)];
+        // What moves nothing as long as the run lasts is no change either.
+        let size = x.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+        let turn = self.settings.end.map_or(0.0, |end| STILL / end);
+        let least = [(ROUND_OFF * largest(0)).max(turn * size), (ROUND_OFF * largest(1)).max(turn)];
         let changes = all.iter().map(|&(name, [written, found])| {
             let [velocity, angular_velocity] = [0, 1].map(|k| (found[k] - written[k]).norm());
             StartChange { name: name.clone(), velocity, angular_velocity }
