@@ -5,5 +5,8 @@ mod read;
 mod write;
 
 pub use json::to_json;
-pub use read::{DEEPEST, LARGEST_FILE, LARGEST_MESH, MOST_TRIANGLES, MeshError, Source, read_mesh, read_value};
+pub use read::{
+    DEEPEST, LARGEST_FILE, LARGEST_MESH, LARGEST_NUMBERS, MOST_TRIANGLES, MeshError, NumbersError, Source, read_mesh, read_numbers,
+    read_value,
+};
 pub use write::{Cells, Table, WRITERS, WriteTable, Writer, csv_cells, csv_line, headings, write_json};

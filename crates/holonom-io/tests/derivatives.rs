@@ -217,3 +217,112 @@ fn every_example_has_the_tangent_of_its_residual() {
         check(&path.display().to_string(), &std::fs::read_to_string(&path).unwrap());
     }
 }
+
+/// Forces, torques and efforts that read what other bodies do: places, velocities, angular velocities, joint coordinates and measures of
+/// them, in space and in the plane.
+#[test]
+fn what_reads_other_bodies_has_the_tangent_of_its_residual() {
+    for (name, text) in [("space", FEEDBACK_IN_SPACE), ("plane", FEEDBACK_IN_THE_PLANE)] {
+        check(name, text);
+        check_coupled(name, text);
+        check_both_levels(name, text);
+    }
+}
+
+const FEEDBACK_IN_SPACE: &str = r#"
+[table.soft]
+points = [[-9, -3], [-1, -2], [0, 0], [1, 1], [9, 4]]
+interpolation = "cubic"
+
+[point.bob]
+mass = 1
+position = [1, 0.3, 0.5]
+velocity = [0.1, 0.2, 0]
+
+[body.arm]
+mass = 2
+inertia = [0.2, 0.2, 0.3, 0.01, 0.02, 0]
+position = [0.5, 0.2, 0]
+angular_velocity = [0.1, 0.3, -0.2]
+
+[body.arm.points]
+tip = [0.4, 0.1, 0.1]
+
+[body.fin]
+mass = 1
+inertia = [0.1, 0.1, 0.2]
+position = [0.9, 0.4, 0.3]
+
+[joint.shoulder]
+type = "revolute"
+between = ["ground", "arm"]
+at = [0, 0, 0]
+axis = [0.2, 1, 0.1]
+
+[joint.slot]
+type = "cylindrical"
+between = ["arm", "fin"]
+at = [0.9, 0.4, 0.3]
+axis = [1, 0, 0.3]
+
+[measure.stretch]
+value = "distance(bob, arm.tip)^2 + 0.3*speed(fin, bob) + t"
+
+[force.motor]
+type = "effort"
+joint = "shoulder"
+effort = "soft(stretch) - 0.4*slot.displacement*slot.angle_rate + 0.2*fin.wy*q - bob.vx*arm.tip.vz"
+
+[force.thrust]
+type = "force"
+body = "fin"
+axes = "body"
+force = ["arm.wx*shoulder.angle", "stretch + wx", "angle(bob, arm, fin)*slot.displacement_rate"]
+
+[force.wheel]
+type = "torque"
+body = "arm"
+reaction = "fin"
+torque = ["shoulder.angle_rate + bob.x", "fin.vz", "sin(slot.angle)"]
+
+[force.pull]
+type = "expression"
+point = "bob"
+force = ["arm.tip.x - x", "fin.wz*vx", "-shoulder.angle*z"]
+"#;
+
+const FEEDBACK_IN_THE_PLANE: &str = r#"
+plane = "xz"
+
+[body.trolley]
+mass = 3
+inertia = 0.4
+position = [0.1, 0]
+
+[body.load]
+mass = 2
+inertia = 0.2
+position = [0.5, -1]
+angular_velocity = 0.3
+
+[joint.rail]
+type = "prismatic"
+between = ["ground", "trolley"]
+at = [0, 0]
+axis = [1, 0]
+
+[joint.pivot]
+type = "revolute"
+between = ["trolley", "load"]
+at = [0.1, 0]
+
+[force.controller]
+type = "effort"
+joint = "rail"
+effort = "3*pivot.angle - 0.2*load.angle_rate*q_rate + atan2(load.x - trolley.x, trolley.z - load.z)"
+
+[force.fan]
+type = "torque"
+body = "load"
+torque = "rail.displacement*load.vx - rail.displacement_rate"
+"#;

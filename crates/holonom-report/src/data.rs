@@ -112,9 +112,9 @@ fn channels<'a>(recording: &'a Recording, scene: &Scene, thinning: &Thinning) ->
     let channel = |column: &'a Column| {
         let heading = &column.heading;
         // What acts is asked for its peaks.
-        let keep = if ["N", "N·m", "W"].contains(&heading.unit) { Keep::Extreme } else { Keep::Last };
+        let keep = if ["N", "N·m", "W"].contains(&&*heading.unit) { Keep::Extreme } else { Keep::Last };
         let values: Vec<f32> = thinning.apply(&column.values, keep).into_iter().map(|value| value as f32).collect();
-        ChannelData { name: &heading.name, unit: heading.unit, meaning: &heading.meaning, values: base64::singles(&values) }
+        ChannelData { name: &heading.name, unit: &heading.unit, meaning: &heading.meaning, values: base64::singles(&values) }
     };
     others.into_iter().chain(motion).take(most).map(channel).collect()
 }

@@ -26,6 +26,7 @@ pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
 
 fn one(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
     writeln!(out, r#"<p class="method">{} {}{}</p>"#, badge(run.summary), method(run.summary), reason(run.summary))?;
+    measures(run.summary, out)?;
     peaks(run.summary, out)?;
     writeln!(out, r#"<dl class="figures">"#)?;
     for (pointer, name, unit) in FIGURES.into_iter().filter(|(pointer, ..)| known(run.summary, pointer)) {
@@ -63,6 +64,55 @@ fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
                 text("name"),
                 text("unit"),
             )?;
+        }
+        writeln!(out, "</tbody></table>")?;
+    }
+    writeln!(out, "</div>")
+}
+
+/// Events that are listed.
+const EVENTS: usize = 10;
+
+/// How far measures go, and when events happen: what the model was asked.
+fn measures(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
+    let list = |pointer: &str| summary.pointer(pointer).and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    let (measures, events) = (list("/peaks/measures"), list("/events"));
+    if measures.is_empty() && events.is_empty() {
+        return Ok(());
+    }
+    let number = |of: &Value, key: &str| format::figure(of.get(key).and_then(Value::as_f64).unwrap_or(f64::NAN));
+    let words = |of: &Value, key: &str| html(of.get(key).and_then(Value::as_str).unwrap_or(""));
+    writeln!(out, r#"<div class="peaks">"#)?;
+    if !measures.is_empty() {
+        let heads = ["smallest", "largest", "last"].map(|head| format!(r#"<th scope="col" class="number">{head}</th>"#)).concat();
+        writeln!(out, r#"<table class="measures"><caption>Measures</caption><thead><tr><th></th>{heads}</tr></thead><tbody>"#)?;
+        for measure in measures {
+            let cell = |key: &str, at: &str| {
+                let at = if at.is_empty() { String::new() } else { format!(" <small>at {} s</small>", number(measure, at)) };
+                format!(r#"<td class="number">{}{at}</td>"#, number(measure, key))
+            };
+            let unit = match words(measure, "unit") {
+                unit if unit == "1" => String::new(),
+                unit => format!(" <small>{unit}</small>"),
+            };
+            let cells = [cell("min", "min_at"), cell("max", "max_at"), cell("last", "")].concat();
+            writeln!(out, r#"<tr><th scope="row">{}{unit}</th>{cells}</tr>"#, words(measure, "name"))?;
+        }
+        writeln!(out, "</tbody></table>")?;
+    }
+    if !events.is_empty() {
+        writeln!(out, "<table><caption>Events</caption><tbody>")?;
+        for event in events.iter().take(EVENTS) {
+            let end = if event.get("stopped") == Some(&Value::Bool(true)) { " <small>end of the run</small>" } else { "" };
+            writeln!(
+                out,
+                r#"<tr><th scope="row">{}{end}</th><td class="number">{} <small>s</small></td></tr>"#,
+                words(event, "event"),
+                number(event, "t")
+            )?;
+        }
+        if let more @ 1.. = events.len().saturating_sub(EVENTS) {
+            writeln!(out, r#"<tr><td colspan="2">and {more} more, in summary.json</td></tr>"#)?;
         }
         writeln!(out, "</tbody></table>")?;
     }

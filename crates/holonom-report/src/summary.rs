@@ -26,14 +26,14 @@ const UNITS: [(&str, &str); 13] = [
 const HEADINGS: [&str; 1] = ["label"];
 
 /// Begin of the keys that stand at the top of the page.
-const ELSEWHERE: &str = "peaks.";
+const ELSEWHERE: [&str; 2] = ["peaks.", "events"];
 
 /// The summary of one run in two halves side by side; of several, what is the same in all of them so, and a column of the
 /// rest for each run.
 pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
     let columns: Vec<Vec<(String, &Value)>> = runs.iter().map(|run| flatten(run.summary)).collect();
     let mut keys = union_of_keys(&columns);
-    keys.retain(|key| !key.starts_with(ELSEWHERE));
+    keys.retain(|key| !ELSEWHERE.iter().any(|begin| key.starts_with(begin)));
     if runs.len() < 2 {
         return halves(&columns, &keys, out);
     }

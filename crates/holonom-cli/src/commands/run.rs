@@ -72,6 +72,36 @@ fn peaks(of_sort: &Value) -> String {
     peaks.iter().map(|[name, value, rest]| format!("{name:names$}  {value:>values$} {rest}")).collect::<Vec<_>>().join("\n")
 }
 
+/// How far each measure goes.
+fn measures(of: &Value) -> String {
+    let line = |measure: &Value| {
+        let [min, min_at, max, max_at] =
+            ["min", "min_at", "max", "max_at"].map(|key| short(figures(measure[key].as_f64().unwrap_or(f64::NAN))));
+        let unit = measure["unit"].as_str().filter(|unit| *unit != "1").map_or(String::new(), |unit| format!(" {unit}"));
+        format!("{}  {min} at {min_at} s … {max}{unit} at {max_at} s", measure["name"].as_str().unwrap_or(""))
+    };
+    of.as_array().into_iter().flatten().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// Events that are listed one by one.
+const LISTED: usize = 10;
+
+/// The events of the run.
+fn events(of: &Value) -> String {
+    let events = of.as_array().map_or(&[][..], Vec::as_slice);
+    let line = |event: &Value| {
+        let end = if event["stopped"] == true { ", where the run ended" } else { "" };
+        format!("{} at {} s{end}", event["event"].as_str().unwrap_or(""), short(event["t"].as_f64().unwrap_or(f64::NAN)))
+    };
+    let (first, last) = events.split_at(events.len().min(LISTED));
+    let mut lines: Vec<String> = first.iter().map(line).collect();
+    if let Some((end, between)) = last.split_last() {
+        lines.extend((!between.is_empty()).then(|| format!("{} more", between.len())));
+        lines.push(line(end));
+    }
+    lines.join("\n")
+}
+
 /// The summary as people read it.
 fn describe(loaded: &Loaded, summary: &Value) -> String {
     let number = |group: &str, key: &str| short(summary[group][key].as_f64().unwrap_or(f64::NAN));
@@ -84,6 +114,7 @@ fn describe(loaded: &Loaded, summary: &Value) -> String {
     items.extend(
         [("drives", "drives"), ("forces", "forces"), ("joints", "joints")].map(|(word, sort)| (word, peaks(&summary["peaks"][sort]))),
     );
+    items.extend([("measures", measures(&summary["peaks"]["measures"])), ("events", events(&summary["events"]))]);
     items.retain(|(_, text)| !text.is_empty());
     items.extend([
         (

@@ -1,6 +1,7 @@
 //! Model files: TOML in, a description with the place of everything in it out.
 
 mod mesh;
+mod numbers;
 mod places;
 mod render;
 mod toml;
@@ -9,9 +10,10 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use holonom::model::{Description, Fault, Faults, Kinds, Mesh, Meshes, Model, NoMeshes, Table, Value};
+use holonom::model::{Description, Fault, Faults, Files, Kinds, Mesh, Model, NoFiles, NumberFile, Table, Value};
 
 pub use mesh::{LARGEST_MESH, MOST_TRIANGLES, MeshError, read_mesh};
+pub use numbers::{LARGEST_NUMBERS, NumbersError, read_numbers};
 use places::Places;
 
 /// Largest model file that is read, bytes: some 40 000 entries, while parsing takes up to fifty times as much memory.
@@ -28,7 +30,7 @@ pub struct Source {
     value: Value,
     places: Places,
     /// The files that the model names, where they can be read.
-    meshes: Option<MeshFiles>,
+    files: Option<FilesBeside>,
     kinds: Kinds,
 }
 
@@ -41,12 +43,12 @@ impl Source {
         let text = decode(name, bytes)?;
         let mut places = Places::default();
         let value = toml::parse(&text, &mut places).map_err(|error| render::syntax(name, &text, &error))?;
-        Ok(Self { name: name.into(), text, value, places, meshes: None, kinds: Kinds::default() })
+        Ok(Self { name: name.into(), text, value, places, files: None, kinds: Kinds::default() })
     }
 
     /// Says in which folder the files are that the model names.
     pub fn beside(mut self, folder: &Path) -> Self {
-        self.meshes = Some(MeshFiles { folder: folder.into(), read: Mutex::default() });
+        self.files = Some(FilesBeside { folder: folder.into(), meshes: Mutex::default(), numbers: Mutex::default() });
         self
     }
 
@@ -114,9 +116,9 @@ impl Source {
     }
 
     fn compile(&self, value: &Value) -> Result<Model, Faults> {
-        match &self.meshes {
-            Some(meshes) => Model::from_value_with(value, &self.kinds, meshes),
-            None => Model::from_value_with(value, &self.kinds, &NoMeshes),
+        match &self.files {
+            Some(files) => Model::from_value_with(value, &self.kinds, files),
+            None => Model::from_value_with(value, &self.kinds, &NoFiles),
         }
     }
 
@@ -172,33 +174,45 @@ fn put<'a>(description: &mut Value, key: &'a str, value: Value) -> Result<(), &'
     Ok(())
 }
 
-/// Meshes in files of a folder, each read once.
-struct MeshFiles {
+/// Files of a folder, each read once.
+struct FilesBeside {
     folder: PathBuf,
-    read: Mutex<HashMap<String, Arc<Mesh>>>,
+    meshes: Mutex<HashMap<String, Arc<Mesh>>>,
+    numbers: Mutex<HashMap<String, Arc<NumberFile>>>,
 }
 
-impl Meshes for MeshFiles {
+impl Files for FilesBeside {
     fn mesh(&self, name: &str) -> Result<Arc<Mesh>, String> {
-        let mut read = self.read.lock().expect("no reader panics");
-        if let Some(mesh) = read.get(name) {
-            return Ok(mesh.clone());
-        }
-        let mesh = self.load(name)?;
-        read.insert(name.into(), mesh.clone());
-        Ok(mesh)
+        once(&self.meshes, name, || {
+            let bytes = self.bytes(name, LARGEST_MESH)?;
+            read_mesh(name, &bytes).map_err(|error| error.to_string())
+        })
+    }
+
+    fn numbers(&self, name: &str) -> Result<Arc<NumberFile>, String> {
+        once(&self.numbers, name, || read_numbers(name, &self.bytes(name, LARGEST_NUMBERS)?).map_err(|error| error.to_string()))
     }
 }
 
-impl MeshFiles {
-    fn load(&self, name: &str) -> Result<Arc<Mesh>, String> {
+/// What was read of a file before, or is read now.
+fn once<T>(known: &Mutex<HashMap<String, Arc<T>>>, name: &str, read: impl FnOnce() -> Result<T, String>) -> Result<Arc<T>, String> {
+    let mut known = known.lock().expect("no reader panics");
+    if let Some(known) = known.get(name) {
+        return Ok(known.clone());
+    }
+    let read = Arc::new(read()?);
+    known.insert(name.into(), read.clone());
+    Ok(read)
+}
+
+impl FilesBeside {
+    fn bytes(&self, name: &str, largest: usize) -> Result<Vec<u8>, String> {
         let path = self.folder.join(name);
         let size = std::fs::metadata(&path).map_err(|error| format!("{} cannot be read: {error}", path.display()))?.len();
-        if size > LARGEST_MESH as u64 {
-            return Err(format!("{} is larger than {} MB", path.display(), LARGEST_MESH / 1_000_000));
+        if size > largest as u64 {
+            return Err(format!("{} is larger than {} MB", path.display(), largest / 1_000_000));
         }
-        let bytes = std::fs::read(&path).map_err(|error| format!("{} cannot be read: {error}", path.display()))?;
-        read_mesh(name, &bytes).map(Arc::new).map_err(|error| error.to_string())
+        std::fs::read(&path).map_err(|error| format!("{} cannot be read: {error}", path.display()))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Expressions of a model file as texts: what they come to, and names in them replaced.
 
-use holonom::model::{Model, NoMeshes, Table, Value};
+use holonom::model::{Model, NoFiles, Table, Value};
 
 /// The text with every name for which `new` has something replaced by that.
 pub fn replaced(text: &str, new: impl Fn(&str) -> Option<String>) -> String {
@@ -60,7 +60,7 @@ pub fn number(text: &str, parameters: &Table) -> f64 {
         ("point", pairs(vec![("only", pairs(vec![("mass", Value::Number(1.0)), ("position", zero)]))])),
         ("simulation", pairs(vec![("gamma", Value::text(text))])),
     ]);
-    let model = Model::from_value(&model, &NoMeshes).unwrap_or_else(|faults| panic!("{text}: {faults:?}"));
+    let model = Model::from_value(&model, &NoFiles).unwrap_or_else(|faults| panic!("{text}: {faults:?}"));
     model.settings.choice.gamma.expect("it was given")
 }
 

@@ -1,7 +1,7 @@
 //! The motion of a model: run, sampled by names, taken back to the frame of another one, and compared.
 
 use holonom::analysis::rank;
-use holonom::model::{Model, NoMeshes, Table, Value};
+use holonom::model::{Model, NoFiles, Table, Value};
 use holonom::record::RecordedBody;
 use holonom::simulation::{Choice, Method, Simulation, Status, Verdict};
 use holonom::system::{Place, Term};
@@ -49,7 +49,7 @@ pub struct Turned {
 
 /// A description as a model.
 pub fn model(description: &Table) -> Result<Model, String> {
-    Model::from_value(&Value::Table(description.clone()), &NoMeshes).map_err(|faults| format!("refused: {faults:?}"))
+    Model::from_value(&Value::Table(description.clone()), &NoFiles).map_err(|faults| format!("refused: {faults:?}"))
 }
 
 /// The method of a name.

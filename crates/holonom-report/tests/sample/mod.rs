@@ -44,7 +44,8 @@ pub fn empty() -> Sample {
 /// The slider with a motor, of which effort, power and angle are recorded; it completes.
 pub fn motor() -> Sample {
     let mut sample = slider();
-    let heading = |name: &str, unit, meaning: &str| Heading { name: name.to_owned(), unit, meaning: meaning.to_owned() };
+    let heading =
+        |name: &str, unit: &'static str, meaning: &str| Heading { name: name.to_owned(), unit: unit.into(), meaning: meaning.to_owned() };
     let own = sample.recording.columns().iter().map(|column| column.heading.clone());
     let others = [
         heading("crank.effort", "N·m", "moment that the drive exerts along its motion"),

@@ -3,8 +3,8 @@
 use super::kkt::{Block, Kkt, LawFactors};
 use super::level::Level;
 use super::stage::{RowsAt, Sampling, Stage};
-use super::workspace::Workspace;
-use crate::system::{Between, LoadEntry, Local, MAX_ARGUMENTS, Quantity, Reach, Response, System, gather, scatter};
+use super::workspace::{Moment, Workspace};
+use crate::system::{Between, LoadEntry, Look, MAX_ARGUMENTS, Quantity, Reach, Response, Slopes, System, gather, scatter};
 
 impl Workspace {
     /// Evaluates rows, laws and loads of a stage; leaves Φ in `phi` and the sum of forces in `forces`.
@@ -27,7 +27,7 @@ impl Workspace {
             Sampling::Between => self.respond_between(system, stage),
             _ => self.respond(system, stage.time()),
         }
-        self.sum_forces(system, stage.time());
+        self.sum_forces(system, stage.time(), (stage.sampling == Sampling::Between).then_some(stage.step));
     }
 
     /// Leaves what the rows of the stage stand for in `phi`, in the units of Φ.
@@ -71,8 +71,8 @@ impl Workspace {
         }
     }
 
-    /// Sums gravity, laws as they have responded, loads and λᵀG at the sampled state.
-    fn sum_forces(&mut self, system: &System, t: f64) {
+    /// Sums gravity, laws as they have responded, loads and λᵀG at the sampled state, or between the ends of a step of this length.
+    fn sum_forces(&mut self, system: &System, t: f64, between: Option<f64>) {
         let dim = system.dim;
         self.forces.sum.copy_from_slice(&self.forces.weight);
         for (law, response) in system.laws.iter().zip(&self.forces.responses) {
@@ -85,8 +85,9 @@ impl Workspace {
         let mut first = 0;
         for load in &system.loads {
             let width = load.nodes.len() * dim;
-            let [x, v] = self.load_arguments(system, load);
-            load.load.force(&x, &v, t, &mut self.forces.of_loads[first..first + width]);
+            let Self { start, end, sampled, inputs, forces, .. } = &mut *self;
+            let look = look(start, end, sampled, inputs, t, between);
+            system.load_forces(load, look, &mut forces.of_loads[first..first + width]);
             for (k, node) in load.nodes.iter().enumerate().filter(|(_, node)| node.index() < system.free) {
                 for c in 0..dim {
                     self.forces.sum[node.index() * dim + c] -= self.forces.of_loads[first + k * dim + c];
@@ -127,15 +128,6 @@ impl Workspace {
             let own = damping.respond(law.law.as_ref(), reach);
             *response = system.by_invariants(law, own, &sampled.at, &end.at, &sampled.v);
         }
-    }
-
-    /// Sampled positions and velocities of a load's nodes.
-    fn load_arguments(&self, system: &System, load: &LoadEntry) -> [Local; 2] {
-        let mut x = gather(system.dim, &load.nodes, &self.sampled.x);
-        for (x, _) in x.chunks_exact_mut(system.dim).zip(&load.nodes).filter(|(_, node)| system.is_point[node.index()]) {
-            x.iter_mut().zip(system.origin).for_each(|(x, origin)| *x += origin);
-        }
-        [x, gather(system.dim, &load.nodes, &self.sampled.v)]
     }
 
     /// Writes minus the residual of the stage to `unknowns`: ϖ(M a + f) for the coordinates, Φ for the rows.
@@ -237,16 +229,27 @@ impl Workspace {
 
     /// Adds the tangents of all loads, times ϖ.
     pub fn add_loads(&mut self, system: &System, stage: &Stage, block: Block, kkt: &mut Kkt) {
+        let between = (stage.sampling == Sampling::Between).then_some(stage.step);
         for (k, load) in system.loads.iter().enumerate() {
-            let width = load.nodes.len() * system.dim;
-            let [x, v] = self.load_arguments(system, load);
-            let (by_position, by_velocity) = self.forces.dense[..2 * width * width].split_at_mut(width * width);
-            by_position.fill(0.0);
-            by_velocity.fill(0.0);
-            load.load.tangent(&x, &v, stage.time(), by_position, by_velocity);
+            let [by_position, by_velocity] = self.load_tangents(system, load, stage.time(), between, 1.0 / stage.share());
             kkt.add_load(block, k, by_position, -stage.inertia * stage.share());
             kkt.add_load(block, k, by_velocity, -stage.inertia * stage.rate);
         }
+    }
+
+    /// Derivatives of a load at the sampled state by the positions of its nodes and by their velocities. Between the ends of a step its
+    /// quantities change with the second, and their gradients `bend` times as much.
+    fn load_tangents(&mut self, system: &System, load: &LoadEntry, t: f64, between: Option<f64>, bend: f64) -> [&[f64]; 2] {
+        let Self { start, sampled, end, inputs, forces, .. } = self;
+        let look = look(start, end, sampled, inputs, t, between);
+        let slopes = match between {
+            Some(_) => Slopes { gradient: &end.at.gradient, motion: None, bend },
+            None => Slopes { gradient: &sampled.at.gradient, motion: Some(&forces.motion), bend: 1.0 },
+        };
+        system.load_tangents(load, look, slopes, &mut forces.dense);
+        let size = (load.nodes.len() * system.dim).pow(2);
+        let (by_position, rest) = forces.dense.split_at(size);
+        [by_position, &rest[..size]]
     }
 
     /// Adds what forces change by with velocity, times `factor`.
@@ -257,12 +260,7 @@ impl Workspace {
             kkt.add_law(block, law, &self.forces.responses[law], factors, gradient, gradient, &self.forces.motion);
         }
         for (k, load) in system.loads.iter().enumerate() {
-            let width = load.nodes.len() * system.dim;
-            let [x, v] = self.load_arguments(system, load);
-            let (by_position, by_velocity) = self.forces.dense[..2 * width * width].split_at_mut(width * width);
-            by_position.fill(0.0);
-            by_velocity.fill(0.0);
-            load.load.tangent(&x, &v, t, by_position, by_velocity);
+            let [_, by_velocity] = self.load_tangents(system, load, t, None, 1.0);
             kkt.add_load(block, k, by_velocity, -factor);
         }
     }
@@ -290,19 +288,19 @@ impl Workspace {
     pub fn sample_end(&mut self, system: &System, t: f64) {
         system.evaluate(&self.end.x, t, &self.start.at, &mut self.end.at);
         self.respond_at_end(system, t);
-        self.sum_forces(system, t);
+        self.sum_forces(system, t, None);
     }
 
     /// Samples forces at the sampled position and velocity, with the multipliers as they are, and evaluates there.
     pub fn sample(&mut self, system: &System, t: f64) {
         system.evaluate(&self.sampled.x, t, &self.start.at, &mut self.sampled.at);
         self.respond(system, t);
-        self.sum_forces(system, t);
+        self.sum_forces(system, t, None);
     }
 
     /// Samples forces at the end again with other multipliers, where nothing moved since.
     pub(super) fn resample_end(&mut self, system: &System, t: f64) {
-        self.sum_forces(system, t);
+        self.sum_forces(system, t, None);
     }
 
     /// Leaves Φ̈ at the sampled position, with the accelerations `a`, in `rows`.
@@ -321,4 +319,10 @@ impl Workspace {
         system.constraint_curvatures(&self.end.at, &self.end.x, &self.end.v, time, &mut self.turned.half, &mut self.rows);
         system.slots.add_along(system.dim, 1.0, &self.end.at.gradient, &self.a, &mut self.rows);
     }
+}
+
+/// What loads see of the state sampled, or of a step of the length `between`.
+fn look<'a>(start: &'a Moment, end: &'a Moment, sampled: &'a Moment, inputs: &'a [f64], t: f64, between: Option<f64>) -> Look<'a> {
+    let span = between.map(|step| (&start.at.value[..], &end.at.value[..], step));
+    Look { x: &sampled.x, v: &sampled.v, t, at: &sampled.at, inputs, span }
 }

@@ -112,6 +112,8 @@ pub struct Workspace {
     pub phi_start: Vec<f64>,
     /// Local errors of the step, where the integrator estimates them.
     pub estimate: LocalErrors,
+    /// Numbers from outside.
+    pub inputs: Vec<f64>,
     /// Numbers that an integrator keeps from step to step.
     pub memory: Vec<f64>,
     /// Scratch of all coordinates (full).
@@ -144,8 +146,8 @@ impl Workspace {
         start.x.copy_from_slice(&system.start_position);
         start.v.copy_from_slice(&system.start_velocity);
         system.evaluate_again(&start.x, 0.0, &mut start.at);
-        let widths = system.loads.iter().map(|load| load.nodes.len()).chain(system.custom.iter().map(|custom| custom.nodes.len()));
-        let widest = widths.max().unwrap_or(0) * system.dim;
+        let custom = system.custom.iter().map(|custom| 2 * (custom.nodes.len() * system.dim).pow(2));
+        let dense = system.loads.iter().map(|load| load.room(system.dim)).chain(custom).max().unwrap_or(0);
         Self {
             scales: Scales::new(system),
             level: Level::POSITION,
@@ -162,14 +164,16 @@ impl Workspace {
                 responses: vec![Response::default(); system.laws.len() + system.function_rows.len()],
                 of_loads: vec![0.0; loads],
                 motion: vec![0.0; slots],
-                dense: vec![0.0; 2 * widest * widest],
+                dense: vec![0.0; dense],
                 damping: vec![Damping::default(); system.laws.len()],
-                dissipative: system.laws.iter().any(|law| !law.law.conservative()),
+                dissipative: system.laws.iter().any(|law| !law.law.conservative())
+                    || system.loads.iter().any(|load| !load.reading.senses.is_empty()),
             },
             turned: Turned { v: vec![0.0; slots], a: vec![0.0; slots], rows: vec![0.0; slots], half: vec![0.0; system.invariants.len()] },
             phi: vec![0.0; r],
             phi_start: vec![0.0; r],
             estimate: LocalErrors { q: vec![0.0; n], v: vec![0.0; n], allowed: 0.0 },
+            inputs: system.inputs.iter().map(|(_, default)| *default).collect(),
             memory: Vec::new(),
             full: vec![0.0; all],
             inertial: vec![0.0; n],

@@ -12,6 +12,7 @@ use super::entry::Entry;
 use super::fault::{Read, Sink};
 use super::geometry::Vec3;
 use super::joints::{Geometry, JointInfo};
+use super::signals::Signals;
 use crate::record::{Anchor, Line, LineKind, RecordedForce, SceneJoint, Shows};
 use crate::system::{Signal, SystemBuilder};
 
@@ -107,6 +108,8 @@ pub struct Assembly<'a> {
     /// What forces do, and what is to be shown of that which is built.
     pub(in crate::model) forces: Vec<RecordedForce>,
     shows: Shows,
+    /// Inputs, and measures that forces may read.
+    pub(in crate::model) signals: Signals,
     /// Where the joints of the entry are that is built.
     pub(in crate::model) geometries: std::vec::IntoIter<Geometry>,
 }
@@ -144,6 +147,7 @@ impl<'a> Assembly<'a> {
             efforts: Vec::new(),
             forces: Vec::new(),
             shows: Shows::Power,
+            signals: Signals::default(),
             geometries: Vec::new().into_iter(),
         }
     }

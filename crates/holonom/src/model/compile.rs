@@ -7,31 +7,37 @@ use std::sync::Arc;
 
 use super::assembly::{Assembly, Axes};
 use super::bodies::nodes::{self, Member};
-use super::bodies::{Meshes, RigidBody};
+use super::bodies::{Files, RigidBody};
 use super::description::{Description, Unread};
 use super::element::Boxed;
 use super::entries::{Entries, Named};
 use super::entry::{Entry, Written};
-use super::expression::{Scope, TimeProgram, Value as Known};
+use super::expression::{Mistake, Scope, TimeProgram, Value as Known};
 use super::fault::{Faults, Read, Sink};
 use super::geometry::{self, Vec3, unit};
 use super::joints::{self, Geometry, Survey};
 use super::repeat::{self, Repetition};
 use super::settings::{Output, Settings};
+use super::signals::{Formula, Signals};
+use super::tables::Tables;
 use super::value::{Value, key_path};
-use super::{GRAVITY, Model, SCHEMA, finish, parameters, points};
+use super::{GRAVITY, Model, SCHEMA, finish, measure, parameters, points, tables};
+use crate::record::Constraints;
 use crate::system::{self, SystemBuilder};
 
 /// Compiles a description. What could not be read is known by name, so that nothing that refers to it is a second fault.
-pub(super) fn model(description: &Description, unread: &Unread, meshes: &dyn Meshes, sink: Sink) -> Result<Model, Faults> {
+pub(super) fn model(description: &Description, unread: &Unread, files: &dyn Files, sink: Sink) -> Result<Model, Faults> {
     let parameters = parameters::read(&description.parameters, &sink);
-    let compiler = Compiler { sink: &sink, meshes, parameters: &parameters, room: Cell::new(repeat::MOST) };
+    let room = || Cell::new(repeat::MOST);
+    let tables = Compiler { sink: &sink, files, parameters: &parameters, tables: &Tables::new(), room: room() }.tables(description, unread);
+    let compiler = Compiler { sink: &sink, files, parameters: &parameters, tables: &tables, room: room() };
     let (axes, gravity) = compiler.head(description);
     let (specs, faulty_points) = compiler.points(&description.points, axes);
     let (bodies, faulty_bodies) = compiler.bodies(&description.bodies, axes);
     let mut assembly = Assembly::new(SystemBuilder::new(axes.dimension(), gravity), axes, gravity, &sink, bodies);
     assembly.faulty = [&faulty_points, &faulty_bodies, &unread.points, &unread.bodies].into_iter().flatten().cloned().collect();
     assembly.faulty_joints.clone_from(&unread.joints);
+    assembly.signals = compiler.signals(description, unread, &mut assembly.builder);
     points::add(&mut assembly, &specs);
     let geometries = compiler.nodes(description, &mut assembly, &specs);
     points::complete(&mut assembly, specs);
@@ -44,6 +50,7 @@ pub(super) fn model(description: &Description, unread: &Unread, meshes: &dyn Mes
     compiler.joints(&description.joints, geometries, &mut assembly);
     compiler.build("drive", &description.drives, &mut assembly);
     compiler.build("force", &description.forces, &mut assembly);
+    compiler.each("event", &description.events, |entry, event| event.build(&mut assembly, entry));
     // Points of a bar with a fault may have their mass from it.
     if faulty_bars.is_empty() && unread.bars.is_empty() {
         points::check_mass(&assembly);
@@ -54,24 +61,106 @@ pub(super) fn model(description: &Description, unread: &Unread, meshes: &dyn Mes
             assembly.builder.switch(Arc::new(TimeProgram(program)));
         }
         let title = description.model.title.clone().unwrap_or_default();
-        return Ok(finish::finish(assembly, title, settings, output, bars));
+        let mut model = finish::finish(assembly, title, settings, output, bars);
+        compiler.measures(description, &mut model);
+        if sink.count() == 0 {
+            return Ok(model);
+        }
+    } else {
+        drop(assembly);
     }
-    drop(assembly);
     Err(sink.finish().expect_err("there are faults"))
 }
 
 struct Compiler<'a> {
     sink: &'a Sink,
-    meshes: &'a dyn Meshes,
+    files: &'a dyn Files,
     parameters: &'a HashMap<String, Known>,
+    tables: &'a Tables,
     /// Entries that repetitions may still make.
     room: Cell<usize>,
 }
 
 impl Compiler<'_> {
     fn entry<'b>(&'b self, name: &'b str, path: &'b str, written: &'b dyn Written) -> Entry<'b> {
-        let scope = Scope { parameters: Some(self.parameters), indices: &[] };
-        Entry { name, path, written, scope, sink: self.sink, meshes: self.meshes }
+        let scope = Scope { parameters: Some(self.parameters), indices: &[], tables: Some(self.tables) };
+        Entry { name, path, written, scope, sink: self.sink, files: self.files }
+    }
+
+    /// Curves that formulas call as functions.
+    fn tables(&self, description: &Description, unread: &Unread) -> Tables {
+        let names = description.tables.iter().map(|named| named.name.as_str());
+        tables::require_unlike_parameters("table", names, self.parameters, self.sink);
+        let mut tables: Tables = unread.tables.iter().map(|name| (name.clone(), None)).collect();
+        for named in description.tables.iter() {
+            let path = key_path("table", &named.name);
+            let curve = named.entry.curve(&self.entry(&named.name, &path, &named.entry));
+            tables.insert(named.name.clone(), curve.ok().map(Arc::new));
+        }
+        tables
+    }
+
+    /// Inputs, and the formulas of measures for forces that read them.
+    fn signals(&self, description: &Description, unread: &Unread, builder: &mut SystemBuilder) -> Signals {
+        for (section, names) in [
+            ("input", description.inputs.iter().map(|named| named.name.as_str()).collect::<Vec<_>>()),
+            ("measure", description.measures.iter().map(|named| named.name.as_str()).collect()),
+        ] {
+            tables::require_unlike_parameters(section, names.into_iter(), self.parameters, self.sink);
+        }
+        let mut signals = Signals { faulty: unread.signals.clone(), ..Signals::default() };
+        let faulty = self.each("input", &description.inputs, |entry, input| {
+            measure::require_free_name(entry)?;
+            let (input, default) = input.recorded(entry)?;
+            builder.input(&input.name, default);
+            signals.inputs.push(input);
+            Ok(())
+        });
+        signals.faulty.extend(faulty);
+        let faulty = self.each("measure", &description.measures, |entry, measure| {
+            measure::require_free_name(entry)?;
+            let formula = Formula { value: measure.value.clone(), indices: entry.scope.indices.to_vec() };
+            signals.measures.insert(entry.name.to_string(), formula);
+            Ok(())
+        });
+        signals.faulty.extend(faulty);
+        signals
+    }
+
+    /// Measures as formulas of the columns of a model.
+    fn measures(&self, description: &Description, model: &mut Model) {
+        if description.measures.is_empty() {
+            return;
+        }
+        let reactions = model.output.reactions;
+        let of = |constraints| model.channels.headings(&model.system, constraints).into_iter().map(|heading| heading.name);
+        let all: HashSet<String> = of(Constraints::Rows).collect();
+        let mut known: HashSet<String> = match reactions {
+            Some(false) => of(Constraints::Nothing).collect(),
+            None => of(Constraints::Joints).collect(),
+            Some(true) => all.clone(),
+        };
+        let _ = self.each("measure", &description.measures, |entry, _| {
+            known.insert(entry.name.to_string());
+            Ok(())
+        });
+        let missing = |name: &str| {
+            let is_there = all.contains(name);
+            let mistake =
+                |cure: &str| Mistake { character: 0, message: format!("`{name}` is not recorded"), cure: cure.into(), known: false };
+            match reactions {
+                Some(false) if is_there => Some(mistake("remove reactions = false from [output]")),
+                _ if is_there => Some(mistake("write reactions = true in [output]")),
+                _ => None,
+            }
+        };
+        let columns = measure::Columns { known: &known, missing: &missing, axes: model.axes };
+        let mut measures = Vec::new();
+        let _ = self.each("measure", &description.measures, |entry, measure| {
+            measures.push(measure.recorded(entry, &columns)?);
+            Ok(())
+        });
+        model.channels.measures = measure::sorted(measures, self.sink);
     }
 
     /// Axes and gravity of the model, which is in space where that is not known.

@@ -3,15 +3,19 @@
 use std::collections::HashSet;
 
 use super::bars::Bar;
-use super::bodies::{Body, Meshes, NoMeshes};
+use super::bodies::{Body, Files, NoFiles};
 use super::element::Boxed;
 use super::entries::{Entries, Named};
+use super::event::Event;
 use super::fault::{Fault, Faults, Read, Refused, Sink, suggest};
 use super::fields::{Field, Keys, List, Number};
+use super::input::Input;
 use super::key::{Key, Kind, Kinds, REPEAT, Shape};
+use super::measure::Measure;
 use super::points::Point;
 use super::reader::Reader;
 use super::settings::{OutputKeys, SimulationKeys};
+use super::tables::Curve;
 use super::value::{Table, Value, key_path};
 use super::{GROUND, Model, compile};
 
@@ -23,6 +27,10 @@ pub struct Description {
     pub model: ModelKeys,
     /// Named numbers and formulas for all others.
     pub parameters: Table,
+    /// `[table.NAME]`: curves, which formulas call as functions.
+    pub tables: Entries<Curve>,
+    /// `[input.NAME]`: numbers from outside.
+    pub inputs: Entries<Input>,
     /// `[point.NAME]`: particles, and places that stay or are driven.
     pub points: Entries<Point>,
     /// `[body.NAME]`: rigid bodies.
@@ -37,6 +45,10 @@ pub struct Description {
     pub drives: Entries<Boxed>,
     /// `[force.NAME]`: springs, dampers, loads and other forces.
     pub forces: Entries<Boxed>,
+    /// `[measure.NAME]`: formulas of what the mechanism does, recorded and read by others.
+    pub measures: Entries<Measure>,
+    /// `[event.NAME]`: conditions whose times are found.
+    pub events: Entries<Event>,
     /// `[simulation]`: how it is run; `None` leaves that to who runs it.
     pub simulation: Option<SimulationKeys>,
     /// `[output]`: what is recorded of it; `None` is motion at every step.
@@ -69,6 +81,9 @@ pub(super) struct Partial {
 /// Names of the entries in which something could not be read; what refers to them is no second fault.
 #[derive(Default)]
 pub(super) struct Unread {
+    pub tables: HashSet<String>,
+    /// Inputs and measures.
+    pub signals: HashSet<String>,
     pub points: HashSet<String>,
     pub bodies: HashSet<String>,
     pub bars: HashSet<String>,
@@ -84,6 +99,16 @@ impl Description {
     /// Sets a parameter that every formula may use.
     pub fn parameter(&mut self, name: &str, value: impl Into<Number>) {
         self.parameters.set(name, value.into().write());
+    }
+
+    /// Adds a curve that formulas call as a function.
+    pub fn table(&mut self, name: impl Into<String>, table: Curve) -> &mut Named<Curve> {
+        self.tables.add(name, table)
+    }
+
+    /// Adds a number from outside.
+    pub fn input(&mut self, name: impl Into<String>, input: Input) -> &mut Named<Input> {
+        self.inputs.add(name, input)
     }
 
     /// Adds a point.
@@ -121,25 +146,35 @@ impl Description {
         self.forces.add(name, force)
     }
 
+    /// Adds a measure.
+    pub fn measure(&mut self, name: impl Into<String>, measure: Measure) -> &mut Named<Measure> {
+        self.measures.add(name, measure)
+    }
+
+    /// Adds an event.
+    pub fn event(&mut self, name: impl Into<String>, event: Event) -> &mut Named<Event> {
+        self.events.add(name, event)
+    }
+
     /// Compiles the model.
     ///
     /// # Errors
     /// Everything that is wrong with it.
     pub fn compile(&self) -> Result<Model, Faults> {
-        self.compile_with(&NoMeshes)
+        self.compile_with(&NoFiles)
     }
 
-    /// The same with the meshes that bodies name.
+    /// The same with the files that bodies name.
     ///
     /// # Errors
     /// Everything that is wrong with it.
-    pub fn compile_with(&self, meshes: &dyn Meshes) -> Result<Model, Faults> {
+    pub fn compile_with(&self, files: &dyn Files) -> Result<Model, Faults> {
         let sink = Sink::default();
         let mut names = Names { sink: &sink, known: HashSet::new() };
         self.names().for_each(|(section, name)| {
             let _ = names.check(section, name);
         });
-        compile::model(self, &Unread::default(), meshes, sink)
+        compile::model(self, &Unread::default(), files, sink)
     }
 
     /// Reads a table as it stands in a file.
@@ -162,6 +197,8 @@ impl Description {
         let boxed = |boxed: &Boxed| boxed.0.write();
         let sections = [
             ("parameters", (!self.parameters.is_empty()).then(|| Value::Table(self.parameters.clone()))),
+            ("table", self.tables.write(Keys::write)),
+            ("input", self.inputs.write(Keys::write)),
             ("point", self.points.write(Keys::write)),
             ("body", self.bodies.write(Keys::write)),
             ("bar", self.bars.write(Keys::write)),
@@ -169,6 +206,8 @@ impl Description {
             ("constraint", self.constraints.write(boxed)),
             ("drive", self.drives.write(boxed)),
             ("force", self.forces.write(boxed)),
+            ("measure", self.measures.write(Keys::write)),
+            ("event", self.events.write(Keys::write)),
             ("simulation", self.simulation.as_ref().map(Field::write)),
             ("output", self.output.as_ref().map(Field::write)),
         ];
@@ -181,14 +220,33 @@ impl Description {
         fn of<'a, T>(section: &'static str, entries: &'a Entries<T>) -> impl Iterator<Item = (&'static str, &'a str)> {
             entries.iter().map(move |named| (section, named.name.as_str()))
         }
+        let signals = of("table", &self.tables)
+            .chain(of("input", &self.inputs))
+            .chain(of("measure", &self.measures))
+            .chain(of("event", &self.events));
         let parts = of("point", &self.points).chain(of("body", &self.bodies)).chain(of("bar", &self.bars));
         let elements = of("constraint", &self.constraints).chain(of("joint", &self.joints));
-        parts.chain(elements).chain(of("drive", &self.drives)).chain(of("force", &self.forces))
+        signals.chain(parts).chain(elements).chain(of("drive", &self.drives)).chain(of("force", &self.forces))
     }
 }
 
 /// Names of the tables of a model.
-const TABLES: [&str; 10] = ["parameters", "point", "body", "bar", "joint", "constraint", "drive", "force", "simulation", "output"];
+const TABLES: [&str; 14] = [
+    "parameters",
+    "table",
+    "input",
+    "point",
+    "body",
+    "bar",
+    "joint",
+    "constraint",
+    "drive",
+    "force",
+    "measure",
+    "event",
+    "simulation",
+    "output",
+];
 
 /// Reads all tables of a model. What cannot be read is left out.
 pub(super) fn read(value: &Value, kinds: &Kinds, sink: &Sink) -> Read<Partial> {
@@ -213,6 +271,11 @@ pub(super) fn read(value: &Value, kinds: &Kinds, sink: &Sink) -> Read<Partial> {
         plane: root.may_have("plane").unwrap_or(None),
     };
     let mut names = Names { sink, known: HashSet::new() };
+    let (tables, unread_tables) = section(&root, "table", &mut names, |reader| {
+        reader.refuse_unknown_keys("a table", Curve::KEYS.iter());
+        <Curve as Keys>::read(reader)
+    });
+    let (inputs, unread_inputs) = section(&root, "input", &mut names, |reader| keys::<Input>("an input", reader));
     let (points, unread_points) = section(&root, "point", &mut names, |reader| keys::<Point>("a point", reader));
     let (bodies, unread_bodies) = section(&root, "body", &mut names, |reader| keys::<Body>("a body", reader));
     let (bars, unread_bars) = section(&root, "bar", &mut names, |reader| keys::<Bar>("a bar", reader));
@@ -221,10 +284,35 @@ pub(super) fn read(value: &Value, kinds: &Kinds, sink: &Sink) -> Read<Partial> {
     let (joints, unread_joints) = elements(&mut names, "joint", &kinds.joints);
     let (drives, _) = elements(&mut names, "drive", &kinds.drives);
     let (forces, _) = elements(&mut names, "force", &kinds.forces);
+    let (measures, unread_measures) = section(&root, "measure", &mut names, |reader| keys::<Measure>("a measure", reader));
+    let (events, _) = section(&root, "event", &mut names, |reader| keys::<Event>("an event", reader));
     let (simulation, output) = (root.may_have("simulation").unwrap_or(None), root.may_have("output").unwrap_or(None));
     Ok(Partial {
-        description: Description { model, parameters, points, bodies, bars, joints, constraints, drives, forces, simulation, output },
-        unread: Unread { points: unread_points, bodies: unread_bodies, bars: unread_bars, joints: unread_joints },
+        description: Description {
+            model,
+            parameters,
+            tables,
+            inputs,
+            points,
+            bodies,
+            bars,
+            joints,
+            constraints,
+            drives,
+            forces,
+            measures,
+            events,
+            simulation,
+            output,
+        },
+        unread: Unread {
+            tables: unread_tables,
+            signals: unread_inputs.into_iter().chain(unread_measures).collect(),
+            points: unread_points,
+            bodies: unread_bodies,
+            bars: unread_bars,
+            joints: unread_joints,
+        },
     })
 }
 
@@ -307,10 +395,7 @@ impl Names<'_> {
             return Err(report(format!("\"{name}\" cannot be a name"), "use letters, digits, _ and -"));
         }
         if !self.known.insert(name.to_string()) {
-            return Err(report(
-                format!("the name `{name}` is used twice"),
-                "give one of them another name: points, bars, bodies, constraints, joints, drives and forces share their names",
-            ));
+            return Err(report(format!("the name `{name}` is used twice"), "give one of them another name: all entries share their names"));
         }
         Ok(())
     }

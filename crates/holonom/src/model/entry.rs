@@ -3,7 +3,7 @@
 //! Every reader hands back `Err(Refused)` after recording why, so that a kind first reads all its keys and only then
 //! asks which of them there are: one look at a model finds everything.
 
-use super::bodies::Meshes;
+use super::bodies::Files;
 use super::expression::{Mistake, Scope};
 use super::fault::{Fault, Read, Refused, Sink, suggest};
 use super::value::{Table, Value, item_path, key_path};
@@ -46,7 +46,7 @@ pub struct Entry<'a> {
     pub written: &'a dyn Written,
     pub(super) scope: Scope<'a>,
     pub(super) sink: &'a Sink,
-    pub(super) meshes: &'a dyn Meshes,
+    pub(super) files: &'a dyn Files,
 }
 
 impl<'a> Entry<'a> {

@@ -9,8 +9,22 @@ use crate::system::Place;
 
 /// Puts together what has been read without a fault.
 pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, output: Output, bars: Vec<BarInfo>) -> Model {
-    let Assembly { mut builder, axes, gravity, points, lines, bodies, frames, body_places, joints, scene_joints, efforts, forces, .. } =
-        assembly;
+    let Assembly {
+        mut builder,
+        axes,
+        gravity,
+        points,
+        lines,
+        bodies,
+        frames,
+        body_places,
+        joints,
+        scene_joints,
+        efforts,
+        forces,
+        signals,
+        ..
+    } = assembly;
     let place = |point: &assembly::PlacedPoint| point.end.place().expect("a point is a node");
     let kind = |point: &assembly::PlacedPoint| match (place(point), point.end.free) {
         (Place::Fixed(_), _) => PointKind::Fixed,
@@ -52,6 +66,7 @@ pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, 
             bodies: bodies.iter().map(|body| body.recorded.clone()).collect(),
             forces,
             efforts: recorded_efforts(efforts),
+            inputs: signals.inputs,
             ..channels
         },
         bodies,

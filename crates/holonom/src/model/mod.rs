@@ -18,12 +18,15 @@ mod element;
 mod ends;
 mod entries;
 mod entry;
+mod event;
 mod expression;
 mod fault;
 mod fields;
 mod finish;
 mod geometry;
+mod input;
 mod key;
+mod measure;
 mod parameters;
 mod points;
 mod reader;
@@ -31,7 +34,10 @@ mod references;
 mod repeat;
 mod schema;
 mod settings;
+mod signals;
 mod spline;
+mod sum;
+mod tables;
 #[cfg(test)]
 mod tests;
 mod value;
@@ -39,19 +45,23 @@ mod written;
 
 pub use assembly::{Assembly, Axes, GROUND};
 pub use bars::{Bar, BarInfo};
-pub use bodies::{Body, BodyInfo, Inertia, Mesh, Meshes, NoMeshes, Orientation, RigidBody, Solid};
+pub use bodies::{Body, BodyInfo, Files, Inertia, Mesh, NoFiles, NumberFile, Orientation, RigidBody, Solid};
 pub use description::{Description, ModelKeys};
 pub use element::{AnyElement, Boxed, Element};
 pub use ends::{End, from_to};
 pub use entries::{Entries, Named};
 pub use entry::{Entry, Spot, Written};
+pub use event::Event;
 pub use fault::{Fault, Faults, Read, Refused, nearest};
 pub use fields::{Described, Field, Keys, List, Map, Number, Place, Rows, Site, Turn};
+pub use input::Input;
 pub use key::{Key, Kind, Kinds, REPEAT, Shape};
+pub use measure::Measure;
 pub use points::Point;
 pub use reader::Reader;
 pub use schema::schema;
 pub use settings::{Output, OutputKeys, ProjectionKeys, Settings, SimulationKeys};
+pub use tables::Curve;
 pub use value::{Table, Value, item_path, key_path};
 pub use written::StartChange;
 
@@ -120,18 +130,18 @@ impl Model {
     ///
     /// # Errors
     /// Everything that is wrong with it, with paths into the table.
-    pub fn from_value(value: &Value, meshes: &dyn Meshes) -> Result<Self, Faults> {
-        Self::from_value_with(value, &Kinds::default(), meshes)
+    pub fn from_value(value: &Value, files: &dyn Files) -> Result<Self, Faults> {
+        Self::from_value_with(value, &Kinds::default(), files)
     }
 
     /// The same with kinds that one knows oneself.
     ///
     /// # Errors
     /// Everything that is wrong with it, with paths into the table.
-    pub fn from_value_with(value: &Value, kinds: &Kinds, meshes: &dyn Meshes) -> Result<Self, Faults> {
+    pub fn from_value_with(value: &Value, kinds: &Kinds, files: &dyn Files) -> Result<Self, Faults> {
         let sink = Sink::default();
         match description::read(value, kinds, &sink) {
-            Ok(description::Partial { description, unread }) => compile::model(&description, &unread, meshes, sink),
+            Ok(description::Partial { description, unread }) => compile::model(&description, &unread, files, sink),
             Err(Refused) => Err(sink.finish().expect_err("what is refused has a fault")),
         }
     }

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::bodies::NoMeshes;
+use super::bodies::NoFiles;
 use super::entry::Entry;
 use super::expression::{self, Scope, Value as Known};
 use super::fault::{Read, Sink};
@@ -22,9 +22,9 @@ pub fn read(table: &Table, sink: &Sink) -> HashMap<String, Known> {
             name: "",
             path: "parameters",
             written: table,
-            scope: Scope { parameters: Some(&known), indices: &[] },
+            scope: Scope { parameters: Some(&known), indices: &[], tables: None },
             sink,
-            meshes: &NoMeshes,
+            files: &NoFiles,
         };
         let valid = require_name(&entry, name).is_ok();
         let number = Number::read(&entry, name.into(), table.get(name).expect("a name of the table"));
@@ -37,15 +37,24 @@ pub fn read(table: &Table, sink: &Sink) -> HashMap<String, Known> {
 
 /// Refuses a key that could not be written as a name in expressions.
 pub fn require_name(entry: &Entry<'_>, name: &str) -> Read<()> {
+    unfit(name).map_or(Ok(()), |[message, cure]| Err(entry.refuse_key(name, message, cure)))
+}
+
+/// The same of the name of an entry.
+pub fn require_own_name(entry: &Entry<'_>) -> Read<()> {
+    let base = entry.name.split('[').next().unwrap_or(entry.name);
+    unfit(base).map_or(Ok(()), |[message, cure]| Err(entry.refuse_all(message, cure)))
+}
+
+/// Why something cannot be a name in expressions, and the cure.
+fn unfit(name: &str) -> Option<[String; 2]> {
     let starts = name.chars().next().is_some_and(|c| c.is_alphabetic() || c == '_');
     if !starts || !name.chars().all(|c| c.is_alphanumeric() || c == '_') {
         let message = format!("`{name}` cannot be used as a name in expressions");
-        return Err(entry.refuse_key(name, message, "use letters, digits and _, and a letter first"));
+        return Some([message, "use letters, digits and _, and a letter first".into()]);
     }
-    if expression::is_reserved(name) {
-        return Err(entry.refuse_key(name, format!("`{name}` is a constant or a function of every expression"), "give it another name"));
-    }
-    Ok(())
+    let message = || format!("`{name}` is a constant or a function of every expression");
+    expression::is_reserved(name).then(|| [message(), "give it another name".into()])
 }
 
 /// The parameters that a parameter is made of.
@@ -87,7 +96,7 @@ fn report_cycles<'a>(table: &'a Table, needs: &HashMap<&'a str, Vec<String>>, or
     let fine: HashSet<&str> = order.iter().copied().collect();
     let left: Vec<&str> = table.keys().filter(|name| !fine.contains(name)).collect();
     let mut seen: HashSet<&str> = HashSet::new();
-    let entry = Entry { name: "", path: "parameters", written: table, scope: Scope::default(), sink, meshes: &NoMeshes };
+    let entry = Entry { name: "", path: "parameters", written: table, scope: Scope::default(), sink, files: &NoFiles };
     for &start in &left {
         let mut way: Vec<&str> = Vec::new();
         let mut name = start;

@@ -2,7 +2,7 @@
 
 use std::ops::Deref;
 
-use super::bodies::NoMeshes;
+use super::bodies::NoFiles;
 use super::entry::{Entry, Spot};
 use super::expression::Scope;
 use super::fault::{Fault, Read, Sink, suggest};
@@ -29,7 +29,7 @@ impl<'a> Deref for Reader<'a> {
 impl<'a> Reader<'a> {
     /// A table called `name` that stands at `path`.
     pub(super) fn new(name: &'a str, path: &'a str, table: &'a Table, sink: &'a Sink) -> Self {
-        Self { table, entry: Entry { name, path, written: table, scope: Scope::default(), sink, meshes: &NoMeshes } }
+        Self { table, entry: Entry { name, path, written: table, scope: Scope::default(), sink, files: &NoFiles } }
     }
 
     /// The value of a key that must be there.

@@ -4,7 +4,7 @@ use super::assembly::{Assembly, GROUND};
 use super::bodies::nodes::Member;
 use super::ends::{End, fixed};
 use super::entry::{Entry, Spot, all};
-use super::expression::{Mistake, Program, Scope};
+use super::expression::indexed;
 use super::fault::{Read, Refused, nearest, suggest};
 use super::fields::{self as field, Field, Number};
 use super::geometry::Vec3;
@@ -243,31 +243,4 @@ fn vector(entry: &Entry<'_>, spot: Spot<'_>, numbers: &[Number]) -> Read<Vec3> {
 pub fn split_place(text: &str) -> Option<(&str, &str)> {
     let behind = text.rfind(']').map_or(0, |at| at + 1);
     text[behind..].find('.').map(|at| (&text[..behind + at], &text[behind + at + 1..]))
-}
-
-/// A reference with its indices worked out: `P[i-1]` becomes `P[2]`.
-fn indexed(name: &str, scope: &Scope<'_>) -> Result<String, Mistake> {
-    let Some((base, mut rest)) = name.split_once('[') else {
-        return Ok(name.to_string());
-    };
-    let mut full = base.to_string();
-    let mut at = base.chars().count() + 1;
-    let wrong = |character: usize, message: String| Mistake { character, message, cure: "write \"NAME[i]\"".into(), known: false };
-    loop {
-        let Some((text, after)) = rest.split_once(']') else {
-            return Err(wrong(at, "a closing ] is missing".into()));
-        };
-        let index = Program::parse(text, &[], scope).map_err(|inner| Mistake { character: at + inner.character, ..inner })?;
-        let value = index.as_constant().expect("no variables");
-        if value.is_nan() || (value - value.round()).abs() > 1e-9 {
-            return Err(wrong(at, format!("the index `{text}` is {value}, which is no whole number")));
-        }
-        full.push_str(&format!("[{}]", value.round()));
-        at += text.chars().count() + 2;
-        match after.strip_prefix('[') {
-            Some(next) => rest = next,
-            None if after.is_empty() => return Ok(full),
-            None => return Err(wrong(at - 1, "nothing may follow an index but another one".into())),
-        }
-    }
 }

@@ -3,12 +3,16 @@
 use super::fields::Keys;
 use super::key::{Key, Kind, Shape};
 use super::value::{Table, Value};
-use super::{Bar, Body, ModelKeys, OutputKeys, Point, REPEAT, SimulationKeys, constraints, drives, forces, joints};
+use super::{
+    Bar, Body, Curve, Event, Input, Measure, ModelKeys, OutputKeys, Point, REPEAT, SimulationKeys, constraints, drives, forces, joints,
+};
 
 /// JSON Schema (draft 2020-12) of the model file.
 pub fn schema() -> Value {
     let mut properties: Table = ModelKeys::KEYS.iter().map(|key| (key.name, described(key))).collect();
     properties.push("parameters", table([("type", Value::text("object")), ("additionalProperties", shape(Shape::Number))]));
+    properties.push("table", entries(object(Curve::KEYS, None)));
+    properties.push("input", entries(named(Input::KEYS)));
     properties.push("point", entries(named(Point::KEYS)));
     properties.push("body", entries(named(Body::KEYS)));
     properties.push("bar", entries(named(Bar::KEYS)));
@@ -16,6 +20,8 @@ pub fn schema() -> Value {
     properties.push("constraint", entries(one_of(constraints::KINDS)));
     properties.push("drive", entries(one_of(drives::KINDS)));
     properties.push("force", entries(one_of(forces::KINDS)));
+    properties.push("measure", entries(named(Measure::KEYS)));
+    properties.push("event", entries(named(Event::KEYS)));
     properties.push("simulation", object(SimulationKeys::KEYS, None));
     properties.push("output", object(OutputKeys::KEYS, None));
     table([

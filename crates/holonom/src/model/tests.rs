@@ -72,7 +72,7 @@ fn a_point_on_a_rod_becomes_a_node_and_a_row() {
     let bob = table(&[("mass", Value::Number(2.0)), ("position", numbers(&[1.0, 0.0]))]);
     let rod = table(&[("type", Value::text("distance")), ("between", Value::List(vec![Value::text("ground"), Value::text("bob")]))]);
     let model = table(&[("plane", Value::text("xz")), ("point", table(&[("bob", bob)])), ("constraint", table(&[("rod", rod)]))]);
-    let model = Model::from_value(&model, &NoMeshes).unwrap_or_else(|faults| panic!("{faults}"));
+    let model = Model::from_value(&model, &NoFiles).unwrap_or_else(|faults| panic!("{faults}"));
     assert_eq!((model.dimension, model.axes, model.gravity), (2, "xz", GRAVITY));
     assert_eq!((model.system.coordinates(), model.system.row_names()), (2, &["rod".to_string()][..]));
     assert_eq!(model.system.start_position(), [1.0, 0.0]);
@@ -85,7 +85,7 @@ fn half_the_weight_of_a_bar_hangs_on_each_end_also_when_one_is_fixed() {
         let bar = table(&[("between", Value::List(vec![fixed, Value::text("tip")])), ("mass", Value::Number(6.0))]);
         let tip = table(&[("position", numbers(&[2.0, 0.0, 0.0]))]);
         let model = table(&[("point", table(&[("tip", tip)])), ("bar", table(&[("rod", bar)]))]);
-        let model = Model::from_value(&model, &NoMeshes).unwrap_or_else(|faults| panic!("{faults}"));
+        let model = Model::from_value(&model, &NoFiles).unwrap_or_else(|faults| panic!("{faults}"));
         let inertia: f64 = model.system.mass().row(0).map(|(_, block)| block.m).sum();
         assert_eq!((inertia, model.system.weighing[0]), (2.0, [3.0, 0.0]), "m/3 of inertia, m/2 of weight");
     }
@@ -96,7 +96,7 @@ fn faults_of_different_places_come_together() {
     let bob = table(&[("mass", Value::Number(-1.0)), ("position", numbers(&[1.0, 0.0])), ("colour", Value::text("red"))]);
     let rod = table(&[("type", Value::text("distanc")), ("between", Value::Number(1.0))]);
     let model = table(&[("point", table(&[("bob", bob)])), ("constraint", table(&[("rod", rod)])), ("titel", Value::text("x"))]);
-    let faults = Model::from_value(&model, &NoMeshes).err().expect("wrong").0;
+    let faults = Model::from_value(&model, &NoFiles).err().expect("wrong").0;
     let paths: Vec<&str> = faults.iter().map(|fault| fault.path.as_str()).collect();
     // What is not known or of another shape first, then what is wrong with the numbers.
     assert_eq!(paths, ["titel", "point.bob.colour", "constraint.rod.type", "point.bob.mass", "point.bob.position"]);

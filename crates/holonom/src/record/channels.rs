@@ -7,6 +7,8 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use super::force::{self, RecordedForce};
 use super::heading::{Heading, Units};
+use super::measure::{RecordedInput, RecordedMeasure};
+use super::recorder::{COLUMNS, Constraints, MEANINGS};
 use crate::simulation::{Apart, Simulation};
 use crate::system::{NodeId, Place, Signal, System, Term, place_of, rate_of};
 
@@ -123,6 +125,10 @@ pub struct Channels {
     pub efforts: Vec<RecordedEffort>,
     /// The coordinates of joints and bodies, as `hinge.angle`, that are angles (rad) and not displacements (m).
     pub angles: HashSet<String>,
+    /// Formulas of the columns, each behind those that it reads.
+    pub measures: Vec<RecordedMeasure>,
+    /// Numbers from outside.
+    pub inputs: Vec<RecordedInput>,
     /// The system that the forces of the constraints are found in and the same of it, where it is another one.
     pub apart: Option<Arc<(Apart, Self)>>,
 }
@@ -143,6 +149,26 @@ impl Channels {
     /// The channels that forces of the constraints and accelerations are of.
     pub fn told(&self) -> &Self {
         self.apart.as_ref().map_or(self, |apart| &apart.1)
+    }
+
+    /// All columns but those of measures: what every recording begins with, motion, accelerations, the coordinates of joints and their
+    /// rates, what forces and drives do, inputs, then `constraints`.
+    pub fn headings(&self, system: &System, constraints: Constraints) -> Vec<Heading> {
+        let common = COLUMNS.iter().zip(MEANINGS).map(|(&name, (unit, meaning))| Heading::new(name, unit, meaning));
+        let mut headings: Vec<Heading> = common.chain(self.motion_headings()).collect();
+        if constraints != Constraints::Nothing {
+            headings.extend(self.acceleration_headings());
+        }
+        headings.extend(self.coordinate_headings(system.gauges()));
+        headings.extend(self.force_headings());
+        headings.extend(self.inputs.iter().map(|input| Heading::new(&input.name, input.unit.clone(), &input.meaning)));
+        if constraints != Constraints::Nothing {
+            headings.extend(self.joint_headings());
+        }
+        if constraints == Constraints::Rows {
+            headings.extend(self.multiplier_headings(system));
+        }
+        headings
     }
 
     /// The columns of motion.
@@ -227,7 +253,7 @@ impl Channels {
     /// Appends the columns of what forces do, and of drives where the simulation finds forces.
     pub(super) fn forces(&self, simulation: &Simulation, row: &mut Vec<f64>) {
         if !self.forces.is_empty() {
-            force::append(&self.forces, simulation, &simulation.system().in_world(&simulation.state().x), row);
+            force::append(&self.forces, simulation, row);
         }
         let t = simulation.state().t;
         for effort in &self.told().efforts {

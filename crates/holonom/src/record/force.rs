@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::heading::{Heading, Units};
 use crate::simulation::Simulation;
-use crate::system::{Evaluation, FunctionId, LawEntry, LoadEntry, MAX_ARGUMENTS, NodeId, Quantity, Response, System, gather};
+use crate::system::{FunctionId, LawEntry, LoadEntry, Look, MAX_ARGUMENTS, Quantity, Response, Sense, System};
 
 /// A force whose effect is recorded.
 #[derive(Clone)]
@@ -27,10 +27,8 @@ pub enum Shows {
     Tension,
     /// What its laws exert along some coordinates.
     Along(Vec<Along>),
-    /// What its loads exert.
+    /// What its load exerts.
     Load {
-        /// The nodes that it follows from, in this order.
-        nodes: Vec<NodeId>,
         /// Whether it is a moment (N·m) and not a force (N).
         is_moment: bool,
         /// Finds it.
@@ -51,19 +49,17 @@ pub struct Along {
     pub is_angle: bool,
 }
 
-/// A force or moment that follows from nodes.
+/// A force or moment that follows from what a load reads.
 pub trait Exerts: Send + Sync {
-    /// The force or moment in the axes of the model, in the plane a moment last, at positions `x` and velocities `v` of its nodes and the time `t`.
+    /// The force or moment in the axes of the model, in the plane a moment last, at what the load [reads](crate::system::Reading), `x`, its
+    /// rates `v` and the time `t`.
     fn exerted(&self, x: &[f64], v: &[f64], t: f64) -> [f64; 3];
 }
 
 /// The state that forces are looked at in.
 struct At<'a> {
     system: &'a System,
-    at: &'a Evaluation,
-    x: &'a [f64],
-    v: &'a [f64],
-    t: f64,
+    look: Look<'a>,
 }
 
 impl At<'_> {
@@ -72,24 +68,32 @@ impl At<'_> {
         let mut rates = [0.0; MAX_ARGUMENTS];
         rates.iter_mut().zip(&law.arguments).for_each(|(rate, &quantity)| *rate = self.rate(quantity));
         let (m, mut response) = (law.arguments.len(), Response::default());
-        law.law.at(&self.system.arguments(law, self.at)[..m], &rates[..m], self.t, &mut response);
+        law.law.at(&self.system.arguments(law, self.look.at)[..m], &rates[..m], self.look.t, &mut response);
         (rates, response)
     }
 
     fn rate(&self, quantity: Quantity) -> f64 {
-        self.system.along(&self.system.slots_of(quantity), &self.system.slots.nodes, self.at, self.v)
+        self.system.along(&self.system.slots_of(quantity), &self.system.slots.nodes, self.look.at, self.look.v)
     }
 
     fn value(&self, quantity: Quantity) -> f64 {
-        self.at.value[self.system.value_index(quantity)]
+        self.look.at.value[self.system.value_index(quantity)]
     }
 
-    /// What a load does, W.
-    fn power(&self, load: &LoadEntry) -> f64 {
-        let [x, v] = [self.x, self.v].map(|of| gather(self.system.dim, &load.nodes, of));
+    /// What a load exerts on each number that it reads, and what it does, W.
+    fn exerted(&self, load: &LoadEntry) -> (Vec<f64>, f64) {
+        let [x, v] = self.system.read(&load.reading, self.look);
         let mut force = vec![0.0; x.len()];
-        load.load.force(&x, &v, self.t, &mut force);
-        force.iter().zip(&v).map(|(force, v)| force * v).sum()
+        load.load.force(&x, &v, self.look.t, &mut force);
+        let power = force.iter().zip(&v).map(|(force, v)| force * v).sum();
+        (force, power)
+    }
+
+    /// What a load exerts along a quantity that it reads.
+    fn along(&self, load: &LoadEntry, quantity: Quantity) -> f64 {
+        let own = load.reading.nodes.len() * self.system.dim;
+        let place = load.reading.senses.iter().position(|sense| *sense == Sense::Quantity(quantity));
+        place.map_or(0.0, |k| self.exerted(load).0[own + k])
     }
 }
 
@@ -129,7 +133,7 @@ impl RecordedForce {
     }
 
     fn values(&self, at: &At<'_>, dim: usize, row: &mut Vec<f64>) {
-        let laws = &at.system.laws[self.laws.clone()];
+        let (laws, loads) = (&at.system.laws[self.laws.clone()], &at.system.loads[self.loads.clone()]);
         let responses: Vec<_> = laws.iter().map(|law| at.response(law)).collect();
         match &self.shows {
             Shows::Power => (),
@@ -145,12 +149,14 @@ impl RecordedForce {
                 row.extend(coordinates.iter().map(|along| {
                     let own = |law: &LawEntry| law.arguments.first() == Some(&along.coordinate.into());
                     let efforts = laws.iter().zip(&responses).filter(|(law, _)| own(law)).map(|(_, (_, response))| -response.force[0]);
-                    0.0 + efforts.sum::<f64>()
+                    let of_loads = loads.iter().map(|load| at.along(load, along.coordinate.into()));
+                    0.0 + efforts.sum::<f64>() + of_loads.sum::<f64>()
                 }));
             }
-            Shows::Load { nodes, is_moment, exerts } => {
-                let [x, v] = [at.x, at.v].map(|of| gather(dim, nodes, of));
-                let exerted = exerts.exerted(&x, &v, at.t);
+            Shows::Load { is_moment, exerts } => {
+                let Some(load) = loads.first() else { return };
+                let [x, v] = at.system.read(&load.reading, at.look);
+                let exerted = exerts.exerted(&x, &v, at.look.t);
                 row.extend_from_slice(if dim == 2 && *is_moment { &exerted[2..] } else { &exerted[..dim] });
             }
         }
@@ -158,7 +164,7 @@ impl RecordedForce {
             (0..law.arguments.len()).map(|k| -response.force[k] * rates[k]).sum()
         };
         let of_laws: f64 = laws.iter().zip(&responses).map(of_law).sum();
-        let of_loads: f64 = at.system.loads[self.loads.clone()].iter().map(|load| at.power(load)).sum();
+        let of_loads: f64 = loads.iter().map(|load| at.exerted(load).1).sum();
         row.push(0.0 + of_laws + of_loads);
     }
 }
@@ -174,9 +180,10 @@ fn length(half_square: f64, rate: f64) -> (f64, f64) {
     (length, rate / length)
 }
 
-/// Appends what forces do at the present state, of which `x` are the positions of all nodes in the world.
-pub(super) fn append(forces: &[RecordedForce], simulation: &Simulation, x: &[f64], row: &mut Vec<f64>) {
-    let system = simulation.system();
-    let at = At { system, at: simulation.evaluation(), x, v: simulation.velocities(), t: simulation.state().t };
+/// Appends what forces do at the present state.
+pub(super) fn append(forces: &[RecordedForce], simulation: &Simulation, row: &mut Vec<f64>) {
+    let (system, state) = (simulation.system(), simulation.state());
+    let look = Look { x: &state.x, v: simulation.velocities(), t: state.t, at: simulation.evaluation(), inputs: &state.inputs, span: None };
+    let at = At { system, look };
     forces.iter().for_each(|force| force.values(&at, system.dim, row));
 }

@@ -1,19 +1,21 @@
 //! What a column of a recording shows.
 
+use std::borrow::Cow;
+
 /// Name, unit and meaning of a column.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Heading {
     /// As in the header of `trajectory.csv`, e.g. `energy` or `m1.x`.
     pub name: String,
-    /// SI unit; `"1"` of numbers without one.
-    pub unit: &'static str,
+    /// SI unit, of measures and inputs as the author states it; `"1"` of numbers without one.
+    pub unit: Cow<'static, str>,
     /// What it shows, in a line.
     pub meaning: String,
 }
 
 impl Heading {
-    pub(crate) fn new(name: impl Into<String>, unit: &'static str, meaning: impl Into<String>) -> Self {
-        Self { name: name.into(), unit, meaning: meaning.into() }
+    pub(crate) fn new(name: impl Into<String>, unit: impl Into<Cow<'static, str>>, meaning: impl Into<String>) -> Self {
+        Self { name: name.into(), unit: unit.into(), meaning: meaning.into() }
     }
 }
 

@@ -3,6 +3,7 @@
 mod channels;
 mod force;
 mod heading;
+mod measure;
 mod peaks;
 mod recorder;
 mod scene;
@@ -10,7 +11,9 @@ mod scene;
 pub use channels::{Channels, RecordedBody, RecordedEffort, RecordedJoint, RecordedPoint};
 pub use force::{Along, Exerts, RecordedForce, Shows};
 pub use heading::Heading;
-pub use peaks::{Peak, Peaks};
+pub use measure::{Formula, RecordedInput, RecordedMeasure, Running};
+pub(crate) use measure::{MeasureReads, Series};
+pub use peaks::{Extremes, Peak, Peaks};
 pub use recorder::{COLUMNS, Constraints, Recorder, RecorderMark};
 pub use scene::{Anchor, Line, LineKind, PointKind, Scene, SceneBody, SceneJoint, ScenePoint, SceneShape};
 

@@ -1,5 +1,7 @@
 //! What acts most in a run: the largest efforts of drives, forces of springs and other forces, and forces of joints.
 
+use std::borrow::Cow;
+
 use serde::Serialize;
 
 use super::channels::{Channels, RecordedJoint};
@@ -16,9 +18,28 @@ pub struct Peak {
     /// With the sign of its column; of several components their size, which has none.
     pub value: f64,
     /// N or N·m.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// When it acts, s.
     pub at: f64,
+}
+
+/// How far a measure goes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Extremes {
+    /// Of the measure.
+    pub name: String,
+    /// As its author states it.
+    pub unit: Cow<'static, str>,
+    /// Its smallest value, and when, s.
+    pub min: f64,
+    /// s
+    pub min_at: f64,
+    /// Its largest value, and when, s.
+    pub max: f64,
+    /// s
+    pub max_at: f64,
+    /// Its last value.
+    pub last: f64,
 }
 
 /// The largest values of a recording, the largest first.
@@ -30,6 +51,8 @@ pub struct Peaks {
     pub forces: Vec<Peak>,
     /// Of what joints transmit.
     pub joints: Vec<Peak>,
+    /// Of all measures, in the order of their columns.
+    pub measures: Vec<Extremes>,
 }
 
 /// Peaks of a sort that are kept.
@@ -72,14 +95,29 @@ impl Peaks {
             drives: largest(drives.collect()),
             forces: largest(forces.flatten().collect()),
             joints: largest(told.joints.iter().flat_map(joint).flatten().collect()),
+            measures: channels.measures.iter().filter_map(|measure| extremes(&measure.name, times, recording)).collect(),
         }
     }
+}
+
+/// How far a column goes; none where it has no numbers.
+fn extremes(name: &str, times: &[f64], recording: &Recording) -> Option<Extremes> {
+    let column = recording.find(name)?;
+    let rows = || column.values.iter().copied().zip(times.iter().copied()).filter(|(value, _)| !value.is_nan());
+    // Of equal values the first.
+    let [mut lowest, mut highest] = [rows().next()?; 2];
+    for row in rows() {
+        lowest = if row.0 < lowest.0 { row } else { lowest };
+        highest = if row.0 > highest.0 { row } else { highest };
+    }
+    let (unit, last) = (column.heading.unit.clone(), *column.values.last()?);
+    Some(Extremes { name: name.into(), unit, min: lowest.0, min_at: lowest.1, max: highest.0, max_at: highest.1, last })
 }
 
 /// The row in which some columns of a unit are largest together; none where that is nothing.
 fn peak(name: &str, columns: &[String], times: &[f64], recording: &Recording) -> Option<Peak> {
     let columns: Vec<&Column> = columns.iter().filter_map(|column| recording.find(column)).collect();
-    let unit = columns.first()?.heading.unit;
+    let unit = columns.first()?.heading.unit.clone();
     let size = |row: usize| columns.iter().map(|column| column.values[row] * column.values[row]).sum::<f64>();
     let (row, square) = (0..times.len()).map(|row| (row, size(row))).filter(|(_, size)| *size > 0.0).max_by(|a, b| a.1.total_cmp(&b.1))?;
     let value = if let [column] = columns[..] { column.values[row] } else { square.sqrt() };
@@ -88,7 +126,7 @@ fn peak(name: &str, columns: &[String], times: &[f64], recording: &Recording) ->
 
 /// The largest of each unit, as these cannot be compared.
 fn largest(mut peaks: Vec<Peak>) -> Vec<Peak> {
-    peaks.sort_by(|a, b| (a.unit, b.value.abs()).partial_cmp(&(b.unit, a.value.abs())).expect("peaks are numbers"));
+    peaks.sort_by(|a, b| (&a.unit, b.value.abs()).partial_cmp(&(&b.unit, a.value.abs())).expect("peaks are numbers"));
     let mut kept: Vec<Peak> = Vec::new();
     for peak in peaks {
         let mut alike = kept.iter().filter(|kept| kept.unit == peak.unit);

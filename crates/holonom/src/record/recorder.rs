@@ -3,6 +3,7 @@
 use nalgebra::{Quaternion, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
+use super::measure::{Measures, Sum};
 use super::{Channels, Heading, Recording};
 use crate::simulation::{Observer, Simulation, Verdict};
 use crate::system::System;
@@ -12,7 +13,7 @@ pub const COLUMNS: [&str; 11] =
     ["t", "energy", "kinetic", "potential", "work", "dE_integrator", "dE_projection", "phi", "phi_dot", "phi_ddot", "iterations"];
 
 /// Units and meanings of these.
-const MEANINGS: [(&str, &str); 11] = [
+pub(super) const MEANINGS: [(&str, &str); 11] = [
     ("s", "time"),
     ("J", "kinetic and potential energy"),
     ("J", "kinetic energy"),
@@ -36,6 +37,9 @@ pub struct RecorderMark {
     last: [f64; 2],
     /// Quaternions (w, x, y, z) of the bodies in the last row, of two signs the one near the row before.
     orientations: Vec<[f64; 4]>,
+    /// Of each measure its running values.
+    #[serde(default)]
+    sums: Vec<Vec<Sum>>,
 }
 
 /// What is recorded of the forces of constraints, and of the accelerations, which are found with them.
@@ -60,28 +64,18 @@ pub struct Recorder<'a> {
     last: [f64; 2],
     resumed: bool,
     constraints: Constraints,
+    measures: Measures<'a>,
     orientations: Vec<UnitQuaternion<f64>>,
     row: Vec<f64>,
     recording: Recording,
 }
 
 impl<'a> Recorder<'a> {
-    /// Records channels of a system: motion, accelerations, the coordinates of joints and their rates, what forces and drives do, then
-    /// `constraints`, where the simulation finds forces.
+    /// Records channels of a system, and `constraints` where the simulation finds forces.
     pub fn new(channels: &'a Channels, system: &System, every: u64, constraints: Constraints) -> Self {
-        let common = COLUMNS.iter().zip(MEANINGS).map(|(&name, (unit, meaning))| Heading::new(name, unit, meaning));
-        let mut headings: Vec<Heading> = common.chain(channels.motion_headings()).collect();
-        if constraints != Constraints::Nothing {
-            headings.extend(channels.acceleration_headings());
-        }
-        headings.extend(channels.coordinate_headings(system.gauges()));
-        headings.extend(channels.force_headings());
-        if constraints != Constraints::Nothing {
-            headings.extend(channels.joint_headings());
-        }
-        if constraints == Constraints::Rows {
-            headings.extend(channels.multiplier_headings(system));
-        }
+        let mut headings = channels.headings(system, constraints);
+        let measures = Measures::new(&channels.measures, headings.iter().map(|heading| heading.name.as_str()));
+        headings.extend(channels.measures.iter().map(|measure| Heading::new(&measure.name, measure.unit.clone(), &measure.meaning)));
         let recording = Recording::new(headings);
         Self {
             row: Vec::with_capacity(recording.columns().len()),
@@ -93,6 +87,7 @@ impl<'a> Recorder<'a> {
             last: [0.0; 2],
             resumed: false,
             constraints,
+            measures,
             recording,
         }
     }
@@ -103,13 +98,16 @@ impl<'a> Recorder<'a> {
         for (own, [w, x, y, z]) in self.orientations.iter_mut().zip(&mark.orientations) {
             *own = UnitQuaternion::new_unchecked(Quaternion::new(*w, *x, *y, *z));
         }
+        for (own, sums) in self.measures.sums.iter_mut().zip(&mark.sums).filter(|(own, sums)| own.len() == sums.len()) {
+            own.copy_from_slice(sums);
+        }
         self
     }
 
     /// What a resumed recording goes on from.
     pub fn mark(&self) -> RecorderMark {
         let orientations = self.orientations.iter().map(|q| [q.w, q.i, q.j, q.k]).collect();
-        RecorderMark { seen: self.seen, since: self.since, last: self.last, orientations }
+        RecorderMark { seen: self.seen, since: self.since, last: self.last, orientations, sums: self.measures.sums.clone() }
     }
 
     /// What was recorded so far.
@@ -122,7 +120,8 @@ impl<'a> Recorder<'a> {
         self.recording
     }
 
-    fn record(&mut self, simulation: &Simulation) {
+    /// Puts together what is to be recorded of the present state.
+    fn look(&mut self, simulation: &Simulation) {
         let (audit, state) = (simulation.audit(), simulation.state());
         self.row.clear();
         let lift = audit.lift;
@@ -136,34 +135,42 @@ impl<'a> Recorder<'a> {
         let gauges = simulation.gauges();
         gauges.value.iter().zip(&gauges.rate).for_each(|(&value, &rate)| self.row.extend([value, rate]));
         self.channels.forces(simulation, &mut self.row);
+        self.row.extend_from_slice(&state.inputs);
         if self.constraints != Constraints::Nothing {
             self.channels.joint_forces(simulation, &mut self.row);
         }
         if self.constraints == Constraints::Rows {
             self.channels.multipliers(simulation, &mut self.row);
         }
-        self.recording.push(&self.row);
+        self.measures.append(&mut self.row);
     }
 }
 
 impl Observer for Recorder<'_> {
     fn wants_forces(&self) -> bool {
-        self.seen.is_multiple_of(self.every)
+        self.measures.are_running() || self.seen.is_multiple_of(self.every)
     }
 
     fn after_step(&mut self, simulation: &Simulation) -> Verdict {
         if std::mem::take(&mut self.resumed) {
             // Where the run was left, that row is the first once more.
             if (self.seen.max(1) - 1).is_multiple_of(self.every) {
-                self.record(simulation);
+                self.look(simulation);
+                self.recording.push(&self.row);
             }
             return Verdict::GoOn;
         }
         self.since[0] += simulation.audit().integrator;
         self.since[1] += simulation.audit().projection;
-        if self.seen.is_multiple_of(self.every) {
+        let is_kept = self.seen.is_multiple_of(self.every);
+        if is_kept {
             self.last = std::mem::take(&mut self.since);
-            self.record(simulation);
+        }
+        if is_kept || self.measures.are_running() {
+            self.look(simulation);
+        }
+        if is_kept {
+            self.recording.push(&self.row);
         }
         self.seen += 1;
         Verdict::GoOn

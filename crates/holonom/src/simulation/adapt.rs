@@ -351,10 +351,14 @@ impl Simulation {
         Ok(())
     }
 
-    /// Goes to just behind a time where something changes abruptly, with the accelerations there, and without what was kept of the
-    /// steps before.
+    /// Goes to just behind a time where something changes abruptly, and on from there.
     fn pass_switch(&mut self) {
         self.state.t = self.state.t.next_up().next_up();
+        self.begin_anew();
+    }
+
+    /// Goes on with the accelerations that forces have now, and without what was kept of the steps before.
+    pub(super) fn begin_anew(&mut self) {
         self.state.memory.fill(0.0);
         let (system, work, t) = (&*self.system, &mut self.work, self.state.t);
         self.state.load(work);

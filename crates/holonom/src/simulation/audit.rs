@@ -139,13 +139,17 @@ impl Audit {
     }
 
     pub(super) fn begin_step(&mut self) {
-        self.before = Mark {
+        self.before = self.mark();
+    }
+
+    fn mark(&self) -> Mark {
+        Mark {
             energy: self.energy(),
             work: self.work,
             integrator: self.integrator_total,
             projection: self.projection_total,
             iterations: self.total_iterations,
-        };
+        }
     }
 
     /// What the integrator made or lost of the energy since an earlier state, over all there is to move; nothing where that is round-off, or
@@ -268,6 +272,14 @@ impl Audit {
         kept.position = kept.position.max(self.phi);
         kept.velocity = kept.velocity.max(self.phi_dot);
         kept.acceleration = kept.acceleration.max(self.phi_ddot);
+    }
+
+    /// Has a nominal step that was taken in parts begin where the audit `first` was.
+    pub(super) fn join_parts(&mut self, first: &Self) {
+        self.before = first.mark();
+        self.iterations = self.total_iterations - self.before.iterations;
+        self.integrator = self.integrator_total - self.before.integrator;
+        self.projection = self.projection_total - self.before.projection;
     }
 
     pub(super) fn end_step(&mut self, system: &System, work: &mut Workspace, state: &State, steps: u64) {

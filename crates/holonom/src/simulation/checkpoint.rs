@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::adapt::Flight;
-use super::{Audit, Method, Reactions, Simulation, State};
+use super::{Audit, Happening, Method, Reactions, Simulation, State};
 use crate::formulation::{Fit, Newton, Rank, Workspace};
 use crate::integrator::Integrator;
 use crate::system::{Measured, System};
@@ -41,6 +41,8 @@ struct Run {
     /// Iterations and factorisations so far.
     counters: [u64; 2],
     flight: Option<Flight>,
+    #[serde(default)]
+    happenings: Vec<Happening>,
 }
 
 /// What the steps before said of rows and dampers, of which the next step is made beside the state.
@@ -128,6 +130,7 @@ impl Simulation {
             hints: Hints::of(&self.newton, &*self.integrator),
             counters: [self.newton.iterations, self.newton.factorizations],
             flight: self.pilot.as_ref().map(|pilot| pilot.flight()),
+            happenings: self.happenings.clone(),
         };
         Checkpoint { state: self.state.clone(), run: Some(run) }
     }
@@ -154,6 +157,20 @@ impl Simulation {
         Some(simulation)
     }
 
+    /// Goes back to a checkpoint of this run.
+    pub(super) fn restore(&mut self, checkpoint: &Checkpoint) {
+        self.state.copy_from(&checkpoint.state);
+        self.work.memory.copy_from_slice(&self.state.memory);
+        self.go_on(checkpoint.run.clone().expect("a checkpoint of a run"));
+    }
+
+    /// Has the nominal step begin at a checkpoint of this run that it was taken from in parts.
+    pub(super) fn join_parts(&mut self, first: &Checkpoint) {
+        if let Some(run) = &first.run {
+            self.audit.join_parts(&run.audit);
+        }
+    }
+
     fn go_on(&mut self, run: Run) {
         let state = self.state.clone();
         if let (Some(mut pilot), Some(flight)) = (self.pilot.take(), run.flight) {
@@ -168,7 +185,7 @@ impl Simulation {
         [self.newton.iterations, self.newton.factorizations] = run.counters;
         self.hints = run.hints;
         self.hints.restore(&mut self.newton, &mut *self.integrator);
-        self.steps = run.steps;
+        (self.steps, self.happenings) = (run.steps, run.happenings);
         if run.grid.step == self.step {
             self.grid = run.grid;
         }

@@ -4,6 +4,7 @@ mod adapt;
 mod audit;
 mod checkpoint;
 mod control;
+mod events;
 mod method;
 mod promise;
 mod reactions;
@@ -14,6 +15,7 @@ mod words;
 
 pub use audit::Audit;
 pub use checkpoint::Checkpoint;
+pub use events::Happening;
 pub use method::{
     Choice, LEVELS, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, OMEGA, PENALTY, ProjectionChoice, TOLERANCE, XI, combinations,
 };
@@ -170,6 +172,10 @@ pub struct Simulation {
     apart: Option<Box<reactions::Elsewhere>>,
     /// What was known after the last step that was taken.
     hints: Hints,
+    /// Events so far.
+    happenings: Vec<Happening>,
+    /// Whether the last of them ended the last run.
+    has_ended: bool,
 }
 
 impl Simulation {
@@ -254,6 +260,8 @@ impl Simulation {
             gauges,
             reactions: None,
             apart: None,
+            happenings: Vec::new(),
+            has_ended: false,
         }
     }
 
@@ -267,22 +275,29 @@ impl Simulation {
         self.run(t, &mut |_: &Self| Verdict::GoOn)
     }
 
-    /// Runs to time `end` (s) and shows the start and every nominal step to the observer.
+    /// Runs to time `end` (s), or to an event that ends the run, and shows the start and every nominal step to the observer.
     pub fn run(&mut self, end: f64, observer: &mut dyn Observer) -> Status {
         if observer.after_step(self) == Verdict::Stop {
             return self.interrupted();
         }
         self.begin_adapting(end);
+        self.has_ended = false;
         while self.state.t < end {
             let target = self.grid.next(self.state.t, end);
-            if let Err(failure) = self.advance(target, observer.wants_forces()) {
-                self.grid.back();
-                // Shorter attempts may profit from what failed ones learned of the rows; what comes after the run may not.
-                self.hints.restore(&mut self.newton, &mut *self.integrator);
-                return Status::Stopped { at: self.state.t, reason: self.reason(failure) };
-            }
+            self.has_ended = match self.advance_through_events(target, observer.wants_forces()) {
+                Ok(has_ended) => has_ended,
+                Err(failure) => {
+                    self.grid.back();
+                    // Shorter attempts may profit from what failed ones learned of the rows; what comes after the run may not.
+                    self.hints.restore(&mut self.newton, &mut *self.integrator);
+                    return Status::Stopped { at: self.state.t, reason: self.reason(failure) };
+                }
+            };
             if observer.after_step(self) == Verdict::Stop {
                 return self.interrupted();
+            }
+            if self.has_ended {
+                break;
             }
         }
         Status::Completed
@@ -491,6 +506,8 @@ impl Simulation {
             reason,
             step: self.step,
             end,
+            ended_by: self.happenings.last().filter(|_| self.has_ended).map(|last| last.event.clone()),
+            events: self.happenings.clone(),
             steps: self.steps,
             size,
             energy: self.audit.energy_summary(),

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Method, Simulation, State};
 use crate::formulation::{Newton, Workspace};
-use crate::system::{Evaluation, NodeId, Quantity, System, Term, place_of, rate_of};
+use crate::system::{Evaluation, NodeId, Quantity, Sense, System, Term, place_of, rate_of};
 
 /// Forces of the constraints at a state, of the order of its positions and velocities.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -71,14 +71,18 @@ impl Elsewhere {
         }
         system.place_known(state.t, &mut work.end.x, &mut work.end.v, &mut work.a);
         // The forces along angles may depend on how often these have turned.
-        for (law, theirs) in system.laws.iter().zip(&own.laws) {
-            for (mine, theirs) in law.arguments.iter().zip(&theirs.arguments) {
-                if let (&Quantity::Function(mine), &Quantity::Function(theirs)) = (mine, theirs) {
-                    let (mine, theirs) = (system.functions.angles_of(mine), own.functions.angles_of(theirs));
-                    work.start.at.functions.angle[mine].copy_from_slice(&angles.functions.angle[theirs]);
-                }
+        fn senses(system: &System) -> impl Iterator<Item = Quantity> {
+            let senses = system.loads.iter().flat_map(|load| &load.reading.senses);
+            let laws = system.laws.iter().flat_map(|law| law.arguments.iter().copied());
+            laws.chain(senses.filter_map(|sense| if let Sense::Quantity(quantity) = sense { Some(*quantity) } else { None }))
+        }
+        for pair in senses(system).zip(senses(own)) {
+            if let (Quantity::Function(mine), Quantity::Function(theirs)) = pair {
+                let (mine, theirs) = (system.functions.angles_of(mine), own.functions.angles_of(theirs));
+                work.start.at.functions.angle[mine].copy_from_slice(&angles.functions.angle[theirs]);
             }
         }
+        work.inputs.copy_from_slice(&state.inputs);
         system.evaluate_again(&work.end.x, state.t, &mut work.start.at);
         work.lambda.copy_from_slice(&reactions.lambda);
         let outcome = newton.react(system, state.t, work);
@@ -163,6 +167,11 @@ impl Simulation {
         let Some(reactions) = &mut self.reactions else { return };
         if let Some(elsewhere) = &mut self.apart {
             elsewhere.react(&self.system, &self.state, &self.shown_v, &self.work.start.at, reactions);
+            return;
+        }
+        if reactions.lambda.len() != self.system.constraints() {
+            // A resumed run of which nobody has said where its forces are found.
+            [&mut reactions.lambda, &mut reactions.a, &mut reactions.force].into_iter().for_each(|numbers| numbers.fill(f64::NAN));
             return;
         }
         let (system, newton, work, state) = (&*self.system, &mut self.newton, &mut self.work, &self.state);

@@ -35,6 +35,9 @@ pub struct State {
     pub angle: Vec<f64>,
     /// The same of the angles that are measured beside the equations.
     pub measured: Vec<f64>,
+    /// Numbers from outside, as they were set last.
+    #[serde(default)]
+    pub inputs: Vec<f64>,
 }
 
 impl State {
@@ -53,6 +56,7 @@ impl State {
             memory: work.memory.clone(),
             angle: work.start.at.functions.angle.clone(),
             measured: measured.to_vec(),
+            inputs: work.inputs.clone(),
         }
     }
 
@@ -63,6 +67,7 @@ impl State {
             && self.a_differences.len() == all
             && [&self.lambda, &self.lambda_change].iter().all(|values| values.len() == system.constraints())
             && self.angle.len() == system.evaluation().functions.angle.len()
+            && self.inputs.len() == system.inputs.len()
             && self.measured.len() == system.gauge_values().counted().len()
     }
 
@@ -77,6 +82,7 @@ impl State {
             (&mut self.memory, &other.memory),
             (&mut self.angle, &other.angle),
             (&mut self.measured, &other.measured),
+            (&mut self.inputs, &other.inputs),
         ];
         let places = [(&mut self.x, &other.x), (&mut self.v, &other.v)];
         places.into_iter().chain(accelerations).chain(rest).for_each(|(own, other)| own.copy_from_slice(other));
@@ -93,6 +99,7 @@ impl State {
         work.prediction.a_change.copy_from_slice(&self.a_change);
         work.prediction.lambda_change.copy_from_slice(&self.lambda_change);
         work.memory.copy_from_slice(&self.memory);
+        work.inputs.copy_from_slice(&self.inputs);
         work.start.at.functions.angle.copy_from_slice(&self.angle);
     }
 

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Happening;
+
 /// Everything a run is judged by. Keys are stable; additions are allowed.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
@@ -19,6 +21,10 @@ pub struct Summary {
     pub step: f64,
     /// Time the run was asked to reach, s.
     pub end: f64,
+    /// The event that ended the run before, if one did.
+    pub ended_by: Option<String>,
+    /// Events in their order.
+    pub events: Vec<Happening>,
     /// Nominal steps taken.
     pub steps: u64,
     /// How many unknowns and conditions it had.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::function::{FunctionId, Functions, Part, Quantity};
 use super::gauge::{Form, Gauges};
 use super::{
-    Constant, CustomEntry, CustomRows, InvariantId, Invariants, Law, LawEntry, Load, LoadEntry, MAX_ARGUMENTS, Mass, MassBlock, Row,
-    Signal, Slots, System,
+    Constant, CustomEntry, CustomRows, Event, InvariantId, Invariants, Law, LawEntry, Load, LoadEntry, MAX_ARGUMENTS, Mass, MassBlock,
+    Reading, Row, Sense, Signal, Slots, System,
 };
 
 /// A node of a [`SystemBuilder`] and of the system it makes.
@@ -67,6 +67,8 @@ pub struct SystemBuilder {
     loads: Vec<LoadEntry>,
     motions: Vec<[Arc<dyn Signal>; 3]>,
     switches: Vec<Arc<dyn Signal>>,
+    inputs: Vec<(String, f64)>,
+    events: Vec<Event>,
     directions: Vec<u32>,
     position: Vec<f64>,
     velocity: Vec<f64>,
@@ -132,6 +134,8 @@ impl SystemBuilder {
             loads: Vec::new(),
             motions: Vec::new(),
             switches: Vec::new(),
+            inputs: Vec::new(),
+            events: Vec::new(),
             directions: Vec::new(),
             position: Vec::new(),
             velocity: Vec::new(),
@@ -338,7 +342,33 @@ impl SystemBuilder {
 
     /// Adds a load on nodes.
     pub fn load(&mut self, name: impl Into<String>, nodes: &[NodeId], load: Arc<dyn Load>) {
-        self.loads.push(LoadEntry { name: name.into(), nodes: nodes.to_vec(), load });
+        self.load_reading(name, Reading { nodes: nodes.to_vec(), senses: Vec::new() }, load);
+    }
+
+    /// Adds a load on nodes and quantities, which may depend on all that it reads.
+    pub fn load_reading(&mut self, name: impl Into<String>, reading: Reading, load: Arc<dyn Load>) {
+        let mut nodes = reading.nodes.clone();
+        for sense in &reading.senses {
+            let Sense::Quantity(quantity) = *sense else { continue };
+            for s in self.base(quantity).into_iter().flat_map(|id| self.invariants.slots_of(id)) {
+                let node = NodeId(self.invariants.slot_nodes()[s]);
+                if !nodes.contains(&node) {
+                    nodes.push(node);
+                }
+            }
+        }
+        self.loads.push(LoadEntry { name: name.into(), reading, nodes, load });
+    }
+
+    /// Adds a number from outside, which loads may read, and says what it is until it is set.
+    pub fn input(&mut self, name: impl Into<String>, default: f64) -> Sense {
+        self.inputs.push((name.into(), default));
+        Sense::Input(self.inputs.len() - 1)
+    }
+
+    /// Adds a condition whose times simulations find.
+    pub fn event(&mut self, event: Event) {
+        self.events.push(event);
     }
 
     /// Adds rows that are functions of the coordinates of `nodes` and of time.
@@ -414,6 +444,8 @@ impl SystemBuilder {
             loads: self.loads,
             motions: self.motions,
             switches: self.switches,
+            inputs: self.inputs,
+            events: self.events,
             row_names,
             start_position: self.position,
             start_velocity: self.velocity,

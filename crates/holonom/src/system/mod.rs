@@ -9,6 +9,7 @@ mod builder;
 mod custom;
 mod derive;
 mod evaluate;
+mod event;
 mod function;
 mod gauge;
 mod invariant;
@@ -16,6 +17,7 @@ mod law;
 mod mass;
 mod motion;
 mod potential;
+mod reading;
 mod respond;
 mod slots;
 mod switches;
@@ -25,8 +27,9 @@ pub use builder::{NodeId, Place, SystemBuilder, Term};
 pub use custom::{ConstraintFunction, CustomRows, Differences, Differentiated, ForceFunction, Number, SIZE};
 pub(crate) use derive::NO_CHANGE;
 pub use derive::{Derivatives, Followed, FollowedFunction, Pfaffian, PfaffianForm, Smooth, SmoothFunction};
+pub(crate) use evaluate::gather;
 pub use evaluate::{Between, Evaluation};
-pub(crate) use evaluate::{Local, gather};
+pub use event::{Crossing, Event, Indicator};
 pub use function::{FunctionId, Part, Quantity};
 pub(crate) use function::{FunctionValues, Functions};
 pub(crate) use gauge::Gauges;
@@ -37,6 +40,8 @@ pub use invariant::{InvariantId, Invariants};
 pub use law::{Law, Load, MAX_ARGUMENTS, Reach, Response};
 pub use mass::{Mass, MassBlock};
 pub use motion::{Constant, Signal};
+pub(crate) use reading::{Look, Slopes};
+pub use reading::{Reading, Sense};
 pub(crate) use slots::RowSlot;
 pub(crate) use slots::{Slots, add_along_rows, along, scatter, scatter_rows};
 pub(crate) use terms::{place_of, rate_of};
@@ -89,10 +94,12 @@ pub(crate) struct LawEntry {
     pub law: Arc<dyn Law>,
 }
 
-/// A load acting on `nodes`.
+/// A load that acts on what it reads.
 #[derive(Clone)]
 pub(crate) struct LoadEntry {
     pub name: String,
+    pub reading: Reading,
+    /// The nodes that it reads, then those of its quantities.
     pub nodes: Vec<NodeId>,
     pub load: Arc<dyn Load>,
 }
@@ -132,6 +139,9 @@ pub struct System {
     pub(crate) motions: Vec<[Arc<dyn Signal>; 3]>,
     /// Functions of time at whose zeros forces or motions change abruptly.
     pub(crate) switches: Vec<Arc<dyn Signal>>,
+    /// Names of the numbers from outside, and what they are until they are set.
+    pub(crate) inputs: Vec<(String, f64)>,
+    pub(crate) events: Vec<Event>,
     pub(crate) row_names: Vec<String>,
     pub(crate) start_position: Vec<f64>,
     pub(crate) start_velocity: Vec<f64>,

@@ -1,4 +1,4 @@
-//! Closed triangle meshes: whether they are that, and their exact mass properties.
+//! Closed triangle files: whether they are that, and their exact mass properties.
 
 use super::inertia::short;
 use super::shape::MassProperties;

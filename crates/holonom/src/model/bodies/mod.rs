@@ -23,20 +23,41 @@ pub use rigid::RigidBody;
 pub use shape::{MassProperties, Shape};
 pub use shape_key::Solid;
 
-/// Where the meshes that a model names come from.
-pub trait Meshes {
+/// Where the files that a model names come from.
+pub trait Files {
     /// The mesh of a file, by the name it has in the model.
     ///
     /// # Errors
     /// What is wrong with the file, in words.
     fn mesh(&self, name: &str) -> Result<Arc<Mesh>, String>;
+
+    /// The numbers of a CSV file, by the name it has in the model.
+    ///
+    /// # Errors
+    /// What is wrong with the file, in words.
+    fn numbers(&self, name: &str) -> Result<Arc<NumberFile>, String>;
 }
 
-/// No meshes: of a description that comes from no file.
-pub struct NoMeshes;
+/// Columns of numbers with their names, as of a CSV file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NumberFile {
+    /// As in its header.
+    pub names: Vec<String>,
+    /// One for each name, of equal length.
+    pub columns: Vec<Vec<f64>>,
+}
 
-impl Meshes for NoMeshes {
+/// No files: of a description that comes from no file.
+pub struct NoFiles;
+
+const NONE: &str = "there are no files beside this model";
+
+impl Files for NoFiles {
     fn mesh(&self, _name: &str) -> Result<Arc<Mesh>, String> {
-        Err("there are no files beside this model".into())
+        Err(NONE.into())
+    }
+
+    fn numbers(&self, _name: &str) -> Result<Arc<NumberFile>, String> {
+        Err(NONE.into())
     }
 }

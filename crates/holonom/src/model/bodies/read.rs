@@ -152,14 +152,14 @@ const SIZES: std::ops::Range<f64> = 1e-30..1e30;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Field, Model, NoMeshes, Table, Value};
+    use crate::model::{Field, Model, NoFiles, Table, Value};
 
     fn model(body: &Body, plane: Option<&str>) -> Model {
         let mut table: Table = [("body", Value::Table([("top", Field::write(body))].into_iter().collect()))].into_iter().collect();
         if let Some(plane) = plane {
             table.push("plane", Value::text(plane));
         }
-        Model::from_value(&Value::Table(table), &NoMeshes).unwrap_or_else(|faults| panic!("{faults}"))
+        Model::from_value(&Value::Table(table), &NoFiles).unwrap_or_else(|faults| panic!("{faults}"))
     }
 
     #[test]
@@ -211,7 +211,7 @@ mod tests {
         let body: Table =
             [("shape", Value::text("box")), ("orientation", Value::List(Vec::new())), ("mass", Value::Bool(true))].into_iter().collect();
         let body = Value::Table([("top", Value::Table(body))].into_iter().collect());
-        let faults = Model::from_value(&Value::Table([("body", body)].into_iter().collect()), &NoMeshes).err().expect("wrong").0;
+        let faults = Model::from_value(&Value::Table([("body", body)].into_iter().collect()), &NoFiles).err().expect("wrong").0;
         let paths: Vec<&str> = faults.iter().map(|fault| fault.path.as_str()).collect();
         assert_eq!(paths, ["body.top.mass", "body.top.shape", "body.top", "body.top.orientation"], "the third has no position");
     }

@@ -130,7 +130,7 @@ fn mesh(entry: &Entry<'_>, file: &str, dim: usize) -> Read<(Evaluated, SceneShap
     if dim == 2 {
         return Err(entry.refuse_key("mesh", "a planar model has no meshes", "give mass and inertia, or another shape"));
     }
-    let mesh = entry.meshes.mesh(file).map_err(|why| entry.refuse("mesh", why, "name an STL or OBJ file with a closed mesh, in metres"))?;
+    let mesh = entry.files.mesh(file).map_err(|why| entry.refuse("mesh", why, "name an STL or OBJ file with a closed mesh, in metres"))?;
     if let Some(flaw) = mesh.flaw() {
         return Err(entry.refuse("mesh", flaw, "repair the mesh: it must be closed, with all triangles turned alike"));
     }

@@ -76,7 +76,7 @@ impl Field for Row {
                 let [time, value] = [0, 1].map(|k| Number::read(entry, spot, &items[k]));
                 Ok(Self { time: time?, value: value? })
             }
-            _ => Err(entry.refuse(spot, "a row has a time and a value", "write [[t, value], [t, value], …]")),
+            _ => Err(entry.refuse(spot, "a row has two numbers, such as a time and a value", "write [[t, value], [t, value], …]")),
         }
     }
 

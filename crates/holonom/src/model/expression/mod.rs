@@ -1,19 +1,26 @@
 //! Formulas in a model: parsed once to a postfix program, evaluated over plain or dual numbers without allocating.
 //!
 //! `+ - * / ^` with ^ strongest and to the right, then signs; functions and constants as in the tables of
-//! `functions.rs`; names are variables, indices of `repeat`, and `[parameters]`.
+//! `functions.rs`; names are variables, indices of `repeat`, and `[parameters]`. Where an expression is of what a mechanism does,
+//! names have dots, as `hinge.angle`, and stand in single quotes where they have other signs: `'left-strut.force'`.
 
+mod curve;
 mod functions;
+mod names;
 mod parse;
 #[cfg(test)]
 mod tests;
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use num_dual::Dual2_64;
 
+use crate::record::Formula;
 use crate::system::{Number, Signal};
+pub use curve::{Beyond, Curve};
 use functions::Function;
+pub use names::{Names, Nothing};
 
 /// Most numbers an expression may hold at once while it is evaluated.
 const STACK: usize = 32;
@@ -50,6 +57,8 @@ pub struct Scope<'a> {
     pub parameters: Option<&'a HashMap<String, Value>>,
     /// Indices of `repeat` with their values.
     pub indices: &'a [(String, f64)],
+    /// `[table.NAME]`, which are functions of one number; `None` where one could not be read.
+    pub tables: Option<&'a HashMap<String, Option<Arc<Curve>>>>,
 }
 
 impl<'a> Scope<'a> {
@@ -71,12 +80,36 @@ pub fn is_reserved(name: &str) -> bool {
     functions::CONSTANTS.iter().any(|known| known.0 == name) || functions::FUNCTIONS.iter().any(|known| known.0 == name)
 }
 
+/// A name with the indices in its brackets worked out: `link[i-1].x` becomes `link[2].x`.
+///
+/// # Errors
+/// An index that is no whole number, with its character in the name.
+pub fn indexed(name: &str, scope: &Scope<'_>) -> Result<String, Mistake> {
+    let (mut full, mut rest, mut at) = (String::new(), name, 0);
+    while let Some((before, behind)) = rest.split_once('[') {
+        at += before.chars().count() + 1;
+        let Some((text, after)) = behind.split_once(']') else {
+            return Err(Mistake::new(at, "a closing ] is missing", "write \"NAME[i]\""));
+        };
+        let index = Program::parse(text, &[], scope).map_err(|inner| Mistake { character: at + inner.character, ..inner })?;
+        let value = index.as_constant().expect("no variables");
+        if value.is_nan() || (value - value.round()).abs() > 1e-9 {
+            return Err(Mistake::new(at, format!("the index `{text}` is {value}, which is no whole number"), "write \"NAME[i]\""));
+        }
+        full.push_str(&format!("{before}[{}]", value.round()));
+        at += text.chars().count() + 1;
+        rest = after;
+    }
+    full.push_str(rest);
+    Ok(full)
+}
+
 /// The names in an expression that are not called as functions; none where it cannot be read.
 pub fn names_in(text: &str) -> Vec<String> {
     parse::names(text)
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Op {
     Constant(f64),
     Variable(u8),
@@ -89,6 +122,7 @@ enum Op {
     RealPower(f64),
     OfOne(Function),
     OfTwo(Function),
+    OfTable(Arc<Curve>),
 }
 
 /// An expression ready to be evaluated.
@@ -103,7 +137,15 @@ impl Program {
     /// # Errors
     /// The first mistake in the text, with its character and a cure.
     pub fn parse(text: &str, variables: &[&str], scope: &Scope<'_>) -> Result<Self, Mistake> {
-        parse::parse(text, variables, scope)
+        Self::parse_with(text, variables, &mut Nothing, scope)
+    }
+
+    /// The same of an expression that also names what a mechanism does: `names` numbers that behind the variables.
+    ///
+    /// # Errors
+    /// The first mistake in the text, with its character and a cure.
+    pub fn parse_with(text: &str, variables: &[&str], names: &mut dyn Names, scope: &Scope<'_>) -> Result<Self, Mistake> {
+        parse::parse(text, variables, names, scope)
     }
 
     /// The expression that is always `value`.
@@ -113,7 +155,7 @@ impl Program {
 
     /// The value, if it depends on no variable.
     pub fn as_constant(&self) -> Option<f64> {
-        match *self.ops {
+        match self.ops[..] {
             [Op::Constant(value)] => Some(value),
             _ => None,
         }
@@ -125,17 +167,21 @@ impl Program {
         let mut found = Vec::new();
         // Where the operations of each number on the stack begin.
         let mut begins: Vec<usize> = Vec::new();
-        for (k, &op) in self.ops.iter().enumerate() {
+        for (k, op) in self.ops.iter().enumerate() {
             match op {
                 Op::Constant(_) | Op::Variable(_) => begins.push(k),
                 Op::OfOne(Function::Step | Function::Sign | Function::Abs) => {
-                    found.extend(self.of_time(t, &self.ops[begins[begins.len() - 1]..k], None));
+                    found.extend(self.of_time(t, &self.ops[begins[begins.len() - 1]..k], &[]));
+                }
+                Op::OfTable(curve) => {
+                    let argument = &self.ops[begins[begins.len() - 1]..k];
+                    found.extend(curve.kinks().filter_map(|knot| self.of_time(t, argument, &[Op::Constant(knot), Op::Sub])));
                 }
                 Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) => (),
                 _ => {
                     begins.pop();
                     if let Op::OfTwo(Function::Min | Function::Max) = op {
-                        found.extend(self.of_time(t, &self.ops[begins[begins.len() - 1]..k], Some(Op::Sub)));
+                        found.extend(self.of_time(t, &self.ops[begins[begins.len() - 1]..k], &[Op::Sub]));
                     }
                 }
             }
@@ -143,14 +189,19 @@ impl Program {
         found
     }
 
+    /// How many variables it needs: one more than the largest number of one.
+    pub fn variables(&self) -> usize {
+        self.ops.iter().map(|op| if let Op::Variable(k) = op { usize::from(*k) + 1 } else { 0 }).max().unwrap_or(0)
+    }
+
     /// A program of these operations, where they depend on the variable `t` alone.
-    fn of_time(&self, t: usize, ops: &[Op], last: Option<Op>) -> Option<Self> {
+    fn of_time(&self, t: usize, ops: &[Op], last: &[Op]) -> Option<Self> {
         let mut variables = ops.iter().filter_map(|op| if let Op::Variable(k) = op { Some(usize::from(*k)) } else { None }).peekable();
         if variables.peek().is_none() || variables.any(|k| k != t) {
             return None;
         }
-        let of_one = ops.iter().map(|&op| if let Op::Variable(_) = op { Op::Variable(0) } else { op });
-        Some(Self { ops: of_one.chain(last).collect() })
+        let of_one = ops.iter().map(|op| if let Op::Variable(_) = op { Op::Variable(0) } else { op.clone() });
+        Some(Self { ops: of_one.chain(last.iter().cloned()).collect() })
     }
 
     /// The expression t − `time`.
@@ -162,25 +213,26 @@ impl Program {
     pub fn evaluate<N: Number>(&self, variables: &[N]) -> N {
         let mut stack = [N::from(0.0); STACK];
         let mut top = 0;
-        for &op in &self.ops {
+        for op in &self.ops {
             match op {
                 Op::Constant(value) => {
-                    stack[top] = N::from(value);
+                    stack[top] = N::from(*value);
                     top += 1;
                     continue;
                 }
                 Op::Variable(k) => {
-                    stack[top] = variables[k as usize];
+                    stack[top] = variables[usize::from(*k)];
                     top += 1;
                     continue;
                 }
                 _ => {}
             }
             let last = stack[top - 1];
-            if let Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) = op {
+            if let Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) | Op::OfTable(_) = op {
                 stack[top - 1] = match op {
                     Op::Neg => -last,
                     Op::OfOne(function) => function.of_one(last),
+                    Op::OfTable(curve) => curve.evaluate(last),
                     power => power.power(last),
                 };
                 continue;
@@ -197,6 +249,12 @@ impl Program {
             };
         }
         stack[0]
+    }
+}
+
+impl Formula for Program {
+    fn evaluate(&self, values: &[f64]) -> f64 {
+        Self::evaluate(self, values)
     }
 }
 

@@ -1,6 +1,7 @@
 //! From the text of an expression to a program, by recursive descent; every mistake has a character and a cure.
 
 use super::functions::{CONSTANTS, FUNCTIONS, Function, real_power};
+use super::names::{self, Names, OF_PLACES, RUNNING};
 use super::{Mistake, Op, Program, STACK, Scope, Value};
 use crate::model::fault::{nearest, suggest};
 
@@ -10,10 +11,16 @@ const DEPTH: usize = 50;
 /// Longest expression, characters.
 const LONGEST: usize = 10_000;
 
-/// Parses an expression of the given variables.
-pub(super) fn parse(text: &str, variables: &[&str], scope: &Scope<'_>) -> Result<Program, Mistake> {
+/// Names of all functions.
+pub(super) fn functions() -> impl Iterator<Item = &'static str> + Clone {
+    let of_numbers = FUNCTIONS.iter().map(|known| known.0);
+    of_numbers.chain(RUNNING.iter().map(|known| known.0)).chain(OF_PLACES.iter().map(|known| known.0))
+}
+
+/// Parses an expression of the given variables and of what `names` knows.
+pub(super) fn parse(text: &str, variables: &[&str], names: &mut dyn Names, scope: &Scope<'_>) -> Result<Program, Mistake> {
     let tokens = lex(text)?;
-    let mut parser = Parser { tokens: &tokens, at: 0, depth: 0, variables, scope, ops: Vec::new(), used: 0 };
+    let mut parser = Parser { tokens: &tokens, at: 0, depth: 0, variables, names, scope, ops: Vec::new(), used: 0 };
     if tokens.len() == 1 {
         return Err(Mistake::new(0, "the expression is empty", "write a number or a formula"));
     }
@@ -75,10 +82,19 @@ fn lex(text: &str) -> Result<Vec<(usize, Token)>, Mistake> {
                 }
             }
             c if c.is_alphabetic() || c == '_' => {
-                while k < characters.len() && (characters[k].is_alphanumeric() || characters[k] == '_') {
-                    k += 1;
-                }
+                k = end_of_name(&characters, start)?;
                 Token::Name(characters[start..k].iter().collect())
+            }
+            '\'' => {
+                let Some(length) = characters[k..].iter().position(|&c| c == '\'') else {
+                    return Err(Mistake::new(start, "this quote is never closed", "put names with other signs in single quotes: 'a-b.x'"));
+                };
+                k += length + 1;
+                Token::Name(characters[start + 1..k - 1].iter().collect())
+            }
+            '=' | '<' | '>' => {
+                let message = format!("`{c}` compares, and an expression is a number");
+                return Err(Mistake::new(start, message, "write the difference of both sides, or step(a - b)"));
             }
             other => {
                 return Err(Mistake::new(
@@ -92,6 +108,27 @@ fn lex(text: &str) -> Result<Vec<(usize, Token)>, Mistake> {
     }
     tokens.push((characters.len(), Token::End));
     Ok(tokens)
+}
+
+/// Where a name that starts at `start` ends: it goes on behind dots that a letter follows, and over indices in brackets.
+fn end_of_name(characters: &[char], start: usize) -> Result<usize, Mistake> {
+    let mut k = start;
+    let begins = |k: usize| characters.get(k).is_some_and(|c| c.is_alphabetic() || *c == '_');
+    loop {
+        while characters.get(k).is_some_and(|c| c.is_alphanumeric() || *c == '_') {
+            k += 1;
+        }
+        while characters.get(k) == Some(&'[') {
+            match characters[k..].iter().position(|&c| c == ']') {
+                Some(length) => k += length + 1,
+                None => return Err(Mistake::new(k, "this bracket is never closed", "write \"NAME[i]\"")),
+            }
+        }
+        if characters.get(k) != Some(&'.') || !begins(k + 1) {
+            return Ok(k);
+        }
+        k += 1;
+    }
 }
 
 /// Where a number that starts at `k` ends: digits, a point, and an exponent if there is a whole one.
@@ -117,6 +154,7 @@ struct Parser<'a> {
     at: usize,
     depth: usize,
     variables: &'a [&'a str],
+    names: &'a mut dyn Names,
     scope: &'a Scope<'a>,
     ops: Vec<Op>,
     /// Numbers on the stack after the operations so far.
@@ -212,8 +250,12 @@ impl Parser<'_> {
             Token::Name(name) if matches!(self.tokens[self.at + 1].1, Token::Open) => self.call(&name),
             Token::Name(name) => {
                 let op = self.value_of(&name)?;
+                match op {
+                    Some(op) => self.emit(op)?,
+                    None => self.name(&name)?,
+                }
                 self.at += 1;
-                self.emit(op)
+                Ok(())
             }
             Token::End => Err(self.mistake("the expression ends too early", "a number or a name is missing at its end")),
             _ => Err(self.mistake("a number or a name is missing here", "put one before this, or remove an operator")),
@@ -233,19 +275,54 @@ impl Parser<'_> {
     }
 
     fn call(&mut self, name: &str) -> Result<(), Mistake> {
-        let Some(&(_, arguments, function)) = FUNCTIONS.iter().find(|known| known.0 == name) else {
-            let is_value = self.value_of(name).is_ok();
-            let cure = if is_value { format!("write {name}*(…)") } else { suggest(name, FUNCTIONS.iter().map(|known| known.0)) };
-            return Err(self.mistake(format!("`{name}` is no function"), cure));
-        };
         let start = self.tokens[self.at].0;
+        if let Some(tables) = self.scope.tables
+            && let Some(curve) = tables.get(name)
+        {
+            let Some(curve) = curve else { return Err(Mistake { known: true, ..self.mistake("", "") }) };
+            let curve = curve.clone();
+            self.at += 2;
+            self.sum()?;
+            self.close()?;
+            return self.emit(Op::OfTable(curve));
+        }
+        if OF_PLACES.iter().any(|known| known.0 == name) {
+            return self.of_places(name);
+        }
+        let function = FUNCTIONS.iter().find(|known| known.0 == name);
+        let running = RUNNING.iter().find(|known| known.0 == name);
+        if function.is_none() && running.is_none() {
+            let is_value = matches!(self.value_of(name), Ok(Some(_)));
+            let tables = self.scope.tables.into_iter().flat_map(|tables| tables.keys().map(String::as_str));
+            let mut known: Vec<&str> = tables.collect();
+            known.sort_unstable();
+            functions().for_each(|name| known.push(name));
+            let cure = if is_value { format!("write {name}*(…)") } else { suggest(name, known.iter().copied()) };
+            return Err(self.mistake(format!("`{name}` is no function"), cure));
+        }
         self.at += 2;
-        for k in 0..arguments {
-            if k > 0 {
-                match self.peek() {
-                    Token::Comma => self.at += 1,
-                    _ => return Err(Mistake::new(start, format!("`{name}` takes {arguments} arguments"), format!("write {name}(a, b)"))),
-                }
+        let begin = self.ops.len();
+        self.sum()?;
+        if let (Some(&(_, running)), Token::Close) = (running, self.peek()) {
+            self.at += 1;
+            let inner = Program { ops: self.ops.drain(begin..).collect() };
+            self.used -= 1;
+            let Some(variable) = self.names.running(running, inner) else {
+                let message = match function {
+                    Some(_) => format!("`{name}` takes 2 arguments; of one number it is the largest or smallest of a run so far"),
+                    None => format!("`{name}` is of a whole run so far"),
+                };
+                return Err(Mistake::new(start, message, format!("use {name}(…) in a [measure.NAME] that no force and no event reads")));
+            };
+            return self.emit(variable_op(variable, start)?);
+        }
+        let Some(&(_, arguments, function)) = function else {
+            return Err(Mistake::new(start, format!("`{name}` takes one argument"), format!("write {name}(a)")));
+        };
+        for _ in 1..arguments {
+            match self.peek() {
+                Token::Comma => self.at += 1,
+                _ => return Err(Mistake::new(start, format!("`{name}` takes {arguments} arguments"), format!("write {name}(a, b)"))),
             }
             self.sum()?;
         }
@@ -257,8 +334,60 @@ impl Parser<'_> {
         }
     }
 
-    /// What a name stands for: a variable, an index or parameter, or a constant.
-    fn value_of(&self, name: &str) -> Result<Op, Mistake> {
+    /// A function of places, such as `distance(A, B)`, written out as a formula of their coordinates.
+    fn of_places(&mut self, name: &str) -> Result<(), Mistake> {
+        let start = self.tokens[self.at].0;
+        let &(_, count, example) = OF_PLACES.iter().find(|known| known.0 == name).expect("it is one of these");
+        let Some(axes) = self.names.axes() else {
+            return Err(self.mistake(format!("`{name}` is of places, and nothing moves here"), "use it in measures, efforts and events"));
+        };
+        let wrong = |at: usize| Mistake::new(at, format!("`{name}` takes {count} names of places"), format!("write {example}"));
+        self.at += 2;
+        let mut places = Vec::new();
+        for k in 0..count {
+            if k > 0 {
+                match self.peek() {
+                    Token::Comma => self.at += 1,
+                    _ => return Err(wrong(start)),
+                }
+            }
+            match self.peek() {
+                Token::Name(place) => places.push(place.clone()),
+                _ => return Err(wrong(self.tokens[self.at].0)),
+            }
+            self.at += 1;
+        }
+        self.close()?;
+        let text = names::of_places(name, &places, axes);
+        let inner = Program::parse_with(&text, &[], self.names, self.scope).map_err(|inner| Mistake { character: start, ..inner })?;
+        self.inline(inner)
+    }
+
+    /// Appends the operations of a program of what names stand for, and of no other variables.
+    fn inline(&mut self, program: Program) -> Result<(), Mistake> {
+        let (first, at) = (self.variables.len(), self.tokens[self.at.min(self.tokens.len() - 1)].0);
+        program.ops.into_vec().into_iter().try_for_each(|op| match op {
+            Op::Variable(k) => self.emit(variable_op(first + usize::from(k), at)?),
+            other => self.emit(other),
+        })
+    }
+
+    /// What a mechanism does, by its name: a variable, or a formula of some.
+    fn name(&mut self, name: &str) -> Result<(), Mistake> {
+        let at = self.tokens[self.at].0;
+        let place = |mistake: Mistake| Mistake { character: at, ..mistake };
+        let full = super::indexed(name, self.scope).map_err(|mistake| Mistake { character: at + mistake.character, ..mistake })?;
+        if let Some(program) = self.names.formula(&full).map_err(place)? {
+            return self.inline(program);
+        }
+        match self.names.variable(&full).map_err(place)? {
+            Some(variable) => self.emit(variable_op(self.variables.len() + variable, at)?),
+            None => Err(self.unknown(name)),
+        }
+    }
+
+    /// What a name stands for that is no name of something in the mechanism: a variable, an index or parameter, or a constant.
+    fn value_of(&self, name: &str) -> Result<Option<Op>, Mistake> {
         let variable = self.variables.iter().position(|&variable| variable == name);
         let value = self.scope.value(name);
         match (variable, value) {
@@ -266,13 +395,10 @@ impl Parser<'_> {
                 let message = format!("`{name}` could be the variable of this expression or what the model calls `{name}`");
                 Err(self.mistake(message, "give the parameter or index another name"))
             }
-            (Some(k), None) => Ok(Op::Variable(k as u8)),
-            (None, Some(Value::Known(value))) => Ok(Op::Constant(value)),
+            (Some(k), None) => Ok(Some(Op::Variable(k as u8))),
+            (None, Some(Value::Known(value))) => Ok(Some(Op::Constant(value))),
             (None, Some(Value::Faulty)) => Err(Mistake { known: true, ..self.mistake("", "") }),
-            (None, None) => match CONSTANTS.iter().find(|constant| constant.0 == name) {
-                Some(&(_, value)) => Ok(Op::Constant(value)),
-                None => Err(self.unknown(name)),
-            },
+            (None, None) => Ok(CONSTANTS.iter().find(|constant| constant.0 == name).map(|&(_, value)| Op::Constant(value))),
         }
     }
 
@@ -285,18 +411,27 @@ impl Parser<'_> {
         if FUNCTIONS.iter().any(|function| function.0 == name) {
             return self.mistake(format!("the function `{name}` needs its arguments"), format!("write {name}(…)"));
         }
-        let cure = match nearest(name, known.iter().copied()) {
+        if self.scope.tables.is_some_and(|tables| tables.contains_key(name)) {
+            return self.mistake(format!("the table `{name}` is a function and needs its argument"), format!("write {name}(…)"));
+        }
+        let of_mechanism = self.names.known();
+        let message = format!("the name `{name}` is not known here");
+        if name.contains('.') && of_mechanism.is_empty() {
+            return self.mistake(message, "names with dots are of what moves: use them in measures, efforts, forces and events");
+        }
+        let cure = match nearest(name, known.iter().copied().chain(of_mechanism.iter().map(String::as_str))) {
             Some(near) => format!("did you mean `{near}`?"),
+            None if name.contains('.') => suggest(name, of_mechanism.iter().map(String::as_str)),
             None => format!("add `{name}` to [parameters], or use what is {}", suggest(name, known).replace("known are", "known here")),
         };
-        self.mistake(format!("the name `{name}` is not known here"), cure)
+        self.mistake(message, cure)
     }
 
     /// Appends an operation, or its result when all it works on is constant.
     fn emit(&mut self, op: Op) -> Result<(), Mistake> {
         let takes = match op {
             Op::Constant(_) | Op::Variable(_) => 0,
-            Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) => 1,
+            Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) | Op::OfTable(_) => 1,
             Op::Add | Op::Sub | Op::Mul | Op::Div | Op::OfTwo(_) => 2,
         };
         self.used = self.used + 1 - takes;
@@ -307,19 +442,24 @@ impl Parser<'_> {
         let constant = takes > 0 && self.ops[first..].iter().all(|op| matches!(op, Op::Constant(_)));
         self.ops.push(op);
         if constant {
-            let folded = Program { ops: self.ops[first..].into() }.evaluate::<f64>(&[]);
-            self.ops.truncate(first);
+            let folded = Program { ops: self.ops.drain(first..).collect() }.evaluate::<f64>(&[]);
             self.ops.push(Op::Constant(folded));
         }
         Ok(())
     }
 }
 
+/// The variable of a number, of which there are not too many.
+fn variable_op(variable: usize, at: usize) -> Result<Op, Mistake> {
+    let variable = u8::try_from(variable).map_err(|_| Mistake::new(at, "this expression names too many quantities", "name at most 250"))?;
+    Ok(Op::Variable(variable))
+}
+
 impl Op {
     /// x^p of the two kinds with a constant exponent.
     #[inline]
-    pub(super) fn power<N: crate::system::Number>(self, x: N) -> N {
-        match self {
+    pub(super) fn power<N: crate::system::Number>(&self, x: N) -> N {
+        match *self {
             Self::IntegerPower(n) => x.powi(n),
             Self::RealPower(p) => real_power(x, p),
             _ => unreachable!("no power"),

@@ -124,7 +124,7 @@ fn powers_of_zero_and_of_negative_numbers_are_right() {
 fn parameters_fold_and_never_hide_a_variable() {
     let parameters: HashMap<String, Value> =
         [("n".to_string(), Value::Known(2.0)), ("bad".to_string(), Value::Faulty), ("t".to_string(), Value::Known(1.0))].into();
-    let scope = Scope { parameters: Some(&parameters), indices: &[("i".to_string(), 3.0)] };
+    let scope = Scope { parameters: Some(&parameters), indices: &[("i".to_string(), 3.0)], tables: None };
     assert_eq!(Program::parse("i^n + 1", &[], &scope).unwrap().as_constant(), Some(10.0));
     assert!(Program::parse("bad + 1", &[], &scope).unwrap_err().known);
     assert!(Program::parse("t + 1", &["t"], &scope).unwrap_err().message.contains("could be"));

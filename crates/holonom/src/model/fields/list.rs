@@ -2,7 +2,7 @@ use std::ops::Deref;
 
 use super::{Field, Number, Shape};
 use crate::model::entry::{Entry, Spot, all};
-use crate::model::expression::Program;
+use crate::model::expression::{Names, Nothing, Program};
 use crate::model::fault::Read;
 use crate::model::value::Value;
 
@@ -60,8 +60,20 @@ impl List<Number> {
 
     /// As many formulas of some variables as the model has axes.
     pub fn formulas(&self, entry: &Entry<'_>, key: &str, dim: usize, variables: &[&str]) -> Read<Vec<Program>> {
+        self.formulas_reading(entry, key, dim, variables, &mut Nothing)
+    }
+
+    /// The same of formulas that also read what the mechanism does.
+    pub(in crate::model) fn formulas_reading(
+        &self,
+        entry: &Entry<'_>,
+        key: &str,
+        dim: usize,
+        variables: &[&str],
+        names: &mut dyn Names,
+    ) -> Read<Vec<Program>> {
         self.check_axes(entry, key, dim, "numbers or formulas")?;
-        all(self.iter().enumerate().map(|(k, item)| item.formula(entry, Spot { key, item: Some(k) }, variables)))
+        all(self.iter().enumerate().map(|(k, item)| item.formula_reading(entry, Spot { key, item: Some(k) }, variables, names)))
     }
 
     /// `N` numbers above zero.

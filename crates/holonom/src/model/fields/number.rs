@@ -1,6 +1,6 @@
 use super::{Field, Shape};
 use crate::model::entry::{Entry, Spot};
-use crate::model::expression::Program;
+use crate::model::expression::{Names, Nothing, Program};
 use crate::model::fault::Read;
 use crate::model::value::Value;
 
@@ -70,7 +70,9 @@ impl Number {
         let at = at.into();
         match self {
             Self::Given(number) => finite(*number, entry, at, "every number must be finite"),
-            Self::Formula(text) => Ok(program(text, entry, at, &[])?.as_constant().expect("a formula without variables is a constant")),
+            Self::Formula(text) => {
+                Ok(program(text, entry, at, &[], &mut Nothing)?.as_constant().expect("a formula without variables is a constant"))
+            }
         }
     }
 
@@ -110,11 +112,22 @@ impl Number {
 
     /// A formula of some variables.
     pub fn formula<'s>(&self, entry: &Entry<'_>, at: impl Into<Spot<'s>>, variables: &[&str]) -> Read<Program> {
+        self.formula_reading(entry, at, variables, &mut Nothing)
+    }
+
+    /// The same of a formula that also reads what the mechanism does.
+    pub(in crate::model) fn formula_reading<'s>(
+        &self,
+        entry: &Entry<'_>,
+        at: impl Into<Spot<'s>>,
+        variables: &[&str],
+        names: &mut dyn Names,
+    ) -> Read<Program> {
         let text = match self {
             Self::Given(_) => return self.number(entry, at).map(Program::constant),
             Self::Formula(text) => text,
         };
-        let program = program(text, entry, at.into(), variables)?;
+        let program = program(text, entry, at.into(), variables, names)?;
         if let Some(t) = variables.iter().position(|name| *name == "t") {
             entry.sink.switches.borrow_mut().extend(program.switches(t));
         }
@@ -122,8 +135,8 @@ impl Number {
     }
 }
 
-fn program(text: &str, entry: &Entry<'_>, at: Spot<'_>, variables: &[&str]) -> Read<Program> {
-    let program = Program::parse(text, variables, &entry.scope).map_err(|mistake| entry.mistaken(at, mistake))?;
+fn program(text: &str, entry: &Entry<'_>, at: Spot<'_>, variables: &[&str], names: &mut dyn Names) -> Read<Program> {
+    let program = Program::parse_with(text, variables, names, &entry.scope).map_err(|mistake| entry.mistaken(at, mistake))?;
     if let Some(number) = program.as_constant() {
         finite(number, entry, at, "every number must be finite: look for a division by zero, or a function where it has no value")?;
     }

@@ -5,6 +5,8 @@
 
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use crate::model::assembly::Assembly;
 use crate::model::bodies::nodes::Member;
 use crate::model::ends::End;
@@ -13,9 +15,11 @@ use crate::model::expression::Program;
 use crate::model::fault::Read;
 use crate::model::fields::{List, Number, Turn};
 use crate::model::geometry::unit;
+use crate::model::signals::{Reader, Readings, angular_velocity};
+use crate::model::sum::{Sum, cross};
 use crate::model::value::Value;
 use crate::record::{Exerts, Shows};
-use crate::system::{Differentiated, ForceFunction, NodeId, Number as AnyNumber, Place, Term};
+use crate::system::{Differentiated, ForceFunction, Number as AnyNumber, Reading};
 
 /// Time, place, its velocity, and angular velocity of the body.
 pub(super) const VARIABLES: &[&str] = &["t", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz"];
@@ -39,65 +43,10 @@ pub(super) fn body(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &str, name: 
     }
 }
 
-/// A sum of nodes by their positions in the list of a load.
-#[derive(Default)]
-struct Sum {
-    terms: Vec<(usize, [f64; 2])>,
-    fixed: [f64; 3],
-}
-
-impl Sum {
-    fn new(terms: &[Term], nodes: &mut Vec<NodeId>) -> Self {
-        let mut sum = Self::default();
-        for term in terms {
-            match term.place {
-                Place::Node(node) => {
-                    let index = nodes.iter().position(|&known| known == node).unwrap_or_else(|| {
-                        nodes.push(node);
-                        nodes.len() - 1
-                    });
-                    sum.terms.push((index, [term.factor, term.turn]));
-                }
-                Place::Fixed(x) => {
-                    (0..3).for_each(|c| sum.fixed[c] += term.factor * x[c]);
-                    sum.fixed[0] -= term.turn * x[1];
-                    sum.fixed[1] += term.turn * x[0];
-                }
-            }
-        }
-        sum
-    }
-
-    /// Its position, or with `fixed` 0 its velocity.
-    fn at<N: AnyNumber>(&self, x: &[N], dim: usize, fixed: f64) -> [N; 3] {
-        let mut sum = self.fixed.map(|c| N::from(fixed * c));
-        for &(node, [f, g]) in &self.terms {
-            let own = &x[node * dim..(node + 1) * dim];
-            (0..dim).for_each(|c| sum[c] += own[c] * f);
-            if g != 0.0 {
-                sum[0] -= own[1] * g;
-                sum[1] += own[0] * g;
-            }
-        }
-        sum
-    }
-
-    /// Adds a force on it to those on the nodes.
-    fn spread<N: AnyNumber>(&self, force: [N; 3], dim: usize, out: &mut [N]) {
-        for &(node, [f, g]) in &self.terms {
-            let own = &mut out[node * dim..(node + 1) * dim];
-            (0..dim).for_each(|c| own[c] += force[c] * f);
-            if g != 0.0 {
-                own[0] += force[1] * g;
-                own[1] -= force[0] * g;
-            }
-        }
-    }
-}
-
 /// A force at a place of a body, or a torque on it and its reaction on another one.
 struct BodyLoad {
     dim: usize,
+    readings: Readings,
     point: Sum,
     /// Body axes: three, in the plane the first.
     axes: Vec<Sum>,
@@ -108,24 +57,16 @@ struct BodyLoad {
     in_body_axes: bool,
 }
 
-fn cross<N: AnyNumber>(u: [N; 3], w: [N; 3]) -> [N; 3] {
-    [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]]
-}
-
 impl BodyLoad {
     /// The formulas at a state.
-    fn given<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, axes: &[[N; 3]]) -> [N; 3] {
+    fn given<N: AnyNumber>(&self, x: &[N], v: &[N], t: N) -> [N; 3] {
         let (dim, zero) = (self.dim, N::from(0.0));
-        let mut turn = [zero; 3];
-        for (sum, &axis) in self.axes.iter().zip(axes) {
-            let own = cross(axis, sum.at(v, dim, 0.0));
-            (0..3).for_each(|c| turn[c] += own[c] * if dim == 2 { 1.0 } else { 0.5 });
-        }
-        let mut variables = [t; VARIABLES.len()];
-        variables[1..1 + dim].copy_from_slice(&self.point.at(x, dim, 1.0)[..dim]);
-        variables[1 + dim..1 + 2 * dim].copy_from_slice(&self.point.at(v, dim, 0.0)[..dim]);
-        let turns = if dim == 2 { &turn[2..] } else { &turn[..] };
-        variables[1 + 2 * dim..1 + 2 * dim + turns.len()].copy_from_slice(turns);
+        let turn = angular_velocity(&self.axes, x, v, dim);
+        let mut variables = SmallVec::from_slice(&[t]);
+        variables.extend_from_slice(&self.point.at(x, dim, 1.0)[..dim]);
+        variables.extend_from_slice(&self.point.at(v, dim, 0.0)[..dim]);
+        variables.extend_from_slice(if dim == 2 { &turn[2..] } else { &turn[..] });
+        self.readings.append(x, v, t, &mut variables);
         let mut given = [zero; 3];
         given.iter_mut().zip(&self.formulas).for_each(|(given, formula)| *given = formula.evaluate(&variables));
         given
@@ -146,7 +87,7 @@ impl BodyLoad {
         let mut axes = [[zero; 3]; 3];
         axes.iter_mut().zip(&self.axes).for_each(|(axis, sum)| *axis = sum.at(x, dim, 1.0));
         let axes = &axes[..self.axes.len()];
-        let given = self.given(x, v, t, axes);
+        let given = self.given(x, v, t);
         match (dim, self.is_torque) {
             (2, true) => [zero, zero, given[0]],
             _ if self.in_body_axes => self.in_world(given, axes),
@@ -203,9 +144,15 @@ pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, given: Given<'
         Formulas::Force(_) => ("force", false),
         Formulas::Torque(_) => ("torque", true),
     };
+    let mut readings = Readings::new(dim, Reading::default());
+    let mut reader = Reader::new(assembly, entry, &mut readings);
     let formulas = match (given.formulas, dim) {
-        (Formulas::Force(force), _) | (Formulas::Torque(Turn::InSpace(force)), 3) => force.formulas(entry, key, dim, &names),
-        (Formulas::Torque(Turn::InPlane(torque)), 2) => torque.formula(entry, key, &names).map(|formula| vec![formula]),
+        (Formulas::Force(force), _) | (Formulas::Torque(Turn::InSpace(force)), 3) => {
+            force.formulas_reading(entry, key, dim, &names, &mut reader)
+        }
+        (Formulas::Torque(Turn::InPlane(torque)), 2) => {
+            torque.formula_reading(entry, key, &names, &mut reader).map(|formula| vec![formula])
+        }
         (Formulas::Torque(Turn::InPlane(_)), _) => {
             Err(entry.refuse(key, format!("`{key}` wants a list of {dim} numbers or formulas"), "give one for each axis of the model"))
         }
@@ -213,25 +160,28 @@ pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, given: Given<'
     };
     let in_body_axes = given.axes.map(|axes| entry.choice("axes", axes, &["world", "body"])).transpose();
     let (formulas, in_body_axes) = (formulas?, in_body_axes? == Some("body"));
-    finite(entry, key, &given.at, &formulas, dim)?;
-    let mut nodes = Vec::new();
-    let point = Sum::new(&given.at.terms, &mut nodes);
+    let nodes = &mut readings.reading.nodes;
+    let point = Sum::new(&given.at.terms, nodes);
     let mut axes = |body: usize| -> Vec<Sum> {
         let own = |k: usize| assembly.frames[body].vector(assembly.bodies[body].direction(unit(k)));
-        (0..if dim == 2 { 1 } else { 3 }).map(|k| Sum::new(&own(k), &mut nodes)).collect()
+        (0..if dim == 2 { 1 } else { 3 }).map(|k| Sum::new(&own(k), nodes)).collect()
     };
     let own = axes(given.body);
     let other = given.other.map_or(Vec::new(), axes);
-    let load = BodyLoad { dim, point, axes: own, other, formulas, is_torque, in_body_axes };
-    let load = Arc::new(load);
-    assembly.builder.load(entry.name, &nodes, Arc::new(Differentiated(load.clone())));
-    assembly.show(Shows::Load { nodes, is_moment: is_torque, exerts: load });
+    finite(entry, key, &given.at, &formulas, &readings)?;
+    let reading = readings.reading.clone();
+    let load = Arc::new(BodyLoad { dim, readings, point, axes: own, other, formulas, is_torque, in_body_axes });
+    assembly.builder.load_reading(entry.name, reading, Arc::new(Differentiated(load.clone())));
+    assembly.show(Shows::Load { is_moment: is_torque, exerts: load });
     Ok(())
 }
 
-/// Formulas must at least be numbers where the body starts.
-fn finite(entry: &Entry<'_>, key: &str, place: &End, formulas: &[Program], dim: usize) -> Read<()> {
-    let mut at = [0.0; VARIABLES.len()];
+/// Formulas must at least be numbers where the body starts, unless they read more.
+fn finite(entry: &Entry<'_>, key: &str, place: &End, formulas: &[Program], readings: &Readings) -> Read<()> {
+    if readings.len() > 0 {
+        return Ok(());
+    }
+    let (mut at, dim) = ([0.0; VARIABLES.len()], readings.dim());
     at[1..1 + dim].copy_from_slice(&place.start[..dim]);
     for (k, formula) in formulas.iter().enumerate() {
         let value = formula.evaluate(&at);

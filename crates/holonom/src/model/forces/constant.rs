@@ -2,10 +2,12 @@ use super::point_load;
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::Entry;
+use crate::model::expression::Program;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
 use crate::model::key::Shape;
-use crate::system::{self, ForceFunction};
+use crate::model::signals::Readings;
+use crate::system::Reading;
 
 /// a force on a point, or on a place of a body, that never changes, booked as work
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -34,15 +36,9 @@ pub struct Constant {
 
 impl Element for Constant {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-        let (point, force) = (assembly.point(entry, "point", &self.point), self.force.vector(entry, "force", assembly.dimension()));
-        point_load::add(assembly, entry, &point?, Steady(force?))
-    }
-}
-
-struct Steady([f64; 3]);
-
-impl ForceFunction for Steady {
-    fn evaluate<N: system::Number>(&self, _x: &[N], _v: &[N], _t: N, force: &mut [N]) {
-        force.iter_mut().zip(self.0).for_each(|(force, steady)| *force = N::from(steady));
+        let dim = assembly.dimension();
+        let (point, force) = (assembly.point(entry, "point", &self.point), self.force.vector(entry, "force", dim));
+        let formulas = force?[..dim].iter().map(|&force| Program::constant(force)).collect();
+        point_load::add(assembly, entry, &point?, Readings::new(dim, Reading::default()), formulas)
     }
 }

@@ -1,19 +1,23 @@
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use super::coordinate_laws;
 use super::joint::{acted_on, quantity};
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::Entry;
+use crate::model::expression::Program;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, Map, Number};
 use crate::model::joints::coordinate;
 use crate::model::key::Shape;
 use crate::model::parameters::require_name;
-use crate::system::MAX_ARGUMENTS;
+use crate::model::signals::{Reader, Readings};
+use crate::system::{Differentiated, ForceFunction, MAX_ARGUMENTS, Number as AnyNumber, Reading, Sense};
 
-/// a motor or any other effort along the coordinate of a joint, as a formula of time, of that coordinate and its rate, and of those
-/// of other joints: control laws, nonlinear springs, engines
+/// a motor or any other effort along the coordinate of a joint, as a formula of time, of that coordinate and its rate, and of
+/// whatever else moves: control laws, nonlinear springs, engines
 #[derive(Clone, Debug, PartialEq, Keys)]
 #[kind(
     name = "effort",
@@ -52,7 +56,7 @@ effort = "2*sin(t) - 5*q - 0.3*q_rate + s - 0.1*s_rate"
 pub struct Effort {
     /// the joint, or its coordinate as "JOINT.angle" or "JOINT.displacement"
     pub joint: String,
-    /// E as a formula of t, q and q_rate, and of the names below
+    /// E as a formula of t, q and q_rate, of the names below, and of inputs, measures and what moves, by the names of its columns
     #[key(unit = "N·m or N", shape = Shape::Formula(&["t", "q", "q_rate"]))]
     pub effort: Number,
     /// names for coordinates of other joints: { a = "JOINT" } makes a and a_rate variables of the formula
@@ -79,24 +83,50 @@ impl Element for Effort {
                 Ok(())
             })?;
         }
-        let arguments: usize = coordinates.iter().map(|coordinate| if coordinate.is_angle { 2 } else { 1 }).sum();
-        if arguments > MAX_ARGUMENTS {
-            let cure = "it may depend on three angles, or six displacements, its own among them";
-            return Err(entry.refuse("coordinates", "this effort depends on too many joints", cure));
-        }
         let variables: Vec<&str> = names.iter().map(String::as_str).collect();
-        let effort = self.effort.formula(entry, "effort", &variables)?;
-        let at_start: f64 = effort.evaluate(&vec![0.0; variables.len()]);
-        if !at_start.is_finite() {
-            return Err(entry.refuse(
-                "effort",
-                format!("this formula is {at_start} at the start, where all coordinates are 0"),
-                "it must be finite",
-            ));
-        }
+        let mut readings = Readings::new(assembly.dimension(), Reading::default());
+        let effort = self.effort.formula_reading(entry, "effort", &variables, &mut Reader::new(assembly, entry, &mut readings))?;
+        let arguments: usize = coordinates.iter().map(|coordinate| if coordinate.is_angle { 2 } else { 1 }).sum();
         let mut quantities = vec![acted_on(assembly, &coordinates[0])];
         quantities.extend(coordinates[1..].iter().map(|coordinate| quantity(assembly, coordinate)));
-        assembly.builder.law(entry.name, &quantities, Arc::new(coordinate_laws::Effort(effort)));
+        if readings.len() == 0 {
+            let at_start: f64 = effort.evaluate(&vec![0.0; variables.len()]);
+            if !at_start.is_finite() {
+                let message = format!("this formula is {at_start} at the start, where all coordinates are 0");
+                return Err(entry.refuse("effort", message, "it must be finite"));
+            }
+            // What depends on few coordinates alone is a law of these, whose damping is fitted to the step.
+            if arguments <= MAX_ARGUMENTS {
+                assembly.builder.law(entry.name, &quantities, Arc::new(coordinate_laws::Effort(effort)));
+                return Ok(());
+            }
+        }
+        let first = readings.reading.senses.len();
+        readings.reading.senses.extend(quantities.iter().map(|&quantity| Sense::Quantity(quantity.into())));
+        let reading = readings.reading.clone();
+        let load = EffortLoad { own: assembly.dimension() * reading.nodes.len() + first, coordinates: quantities.len(), readings, effort };
+        assembly.builder.load_reading(entry.name, reading, Arc::new(Differentiated(load)));
         Ok(())
+    }
+}
+
+/// An effort along the first of its coordinates, which depends on more than laws can.
+struct EffortLoad {
+    /// Where the first of its coordinates is among what it reads, and how many there are.
+    own: usize,
+    coordinates: usize,
+    readings: Readings,
+    effort: Program,
+}
+
+impl ForceFunction for EffortLoad {
+    fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
+        let mut variables = SmallVec::from_slice(&[t]);
+        for k in self.own..self.own + self.coordinates {
+            variables.extend([x[k], v[k]]);
+        }
+        self.readings.append(x, v, t, &mut variables);
+        force.fill(N::from(0.0));
+        force[self.own] = self.effort.evaluate(&variables);
     }
 }

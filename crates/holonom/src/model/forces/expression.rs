@@ -2,11 +2,11 @@ use super::point_load;
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::{Entry, Spot};
-use crate::model::expression::Program;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
 use crate::model::key::Shape;
-use crate::system::{self, ForceFunction};
+use crate::model::signals::{Reader, Readings};
+use crate::system::Reading;
 
 /// Time, and position and velocity in world axes.
 const VARIABLES: &[&str] = &["t", "x", "y", "z", "vx", "vy", "vz"];
@@ -42,11 +42,14 @@ impl Element for Expression {
         let axes = assembly.axes.name;
         let here = |name: &&&str| **name == "t" || name.chars().last().is_some_and(|axis| axes.contains(axis));
         let variables: Vec<&str> = VARIABLES.iter().filter(here).copied().collect();
-        let (point, force) = (assembly.point(entry, "point", &self.point), self.force.formulas(entry, "force", dim, &variables));
+        let point = assembly.point(entry, "point", &self.point);
+        let mut readings = Readings::new(dim, Reading::default());
+        let mut reader = Reader::new(assembly, entry, &mut readings);
+        let force = self.force.formulas_reading(entry, "force", dim, &variables, &mut reader);
         let (point, force) = (point?, force?);
         let start = point.start;
         let at: Vec<f64> = std::iter::once(0.0).chain(start[..dim].iter().copied()).chain([0.0; 3]).collect();
-        for (k, component) in force.iter().enumerate() {
+        for (k, component) in force.iter().enumerate().filter(|_| readings.len() == 0) {
             let value = component.evaluate(&at);
             if !value.is_finite() {
                 let spot = Spot { key: "force", item: Some(k) };
@@ -57,19 +60,6 @@ impl Element for Expression {
                 ));
             }
         }
-        point_load::add(assembly, entry, &point, Formula(force))
-    }
-}
-
-struct Formula(Vec<Program>);
-
-impl ForceFunction for Formula {
-    fn evaluate<N: system::Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
-        let mut variables = [t; VARIABLES.len()];
-        variables[1..1 + x.len()].copy_from_slice(x);
-        variables[1 + x.len()..1 + 2 * x.len()].copy_from_slice(v);
-        for (force, program) in force.iter_mut().zip(&self.0) {
-            *force = program.evaluate(&variables);
-        }
+        point_load::add(assembly, entry, &point, readings, force)
     }
 }

@@ -1,92 +1,63 @@
-//! A force on a point that is a sum of nodes.
+//! Forces on points as formulas, spread over the nodes that a point is made of: with x = Σ c_a x_a, Q_a = c_aᵀ F (methods §6).
 
 use std::sync::Arc;
+
+use smallvec::SmallVec;
 
 use crate::model::assembly::Assembly;
 use crate::model::ends::End;
 use crate::model::entry::Entry;
+use crate::model::expression::Program;
 use crate::model::fault::Read;
+use crate::model::signals::Readings;
+use crate::model::sum::Sum;
 use crate::record::{Exerts, Shows};
-use crate::system::{Differentiated, ForceFunction, NodeId, Number, Place};
+use crate::system::{Differentiated, ForceFunction, Number};
 
-/// A force on a point, spread over the nodes that it is made of: with x = Σ c_a x_a, Q_a = c_aᵀ F (methods §6).
-struct PointLoad<F> {
-    force: F,
-    /// f + g J of each node.
-    factors: Vec<[f64; 2]>,
-    fixed: [f64; 3],
+/// A force on a point: formulas of t, its place, its velocity, and what they read beside.
+struct PointLoad {
+    dim: usize,
+    point: Sum,
+    readings: Readings,
+    formulas: Vec<Program>,
 }
 
-impl<F: ForceFunction> PointLoad<F> {
-    /// The load, and its nodes.
-    fn new(entry: &Entry<'_>, point: &End, force: F) -> Read<(Self, Vec<NodeId>)> {
-        let (mut nodes, mut factors, mut fixed) = (Vec::new(), Vec::new(), [0.0; 3]);
-        for term in &point.terms {
-            match term.place {
-                Place::Node(node) => {
-                    nodes.push(node);
-                    factors.push([term.factor, term.turn]);
-                }
-                Place::Fixed(x) => {
-                    (0..3).for_each(|c| fixed[c] += term.factor * x[c]);
-                    fixed[0] -= term.turn * x[1];
-                    fixed[1] += term.turn * x[0];
-                }
-            }
-        }
-        if nodes.is_empty() {
-            return Err(entry.refuse("point", "a force on a fixed point does nothing", "name a point that can move"));
-        }
-        Ok((Self { force, factors, fixed }, nodes))
+/// Adds a force on a point, of formulas that have these readings.
+pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, point: &End, mut readings: Readings, formulas: Vec<Program>) -> Read<()> {
+    let before = readings.reading.nodes.len();
+    let sum = Sum::new(&point.terms, &mut readings.reading.nodes);
+    if before == 0 && readings.reading.nodes.is_empty() {
+        return Err(entry.refuse("point", "a force on a fixed point does nothing", "name a point that can move"));
     }
-}
-
-/// Adds a force on a point.
-pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, point: &End, force: impl ForceFunction + 'static) -> Read<()> {
-    let (load, nodes) = PointLoad::new(entry, point, force)?;
-    let load = Arc::new(load);
-    assembly.builder.load(entry.name, &nodes, Arc::new(Differentiated(load.clone())));
-    assembly.show(Shows::Load { nodes, is_moment: false, exerts: load });
+    let reading = readings.reading.clone();
+    let load = Arc::new(PointLoad { dim: assembly.dimension(), point: sum, readings, formulas });
+    assembly.builder.load_reading(entry.name, reading, Arc::new(Differentiated(load.clone())));
+    assembly.show(Shows::Load { is_moment: false, exerts: load });
     Ok(())
 }
 
-impl<F: ForceFunction> PointLoad<F> {
+impl PointLoad {
     /// The force as it is given.
     fn given<N: Number>(&self, x: &[N], v: &[N], t: N) -> [N; 3] {
-        let dim = x.len() / self.factors.len();
-        let zero = N::from(0.0);
-        let (mut at, mut rate, mut whole) = (self.fixed.map(N::from), [zero; 3], [zero; 3]);
-        for (k, &[f, g]) in self.factors.iter().enumerate() {
-            for (sum, own) in [(&mut at, &x[k * dim..(k + 1) * dim]), (&mut rate, &v[k * dim..(k + 1) * dim])] {
-                (0..dim).for_each(|c| sum[c] += own[c] * f);
-                if g != 0.0 {
-                    sum[0] -= own[1] * g;
-                    sum[1] += own[0] * g;
-                }
-            }
-        }
-        self.force.evaluate(&at[..dim], &rate[..dim], t, &mut whole[..dim]);
+        let mut variables = SmallVec::from_slice(&[t]);
+        variables.extend_from_slice(&self.point.at(x, self.dim, 1.0)[..self.dim]);
+        variables.extend_from_slice(&self.point.at(v, self.dim, 0.0)[..self.dim]);
+        self.readings.append(x, v, t, &mut variables);
+        let mut whole = [N::from(0.0); 3];
+        whole.iter_mut().zip(&self.formulas).for_each(|(whole, formula)| *whole = formula.evaluate(&variables));
         whole
     }
 }
 
-impl<F: ForceFunction> Exerts for PointLoad<F> {
+impl Exerts for PointLoad {
     fn exerted(&self, x: &[f64], v: &[f64], t: f64) -> [f64; 3] {
         self.given(x, v, t)
     }
 }
 
-impl<F: ForceFunction> ForceFunction for PointLoad<F> {
+impl ForceFunction for PointLoad {
     fn evaluate<N: Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
-        let dim = x.len() / self.factors.len();
-        let whole = self.given(x, v, t);
-        for (k, &[f, g]) in self.factors.iter().enumerate() {
-            let own = &mut force[k * dim..(k + 1) * dim];
-            (0..dim).for_each(|c| own[c] = whole[c] * f);
-            if g != 0.0 {
-                own[0] += whole[1] * g;
-                own[1] -= whole[0] * g;
-            }
-        }
+        force.fill(N::from(0.0));
+        self.point.spread(self.given(x, v, t), self.dim, force);
     }
 }

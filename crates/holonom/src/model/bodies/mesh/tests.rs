@@ -1,4 +1,4 @@
-//! Meshes against the formulas of the solids they stand for, and what is told of broken ones.
+//! Files against the formulas of the solids they stand for, and what is told of broken ones.
 
 use std::collections::HashMap;
 use std::f64::consts::PI;

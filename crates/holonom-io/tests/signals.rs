@@ -1,0 +1,387 @@
+//! Measures, tables, inputs and events, against closed forms and against the same written otherwise.
+
+use std::f64::consts::PI;
+
+use holonom::model::Model;
+use holonom::record::{Constraints, Peaks, Recorder, Recording};
+use holonom::simulation::{Choice, Method, Simulation, Status};
+use holonom_io::Source;
+
+fn source(text: &str) -> Source {
+    Source::read("model.toml", text.as_bytes()).unwrap_or_else(|message| panic!("{message}\n{text}"))
+}
+
+fn model(text: &str) -> Model {
+    source(text).model_with_forces().unwrap_or_else(|message| panic!("{message}\n{text}"))
+}
+
+fn simulation(model: &Model, method: &str, step: f64) -> Simulation {
+    let method = Method::resolve(&Choice { method: Some(method.into()), ..Choice::default() }).unwrap();
+    let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
+    model.find_reactions(&mut simulation);
+    simulation
+}
+
+fn run(model: &Model, method: &str, step: f64, end: f64, every: u64) -> (Simulation, Recording) {
+    let mut simulation = simulation(model, method, step);
+    let mut recorder = Recorder::new(&model.channels, &model.system, every, Constraints::Joints);
+    assert_eq!(simulation.run(end, &mut recorder), Status::Completed);
+    (simulation, recorder.finish())
+}
+
+fn last(recording: &Recording, name: &str) -> f64 {
+    *recording.column(name).unwrap_or_else(|| panic!("there is no column {name}")).last().unwrap()
+}
+
+/// A mass on a spring: x = cos(2 t), so that what measures say is known.
+const OSCILLATOR: &str = r#"
+gravity = [0, 0, 0]
+
+[point.bob]
+mass = 1
+position = [2, 0, 0]
+
+[point.stand]
+position = [0, 3, 0]
+fixed = true
+
+[force.spring]
+type = "spring"
+between = ["ground", "bob"]
+stiffness = 4
+rest_length = 1
+
+[constraint.line]
+type = "point-on-line"
+point = "bob"
+through = [0, 0, 0]
+direction = [1, 0, 0]
+"#;
+
+#[test]
+fn measures_are_what_their_formulas_say() {
+    let text = format!(
+        r#"{OSCILLATOR}
+[measure.away]
+value = "distance(bob, stand)"
+unit = "m"
+
+[measure.closing]
+value = "speed(stand, bob)"
+
+[measure.corner]
+value = "angle(bob, ground, stand)"
+
+[measure.twice]
+value = "2*pull"
+
+[measure.pull]
+value = "spring.force + 'spring.length' - bob.x"
+
+[measure.largest]
+value = "max(bob.x)"
+
+[measure.lowest]
+value = "min(bob.x)"
+
+[measure.swing]
+value = "rms(bob.x - 1)"
+
+[measure.way]
+value = "integral(bob.vx)"
+
+[measure.kick]
+value = "max(abs(bob.ax))"
+"#
+    );
+    let model = model(&text);
+    let (_, recording) = run(&model, "radau", 1e-3, PI, 1);
+    let column = |name: &str| recording.column(name).unwrap();
+    for k in 0..recording.rows() {
+        let t = column("t")[k];
+        let (x, v) = (1.0 + (2.0 * t).cos(), -2.0 * (2.0 * t).sin());
+        let away = x.hypot(3.0);
+        let expected = [("away", away), ("closing", x * v / away), ("pull", 4.0 * (x - 1.0)), ("twice", 8.0 * (x - 1.0)), ("way", x - 2.0)];
+        for (name, value) in expected {
+            // The integral of a velocity is one by straight pieces: h²/12 of its second derivative, 8 m/s³.
+            let allowed = if name == "way" { 1e-6 * 8.0 / 12.0 * PI } else { 1e-9 };
+            assert!((column(name)[k] - value).abs() < allowed, "{name} at {t}: {} and not {value}", column(name)[k]);
+        }
+        if x > 1e-3 {
+            assert!((column("corner")[k] - PI / 2.0).abs() < 1e-9, "at the ground between the line and the stand");
+        }
+    }
+    let at_end = [("largest", 2.0), ("lowest", 0.0), ("swing", 0.5_f64.sqrt()), ("kick", 4.0)];
+    for (name, value) in at_end {
+        assert!((last(&recording, name) - value).abs() < 2e-6, "{name}: {} and not {value}", last(&recording, name));
+    }
+    assert_eq!(recording.find("away").unwrap().heading.unit, "m");
+    assert_eq!(recording.find("twice").unwrap().heading.meaning, "2*pull");
+    let peaks = Peaks::of(&model.channels, &recording);
+    let away = peaks.measures.iter().find(|measure| measure.name == "away").unwrap();
+    assert!((away.max - 13.0_f64.sqrt()).abs() < 1e-12 && away.max_at < 1e-9 && (away.min - 3.0).abs() < 1e-6, "{away:?}");
+}
+
+/// What is of the whole run sees every step, whatever is recorded, and goes on where a run is resumed.
+#[test]
+fn running_values_see_every_step_and_are_resumed() {
+    let text = format!("{OSCILLATOR}\n[measure.largest]\nvalue = \"max(bob.vx)\"\n\n[measure.way]\nvalue = \"integral(abs(bob.vx))\"\n");
+    let model = model(&text);
+    let (_, fine) = run(&model, "conserving", 0.01, 3.0, 1);
+    let (_, coarse) = run(&model, "conserving", 0.01, 3.0, 50);
+    for name in ["largest", "way"] {
+        assert_eq!(last(&fine, name).to_bits(), last(&coarse, name).to_bits(), "{name}");
+    }
+    let mut first = simulation(&model, "conserving", 0.01);
+    let mut recorder = Recorder::new(&model.channels, &model.system, 50, Constraints::Joints);
+    assert_eq!(first.run(1.37, &mut recorder), Status::Completed);
+    let mark = recorder.mark();
+    let mut recorder = Recorder::new(&model.channels, &model.system, 50, Constraints::Joints).resume(&mark);
+    assert_eq!(first.run(3.0, &mut recorder), Status::Completed);
+    let resumed = recorder.finish();
+    for name in ["largest", "way", "bob.x"] {
+        assert!((last(&resumed, name) - last(&coarse, name)).abs() < 1e-12, "{name}");
+    }
+}
+
+/// A trolley that is driven to a place over the bob that hangs on it, by what the bob does.
+const CRANE: &str = r#"
+plane = "xz"
+
+[input.command]
+default = 2
+unit = "m"
+
+[body.trolley]
+mass = 100
+inertia = 10
+position = [0, 0]
+
+[body.load]
+mass = 300
+inertia = 30
+position = [0.5, -5]
+
+[joint.rail]
+type = "prismatic"
+between = ["ground", "trolley"]
+at = [0, 0]
+axis = [1, 0]
+
+[joint.pivot]
+type = "revolute"
+between = ["trolley", "load"]
+at = [0, 0]
+
+[measure.sway]
+value = "atan2(load.x - trolley.x, trolley.z - load.z)"
+unit = "rad"
+"#;
+
+const BY_MEASURES: &str = r#"
+[force.controller]
+type = "effort"
+joint = "rail"
+effort = "80*(2 - q) - 150*q_rate + 400*sway"
+
+[force.drag]
+type = "force"
+body = "load"
+force = ["-3*(load.vx - trolley.vx)", "rail.displacement"]
+"#;
+
+/// The same by what was there before: coordinates of joints; the angle of the load begins at that of its start.
+const BY_COORDINATES: &str = r#"
+[force.controller]
+type = "effort"
+joint = "rail"
+coordinates = { a = "pivot" }
+effort = "80*(2 - q) - 150*q_rate + 400*(atan2(0.5, 5) - a*SIGN)"
+"#;
+
+/// ‖difference‖ of the final state, seen against the same run with another step.
+fn distance(a: &Simulation, b: &Simulation) -> f64 {
+    a.state().x.iter().zip(&b.state().x).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+#[test]
+fn forces_that_read_measures_keep_order_and_balance() {
+    let model = model(&format!("{CRANE}{BY_MEASURES}"));
+    let truth = run(&model, "radau", 2e-3, 4.0, 1).0;
+    for (method, order) in
+        [("conserving-ggl", 2.0), ("conserving", 2.0), ("trapezoidal-projected", 2.0), ("generalized-alpha", 2.0), ("bdf", 2.0)]
+    {
+        let errors = [0.02, 0.01].map(|step| distance(&run(&model, method, step, 4.0, 1).0, &truth));
+        let found = (errors[0] / errors[1]).log2();
+        assert!((found - order).abs() < 0.15, "{method}: order {found}, errors {errors:?}");
+    }
+    // The conserving schemes book the work of every force exactly.
+    for method in ["conserving-ggl", "conserving"] {
+        let (simulation, recording) = run(&model, method, 0.02, 4.0, 1);
+        let energy = simulation.audit().energy_summary();
+        let throughput: f64 = recording.column("controller.power").unwrap().iter().map(|power| power.abs() * 0.02).sum();
+        assert!(energy.max_drift < 1e-10 * throughput, "{method}: {} of {throughput}", energy.max_drift);
+    }
+}
+
+/// The same effort by a measure of places and by the coordinate of a joint: one is a load, the other a law.
+#[test]
+fn a_measure_of_places_is_as_good_as_a_coordinate() {
+    let by_measure = CRANE.to_string() + BY_MEASURES.split("[force.drag]").next().unwrap();
+    let by_measure = run(&model(&by_measure), "radau", 0.01, 3.0, 1).0;
+    let errors = ["1", "(-1)"].map(|sign| {
+        let text = format!("{CRANE}{}", BY_COORDINATES.replace("SIGN", sign));
+        distance(&run(&model(&text), "radau", 0.01, 3.0, 1).0, &by_measure)
+    });
+    assert!(errors[0].min(errors[1]) < 1e-9, "{errors:?}");
+}
+
+/// An input that is set between steps has the bits of a table that has the same values where forces are taken, in the middle of each step.
+#[test]
+fn inputs_set_between_steps_are_those_of_a_known_function() {
+    let effort = "\n[force.controller]\ntype = \"effort\"\njoint = \"rail\"\neffort = \"80*(COMMAND - q) - 150*q_rate + 400*sway\"\n";
+    let with_input = model(&format!("{CRANE}{}", effort.replace("COMMAND", "command")));
+    let course = "[table.course]\npoints = [[0, 2], [0.995, 2], [1.005, 5], [9, 5]]\n";
+    let with_table = model(&format!("{CRANE}{course}{}", effort.replace("COMMAND", "course(t)")));
+    for method in ["conserving-ggl", "conserving"] {
+        let (mut set, mut known) = (simulation(&with_input, method, 0.02), simulation(&with_table, method, 0.02));
+        for simulation in [&mut set, &mut known] {
+            assert_eq!(simulation.step_to(1.0), Status::Completed);
+        }
+        assert!(set.set_input("command", 5.0) && !set.set_input("comand", 5.0));
+        assert_eq!(set.input("command"), Some(5.0));
+        // A resumed run has the input that was set.
+        let resumed = Simulation::resume(with_input.system.clone(), set.method().clone(), 0.02, set.checkpoint());
+        let mut resumed = resumed.expect("it is of this model");
+        with_input.find_reactions(&mut resumed);
+        for simulation in [&mut set, &mut known, &mut resumed] {
+            assert_eq!(simulation.step_to(2.0), Status::Completed);
+        }
+        assert_eq!(set.state().x, known.state().x, "{method}");
+        assert_eq!(set.state().x, resumed.state().x, "{method}, resumed");
+    }
+}
+
+#[test]
+fn tables_are_the_functions_that_they_are_told_to_be() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("law.csv"), "# measured\nspeed, force ,other\n-2,8,1\n0,0,2\n2,-8,3\n").unwrap();
+    let text = r#"
+gravity = [0, 0, 0]
+
+[table.law]
+file = "law.csv"
+x = "speed"
+y = "force"
+outside = "line"
+
+[point.bob]
+mass = 2
+position = [1, 0, 0]
+velocity = [3, 0, 0]
+
+[force.brake]
+type = "expression"
+point = "bob"
+force = ["law(vx)", 0, 0]
+"#;
+    let model = source(text).beside(folder.path()).model().unwrap_or_else(|message| panic!("{message}"));
+    let (_, recording) = run(&model, "radau", 0.01, 1.0, 1);
+    // The law is −4 v, also beyond its ends.
+    assert!((last(&recording, "bob.vx") - 3.0 * (-2.0_f64).exp()).abs() < 1e-10);
+}
+
+/// A ball thrown up reaches heights and its top at times that are known; at one of them an input is set.
+#[test]
+fn events_happen_at_their_times() {
+    let text = r#"
+gravity = [0, 0, -10]
+
+[input.wind]
+
+[point.ball]
+mass = 2
+position = [0, 0, 1]
+velocity = [0, 0, 5]
+
+[force.wind-force]
+type = "expression"
+point = "ball"
+force = ["wind", 0, 0]
+
+[event.top]
+when = "ball.vz"
+direction = "falling"
+set = { wind = 4 }
+
+[event.window]
+when = "ball.z - 2"
+
+[event.late]
+when = "t - 0.777"
+
+[event.landing]
+when = "ball.z"
+direction = "falling"
+stop = true
+"#;
+    let model = model(text);
+    let landing = 0.5 + (0.25_f64 + 0.2).sqrt();
+    let root = (0.25_f64 - 0.2).sqrt();
+    let expected = [("window", 0.5 - root), ("top", 0.5), ("window", 0.5 + root), ("late", 0.777), ("landing", landing)];
+    let mut expected = expected.to_vec();
+    expected.sort_by(|a, b| a.1.total_cmp(&b.1));
+    for (method, step) in
+        [("conserving-ggl", 0.03), ("conserving", 0.0317), ("radau", 0.05), ("trapezoidal-projected", 0.07), ("generalized-alpha", 0.03)]
+    {
+        let (simulation, recording) = run(&model, method, step, 5.0, 1);
+        let found: Vec<(&str, f64)> = simulation.events().iter().map(|event| (event.event.as_str(), event.t)).collect();
+        assert_eq!(found.len(), expected.len(), "{method}: {found:?}");
+        for ((name, t), (known, time)) in found.iter().zip(&expected) {
+            assert!(name == known && (t - time).abs() < 1e-10, "{method}: {name} at {t}, and {known} at {time}");
+        }
+        assert!((simulation.state().t - landing).abs() < 1e-10 && last(&recording, "ball.z").abs() < 1e-9, "{method}");
+        // From the top on the wind blows with 2 m/s².
+        assert!((last(&recording, "ball.x") - (landing - 0.5).powi(2)).abs() < 1e-9, "{method}: {}", last(&recording, "ball.x"));
+        let times = recording.column("t").unwrap();
+        assert!((times[3] - 3.0 * step).abs() < 1e-12, "{method}: rows stay at nominal times, and not {}", times[3]);
+    }
+}
+
+/// A mass that leaves a buffer, which only pushes: half a period of the mass on its spring after it came.
+#[test]
+fn lift_off_from_a_stop_is_found() {
+    let text = r#"
+gravity = [0, 0, 0]
+
+[body.block]
+mass = 1
+shape = { box = [0.1, 0.1, 0.1] }
+position = [0, 0, 0]
+velocity = [2, 0, 0]
+
+[joint.rail]
+type = "prismatic"
+between = ["ground", "block"]
+at = [0, 0, 0]
+axis = [1, 0, 0]
+
+[force.buffer]
+type = "stop"
+joint = "rail"
+stiffness = 400
+upper = 0.3
+
+[event.contact]
+when = "rail.displacement - 0.3"
+direction = "rising"
+
+[event.lift-off]
+when = "rail.displacement - 0.3"
+direction = "falling"
+"#;
+    let (simulation, _) = run(&model(text), "radau", 0.002, 0.5, 1);
+    let times: Vec<f64> = simulation.events().iter().map(|event| event.t).collect();
+    let expected = [0.15, 0.15 + PI / 20.0];
+    assert!(times.len() == 2 && times.iter().zip(expected).all(|(t, known)| (t - known).abs() < 1e-7), "{times:?}, {expected:?}");
+}

@@ -1,0 +1,162 @@
+//! Curves through given points as functions of one number: `[table.NAME]`.
+
+use crate::model::spline::Spline;
+use crate::system::Number;
+
+/// What a curve is beyond its ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beyond {
+    /// The value at the end.
+    Hold,
+    /// Straight on.
+    Line,
+    /// No number, so that a run that comes there stops.
+    Refuse,
+    /// The same again: the last value is the first.
+    Periodic,
+}
+
+/// A curve through points with rising abscissae.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    knots: Vec<f64>,
+    values: Vec<f64>,
+    /// Slopes at the knots of a cubic that keeps monotone parts monotone; none of a polygon and of a spline.
+    slopes: Option<Vec<f64>>,
+    spline: Option<Spline>,
+    beyond: Beyond,
+}
+
+impl Curve {
+    /// Straight lines from point to point.
+    pub fn linear(knots: Vec<f64>, values: Vec<f64>, beyond: Beyond) -> Self {
+        Self { knots, values, slopes: None, spline: None, beyond }
+    }
+
+    /// A cubic spline with two continuous derivatives: natural or periodic.
+    pub fn cubic(knots: Vec<f64>, values: Vec<f64>, beyond: Beyond) -> Self {
+        let spline = match beyond {
+            Beyond::Periodic => Spline::periodic(knots.clone(), values.clone()),
+            _ => Spline::natural(knots.clone(), values.clone()),
+        };
+        Self { knots, values, slopes: None, spline: Some(spline), beyond }
+    }
+
+    /// Cubics with one continuous derivative that rise where the points rise and fall where they fall: slopes by Fritsch and Butland
+    /// (SIAM J. Sci. Stat. Comput. 5, 1984), the weighted harmonic mean of those of both sides, and zero where these differ in sign.
+    pub fn monotone(knots: Vec<f64>, values: Vec<f64>, beyond: Beyond) -> Self {
+        let last = knots.len() - 1;
+        let h = |k: usize| knots[k + 1] - knots[k];
+        let secant = |k: usize| (values[k + 1] - values[k]) / h(k);
+        let mean = |left: usize, right: usize| {
+            let (a, b) = (secant(left), secant(right));
+            if a * b <= 0.0 {
+                return 0.0;
+            }
+            let (p, q) = (2.0 * h(right) + h(left), h(right) + 2.0 * h(left));
+            (p + q) / (p / a + q / b)
+        };
+        let inner = (1..last).map(|k| mean(k - 1, k));
+        let [first, end] = match beyond {
+            Beyond::Periodic => [mean(last - 1, 0); 2],
+            _ => [secant(0), secant(last - 1)],
+        };
+        let slopes = [first].into_iter().chain(inner).chain([end]).collect();
+        Self { knots, values, slopes: Some(slopes), spline: None, beyond }
+    }
+
+    /// Where its derivatives jump.
+    pub fn kinks(&self) -> impl Iterator<Item = f64> {
+        self.knots.iter().copied()
+    }
+
+    /// The value at `s`, with whatever derivatives the number carries.
+    pub fn evaluate<N: Number>(&self, s: N) -> N {
+        let last = self.knots.len() - 1;
+        let (first, end) = (self.knots[0], self.knots[last]);
+        let mut s = s;
+        if self.beyond == Beyond::Periodic {
+            s -= ((s.re() - first) / (end - first)).floor() * (end - first);
+        }
+        let is_inside = (first..=end).contains(&s.re());
+        if !is_inside {
+            let at = if s.re() < first { 0 } else { last };
+            return match self.beyond {
+                Beyond::Hold => N::from(self.values[at]),
+                Beyond::Line => (s - self.knots[at]) * self.end_slope(at) + self.values[at],
+                Beyond::Refuse => N::from(f64::NAN),
+                // Rounding has put it an end too far, or it is no number.
+                Beyond::Periodic => s * 0.0 + self.values[at],
+            };
+        }
+        if let Some(spline) = &self.spline {
+            return spline.evaluate(s);
+        }
+        let k = self.knots.partition_point(|&knot| knot <= s.re()).clamp(1, last) - 1;
+        let h = self.knots[k + 1] - self.knots[k];
+        let u = (s - self.knots[k]) / h;
+        let rise = self.values[k + 1] - self.values[k];
+        let Some(slopes) = &self.slopes else { return u * rise + self.values[k] };
+        // Hermite's cubic in powers of u.
+        let (a, b) = (slopes[k] * h, slopes[k + 1] * h);
+        ((u * (a + b - 2.0 * rise) + (3.0 * rise - 2.0 * a - b)) * u + a) * u + self.values[k]
+    }
+
+    /// The slope at an end.
+    fn end_slope(&self, at: usize) -> f64 {
+        if let Some(slopes) = &self.slopes {
+            return slopes[at];
+        }
+        if let Some(spline) = &self.spline {
+            return spline.slope(self.knots[at]);
+        }
+        let k = at.min(self.knots.len() - 2);
+        (self.values[k + 1] - self.values[k]) / (self.knots[k + 1] - self.knots[k])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use num_dual::Dual64;
+
+    use super::*;
+
+    const KNOTS: [f64; 5] = [0.0, 1.0, 2.5, 3.0, 5.0];
+    const VALUES: [f64; 5] = [1.0, -1.0, 0.5, 2.0, 1.0];
+
+    #[test]
+    fn every_curve_meets_its_points_and_has_the_derivative_of_its_differences() {
+        for make in [Curve::linear, Curve::cubic, Curve::monotone] {
+            for beyond in [Beyond::Hold, Beyond::Line, Beyond::Refuse, Beyond::Periodic] {
+                let curve = make(KNOTS.to_vec(), VALUES.to_vec(), beyond);
+                for (knot, value) in KNOTS.iter().zip(VALUES) {
+                    assert!((curve.evaluate(*knot) - value).abs() < 1e-14, "{beyond:?} at {knot}");
+                }
+                for s in [0.3, 1.7, 2.7, 4.4, 6.3, -0.7, -11.3] {
+                    let dual: Dual64 = curve.evaluate(Dual64::new(s, 1.0));
+                    let difference = (curve.evaluate(s + 1e-6) - curve.evaluate(s - 1e-6)) / 2e-6;
+                    let is_refused = beyond == Beyond::Refuse && !(0.0..=5.0).contains(&s);
+                    assert_eq!(dual.re.is_nan(), is_refused, "{beyond:?} at {s}");
+                    assert!(is_refused || (dual.eps - difference).abs() < 1e-8, "{beyond:?} at {s}: {} {difference}", dual.eps);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_monotone_curve_never_overshoots() {
+        let curve = Curve::monotone(vec![0.0, 1.0, 1.1, 3.0, 4.0], vec![0.0, 0.0, 5.0, 5.0, 6.0], Beyond::Hold);
+        let values: Vec<f64> = (0..=400).map(|k| curve.evaluate(f64::from(k) * 0.01)).collect();
+        assert!(values.windows(2).all(|pair| pair[1] >= pair[0] - 1e-14));
+        let spline = Curve::cubic(vec![0.0, 1.0, 1.1, 3.0, 4.0], vec![0.0, 0.0, 5.0, 5.0, 6.0], Beyond::Hold);
+        assert!((0..=400).any(|k| spline.evaluate(f64::from(k) * 0.01) > 6.0), "which a spline does");
+    }
+
+    #[test]
+    fn beyond_its_ends_a_curve_is_what_was_asked_for() {
+        let at = |beyond, s: f64| Curve::linear(KNOTS.to_vec(), VALUES.to_vec(), beyond).evaluate(s);
+        assert_eq!([at(Beyond::Hold, 9.0), at(Beyond::Hold, -1.0)], [1.0, 1.0]);
+        assert_eq!([at(Beyond::Line, 7.0), at(Beyond::Line, -1.0)], [0.0, 3.0]);
+        assert!((at(Beyond::Periodic, 5.5) - at(Beyond::Periodic, 0.5)).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,85 @@
+//! What the expressions of a mechanism name beside parameters: its coordinates, forces and measures.
+
+use super::{Mistake, Program};
+use crate::record::Running;
+
+/// Numbers what an expression names of a mechanism.
+pub trait Names {
+    /// The number of the variable that a name stands for, if there is such a thing.
+    ///
+    /// # Errors
+    /// Something that is there and cannot be read here.
+    fn variable(&mut self, name: &str) -> Result<Option<usize>, Mistake>;
+
+    /// The formula that a name stands for, of the same variables.
+    ///
+    /// # Errors
+    /// A formula that cannot be read here.
+    fn formula(&mut self, _name: &str) -> Result<Option<Program>, Mistake> {
+        Ok(None)
+    }
+
+    /// The number of the variable that is a running value of a formula; none where nothing is known of the time before.
+    fn running(&mut self, _running: Running, _of: Program) -> Option<usize> {
+        None
+    }
+
+    /// Letters of the coordinates of places, where places can be named.
+    fn axes(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// All names, for suggestions.
+    fn known(&self) -> Vec<String> {
+        Vec::new()
+    }
+}
+
+/// Names nothing.
+pub struct Nothing;
+
+impl Names for Nothing {
+    fn variable(&mut self, _name: &str) -> Result<Option<usize>, Mistake> {
+        Ok(None)
+    }
+}
+
+/// Names of the running values.
+pub(super) const RUNNING: &[(&str, Running)] =
+    &[("max", Running::Max), ("min", Running::Min), ("rms", Running::Rms), ("integral", Running::Integral)];
+
+/// Functions of places, how many they take, and how they are written.
+pub(super) const OF_PLACES: &[(&str, usize, &str)] =
+    &[("distance", 2, "distance(A, B)"), ("speed", 2, "speed(A, B)"), ("angle", 3, "angle(A, B, C)")];
+
+/// A function of places as a formula of their coordinates: a distance, its rate, or the angle at the second of three places.
+pub(super) fn of_places(name: &str, places: &[String], axes: &str) -> String {
+    let component = |place: &str, letters: &str| if place == "ground" { "0".to_string() } else { format!("'{place}.{letters}'") };
+    let from_to = |from: usize, to: usize, prefix: &str| -> Vec<String> {
+        let difference = |axis: char| {
+            let letters = format!("{prefix}{axis}");
+            format!("({}-{})", component(&places[to], &letters), component(&places[from], &letters))
+        };
+        axes.chars().map(difference).collect()
+    };
+    let dot = |u: &[String], w: &[String]| {
+        let products: Vec<String> = u.iter().zip(w).map(|(u, w)| format!("{u}*{w}")).collect();
+        products.join("+")
+    };
+    match name {
+        "distance" => format!("sqrt({0})", dot(&from_to(0, 1, ""), &from_to(0, 1, ""))),
+        "speed" => {
+            let (way, rate) = (from_to(0, 1, ""), from_to(0, 1, "v"));
+            format!("({})/sqrt({})", dot(&way, &rate), dot(&way, &way))
+        }
+        _ => {
+            let (u, w) = (from_to(1, 0, ""), from_to(1, 2, ""));
+            let cross = |i: usize, j: usize| format!("({}*{}-{}*{})", u[i], w[j], u[j], w[i]);
+            let sine = match axes.len() {
+                2 => format!("abs({})", cross(0, 1)),
+                _ => format!("sqrt({}^2+{}^2+{}^2)", cross(1, 2), cross(2, 0), cross(0, 1)),
+            };
+            format!("atan2({sine},{})", dot(&u, &w))
+        }
+    }
+}

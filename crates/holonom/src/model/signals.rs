@@ -1,0 +1,310 @@
+//! What the formulas of forces and events may read of a mechanism beside their own variables: inputs, measures, and positions and
+//! velocities of points, bodies and joints, by the names of their columns.
+
+use std::collections::{HashMap, HashSet};
+
+use smallvec::SmallVec;
+
+use super::assembly::{Assembly, GROUND};
+use super::entry::Entry;
+use super::expression::{Mistake, Names, Program, Scope};
+use super::fields::Number;
+use super::geometry::unit;
+use super::measure::like;
+use super::sum::{Sum, cross};
+use crate::record::RecordedInput;
+use crate::system::{Form, Number as AnyNumber, Place, Reading, Sense};
+
+/// Inputs, and the formulas of measures.
+#[derive(Default)]
+pub(super) struct Signals {
+    /// In file order.
+    pub inputs: Vec<RecordedInput>,
+    pub measures: HashMap<String, Formula>,
+    /// Names of entries that could not be read; what refers to them is no second fault.
+    pub faulty: HashSet<String>,
+}
+
+/// The formula of a measure, with the indices of its repetition.
+#[derive(Clone)]
+pub(super) struct Formula {
+    pub value: Number,
+    pub indices: Vec<(String, f64)>,
+}
+
+/// What a formula reads, behind its own variables.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Leaf {
+    /// In the formula of a measure.
+    Time,
+    /// A coordinate of the k-th place, or of its velocity.
+    Place(usize, usize, bool),
+    /// A component of the angular velocity of the k-th body.
+    Turn(usize, usize),
+    /// The k-th sense, or its rate.
+    Sense(usize, bool),
+}
+
+/// What the formulas of a force or an event read of the state.
+#[derive(Default)]
+pub(super) struct Readings {
+    dim: usize,
+    leaves: Vec<Leaf>,
+    places: Vec<Sum>,
+    /// Axes of bodies: three, in the plane the first.
+    turns: Vec<Vec<Sum>>,
+    /// Names of leaves, places and bodies, in their order.
+    names: [Vec<String>; 3],
+    /// Nodes and quantities.
+    pub reading: Reading,
+    /// Names of the senses.
+    senses: Vec<String>,
+}
+
+impl Readings {
+    /// Nothing yet, of a load on these nodes and quantities.
+    pub fn new(dim: usize, reading: Reading) -> Self {
+        let senses = reading.senses.iter().map(|_| String::new()).collect();
+        Self { dim, reading, senses, ..Self::default() }
+    }
+
+    /// Coordinates a node.
+    pub fn dim(&self) -> usize {
+        self.dim
+    }
+
+    /// How many numbers it reads.
+    pub fn len(&self) -> usize {
+        self.leaves.len()
+    }
+
+    /// Appends what it reads at coordinates `x` and velocities `v` of the nodes and then of the senses, at the time `t`.
+    pub fn append<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, out: &mut SmallVec<[N; ROOM]>) {
+        let own = self.dim * self.reading.nodes.len();
+        for leaf in &self.leaves {
+            out.push(match *leaf {
+                Leaf::Time => t,
+                Leaf::Place(k, axis, false) => self.places[k].at(x, self.dim, 1.0)[axis],
+                Leaf::Place(k, axis, true) => self.places[k].at(v, self.dim, 0.0)[axis],
+                Leaf::Sense(k, false) => x[own + k],
+                Leaf::Sense(k, true) => v[own + k],
+                Leaf::Turn(k, axis) => angular_velocity(&self.turns[k], x, v, self.dim)[axis],
+            });
+        }
+    }
+}
+
+/// Variables of a formula that are not put on the heap.
+pub(super) const ROOM: usize = 16;
+
+/// ½ Σ e_k × ė_k of the axes of a body; in the plane e × ė of the first.
+pub(super) fn angular_velocity<N: AnyNumber>(axes: &[Sum], x: &[N], v: &[N], dim: usize) -> [N; 3] {
+    let mut turn = [N::from(0.0); 3];
+    for sum in axes {
+        let own = cross(sum.at(x, dim, 1.0), sum.at(v, dim, 0.0));
+        (0..3).for_each(|c| turn[c] += own[c] * if dim == 2 { 1.0 } else { 0.5 });
+    }
+    turn
+}
+
+/// Resolves names while the formulas of an entry are parsed.
+pub(super) struct Reader<'a, 'b> {
+    pub assembly: &'a mut Assembly<'b>,
+    pub entry: &'a Entry<'a>,
+    pub readings: &'a mut Readings,
+    /// Measures whose formulas are being read.
+    pub open: Vec<String>,
+}
+
+impl<'a, 'b> Reader<'a, 'b> {
+    pub fn new(assembly: &'a mut Assembly<'b>, entry: &'a Entry<'a>, readings: &'a mut Readings) -> Self {
+        Self { assembly, entry, readings, open: Vec::new() }
+    }
+
+    fn leaf(&mut self, name: &str, leaf: Leaf) -> usize {
+        self.readings.leaves.push(leaf);
+        self.readings.names[0].push(name.to_string());
+        self.readings.leaves.len() - 1
+    }
+
+    /// The number of a quantity or input among the senses.
+    fn sense(&mut self, name: &str, make: impl FnOnce(&mut Assembly<'b>) -> Sense) -> usize {
+        let Readings { senses, reading, .. } = &mut *self.readings;
+        if let Some(known) = senses.iter().position(|sense| sense == name) {
+            return known;
+        }
+        senses.push(name.to_string());
+        reading.senses.push(make(self.assembly));
+        senses.len() - 1
+    }
+
+    /// A joint coordinate or the angle of a planar body.
+    fn form(&self, name: &str) -> Option<Form> {
+        let (owner, coordinate) = name.rsplit_once('.')?;
+        if let Some(&joint) = self.assembly.joint_names.get(owner) {
+            let coordinates = &self.assembly.joints[joint].coordinates;
+            return coordinates.iter().find(|known| known.name == coordinate).map(|known| known.form.clone());
+        }
+        let body = self.assembly.body_by_name(owner).filter(|_| self.readings.dim == 2 && coordinate == "angle")?;
+        let moving = self.assembly.frames[body].vector(self.assembly.bodies[body].direction(unit(0)));
+        let product = |k| [vec![(Place::Fixed(unit(k)), 1.0).into()], moving.clone()];
+        Some(Form::Angle { cosine: product(0), sine: product(1) })
+    }
+
+    /// A coordinate of a place or of its velocity.
+    fn place(&mut self, name: &str) -> Option<Leaf> {
+        let (owner, suffix) = name.rsplit_once('.')?;
+        let (is_rate, letter) = suffix.strip_prefix('v').map_or((false, suffix), |letter| (true, letter));
+        let mut letters = self.assembly.axes.name.chars();
+        let axis = letters.position(|axis| letter.len() == 1 && letter.starts_with(axis))?;
+        let known = self.readings.names[1].iter().position(|known| known == owner);
+        let place = match known {
+            Some(known) => known,
+            None => {
+                let terms = self.terms(owner)?;
+                self.readings.places.push(Sum::new(&terms, &mut self.readings.reading.nodes));
+                self.readings.names[1].push(owner.to_string());
+                self.readings.places.len() - 1
+            }
+        };
+        Some(Leaf::Place(place, axis, is_rate))
+    }
+
+    /// The nodes of a point, of the centre of mass of a body, or of a named place of one.
+    fn terms(&self, owner: &str) -> Option<Vec<crate::system::Term>> {
+        if let Some(&point) = self.assembly.by_name.get(owner) {
+            return Some(self.assembly.points[point].end.terms.clone());
+        }
+        if let Some(body) = self.assembly.body_by_name(owner) {
+            return Some(self.assembly.frames[body].point(self.assembly.bodies[body].position));
+        }
+        let (body, place) = super::references::split_place(owner)?;
+        let body = self.assembly.body_by_name(body)?;
+        let (_, at) = self.assembly.bodies[body].points.iter().find(|(known, _)| known == place)?;
+        Some(self.assembly.frames[body].point(*at))
+    }
+
+    /// A component of the angular velocity of a body in space.
+    fn turn(&mut self, name: &str) -> Result<Option<Leaf>, Mistake> {
+        let Some((owner, suffix)) = name.rsplit_once('.') else { return Ok(None) };
+        let axis = ["wx", "wy", "wz"].iter().position(|known| *known == suffix).filter(|_| self.readings.dim == 3);
+        let (Some(axis), Some(body)) = (axis, self.assembly.body_by_name(owner)) else { return Ok(None) };
+        if let Some(known) = self.readings.names[2].iter().position(|known| known == owner) {
+            return Ok(Some(Leaf::Turn(known, axis)));
+        }
+        let (frame, own) = (&self.assembly.frames[body], &self.assembly.bodies[body]);
+        let directions: Vec<_> = (0..3).map(|k| own.direction(unit(k))).collect();
+        if !directions.iter().all(|&direction| frame.holds(direction)) {
+            let message = format!("how `{owner}` turns about itself is not known: it is thin, and nothing holds it there");
+            return Err(mistake(message, "give it some inertia about that axis"));
+        }
+        let axes = directions.into_iter().map(|direction| frame.vector(direction)).collect::<Vec<_>>();
+        let axes = axes.iter().map(|axis| Sum::new(axis, &mut self.readings.reading.nodes)).collect();
+        self.readings.turns.push(axes);
+        self.readings.names[2].push(owner.to_string());
+        Ok(Some(Leaf::Turn(self.readings.turns.len() - 1, axis)))
+    }
+
+    /// Whether a name begins with one of an entry that could not be read.
+    fn is_faulty(&self, name: &str) -> bool {
+        let base = |name: &str| name.split(['[', '.']).next().unwrap_or(name).to_string();
+        let name = base(name);
+        self.assembly.signals.faulty.contains(&name) || self.assembly.faulty.contains(&name) || self.assembly.faulty_joints.contains(&name)
+    }
+
+    /// Names of what can be read, without rates.
+    fn names(&self) -> Vec<String> {
+        let assembly = &self.assembly;
+        let axes = assembly.axes.name;
+        let coordinates = |owner: &str| axes.chars().map(|axis| format!("{owner}.{axis}")).collect::<Vec<_>>();
+        let points = assembly.points.iter().flat_map(|point| coordinates(&point.name));
+        let bodies = assembly.bodies.iter().flat_map(|body| {
+            let places = body.points.iter().flat_map(|(place, _)| coordinates(&format!("{}.{place}", body.name)));
+            coordinates(&body.name).into_iter().chain(places).collect::<Vec<_>>()
+        });
+        let joints = assembly
+            .joints
+            .iter()
+            .flat_map(|joint| joint.coordinates.iter().map(|coordinate| format!("{}.{}", joint.name, coordinate.name)).collect::<Vec<_>>());
+        let inputs = assembly.signals.inputs.iter().map(|input| input.name.clone());
+        let mut measures: Vec<String> = assembly.signals.measures.keys().cloned().collect();
+        measures.sort_unstable();
+        inputs.chain(measures).chain(joints).chain(points).chain(bodies).collect()
+    }
+}
+
+impl Names for Reader<'_, '_> {
+    fn variable(&mut self, name: &str) -> Result<Option<usize>, Mistake> {
+        if let Some(known) = self.readings.names[0].iter().position(|known| known == name) {
+            return Ok(Some(known));
+        }
+        if name == "t" {
+            return Ok(Some(self.leaf(name, Leaf::Time)));
+        }
+        if name.split('.').next() == Some(GROUND) || self.is_faulty(name) {
+            return if name.starts_with(GROUND) { Ok(None) } else { Err(Mistake { known: true, ..mistake("", "") }) };
+        }
+        if let Some(input) = self.assembly.signals.inputs.iter().position(|input| input.name == name) {
+            let sense = self.sense(name, |_| Sense::Input(input));
+            return Ok(Some(self.leaf(name, Leaf::Sense(sense, false))));
+        }
+        for (coordinate, is_rate) in [(Some(name), false), (name.strip_suffix("_rate"), true)] {
+            if let Some(coordinate) = coordinate
+                && let Some(form) = self.form(coordinate)
+            {
+                let sense = self.sense(coordinate, |assembly| {
+                    let part = assembly.builder.part(&form);
+                    Sense::Quantity(assembly.builder.sum(&[(part, 1.0)]).into())
+                });
+                return Ok(Some(self.leaf(name, Leaf::Sense(sense, is_rate))));
+            }
+        }
+        let leaf = match self.place(name) {
+            Some(leaf) => Some(leaf),
+            None => self.turn(name)?,
+        };
+        if let Some(leaf) = leaf {
+            return Ok(Some(self.leaf(name, leaf)));
+        }
+        if name.contains('.') {
+            let names = self.names();
+            let cure = like(name, names.iter().map(String::as_str));
+            let message =
+                format!("`{name}` cannot be read here: positions, velocities, coordinates of joints, inputs and measures of these can");
+            return Err(mistake(message, cure));
+        }
+        Ok(None)
+    }
+
+    fn formula(&mut self, name: &str) -> Result<Option<Program>, Mistake> {
+        let Some(Formula { value, indices }) = self.assembly.signals.measures.get(name).cloned() else { return Ok(None) };
+        if self.open.iter().any(|open| open == name) {
+            let round: Vec<&str> = self.open.iter().map(String::as_str).chain([name]).collect();
+            return Err(mistake(format!("measures go round in a circle: {}", round.join(" → ")), "let one of them read no other"));
+        }
+        let text = match value {
+            Number::Given(number) => return Ok(Some(Program::constant(number))),
+            Number::Formula(text) => text,
+        };
+        self.open.push(name.to_string());
+        let scope = Scope { indices: &indices, ..self.entry.scope };
+        let program = Program::parse_with(&text, &[], self, &scope);
+        self.open.pop();
+        program.map(Some).map_err(|inner| match inner.known {
+            true => inner,
+            false => mistake(format!("the measure `{name}` cannot be read here: {}", inner.message), inner.cure),
+        })
+    }
+
+    fn axes(&self) -> Option<&'static str> {
+        Some(self.assembly.axes.name)
+    }
+
+    fn known(&self) -> Vec<String> {
+        self.names()
+    }
+}
+
+fn mistake(message: impl Into<String>, cure: impl Into<String>) -> Mistake {
+    Mistake { character: 0, message: message.into(), cure: cure.into(), known: false }
+}

@@ -1,0 +1,190 @@
+//! Measures: formulas of the columns of a recording, with running values.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+/// A formula of some numbers.
+pub trait Formula: Send + Sync {
+    /// Its value.
+    fn evaluate(&self, values: &[f64]) -> f64;
+}
+
+/// A value of a run so far.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Running {
+    /// Largest value.
+    Max,
+    /// Smallest value.
+    Min,
+    /// Root of the mean square over time.
+    Rms,
+    /// Integral over time.
+    Integral,
+}
+
+/// An input of a model, whose value is recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedInput {
+    /// With its index where it is repeated; the name of its column.
+    pub name: String,
+    /// As the author states it; `"1"` where nothing is said.
+    pub unit: String,
+    /// In a line.
+    pub meaning: String,
+}
+
+/// A measure of a model: a formula of other columns.
+#[derive(Clone)]
+pub struct RecordedMeasure {
+    /// With its index where it is repeated; the name of its column.
+    pub name: String,
+    /// As the author states it.
+    pub unit: String,
+    /// In a line.
+    pub meaning: String,
+    pub(crate) formula: Arc<dyn Formula>,
+    /// What its variables are, in order.
+    pub(crate) reads: Vec<MeasureReads>,
+    pub(crate) series: Vec<Series>,
+}
+
+/// A variable of a measure.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum MeasureReads {
+    /// The column of this name.
+    Column(String),
+    /// A running value.
+    Series(usize),
+}
+
+/// A running value of a formula of the same variables.
+#[derive(Clone)]
+pub(crate) struct Series {
+    pub running: Running,
+    pub of: Arc<dyn Formula>,
+}
+
+impl RecordedMeasure {
+    /// Names of the columns that it reads.
+    pub(crate) fn columns(&self) -> impl Iterator<Item = &str> {
+        self.reads.iter().filter_map(|read| match read {
+            MeasureReads::Column(name) => Some(name.as_str()),
+            MeasureReads::Series(_) => None,
+        })
+    }
+}
+
+/// What is known of a series so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Sum {
+    /// Times of the first value and of the last, s.
+    times: [f64; 2],
+    /// The last value, and the largest, the smallest or the integral; none before the first.
+    values: Option<[f64; 2]>,
+}
+
+impl Sum {
+    /// Takes the value at a time in, and hands back the running value. Between two times the value goes straight.
+    fn add(&mut self, running: Running, t: f64, value: f64) -> f64 {
+        let Some([last, sum]) = self.values else {
+            let sum = match running {
+                Running::Max | Running::Min => value,
+                Running::Rms | Running::Integral => 0.0,
+            };
+            (self.times, self.values) = ([t, t], Some([value, sum]));
+            return if running == Running::Rms { value.abs() } else { sum };
+        };
+        let step = t - self.times[1];
+        let sum = match running {
+            // Written so that a value that is no number shows.
+            Running::Max => {
+                if value <= sum {
+                    sum
+                } else {
+                    value
+                }
+            }
+            Running::Min => {
+                if value >= sum {
+                    sum
+                } else {
+                    value
+                }
+            }
+            Running::Integral => sum + 0.5 * step * (last + value),
+            Running::Rms => sum + step / 3.0 * (last * last + last * value + value * value),
+        };
+        self.times[1] = t;
+        self.values = Some([value, sum]);
+        let whole = t - self.times[0];
+        if running != Running::Rms {
+            return sum;
+        }
+        if whole > 0.0 { (sum / whole).sqrt() } else { value.abs() }
+    }
+}
+
+/// The measures of a recording while it goes on.
+pub(super) struct Measures<'a> {
+    measures: &'a [RecordedMeasure],
+    /// Of each measure the places of its variables in the row, or which series they are; none of a column that is not recorded.
+    places: Vec<Vec<Option<Place>>>,
+    /// Of each measure the sums of its series.
+    pub sums: Vec<Vec<Sum>>,
+    /// Room for variables.
+    values: Vec<f64>,
+}
+
+#[derive(Clone, Copy)]
+enum Place {
+    Column(usize),
+    Series(usize),
+}
+
+impl<'a> Measures<'a> {
+    /// Of a recording with these columns before those of the measures.
+    pub fn new<'n>(measures: &'a [RecordedMeasure], columns: impl Iterator<Item = &'n str>) -> Self
+    where
+        'a: 'n,
+    {
+        let own = measures.iter().map(|measure| measure.name.as_str());
+        let by_name: std::collections::HashMap<&str, usize> = columns.chain(own).enumerate().map(|(k, name)| (name, k)).collect();
+        let place = |read: &MeasureReads| match read {
+            MeasureReads::Column(name) => by_name.get(name.as_str()).copied().map(Place::Column),
+            MeasureReads::Series(k) => Some(Place::Series(*k)),
+        };
+        Self {
+            places: measures.iter().map(|measure| measure.reads.iter().map(place).collect()).collect(),
+            sums: measures.iter().map(|measure| vec![Sum::default(); measure.series.len()]).collect(),
+            values: Vec::new(),
+            measures,
+        }
+    }
+
+    /// Whether some are of the whole run, so that every step counts.
+    pub fn are_running(&self) -> bool {
+        self.sums.iter().any(|sums| !sums.is_empty())
+    }
+
+    /// Appends their values to a row that begins with the time.
+    pub fn append(&mut self, row: &mut Vec<f64>) {
+        for ((measure, places), sums) in self.measures.iter().zip(&self.places).zip(&mut self.sums) {
+            self.values.clear();
+            for place in places {
+                let value = match *place {
+                    Some(Place::Column(k)) => row[k],
+                    // A series stands behind all that it is of.
+                    Some(Place::Series(k)) => {
+                        let series = &measure.series[k];
+                        let value = series.of.evaluate(&self.values);
+                        sums[k].add(series.running, row[0], value)
+                    }
+                    None => f64::NAN,
+                };
+                self.values.push(value);
+            }
+            row.push(measure.formula.evaluate(&self.values));
+        }
+    }
+}
