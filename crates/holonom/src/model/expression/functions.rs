@@ -51,8 +51,12 @@ pub(super) const FUNCTIONS: &[(&str, usize, Function)] = &[
     ("pow", 2, Function::Pow),
 ];
 
-/// Names and values of the constants.
+/// Names and values of the constants. Nothing in a model may have one of these names.
 pub(super) const CONSTANTS: &[(&str, f64)] = &[("pi", std::f64::consts::PI), ("tau", std::f64::consts::TAU), ("e", std::f64::consts::E)];
+
+/// Names of units and what they are in SI units. Parameters, indices and variables may have these names and come first.
+pub(super) const UNITS: &[(&str, f64)] =
+    &[("deg", std::f64::consts::PI / 180.0), ("mm", 1e-3), ("cm", 1e-2), ("km", 1e3), ("rpm", std::f64::consts::PI / 30.0), ("bar", 1e5)];
 
 impl Function {
     /// The value of a function of one number.

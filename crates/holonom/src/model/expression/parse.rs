@@ -1,6 +1,6 @@
 //! From the text of an expression to a program, by recursive descent; every mistake has a character and a cure.
 
-use super::functions::{CONSTANTS, FUNCTIONS, Function, real_power};
+use super::functions::{CONSTANTS, FUNCTIONS, Function, UNITS, real_power};
 use super::names::{self, Names, OF_PLACES, RUNNING};
 use super::{Mistake, Op, Program, STACK, Scope, Value};
 use crate::model::fault::{nearest, suggest};
@@ -20,7 +20,7 @@ pub(super) fn functions() -> impl Iterator<Item = &'static str> + Clone {
 /// Parses an expression of the given variables and of what `names` knows.
 pub(super) fn parse(text: &str, variables: &[&str], names: &mut dyn Names, scope: &Scope<'_>) -> Result<Program, Mistake> {
     let tokens = lex(text)?;
-    let mut parser = Parser { tokens: &tokens, at: 0, depth: 0, variables, names, scope, ops: Vec::new(), used: 0 };
+    let mut parser = Parser { text, tokens: &tokens, at: 0, depth: 0, variables, names, scope, ops: Vec::new(), used: 0 };
     if tokens.len() == 1 {
         return Err(Mistake::new(0, "the expression is empty", "write a number or a formula"));
     }
@@ -29,7 +29,7 @@ pub(super) fn parse(text: &str, variables: &[&str], names: &mut dyn Names, scope
         Token::End => Ok(Program { ops: parser.ops.into_boxed_slice() }),
         Token::Close => Err(parser.mistake("this bracket was never opened", "remove it, or open one before")),
         Token::Comma => Err(parser.mistake("a comma only separates arguments of a function", "decimal numbers have a point: 0.5")),
-        Token::Number(_) | Token::Name(_) | Token::Open => Err(parser.mistake("an operator is missing here", "write 2*x, not 2x")),
+        Token::Number(_) | Token::Name(_) | Token::Open => Err(parser.mistake("an operator is missing here", parser.as_product())),
         Token::Operator(_) => Err(parser.mistake("this cannot be here", "remove it")),
     }
 }
@@ -150,6 +150,7 @@ fn end_of_number(characters: &[char], mut k: usize) -> usize {
 }
 
 struct Parser<'a> {
+    text: &'a str,
     tokens: &'a [(usize, Token)],
     at: usize,
     depth: usize,
@@ -168,6 +169,22 @@ impl Parser<'_> {
 
     fn mistake(&self, message: impl Into<String>, cure: impl Into<String>) -> Mistake {
         Mistake::new(self.tokens[self.at].0, message, cure)
+    }
+
+    /// How a product is written, of the number before this and the name here where that is what it looks like.
+    fn as_product(&self) -> String {
+        let (Some((start, Token::Number(_))), Token::Name(name)) = (self.at.checked_sub(1).map(|k| &self.tokens[k]), self.peek()) else {
+            return "write 2*x, not 2x".into();
+        };
+        let number: String = self.text.chars().take(self.tokens[self.at].0).skip(*start).collect();
+        let number = number.trim_end();
+        let is_unit = UNITS.iter().any(|unit| unit.0 == name);
+        if is_unit || name.contains('.') || !matches!(self.value_of(name), Ok(None)) {
+            return format!("write {number}*{name}");
+        }
+        let units: Vec<&str> = UNITS.iter().map(|unit| unit.0).collect();
+        let units = units.join(", ");
+        format!("numbers are in SI units and radians, with no unit behind them: write {number}; known factors are {units}")
     }
 
     /// Moves on if the next token is an operator among `wanted`, and says which.
@@ -270,7 +287,7 @@ impl Parser<'_> {
             }
             Token::End => Err(self.mistake("a closing bracket is missing at the end", "add a )")),
             Token::Comma => Err(self.mistake("there is no further argument here", "decimal numbers have a point: 0.5")),
-            _ => Err(self.mistake("an operator or a closing bracket is missing here", "write 2*x, not 2x")),
+            _ => Err(self.mistake("an operator or a closing bracket is missing here", self.as_product())),
         }
     }
 
@@ -372,7 +389,7 @@ impl Parser<'_> {
         })
     }
 
-    /// What a mechanism does, by its name: a variable, or a formula of some.
+    /// What a mechanism does, by its name: a variable, or a formula of some; or a unit.
     fn name(&mut self, name: &str) -> Result<(), Mistake> {
         let at = self.tokens[self.at].0;
         let place = |mistake: Mistake| Mistake { character: at, ..mistake };
@@ -382,7 +399,11 @@ impl Parser<'_> {
         }
         match self.names.variable(&full).map_err(place)? {
             Some(variable) => self.emit(variable_op(self.variables.len() + variable, at)?),
-            None => Err(self.unknown(name)),
+            // Whatever the model calls so comes first.
+            None => match UNITS.iter().find(|unit| unit.0 == name) {
+                Some(&(_, value)) => self.emit(Op::Constant(value)),
+                None => Err(self.unknown(name)),
+            },
         }
     }
 
@@ -403,7 +424,7 @@ impl Parser<'_> {
     }
 
     fn unknown(&self, name: &str) -> Mistake {
-        let constants = CONSTANTS.iter().map(|constant| constant.0);
+        let constants = CONSTANTS.iter().chain(UNITS).map(|constant| constant.0);
         // Parameters have no order of their own, and messages must be the same every time.
         let mut named: Vec<&str> = self.scope.names().collect();
         named.sort_unstable();
@@ -422,7 +443,10 @@ impl Parser<'_> {
         let cure = match nearest(name, known.iter().copied().chain(of_mechanism.iter().map(String::as_str))) {
             Some(near) => format!("did you mean `{near}`?"),
             None if name.contains('.') => suggest(name, of_mechanism.iter().map(String::as_str)),
-            None => format!("add `{name}` to [parameters], or use what is {}", suggest(name, known).replace("known are", "known here")),
+            None => {
+                let known = suggest(name, known).replace("known are", "use what is known here");
+                format!("add `{name}` to [parameters], or {known}")
+            }
         };
         self.mistake(message, cure)
     }

@@ -38,6 +38,8 @@ fn operators_bind_as_in_mathematics() {
         ("pow(-3, 3)", -27.0),
         ("tau/pi + ln(e) + log10(100)", 5.0),
         ("abs(-2) + sqrt(9)", 5.0),
+        ("sin(30*deg) + 1500*mm + 50*cm + 2*km/1000", 4.5),
+        ("60*rpm/tau + bar/1e5", 2.0),
     ] {
         if expected.is_nan() {
             assert!(Program::parse(text, &[], &Scope::default()).is_err(), "{text}");
@@ -54,7 +56,12 @@ fn mistakes_say_where_and_what_to_do() {
         ("1 +", 3, "ends too early"),
         ("(1 + 2", 6, "closing bracket is missing"),
         ("1 + 2)", 5, "never opened"),
-        ("2 t", 2, "write 2*x"),
+        ("2 t", 2, "write 2*t"),
+        ("400 mm", 4, "write 400*mm"),
+        ("30deg", 2, "write 30*deg"),
+        ("sin(1.5e1 deg)", 10, "write 1.5e1*deg"),
+        ("5 N", 2, "write 5; known factors are deg, mm, cm, km, rpm, bar"),
+        ("t mm", 2, "write 2*x"),
         ("sn(t)", 0, "did you mean `sin`"),
         ("sin", 0, "needs its arguments"),
         ("atan2(t)", 0, "takes 2 arguments"),
@@ -128,6 +135,14 @@ fn parameters_fold_and_never_hide_a_variable() {
     assert_eq!(Program::parse("i^n + 1", &[], &scope).unwrap().as_constant(), Some(10.0));
     assert!(Program::parse("bad + 1", &[], &scope).unwrap_err().known);
     assert!(Program::parse("t + 1", &["t"], &scope).unwrap_err().message.contains("could be"));
+}
+
+#[test]
+fn names_of_a_model_come_before_units() {
+    let parameters: HashMap<String, Value> = [("mm".to_string(), Value::Known(7.0))].into();
+    let scope = Scope { parameters: Some(&parameters), indices: &[("deg".to_string(), 3.0)] };
+    assert_eq!(Program::parse("mm + deg", &[], &scope).unwrap().as_constant(), Some(10.0));
+    assert_eq!(Program::parse("bar", &["bar"], &Scope::default()).unwrap().evaluate(&[2.0]), 2.0);
 }
 
 #[test]
