@@ -91,6 +91,24 @@ fn springs_are_as_long_as_their_ends_are_apart() {
 }
 
 #[test]
+fn ropes_have_the_length_of_all_their_stretches() {
+    each(
+        &of_example(forces::KINDS, "rope"),
+        ["bob.x", "bob.y", "bob.z", "bob.vx", "bob.vy", "bob.vz", "rope.length", "rope.length_rate", "rope.force", "rope.power"],
+        |[x, y, z, vx, vy, vz, length, rate, force, power]| {
+            let below = (x * x + y * y + z * z).sqrt();
+            let speed = (x * vx + y * vy + z * vz) / below;
+            let stretch = 1.0 + below - 1.7;
+            let tension = if stretch > 0.0 { (100.0 * stretch + 0.5 * speed).max(0.0) } else { 0.0 };
+            close("length", length, 1.0 + below);
+            close("rate", rate, speed);
+            close("force", force, tension);
+            close("power", power, -tension * speed);
+        },
+    );
+}
+
+#[test]
 fn efforts_along_joints_are_those_of_their_laws() {
     let q = ["hinge.angle", "hinge.angle_rate"];
     each(&of_example(forces::KINDS, "torsion"), [q[0], q[1], "closer.effort", "closer.power"], |[q, rate, effort, power]| {

@@ -1,7 +1,7 @@
 // The numbers of the report, as `src/data.rs` writes them.
 
 export type PointKind = "free" | "driven" | "fixed";
-export type LineKind = "bar" | "rod" | "spring" | "guide";
+export type LineKind = "bar" | "rod" | "spring" | "rope" | "guide";
 export type Vec3 = [number, number, number];
 export type Anchor = { point: string } | { fixed: Vec3 } | { body: { body: string; at: Vec3 } };
 

@@ -39,6 +39,7 @@ export interface Theme {
   bar: string;
   rod: string;
   spring: string;
+  rope: string;
   ground: string;
   driven: string;
   /** Hubs, balls and sleeves. */
@@ -49,9 +50,9 @@ export interface Theme {
 
 export function theme(): Theme {
   return dark.matches
-    ? { page: "#181c21", ink: "#e6e9ed", soft: "#98a2ae", line: "#313840", bar: "#8d9aa8", rod: "#a7b1bc", spring: "#2fc79a", ground: "#7b8794",
+    ? { page: "#181c21", ink: "#e6e9ed", soft: "#98a2ae", line: "#313840", bar: "#8d9aa8", rod: "#a7b1bc", spring: "#2fc79a", rope: "#d8b16c", ground: "#7b8794",
         driven: "#ff8a3d", joint: "#4a545f", pin: "#dfe5eb" }
-    : { page: "#fafbfc", ink: "#1b1f24", soft: "#5c6672", line: "#d9dee4", bar: "#75828f", rod: "#8a96a3", spring: "#009e73", ground: "#4b5561",
+    : { page: "#fafbfc", ink: "#1b1f24", soft: "#5c6672", line: "#d9dee4", bar: "#75828f", rod: "#8a96a3", spring: "#009e73", rope: "#8a6420", ground: "#4b5561",
         driven: "#d55e00", joint: "#3d4650", pin: "#eef1f4" };
 }
 

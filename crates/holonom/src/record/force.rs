@@ -23,8 +23,13 @@ pub struct RecordedForce {
 pub enum Shows {
     /// Nothing.
     Power,
-    /// Length, its rate and the tension of laws of half the square of a length.
-    Tension,
+    /// Length, its rate and the tension of laws of half the squares of lengths, which add up to the length.
+    Tension {
+        /// How often each of them counts.
+        factors: Vec<f64>,
+        /// What is added to them, m.
+        fixed: f64,
+    },
     /// What its laws exert along some coordinates.
     Along(Vec<Along>),
     /// What its load exerts.
@@ -104,8 +109,8 @@ impl RecordedForce {
         let mut headings = Vec::new();
         match &self.shows {
             Shows::Power => (),
-            Shows::Tension => headings.extend([
-                of("length", "m", "distance of its ends".into()),
+            Shows::Tension { factors, .. } => headings.extend([
+                of("length", "m", if factors.len() == 1 { "distance of its ends" } else { "length from end to end" }.into()),
                 of("length_rate", "m/s", "rate of the length".into()),
                 of("force", "N", "tension: above zero it pulls its ends together".into()),
             ]),
@@ -137,10 +142,15 @@ impl RecordedForce {
         let responses: Vec<_> = laws.iter().map(|law| at.response(law)).collect();
         match &self.shows {
             Shows::Power => (),
-            Shows::Tension => {
-                let Some(&half_square) = laws.first().and_then(|law| law.arguments.first()) else { return };
-                let (length, rate) = length(at.value(half_square), at.rate(half_square));
-                let tension: f64 = responses.iter().map(|(_, response)| response.force[0] * length).sum();
+            Shows::Tension { factors, fixed } => {
+                let Some(law) = laws.first() else { return };
+                let mut lengths = law.arguments.iter().map(|&half_square| length(at.value(half_square), at.rate(half_square)));
+                let (first, rate) = lengths.next().expect("a law has an argument");
+                let tension: f64 = responses.iter().map(|(_, response)| response.force[0] * first / factors[0]).sum();
+                let start = [fixed + factors[0] * first, factors[0] * rate];
+                let [length, rate] = lengths
+                    .zip(&factors[1..])
+                    .fold(start, |[length, speed], ((of_one, rate), factor)| [length + factor * of_one, speed + factor * rate]);
                 row.extend([length, rate, tension]);
             }
             Shows::Along(coordinates) => {

@@ -67,6 +67,8 @@ pub enum LineKind {
     Rod,
     /// A spring or damper.
     Spring,
+    /// A stretch of a rope.
+    Rope,
     /// A line along which something slides, or that keeps points straight.
     Guide,
 }

@@ -12,7 +12,7 @@ import { Trail } from "./trail";
 const MOST_TRAILS = 16;
 
 /** Radii as shares of the size of the whole picture. */
-const RADIUS = { bar: 0.0095, rod: 0.0038, spring: 0.016, wire: 0.0028, point: 0.017, ground: 0.026 };
+const RADIUS = { bar: 0.0095, rod: 0.0038, spring: 0.016, wire: 0.0028, rope: 0.0025, point: 0.017, ground: 0.026 };
 
 export class Mechanism {
   readonly group = new Group();

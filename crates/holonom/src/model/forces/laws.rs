@@ -21,29 +21,30 @@ const GAUSS: [(f64, f64); 3] = [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 4.0
 pub(super) const FORCE_VARIABLES: &[&str] = &["length", "rate", "t"];
 
 /// r and dr/dπ.
-fn length(half_square: f64) -> (f64, f64) {
+pub(super) fn length(half_square: f64) -> (f64, f64) {
     let r = (2.0 * half_square).sqrt();
     // Also taken when rounding has made the square negative.
     if r > SHORTEST { (r, 1.0 / r) } else { (SHORTEST, 0.0) }
 }
 
 /// Lengths at the ends of a step and between them.
-struct Lengths {
+pub(super) struct Lengths {
     start: f64,
     end: f64,
     /// r̄
-    mean: f64,
+    pub mean: f64,
     /// Δr
-    rise: f64,
+    pub rise: f64,
     /// dr₁/dπ₁
-    slope: f64,
+    pub slope: f64,
 }
 
-fn lengths(reach: &Reach<'_>) -> Lengths {
-    let ((start, _), (end, slope)) = (length(reach.from[0]), length(reach.to[0]));
+/// Lengths at the ends of a step from half their squares.
+pub(super) fn lengths(from: f64, to: f64) -> Lengths {
+    let ((start, _), (end, slope)) = (length(from), length(to));
     let mean = 0.5 * (start + end);
     // The same as r₁ − r₀ without its cancellation.
-    let rise = if start > SHORTEST && end > SHORTEST { (reach.to[0] - reach.from[0]) / mean } else { end - start };
+    let rise = if start > SHORTEST && end > SHORTEST { (to - from) / mean } else { end - start };
     Lengths { start, end, mean, rise, slope }
 }
 
@@ -69,7 +70,7 @@ impl Law for LinearSpring {
     }
 
     fn between(&self, reach: Reach<'_>, out: &mut Response) {
-        let Lengths { mean, slope, .. } = lengths(&reach);
+        let Lengths { mean, slope, .. } = lengths(reach.from[0], reach.to[0]);
         out.force[0] = self.stiffness * (1.0 - self.rest_length / mean);
         out.by_value[0][0] = self.stiffness * self.rest_length / (mean * mean) * 0.5 * slope;
     }
@@ -93,7 +94,7 @@ impl Law for Damper {
     }
 
     fn between(&self, reach: Reach<'_>, out: &mut Response) {
-        let Lengths { mean, rise, slope, .. } = lengths(&reach);
+        let Lengths { mean, rise, slope, .. } = lengths(reach.from[0], reach.to[0]);
         let c = self.damping / reach.step;
         out.force[0] = c * rise / mean;
         out.by_value[0][0] = c * slope * (1.0 / mean - 0.5 * rise / (mean * mean));
@@ -126,7 +127,7 @@ impl Law for Energy {
     }
 
     fn between(&self, reach: Reach<'_>, out: &mut Response) {
-        let Lengths { start, end, mean, rise, slope } = lengths(&reach);
+        let Lengths { start, end, mean, rise, slope } = lengths(reach.from[0], reach.to[0]);
         // Mean of V′ over the way, and its derivative by r₁.
         let (mut average, mut by_end) = (0.0, 0.0);
         if rise.abs() > QUOTIENT * mean {
@@ -173,7 +174,7 @@ impl Law for Force {
     }
 
     fn between(&self, reach: Reach<'_>, out: &mut Response) {
-        let Lengths { mean, rise, slope, .. } = lengths(&reach);
+        let Lengths { mean, rise, slope, .. } = lengths(reach.from[0], reach.to[0]);
         let (tension, by_length, by_speed) = self.tension(mean, rise / reach.step, reach.middle);
         out.force[0] = tension / mean;
         out.by_value[0][0] = ((0.5 * by_length + by_speed / reach.step) / mean - 0.5 * tension / (mean * mean)) * slope;

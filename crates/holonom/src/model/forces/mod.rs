@@ -11,6 +11,8 @@ mod friction;
 mod joint;
 mod laws;
 mod point_load;
+mod rope;
+mod rope_laws;
 mod spring;
 mod stop;
 mod torque;
@@ -22,6 +24,7 @@ pub use effort::Effort;
 pub use expression::Expression;
 pub use force::Force;
 pub use friction::Friction;
+pub use rope::Rope;
 pub use spring::Spring;
 pub use stop::Stop;
 pub use torque::Torque;
@@ -32,6 +35,7 @@ use super::key::Kind;
 /// All kinds of forces.
 pub const KINDS: &[Kind] = &[
     Kind::of::<Spring>(),
+    Kind::of::<Rope>(),
     Kind::of::<Torsion>(),
     Kind::of::<Bushing>(),
     Kind::of::<Force>(),

@@ -90,7 +90,7 @@ impl Element for Spring {
         for law in laws {
             assembly.builder.law(entry.name, &[half_square], law);
         }
-        assembly.show(Shows::Tension);
+        assembly.show(Shows::Tension { factors: vec![1.0], fixed: 0.0 });
         assembly.draw(entry, LineKind::Spring, &a, &b);
         Ok(())
     }

@@ -1,0 +1,298 @@
+//! Laws of a rope: one tension along all its stretches, which follows from their whole length ℓ = Σ w_i r_i.
+//!
+//! A law hands over f_i with force on the nodes −Σ f_i ∇π_i, π_i = ½ r_i²: f_i is w_i times the tension over r_i. Between two
+//! positions f_i = w_i T̄ / r̄_i makes Σ f_i Δπ_i exactly T̄ Δℓ, as for a spring (`laws.rs`).
+
+use super::laws::{length, lengths};
+use crate::system::{Law, MAX_ARGUMENTS, Reach, Response};
+
+/// How the lengths of a rope add up.
+#[derive(Clone, Copy)]
+pub(super) struct Strands {
+    /// w_i: how many stretches are as long as that.
+    factors: [f64; MAX_ARGUMENTS],
+    /// Free length that is left for them, m.
+    free: f64,
+}
+
+impl Strands {
+    pub(super) fn new(factors: &[f64], free: f64) -> Self {
+        let mut all = [0.0; MAX_ARGUMENTS];
+        all[..factors.len()].copy_from_slice(factors);
+        Self { factors: all, free }
+    }
+
+    /// By how much a rope is longer than its free length, m, below zero where it is slack.
+    fn beyond(&self, value: &[f64]) -> f64 {
+        let whole: f64 = value.iter().zip(self.factors).map(|(&value, factor)| factor * length(value).0).sum();
+        whole - self.free
+    }
+}
+
+/// A step of a rope.
+pub(super) struct Change {
+    /// How far it is stretched at its start and at its end, 0 where it is slack, m.
+    stretch: [f64; 2],
+    /// Change of the whole length, m.
+    rise: f64,
+    /// s
+    step: f64,
+}
+
+impl Change {
+    /// Change of the stretch over that of the length: 1 while it is taut, 0 while it is slack; and how it changes with the length at the end.
+    fn share(&self) -> [f64; 2] {
+        let [before, after] = self.stretch;
+        match (before > 0.0, after > 0.0) {
+            (true, true) => [1.0, 0.0],
+            (false, false) => [0.0, 0.0],
+            (_, is_taut) => {
+                let share = (after - before) / self.rise;
+                [share, (f64::from(is_taut) - share) / self.rise]
+            }
+        }
+    }
+
+    /// How the stretch at the end changes with the length there.
+    fn slope(&self) -> f64 {
+        f64::from(self.stretch[1] > 0.0)
+    }
+}
+
+/// A tension that follows from the whole length.
+pub(super) trait Pull: Send + Sync {
+    /// Its energy, J, when it is stretched by `stretch`.
+    fn energy(&self, stretch: f64) -> f64;
+
+    fn conservative(&self) -> bool;
+
+    /// Tension, and its derivatives by stretch and speed, of a rope that is stretched by more than zero.
+    fn at(&self, stretch: f64, speed: f64) -> [f64; 3];
+
+    /// Tension between two positions, and its derivative by the length at the second.
+    fn between(&self, change: &Change) -> [f64; 2];
+}
+
+/// V = ½ k p² with the stretch p = max(ℓ − L, 0).
+pub(super) struct Elastic {
+    pub stiffness: f64,
+}
+
+impl Pull for Elastic {
+    fn energy(&self, stretch: f64) -> f64 {
+        0.5 * self.stiffness * stretch * stretch
+    }
+
+    fn conservative(&self) -> bool {
+        true
+    }
+
+    fn at(&self, stretch: f64, _speed: f64) -> [f64; 3] {
+        [self.stiffness * stretch, self.stiffness, 0.0]
+    }
+
+    /// k p̄ Δp/Δℓ
+    fn between(&self, change: &Change) -> [f64; 2] {
+        let ([share, bend], mean) = (change.share(), 0.5 * (change.stretch[0] + change.stretch[1]));
+        [self.stiffness * mean * share, self.stiffness * (0.5 * change.slope() * share + mean * bend)]
+    }
+}
+
+/// Tension c dℓ/dt of a taut rope, but for what would have the whole rope push: at least −k p.
+pub(super) struct Damping {
+    pub damping: f64,
+    pub stiffness: f64,
+}
+
+impl Pull for Damping {
+    fn energy(&self, _stretch: f64) -> f64 {
+        0.0
+    }
+
+    fn conservative(&self) -> bool {
+        false
+    }
+
+    fn at(&self, stretch: f64, speed: f64) -> [f64; 3] {
+        let (tension, least) = (self.damping * speed, -self.stiffness * stretch);
+        if tension >= least { [tension, 0.0, self.damping] } else { [least, -self.stiffness, 0.0] }
+    }
+
+    /// max(c Δℓ/h, −k p̄) Δp/Δℓ: the share of the step in which the rope is taut counts, so that nothing jumps where it gets taut.
+    fn between(&self, change: &Change) -> [f64; 2] {
+        let ([share, bend], [before, after]) = (change.share(), change.stretch);
+        let damping = self.damping / change.step;
+        let (tension, least) = (damping * change.rise, -0.5 * self.stiffness * (before + after));
+        let [tension, slope] = if tension >= least { [tension, damping] } else { [least, -0.5 * self.stiffness * change.slope()] };
+        [share * tension, share * slope + bend * tension]
+    }
+}
+
+/// A tension along all stretches of a taut rope.
+pub(super) struct Taut<P> {
+    pub strands: Strands,
+    pub pull: P,
+}
+
+impl<P: Pull> Law for Taut<P> {
+    fn energy(&self, value: &[f64]) -> f64 {
+        self.pull.energy(self.strands.beyond(value).max(0.0))
+    }
+
+    fn conservative(&self) -> bool {
+        self.pull.conservative()
+    }
+
+    fn at(&self, value: &[f64], rate: &[f64], _t: f64, out: &mut Response) {
+        let stretch = self.strands.beyond(value);
+        if stretch <= 0.0 {
+            return;
+        }
+        // Of each stretch the derivatives of ℓ and of dℓ/dt by its π, and that of ℓ̇ by its π̇.
+        let (mut by_value, mut by_rate, mut speed) = ([[0.0; 2]; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS], 0.0);
+        for (i, (&value, &rate)) in value.iter().zip(rate).enumerate() {
+            let ((r, slope), factor) = (length(value), self.strands.factors[i]);
+            by_rate[i] = factor / r;
+            by_value[i] = [factor * slope, -factor * rate / (r * r) * slope];
+            speed += by_rate[i] * rate;
+        }
+        let [tension, by_length, by_speed] = self.pull.at(stretch, speed);
+        for i in 0..value.len() {
+            let (r, slope) = length(value[i]);
+            out.force[i] = by_rate[i] * tension;
+            for j in 0..value.len() {
+                out.by_value[i][j] = by_rate[i] * (by_length * by_value[j][0] + by_speed * by_value[j][1]);
+                out.by_rate[i][j] = by_rate[i] * by_speed * by_rate[j];
+            }
+            out.by_value[i][i] -= by_rate[i] * tension / r * slope;
+        }
+    }
+
+    fn between(&self, reach: Reach<'_>, out: &mut Response) {
+        let stretch = [reach.from, reach.to].map(|value| self.strands.beyond(value).max(0.0));
+        if stretch == [0.0; 2] {
+            return;
+        }
+        let (mut mean, mut slope, mut rise) = ([0.0; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS], 0.0);
+        for i in 0..reach.from.len() {
+            let of_one = lengths(reach.from[i], reach.to[i]);
+            (mean[i], slope[i]) = (of_one.mean, of_one.slope);
+            rise += self.strands.factors[i] * of_one.rise;
+        }
+        let [tension, by_length] = self.pull.between(&Change { stretch, rise, step: reach.step });
+        for i in 0..reach.from.len() {
+            let factor = self.strands.factors[i] / mean[i];
+            out.force[i] = factor * tension;
+            for j in 0..reach.from.len() {
+                out.by_value[i][j] = factor * by_length * self.strands.factors[j] * slope[j];
+            }
+            out.by_value[i][i] -= factor * tension * 0.5 * slope[i] / mean[i];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn laws() -> Vec<(&'static str, Box<dyn Law>)> {
+        let strands = Strands::new(&[1.0, 2.0], 3.0);
+        vec![
+            ("elastic", Box::new(Taut { strands, pull: Elastic { stiffness: 30.0 } })),
+            ("damping", Box::new(Taut { strands, pull: Damping { damping: 2.0, stiffness: 30.0 } })),
+            ("damping that would push", Box::new(Taut { strands, pull: Damping { damping: 200.0, stiffness: 30.0 } })),
+        ]
+    }
+
+    /// Half the squares of two lengths.
+    fn halves(lengths: [f64; 2]) -> [f64; 2] {
+        lengths.map(|length| 0.5 * length * length)
+    }
+
+    fn at(law: &dyn Law, value: [f64; 2], rate: [f64; 2]) -> Response {
+        let mut out = Response::default();
+        law.at(&value, &rate, 0.3, &mut out);
+        out
+    }
+
+    fn between(law: &dyn Law, from: [f64; 2], to: [f64; 2]) -> Response {
+        let mut out = Response::default();
+        law.between(Reach { from: &from, to: &to, step: 0.1, middle: 0.3 }, &mut out);
+        out
+    }
+
+    fn moved(mut value: [f64; 2], j: usize, by: f64) -> [f64; 2] {
+        value[j] += by;
+        value
+    }
+
+    fn close(name: &str, analytic: f64, numeric: f64) {
+        assert!((analytic - numeric).abs() <= 1e-6 * (1.0 + numeric.abs()), "{name}: {analytic} against {numeric}");
+    }
+
+    #[test]
+    fn derivatives_at_a_state_agree_with_differences() {
+        let h = 1e-6;
+        for (name, law) in laws() {
+            // Taut while it gets longer and shorter, and slack.
+            for (lengths, rate) in [([1.2, 1.1], [0.3, 0.2]), ([1.5, 1.0], [-0.4, -0.3]), ([0.8, 0.9], [0.3, 0.2])] {
+                let value = halves(lengths);
+                let here = at(&*law, value, rate);
+                for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                    let of = |value, rate| at(&*law, value, rate).force[i];
+                    close(name, here.by_value[i][j], (of(moved(value, j, h), rate) - of(moved(value, j, -h), rate)) / (2.0 * h));
+                    close(name, here.by_rate[i][j], (of(value, moved(rate, j, h)) - of(value, moved(rate, j, -h))) / (2.0 * h));
+                }
+                if law.conservative() {
+                    let gradient = (law.energy(&moved(value, 1, h)) - law.energy(&moved(value, 1, -h))) / (2.0 * h);
+                    close(name, here.force[1], gradient);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_between_two_positions_agree_with_differences_and_the_work_is_exact() {
+        let h = 1e-6;
+        for (name, law) in laws() {
+            // Taut, from slack to taut and back, slack, and not moving.
+            for (from, to) in [
+                ([1.2, 1.1], [1.4, 1.2]),
+                ([1.4, 1.2], [1.2, 1.1]),
+                ([1.0, 0.9], [1.1, 1.1]),
+                ([1.1, 1.1], [1.0, 0.9]),
+                ([0.8, 0.9], [0.9, 0.9]),
+                ([1.2, 1.1], [1.2, 1.1]),
+            ] {
+                let [from, to] = [from, to].map(halves);
+                let here = between(&*law, from, to);
+                for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                    let of = |to| between(&*law, from, to).force[i];
+                    close(name, here.by_value[i][j], (of(moved(to, j, h)) - of(moved(to, j, -h))) / (2.0 * h));
+                }
+                let work: f64 = (0..2).map(|i| here.force[i] * (to[i] - from[i])).sum();
+                if law.conservative() {
+                    let rise = law.energy(&to) - law.energy(&from);
+                    assert!((work - rise).abs() < 1e-13, "{name}: work {work}, energy {rise}");
+                } else {
+                    assert!(work >= 0.0, "{name} gives {work}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_rope_never_pushes() {
+        let laws = laws();
+        for speed in [-100.0, -1.0, 0.0, 1.0] {
+            for lengths in [[1.0, 1.0000001], [1.3, 1.2], [0.9, 0.9]] {
+                let value = halves(lengths);
+                let pull = |law: &dyn Law| at(law, value, [lengths[0] * speed, lengths[1] * speed]).force[0];
+                assert!(pull(&*laws[0].1) + pull(&*laws[1].1) >= 0.0 && pull(&*laws[0].1) + pull(&*laws[2].1) >= 0.0);
+                let next = halves(lengths.map(|length| length * (1.0 + 0.1 * speed).max(0.5)));
+                let pull = |law: &dyn Law| between(law, value, next).force[0];
+                assert!(pull(&*laws[0].1) + pull(&*laws[1].1) >= 0.0 && pull(&*laws[0].1) + pull(&*laws[2].1) >= 0.0);
+            }
+        }
+    }
+}
