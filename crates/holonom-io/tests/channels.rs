@@ -200,3 +200,27 @@ fn drives_have_power_and_all_columns_say_what_they_show() {
         }
     }
 }
+
+/// The same motion written as a length and as a stroke, of a drive and of a rod.
+#[test]
+fn strokes_count_from_the_length_of_the_start() {
+    let text = |drive: &str, rod: &str| {
+        format!(
+            "plane = \"xz\"\n[body.boom]\nmass = 10\nshape = {{ box = [2, 0.1, 0.1] }}\nposition = [1, 0]\n\
+             [joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"boom\"]\nat = [0, 0]\n\
+             [drive.cylinder]\ntype = \"distance\"\nbetween = [[1, -1], \"boom\"]\n{drive}\n\
+             [point.bob]\nrepeat = \"i = 1 to 2\"\nmass = 1\nposition = [3, \"-i\"]\n\
+             [constraint.rope]\nrepeat = \"i = 1 to 2\"\ntype = \"distance\"\nbetween = [[3, 0.5], \"bob[i]\"]\n{rod}\n"
+        )
+    };
+    let [lengths, strokes] = [
+        text("profile = { table = [[0, 1], [1, 1.2], [2, 0.9]] }", "length = \"i + 0.5 + 0.1*sin(t)\""),
+        text("stroke = { table = [[0, 0], [1, 0.2], [2, -0.1]] }", "stroke = \"0.1*sin(t)\""),
+    ]
+    .map(|text| run(&model(&text), 0.01, 1.5).1);
+    for name in ["hinge.angle", "cylinder.effort", "cylinder.power", "bob[1].z", "bob[2].vz"] {
+        let [[length], [stroke]] = [&lengths, &strokes].map(|recording| columns(recording, [name]));
+        assert!(length.iter().any(|value| *value != length[0]), "{name} changes");
+        length.iter().zip(stroke).for_each(|(length, stroke)| close(name, *stroke, *length));
+    }
+}

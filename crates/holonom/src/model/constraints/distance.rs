@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use crate::model::assembly::Assembly;
+use crate::model::assembly::{Assembly, CONTRADICTION};
 use crate::model::element::Element;
 use crate::model::ends::{End, difference, from_to};
 use crate::model::entry::Entry;
@@ -35,21 +35,37 @@ pub struct Distance {
     /// number, or formula of the time t
     #[key(unit = "m", default = "the distance at the start", shape = Shape::Formula(&["t"]))]
     pub length: Option<Number>,
+    /// by how much the distance differs from that of the start, as a formula of t; instead of a length, and zero at the start
+    #[key(unit = "m", default = "none", shape = Shape::Formula(&["t"]))]
+    pub stroke: Option<Number>,
 }
 
 impl Element for Distance {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let ends = assembly.moving_pair(entry, "between", &self.between);
         let length = entry.optional("length", &self.length, |length, entry, key| length.formula(entry, key, &["t"]));
-        let (ends, length) = (ends?, length?);
+        let stroke = entry.optional("stroke", &self.stroke, |stroke, entry, key| stroke.formula(entry, key, &["t"]));
+        let (ends, length, stroke) = (ends?, length?, stroke?);
         let [a, b] = &ends;
         let start = norm(difference(a, b));
-        let target: Arc<dyn Signal> = match length {
-            None => {
+        let target: Arc<dyn Signal> = match (length, stroke) {
+            (Some(_), Some(_)) => {
+                return Err(entry.refuse_key("stroke", "the distance is given by `length` already", "keep one of the two"));
+            }
+            (None, None) => {
                 let start = started(entry, &ends, start)?;
                 Arc::new(Constant(0.5 * start * start))
             }
-            Some(length) => {
+            (None, Some(stroke)) => {
+                let (added, at_start) = (started(entry, &ends, start)?, TimeProgram(stroke.clone()).at(0.0)[0]);
+                // Written so that a NaN is refused too.
+                if !(at_start.abs() <= CONTRADICTION * start) {
+                    let cure = "a stroke counts from the start: subtract its value at t = 0, or give the length itself";
+                    return Err(entry.refuse("stroke", format!("the stroke is {at_start} m at t = 0"), cure));
+                }
+                Arc::new(HalfSquare { length: stroke, added })
+            }
+            (Some(length), None) => {
                 let at_start = TimeProgram(length.clone()).at(0.0)[0];
                 if at_start == 0.0 {
                     return Err(entry.refuse("length", "a distance of zero has no direction", ZERO_CURE));
@@ -62,7 +78,7 @@ impl Element for Distance {
                 assembly.check_start(entry, start - at_start, at_start, contradiction)?;
                 match length.as_constant() {
                     Some(length) => Arc::new(Constant(0.5 * length * length)),
-                    None => Arc::new(HalfSquare(length)),
+                    None => Arc::new(HalfSquare { length, added: 0.0 }),
                 }
             }
         };
@@ -83,12 +99,16 @@ fn started(entry: &Entry<'_>, [a, b]: &[End; 2], start: f64) -> Read<f64> {
     Err(entry.refuse("between", message, ZERO_CURE))
 }
 
-/// ½ L(t)².
-struct HalfSquare(Program);
+/// ½ (L(t) + L₀)².
+struct HalfSquare {
+    length: Program,
+    /// L₀, m
+    added: f64,
+}
 
 impl Signal for HalfSquare {
     fn at(&self, t: f64) -> [f64; 3] {
-        let length = self.0.evaluate(&[num_dual::Dual2_64::new(t, 1.0, 0.0)]);
+        let length = self.length.evaluate(&[num_dual::Dual2_64::new(t, 1.0, 0.0)]) + self.added;
         let half = length * length * 0.5;
         [half.re, half.v1, half.v2]
     }

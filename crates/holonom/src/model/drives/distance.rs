@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use super::profile::Profile;
-use crate::model::assembly::{Assembly, Effort};
+use crate::model::assembly::{Assembly, CONTRADICTION, Effort};
 use crate::model::element::Element;
 use crate::model::ends::{difference, from_to};
 use crate::model::entry::Entry;
@@ -43,16 +43,32 @@ pub struct Distance {
     #[key(shape = Shape::Ends(2, 2))]
     pub between: List<Place>,
     /// distance as a formula of t, or { table = [[t, L], …] }
-    #[key(unit = "m")]
-    pub profile: Profile,
+    #[key(unit = "m", default = "this or `stroke`")]
+    pub profile: Option<Profile>,
+    /// by how much the distance differs from that of the start, in the same spellings; zero at the start
+    #[key(unit = "m", default = "this or `profile`")]
+    pub stroke: Option<Profile>,
 }
 
 impl Element for Distance {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let ends = assembly.moving_pair(entry, "between", &self.between);
-        let profile = self.profile.signal(entry, "profile");
-        let ([a, b], profile) = (ends?, profile?);
-        let (start, given) = (norm(difference(&a, &b)), profile.at(0.0)[0]);
+        let profile = entry.optional("profile", &self.profile, Profile::signal);
+        let stroke = entry.optional("stroke", &self.stroke, Profile::signal);
+        let ([a, b], profile, stroke) = (ends?, profile?, stroke?);
+        let start = norm(difference(&a, &b));
+        let profile: Arc<dyn Signal> = match (profile, stroke) {
+            (Some(profile), None) => profile,
+            (None, Some(stroke)) => Arc::new(FromStart { start, stroke: begin_at_zero(entry, stroke, start)? }),
+            (None, None) => {
+                let cure = "add stroke = … to count from the start, or profile = … with the distance itself";
+                return Err(entry.refuse_all(format!("`{}` has neither `profile` nor `stroke`", entry.name), cure));
+            }
+            (Some(_), Some(_)) => {
+                return Err(entry.refuse_key("stroke", "the distance is given by `profile` already", "keep one of the two"));
+            }
+        };
+        let given = profile.at(0.0)[0];
         if given <= 0.0 {
             return Err(entry.refuse("profile", format!("the distance is {given} at t = 0"), "it must be above 0"));
         }
@@ -64,6 +80,29 @@ impl Element for Distance {
         assembly.builder.row(entry.name, half_square, Arc::new(HalfSquare(profile)));
         assembly.draw(entry, LineKind::Rod, &a, &b);
         Ok(())
+    }
+}
+
+/// Refuses a stroke that does not begin at zero but for rounding, seen against the length of the start.
+fn begin_at_zero(entry: &Entry<'_>, stroke: Arc<dyn Signal>, start: f64) -> Read<Arc<dyn Signal>> {
+    let at_start = stroke.at(0.0)[0];
+    if at_start.abs() <= CONTRADICTION * start {
+        return Ok(stroke);
+    }
+    let cure = "a stroke counts from the start: subtract its value at t = 0, or give the distance itself as profile";
+    Err(entry.refuse("stroke", format!("the stroke is {at_start} m at t = 0"), cure))
+}
+
+/// The length of the start with a stroke added.
+struct FromStart {
+    start: f64,
+    stroke: Arc<dyn Signal>,
+}
+
+impl Signal for FromStart {
+    fn at(&self, t: f64) -> [f64; 3] {
+        let [stroke, rate, bend] = self.stroke.at(t);
+        [self.start + stroke, rate, bend]
     }
 }
 
