@@ -80,6 +80,7 @@ pub const JOINTS: &[Shot] = &[
     floating("perpendicular", 0.3),
     floating("orientation", 0.3),
     joint("distance", 0.3),
+    joint("revolute-spherical", 0.3),
     floating("generic", 0.5),
     joint("rolling", 0.8),
     joint("gear", 0.3),

@@ -26,6 +26,7 @@ from kinds import (
     point_on_plane,
     prismatic,
     revolute,
+    revolute_spherical,
     screw,
     spherical,
     universal,
@@ -200,7 +201,7 @@ def all_cases():
     free = "the joint exerts no force, so the moment is the same about every place"
     kinds = [(1, spherical), (10, revolute), (12, prismatic), (12, cylindrical), (10, universal), (11, planar), (11, fixed)]
     kinds += [(10, screw), (2, constant_velocity), (12, point_on_line), (12, point_on_plane), (12, point_on_curve)]
-    kinds += [(11, distance)]
+    kinds += [(11, distance), (2, revolute_spherical)]
     yield from (two_bodies(seed, function) for seed, function in kinds)
     for seed, function in [(11, parallel), (12, perpendicular), (4, orientation)]:
         yield two_bodies(seed, function, note=free)

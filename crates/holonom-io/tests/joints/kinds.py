@@ -144,6 +144,13 @@ def distance(k, at):
     return kind(at, dict(at=[at, at + rod]), [turn(e, k), turn(f, k + 1), move(rod)] + turns(k + 2), 5, equations)
 
 
+def revolute_spherical(k, at):
+    """The rod turns about the axis, and the body behind it about the rod's end."""
+    rod = 0.2 * V - 0.05 * W
+    equations = lambda d, A, B: [d @ (A @ x), np.linalg.norm(d) - np.linalg.norm(rod)]
+    return kind(at, dict(at=[at, at + rod], axis=U), [turn(U, k), move(rod)] + turns(k + 1), 4, equations, {"angle": {k: 1.0}})
+
+
 def generic(k, at):
     """Free along y; rx locked means y_A·z_B = 0, which leaves turns about y_A and z_B."""
     equations = lambda d, A, B: [d @ (A @ x), d @ (A @ z), (A @ y) @ (B @ z)]

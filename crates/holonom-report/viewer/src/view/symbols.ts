@@ -34,6 +34,7 @@ const MARK: Piece[] = [{ geometry: new OctahedronGeometry(1.3), part: "joint" }]
 export function symbolOf(kind: string): Piece[] {
   switch (kind) {
     case "revolute":
+    case "revolute-spherical":
       return HUB;
     case "spherical":
       return BALL;

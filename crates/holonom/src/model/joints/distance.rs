@@ -38,17 +38,22 @@ impl Joint for Distance {
         Layout { freedom: [Some(5), Some(2)], at: Seat::Two, directions: [0, 0], shares: [&[], &[]], takes_point: false };
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
-        let d = pair.d();
-        let [a, b] = pair.geometry.at;
-        let length = norm(subtract(b, a));
-        if length == 0.0 {
-            let cure = "give two places apart from each other, or use a spherical joint";
-            return Err(pair.entry.refuse("at", "the two places are the same, and a distance of zero has no direction", cure));
-        }
-        let half_square = pair.assembly.builder.square(&d);
-        pair.row(half_square, 0.5 * length * length, false);
-        let (from, to) = (pair.end(Side::A), pair.end(Side::B));
-        pair.assembly.draw(pair.entry, LineKind::Rod, &from, &to);
-        Ok(())
+        rod(pair).map(|_| ())
     }
+}
+
+/// Adds the row of a massless rod between the two places of a joint, and draws it. Hands back its length, m.
+pub(super) fn rod(pair: &mut Pair<'_, '_>) -> Read<f64> {
+    let d = pair.d();
+    let [a, b] = pair.geometry.at;
+    let length = norm(subtract(b, a));
+    if length == 0.0 {
+        let cure = "give two places apart from each other, or use a spherical joint";
+        return Err(pair.entry.refuse("at", "the two places are the same, and a distance of zero has no direction", cure));
+    }
+    let half_square = pair.assembly.builder.square(&d);
+    pair.row(half_square, 0.5 * length * length, false);
+    let (from, to) = (pair.end(Side::A), pair.end(Side::B));
+    pair.assembly.draw(pair.entry, LineKind::Rod, &from, &to);
+    Ok(length)
 }

@@ -148,7 +148,7 @@ fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> 
     if members[0] == members[1] {
         return Err(entry.refuse(spot(1), format!("`{}` joins `{first}` to itself", entry.name), "name two different bodies"));
     }
-    let turns = layout.at != Seat::Two && (layout.shares[0] != [Feature::Point] || layout.directions[0] > 0);
+    let turns = layout.directions[0] > 0 || (layout.at != Seat::Two && layout.shares[0] != [Feature::Point]);
     for (k, member) in members.iter().enumerate() {
         if matches!(member, Member::Point(_)) && turns && !(k == 1 && layout.takes_point) {
             let message = format!("`{}` is a point, and a {} joint needs a body there", names[k], joint.name());

@@ -25,6 +25,7 @@ mod prismatic;
 mod pulley;
 mod rack_and_pinion;
 mod revolute;
+mod revolute_spherical;
 mod rolling;
 mod screw;
 mod spherical;
@@ -52,6 +53,7 @@ pub use prismatic::Prismatic;
 pub use pulley::Pulley;
 pub use rack_and_pinion::RackAndPinion;
 pub use revolute::Revolute;
+pub use revolute_spherical::RevoluteSpherical;
 pub use rolling::Rolling;
 pub use screw::Screw;
 pub use spherical::Spherical;
@@ -174,6 +176,7 @@ pub const JOINTS: &[Kind] = &[
     Kind::of::<Perpendicular>(),
     Kind::of::<Orientation>(),
     Kind::of::<Distance>(),
+    Kind::of::<RevoluteSpherical>(),
     Kind::of::<Generic>(),
     Kind::of::<Rolling>(),
 ];
