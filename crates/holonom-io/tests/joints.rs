@@ -183,6 +183,34 @@ fn the_conserving_scheme_keeps_energy_and_momenta_in_free_flight() {
     }
 }
 
+/// A thin rod has no inertia about itself. Where a joint holds one place of it, nothing may turn it about itself.
+#[test]
+fn thin_rods_do_not_turn_about_themselves_on_joints_that_hold_a_place() {
+    for (kind, keys, freedom) in [
+        ("spherical", "at = [0.5, 0, 0]", 2),
+        ("distance", "at = [[0, 0, 0], [0.5, 0, 0]]", 4),
+        ("revolute-spherical", "at = [[0, 0, 0], [0.5, 0, 0]]\naxis = [0, 1, 1]", 3),
+        ("point-on-line", "at = [0.5, 0, 0]\naxis = [0, 1, 1]", 3),
+        ("point-on-plane", "at = [0.5, 0, 0]\naxis = [0, 0, 1]", 4),
+        ("point-on-curve", "at = [0.5, 0, 0]\ncurve = [[0, 0, -1], [0.5, 0, 0], [0, 0, 1]]", 3),
+    ] {
+        for reactions in [true, false] {
+            let model = model(
+                kind,
+                &format!(
+                    "[body.rod]\nmass = 1\nshape = {{ rod = 1 }}\nposition = [0.5, 0.5, 0]\nvelocity = [0, 0, 1]\n\
+                     orientation = {{ axis = [0, 0, 1], angle_deg = 90 }}\n\
+                     [joint.link]\ntype = \"{kind}\"\nbetween = [\"ground\", \"rod\"]\n{keys}\n[output]\nreactions = {reactions}\n"
+                ),
+            );
+            let rank = analysis::rank(&model.system, model.system.start_position(), 0.0);
+            assert_eq!(rank.size(&model.system).dof, freedom, "{kind}");
+            let (_, summary) = run(&model, "conserving-ggl", None, 0.01, 0.5, false);
+            assert!(summary.energy.max_drift < 1e-11, "{kind}: {:?}", summary.energy);
+        }
+    }
+}
+
 #[test]
 fn joints_run_with_every_named_method() {
     for case in cases() {

@@ -66,8 +66,9 @@ pub fn survey(assembly: &Assembly<'_>, joint: &dyn AnyJoint, geometry: &Geometry
     survey.sites.extend(geometry.at);
     for (side, member) in geometry.members.iter().enumerate() {
         if let Member::Body(k) = *member {
-            let used = if layout.shares[0] == [Feature::Point] && layout.directions[0] == 0 { &[][..] } else { &directions[side][..] };
-            survey.needed.extend(used.iter().map(|&u| (k, u)));
+            if layout.turns(side) {
+                survey.needed.extend(directions[side].map(|u| (k, u)));
+            }
             let arm = subtract(geometry.at[side], assembly.bodies[k].position);
             survey.needed.push((k, arm));
             survey.arms.push((k, norm(arm)));
@@ -148,9 +149,8 @@ fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> 
     if members[0] == members[1] {
         return Err(entry.refuse(spot(1), format!("`{}` joins `{first}` to itself", entry.name), "name two different bodies"));
     }
-    let turns = layout.directions[0] > 0 || (layout.at != Seat::Two && layout.shares[0] != [Feature::Point]);
     for (k, member) in members.iter().enumerate() {
-        if matches!(member, Member::Point(_)) && turns && !(k == 1 && layout.takes_point) {
+        if matches!(member, Member::Point(_)) && layout.turns(k) {
             let message = format!("`{}` is a point, and a {} joint needs a body there", names[k], joint.name());
             return Err(entry.refuse(spot(k), message, "name a [body.NAME], or use a joint that holds points only"));
         }

@@ -94,6 +94,14 @@ pub struct Layout {
     pub takes_point: bool,
 }
 
+impl Layout {
+    /// Whether it holds or follows how a side is turned, and not one place of it alone.
+    pub fn turns(&self, side: usize) -> bool {
+        let holds_places = self.directions[0] == 0 && (self.at == Seat::Two || self.shares[0] == [Feature::Point]);
+        !holds_places && !(side == 1 && self.takes_point)
+    }
+}
+
 /// The keys that joints have in common; `#[derive(Sides)]` implements it for a struct with a field `between` and, where the joint
 /// has them, fields `at` and `axis` or `axes`.
 pub trait Sides {
