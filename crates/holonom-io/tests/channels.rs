@@ -90,6 +90,79 @@ fn springs_are_as_long_as_their_ends_are_apart() {
     );
 }
 
+/// A strut along the vertical of the world, and one along an axis of the body that it hangs on.
+#[test]
+fn springs_along_axes_have_the_length_along_them() {
+    let strut = |axis: &str| {
+        format!(
+            "[body.frame]\nmass = 3\ninertia = [0.3, 0.4, 0.5]\nposition = [0, 0, 0]\nangular_velocity = [0.5, -1, 2]\naxes = {{ up = [0, 0.6, 0.8] }}\n\
+             [point.bob]\nmass = 1\nposition = [0.5, 0.2, 1]\nvelocity = [1, 0, -2]\n\
+             [force.strut]\ntype = \"spring\"\nbetween = [\"frame\", \"bob\"]\nalong = {axis}\nstiffness = 100\nrest_length = 0.3\n\
+             damping = 4\nenergy = \"10*extension^4\"\nforce = \"0.1*rate^3*length/rest + sin(t)\"\n"
+        )
+    };
+    let names = ["t", "strut.length", "strut.length_rate", "strut.force", "strut.power", "frame.qw", "frame.qx", "frame.qy", "frame.qz"];
+    for axis in ["[0, 0, 3]", "\"frame.up\""] {
+        let recording = run(&model(&strut(axis)), 0.002, 0.5).1;
+        let [t, length, rate, force, power, qw, qx, qy, qz] = columns(&recording, names);
+        let [frame, bob, frame_v, bob_v, spin] = ["frame.", "bob.", "frame.v", "bob.v", "frame.w"]
+            .map(|prefix| ["x", "y", "z"].map(|c| recording.column(&format!("{prefix}{c}")).unwrap()));
+        for k in 0..recording.rows() {
+            let at = |column: [&[f64]; 3]| nalgebra::Vector3::from(column.map(|column| column[k]));
+            let turn = nalgebra::UnitQuaternion::new_normalize(nalgebra::Quaternion::new(qw[k], qx[k], qy[k], qz[k]));
+            let (e, turning) = match axis {
+                "[0, 0, 3]" => (nalgebra::Vector3::z(), nalgebra::Vector3::zeros()),
+                _ => (turn * nalgebra::Vector3::new(0.0, 0.6, 0.8), at(spin)),
+            };
+            let d = at(bob) - at(frame);
+            let (along, speed) = (d.dot(&e), (at(bob_v) - at(frame_v)).dot(&e) + d.dot(&turning.cross(&e)));
+            let extension = along - 0.3;
+            let tension = 100.0 * extension + 4.0 * speed + 40.0 * extension.powi(3) + 0.1 * speed.powi(3) * along / 0.3 + t[k].sin();
+            close("length", length[k], along);
+            close("rate", rate[k], speed);
+            close("force", force[k], tension);
+            close("power", power[k], -tension * speed);
+        }
+    }
+}
+
+/// A spring and damper along an axis of a body turns that body, too: nothing acts from outside, and both momenta stay.
+#[test]
+fn springs_along_axes_of_bodies_keep_energy_and_momenta() {
+    for plane in [true, false] {
+        let [head, at, other, spin, up, gravity] = match plane {
+            true => ["plane = \"xz\"\n", "[0, 0]", "[0.5, 1]", "2", "[0.6, 0.8]", "[0, 0]"],
+            false => ["", "[0, 0, 0]", "[0.5, 0.2, 1]", "[0.5, -1, 2]", "[0, 0.6, 0.8]", "[0, 0, 0]"],
+        };
+        let text = format!(
+            "{head}gravity = {gravity}\n[body.frame]\nmass = 3\nshape = {{ box = [1, 0.5, 0.3] }}\nposition = {at}\nangular_velocity = {spin}\naxes = {{ up = {up} }}\n\
+             [body.hub]\nmass = 1\nshape = {{ box = [0.2, 0.2, 0.1] }}\nposition = {other}\n\
+             [force.strut]\ntype = \"spring\"\nbetween = [\"frame\", \"hub\"]\nalong = \"frame.up\"\nstiffness = 100\ndamping = 2\nenergy = \"10*extension^4\"\n"
+        );
+        let method = Method::resolve(&Choice::default()).unwrap();
+        let mut simulation = Simulation::new(model(&text).system.clone(), method, 0.01).unwrap();
+        assert_eq!(simulation.run(2.0, &mut |_: &Simulation| holonom::simulation::Verdict::GoOn), Status::Completed);
+        let (energy, momentum) = (simulation.audit().energy_summary(), simulation.audit().momentum_summary());
+        assert!(energy.max_drift < 1e-12 && momentum.linear_drift < 1e-12 && momentum.angular_drift < 1e-12, "{energy:?} {momentum:?}");
+    }
+}
+
+/// `rest` and `extension` follow the key or the start; a parameter of that name comes first.
+#[test]
+fn laws_know_the_length_without_tension() {
+    let spring = |head: &str, keys: &str| {
+        format!(
+            "{head}[point.bob]\nmass = 1\nposition = [2, 0, 0]\n[force.s]\ntype = \"spring\"\nbetween = [\"ground\", \"bob\"]\n{keys}\n"
+        )
+    };
+    let force = |text: String| run(&model(&text), 0.01, 0.01).1.column("s.force").unwrap()[0];
+    assert_eq!(force(spring("", "force = \"3*extension + rest\"")), 2.0);
+    assert_eq!(force(spring("", "rest_length = 1.5\nforce = \"3*extension + rest\"")), 3.0);
+    assert_eq!(force(spring("", "rest_length = 1.5\nenergy = \"3*extension^2\"")), 3.0);
+    assert_eq!(force(spring("parameters = { rest = 7 }\n", "rest_length = 1.5\nforce = \"3*extension + rest\"")), 8.5);
+    assert_eq!(force(spring("parameters = { rest = 7, extension = 2 }\n", "force = \"extension + rest*t\"")), 2.0);
+}
+
 #[test]
 fn ropes_have_the_length_of_all_their_stretches() {
     each(

@@ -209,6 +209,27 @@ fn every_kind_has_the_tangent_of_its_residual() {
     assert!(kinds >= 9);
 }
 
+/// Along an axis of the world and along one of a body that is neither of the two ends, by numbers and by formulas.
+#[test]
+fn springs_along_axes_have_the_tangent_of_their_residual() {
+    let body = |name: &str, at: &str| {
+        format!(
+            "[body.{name}]\nmass = 1\ninertia = [0.1, 0.2, 0.25]\nposition = {at}\nangular_velocity = [1, 0.5, 2]\n\
+             points = {{ lug = [0.3, 0.1, 0.2] }}\naxes = {{ up = [0.2, 0.1, 1] }}\n"
+        )
+    };
+    let bodies = [body("A", "[0, 0, 0]"), body("B", "[0.5, 0.2, 1]"), body("C", "[1, 1, 0]")].concat();
+    for axis in ["[1, 2, -1]", "\"A.up\"", "\"C.up\""] {
+        let text = format!(
+            "{bodies}[force.strut]\ntype = \"spring\"\nbetween = [\"A.lug\", \"B.lug\"]\nalong = {axis}\nstiffness = 20\n\
+             rest_length = -0.2\ndamping = 3\nenergy = \"extension^4 + sin(length)\"\nforce = \"rate^3*length + 2*extension*rest - cos(t)\"\n"
+        );
+        check(axis, &text);
+        check_coupled(axis, &text);
+        check_both_levels(axis, &text);
+    }
+}
+
 #[test]
 fn every_example_has_the_tangent_of_its_residual() {
     let folder = format!("{}/../../examples", env!("CARGO_MANIFEST_DIR"));

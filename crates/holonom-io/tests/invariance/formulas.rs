@@ -15,7 +15,7 @@ impl Names {
     pub fn new(change: &Change, letters: &str, coordinate: Option<Coordinate>, entry: &Table, coordinates: &Coordinates) -> Self {
         let mut names = Self(HashMap::new());
         names.scaled("t", 1.0 / change.time);
-        names.scaled("length", 1.0 / change.length);
+        ["length", "rest", "extension"].into_iter().for_each(|name| names.scaled(name, 1.0 / change.length));
         names.scaled("rate", change.time / change.length);
         coordinate.into_iter().for_each(|coordinate| names.coordinate("q", coordinate, change));
         if let Some(Value::Table(others)) = entry.get("coordinates") {

@@ -23,13 +23,8 @@ pub struct RecordedForce {
 pub enum Shows {
     /// Nothing.
     Power,
-    /// Length, its rate and the tension of laws of half the squares of lengths, which add up to the length.
-    Tension {
-        /// How often each of them counts.
-        factors: Vec<f64>,
-        /// What is added to them, m.
-        fixed: f64,
-    },
+    /// Length, its rate and the tension.
+    Tension(Lengths),
     /// What its laws exert along some coordinates.
     Along(Vec<Along>),
     /// What its load exerts.
@@ -39,6 +34,20 @@ pub enum Shows {
         /// Finds it.
         exerts: Arc<dyn Exerts>,
     },
+}
+
+/// How the length follows from the arguments of the laws.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Lengths {
+    /// They are half the squares of lengths that add up to it.
+    Distances {
+        /// How often each of them counts.
+        factors: Vec<f64>,
+        /// What is added to them, m.
+        fixed: f64,
+    },
+    /// It is the argument itself, along an axis.
+    Along,
 }
 
 /// A coordinate that laws act along.
@@ -109,11 +118,18 @@ impl RecordedForce {
         let mut headings = Vec::new();
         match &self.shows {
             Shows::Power => (),
-            Shows::Tension { factors, .. } => headings.extend([
-                of("length", "m", if factors.len() == 1 { "distance of its ends" } else { "length from end to end" }.into()),
-                of("length_rate", "m/s", "rate of the length".into()),
-                of("force", "N", "tension: above zero it pulls its ends together".into()),
-            ]),
+            Shows::Tension(lengths) => {
+                let what = match lengths {
+                    Lengths::Distances { factors, .. } if factors.len() == 1 => "distance of its ends",
+                    Lengths::Distances { .. } => "length from end to end",
+                    Lengths::Along => "way from its first to its second end along its axis",
+                };
+                headings.extend([
+                    of("length", "m", what.into()),
+                    of("length_rate", "m/s", "rate of the length".into()),
+                    of("force", "N", "tension: above zero it pulls its ends together".into()),
+                ]);
+            }
             Shows::Along(coordinates) => {
                 let shown = |along: &Along| along.value.clone().map(|[suffix, words]| (suffix, words, Units::of(along.is_angle)));
                 headings.extend(coordinates.iter().filter_map(shown).map(|(suffix, words, units)| of(&suffix, units.value, words)));
@@ -142,16 +158,23 @@ impl RecordedForce {
         let responses: Vec<_> = laws.iter().map(|law| at.response(law)).collect();
         match &self.shows {
             Shows::Power => (),
-            Shows::Tension { factors, fixed } => {
+            Shows::Tension(lengths) => {
                 let Some(law) = laws.first() else { return };
-                let mut lengths = law.arguments.iter().map(|&half_square| length(at.value(half_square), at.rate(half_square)));
-                let (first, rate) = lengths.next().expect("a law has an argument");
-                let tension: f64 = responses.iter().map(|(_, response)| response.force[0] * first / factors[0]).sum();
-                let start = [fixed + factors[0] * first, factors[0] * rate];
-                let [length, rate] = lengths
-                    .zip(&factors[1..])
-                    .fold(start, |[length, speed], ((of_one, rate), factor)| [length + factor * of_one, speed + factor * rate]);
-                row.extend([length, rate, tension]);
+                let of = |quantity: &Quantity| [at.value(*quantity), at.rate(*quantity)];
+                let forces = responses.iter().map(|(_, response)| response.force[0]);
+                match lengths {
+                    Lengths::Distances { factors, fixed } => {
+                        let each: Vec<(f64, f64)> = law.arguments.iter().map(of).map(|[value, rate]| length(value, rate)).collect();
+                        let tension: f64 = forces.map(|force| force * each[0].0 / factors[0]).sum();
+                        let sum =
+                            |of: &dyn Fn(&(f64, f64)) -> f64| each.iter().zip(factors).map(|(one, factor)| factor * of(one)).sum::<f64>();
+                        row.extend([fixed + sum(&|one| one.0), sum(&|one| one.1), tension]);
+                    }
+                    Lengths::Along => {
+                        let [length, rate] = of(&law.arguments[0]);
+                        row.extend([length, rate, forces.sum()]);
+                    }
+                }
             }
             Shows::Along(coordinates) => {
                 let shown = coordinates.iter().filter(|along| along.value.is_some());

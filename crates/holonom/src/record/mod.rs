@@ -9,7 +9,7 @@ mod recorder;
 mod scene;
 
 pub use channels::{Channels, RecordedBody, RecordedEffort, RecordedJoint, RecordedPoint};
-pub use force::{Along, Exerts, RecordedForce, Shows};
+pub use force::{Along, Exerts, Lengths, RecordedForce, Shows};
 pub use heading::Heading;
 pub use measure::{Formula, RecordedInput, RecordedMeasure, Running};
 pub(crate) use measure::{MeasureReads, Series};

@@ -18,7 +18,10 @@ const QUOTIENT: f64 = 1e-3;
 const GAUSS: [(f64, f64); 3] = [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
 /// Names of the variables of a force law.
-pub(super) const FORCE_VARIABLES: &[&str] = &["length", "rate", "t"];
+pub(super) const FORCE_VARIABLES: &[&str] = &["length", "rate", "t", "rest", "extension"];
+
+/// Names of the variables of an energy.
+pub(super) const ENERGY_VARIABLES: &[&str] = &["length", "rest", "extension"];
 
 /// r and dr/dπ.
 pub(super) fn length(half_square: f64) -> (f64, f64) {
@@ -101,18 +104,45 @@ impl Law for Damper {
     }
 }
 
-/// V(r) as an expression.
-pub(super) struct Energy(pub Program);
+/// V(r, L₀, r − L₀) as an expression.
+pub(super) struct Energy {
+    pub formula: Program,
+    /// L₀, m
+    pub rest: f64,
+}
 
 impl Energy {
-    fn v(&self, r: f64) -> Dual2_64 {
-        self.0.evaluate(&[Dual2_64::new(r, 1.0, 0.0)])
+    /// V
+    pub fn value(&self, r: f64) -> f64 {
+        self.formula.evaluate(&[r, self.rest, r - self.rest])
+    }
+
+    /// V with its derivatives.
+    pub fn v(&self, r: f64) -> Dual2_64 {
+        let r = Dual2_64::new(r, 1.0, 0.0);
+        self.formula.evaluate(&[r, self.rest.into(), r - self.rest])
+    }
+
+    /// Mean of V′ over the way from `start` to `end`, `rise` long, and its derivative by the end. Lengths are of the size `size`.
+    pub fn average(&self, [start, end]: [f64; 2], rise: f64, size: f64) -> [f64; 2] {
+        if rise.abs() > QUOTIENT * size {
+            let (from, to) = (self.value(start), self.v(end));
+            let average = (to.re - from) / rise;
+            return [average, (to.v1 - average) / rise];
+        }
+        let [mut average, mut by_end] = [0.0; 2];
+        for (s, weight) in GAUSS {
+            let v = self.v(start + s * rise);
+            average += weight * v.v1;
+            by_end += weight * s * v.v2;
+        }
+        [average, by_end]
     }
 }
 
 impl Law for Energy {
     fn energy(&self, value: &[f64]) -> f64 {
-        self.0.evaluate(&[length(value[0]).0])
+        self.value(length(value[0]).0)
     }
 
     fn conservative(&self) -> bool {
@@ -128,33 +158,25 @@ impl Law for Energy {
 
     fn between(&self, reach: Reach<'_>, out: &mut Response) {
         let Lengths { start, end, mean, rise, slope } = lengths(reach.from[0], reach.to[0]);
-        // Mean of V′ over the way, and its derivative by r₁.
-        let (mut average, mut by_end) = (0.0, 0.0);
-        if rise.abs() > QUOTIENT * mean {
-            let (from, to) = (self.0.evaluate(&[start]), self.v(end));
-            average = (to.re - from) / rise;
-            by_end = (to.v1 - average) / rise;
-        } else {
-            for (s, weight) in GAUSS {
-                let v = self.v(start + s * rise);
-                average += weight * v.v1;
-                by_end += weight * s * v.v2;
-            }
-        }
+        let [average, by_end] = self.average([start, end], rise, mean);
         out.force[0] = average / mean;
         out.by_value[0][0] = (by_end / mean - 0.5 * average / (mean * mean)) * slope;
     }
 }
 
-/// Tension F(r, ṙ, t) as an expression, booked as work.
-pub(super) struct Force(pub Program);
+/// Tension F(r, ṙ, t, L₀, r − L₀) as an expression, booked as work.
+pub(super) struct Force {
+    pub formula: Program,
+    /// L₀, m
+    pub rest: f64,
+}
 
 impl Force {
     /// F with its derivatives by r and ṙ.
-    fn tension(&self, r: f64, rate: f64, t: f64) -> (f64, f64, f64) {
-        let [r0, v0, t] = [r, rate, t].map(Dual64::from);
-        let by_length = self.0.evaluate(&[Dual64::new(r, 1.0), v0, t]);
-        let by_rate = self.0.evaluate(&[r0, Dual64::new(rate, 1.0), t]);
+    pub fn tension(&self, r: f64, rate: f64, t: f64) -> (f64, f64, f64) {
+        let at = |r: Dual64, rate: Dual64| self.formula.evaluate(&[r, rate, t.into(), self.rest.into(), r - self.rest]);
+        let by_length = at(Dual64::new(r, 1.0), rate.into());
+        let by_rate = at(r.into(), Dual64::new(rate, 1.0));
         (by_length.re, by_length.eps, by_rate.eps)
     }
 }
@@ -188,12 +210,16 @@ mod tests {
 
     fn laws() -> Vec<(&'static str, Box<dyn Law>)> {
         let parse = |text, variables: &[&str]| Program::parse(text, variables, &Scope::default()).unwrap();
+        let energy = |text| Energy { formula: parse(text, ENERGY_VARIABLES), rest: 0.7 };
+        let force = |text| Force { formula: parse(text, FORCE_VARIABLES), rest: 0.7 };
         vec![
             ("linear spring", Box::new(LinearSpring { stiffness: 30.0, rest_length: 0.7 })),
             ("spring of no rest length", Box::new(LinearSpring { stiffness: 30.0, rest_length: 0.0 })),
             ("damper", Box::new(Damper { damping: 2.0 })),
-            ("energy", Box::new(Energy(parse("3*(length - 0.4)^4 + 1/length", &["length"])))),
-            ("force", Box::new(Force(parse("4*(length - 1)^3 + rate^3*length + sin(t)", FORCE_VARIABLES)))),
+            ("energy", Box::new(energy("3*(length - 0.4)^4 + 1/length"))),
+            ("force", Box::new(force("4*(length - 1)^3 + rate^3*length + sin(t)"))),
+            ("energy of the extension", Box::new(energy("30*extension^4/rest"))),
+            ("force of the extension", Box::new(force("4*extension^3 + rate*extension*rest"))),
         ]
     }
 

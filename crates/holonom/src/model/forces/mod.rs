@@ -1,5 +1,6 @@
 //! `[force.NAME]`: springs, dampers and loads. A kind is one file here and its line in the table.
 
+mod along_laws;
 mod body_load;
 mod bushing;
 mod constant;

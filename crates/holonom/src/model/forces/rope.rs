@@ -9,7 +9,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number, Place};
 use crate::model::geometry::norm;
 use crate::model::key::Shape;
-use crate::record::{LineKind, Shows};
+use crate::record::{Lengths, LineKind, Shows};
 use crate::system::{InvariantId, MAX_ARGUMENTS, Place as NodePlace, Term};
 
 /// an elastic rope between two points, also over small sheaves: it pulls when it is longer than its free length, and never pushes
@@ -74,7 +74,7 @@ impl Element for Rope {
         if let Some(damping) = damping.filter(|&damping| damping > 0.0) {
             assembly.builder.law(entry.name, &lengths, Arc::new(Taut { strands, pull: Damping { damping, stiffness } }));
         }
-        assembly.show(Shows::Tension { factors, fixed: falls.fixed });
+        assembly.show(Shows::Tension(Lengths::Distances { factors, fixed: falls.fixed }));
         ends.windows(2).for_each(|pair| assembly.draw(entry, LineKind::Rope, &pair[0], &pair[1]));
         Ok(())
     }
