@@ -98,8 +98,9 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
     Ok(Finished { method: name, recording, summary: value, completed: status == Status::Completed, kept })
 }
 
-/// Says on standard error what was put right before the start.
+/// Says on standard error what looks like a slip, and what was put right before the start.
 fn announce_corrections(model: &Model, simulation: &Simulation) {
+    model.notes.iter().for_each(|note| eprintln!("note: {note}"));
     let start = simulation.start();
     if start.moved > 1e-12 {
         eprintln!("note: positions were moved by up to {:.2e} m onto their constraints", start.moved);

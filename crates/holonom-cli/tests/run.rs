@@ -159,3 +159,32 @@ fn a_checkpoint_that_does_not_fit_is_refused() {
         assert!(message.contains(told), "{words}\n{message}");
     }
 }
+
+#[test]
+fn what_looks_like_a_slip_is_noted_by_run_and_check() {
+    let folder = folder();
+    let model = "[body.door]\nmass = 1\ninertia = [0, 0, 1]\ncheck_inertia = false\nposition = [0.5, 0, 0]\n\
+                 [joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"door\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n\
+                 [drive.motor]\ntype = \"angle\"\njoint = \"hinge\"\nprofile = \"max(t - 1, 0)\"\n[simulation]\nend = 0.9\nstep = 0.01\n";
+    fs::write(folder.path().join("door.toml"), model).unwrap();
+    let notes = |words: &str| {
+        let output = holonom(&folder, words);
+        assert!(output.status.success(), "{words}");
+        [text(&output.stdout), text(&output.stderr)].concat()
+    };
+    let inertia = "note: body.door.inertia: the moments 0, 0, 1 cannot belong to a body: 1 exceeds 0 + 0 by 1";
+    let blow = "note: drive.motor.profile: its rate jumps by 1 per s at 1 s";
+    let step = "note: simulation.step: the step of 5 s is longer than the run of 0.9 s";
+    for (words, expected) in [
+        ("run door.toml --no-report", [true, false, false]),
+        ("run door.toml --no-report --end 1.2", [true, true, false]),
+        ("run door.toml --no-report --step 5", [true, false, true]),
+        ("run door.toml --no-report --quiet", [false, false, false]),
+        ("check door.toml --set simulation.end=1.2", [true, true, false]),
+        ("check door.toml --json --set simulation.step=5", [false, false, false]),
+    ] {
+        let said = notes(words);
+        assert_eq!([inertia, blow, step].map(|note| said.contains(note)), expected, "{words}\n{said}");
+    }
+    assert_eq!(json(&folder, "check door.toml --json --set simulation.step=5")["notes"].as_array().unwrap().len(), 2);
+}

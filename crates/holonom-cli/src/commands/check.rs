@@ -167,9 +167,9 @@ impl Held {
 /// Radius of gyration over the distance of what a body holds, beyond which units are probably mixed up.
 const PROBABLE: f64 = 30.0;
 
-/// Bodies whose inertia does not go with their size.
+/// What was noted while the model was read, and bodies whose inertia does not go with their size.
 fn notes(model: &Model) -> Vec<String> {
-    let mut notes = Vec::new();
+    let mut notes = model.notes.clone();
     for (body, drawn) in model.bodies.iter().zip(&model.scene.bodies) {
         let reach = drawn.places.iter().map(|place| place.iter().map(|c| c * c).sum::<f64>().sqrt()).fold(0.0, f64::max);
         let gyration = (0.5 * body.inertia.trace() / body.mass).sqrt();

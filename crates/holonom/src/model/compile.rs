@@ -16,6 +16,7 @@ use super::expression::{Mistake, Scope, TimeProgram, Value as Known};
 use super::fault::{Faults, Read, Sink};
 use super::geometry::{self, Vec3, unit};
 use super::joints::{self, Geometry, Survey};
+use super::jumps;
 use super::repeat::{self, Repetition};
 use super::settings::{Output, Settings};
 use super::signals::{Formula, Signals};
@@ -57,6 +58,11 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
     }
     let (settings, output) = compiler.settings(description, &assembly);
     if sink.count() == 0 {
+        for (path, motion) in sink.motions.take() {
+            if let Some(message) = settings.end.and_then(|end| jumps::jump(motion, end)) {
+                sink.note(&path, || message);
+            }
+        }
         for program in sink.switches.take() {
             assembly.builder.switch(Arc::new(TimeProgram(program)));
         }

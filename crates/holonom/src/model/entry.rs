@@ -67,6 +67,11 @@ impl<'a> Entry<'a> {
         self.sink.report(|| Fault::new(self.path, self.name, self.told(message.into()), cure))
     }
 
+    /// Records what looks like a slip and is taken all the same; of an entry that is repeated for the first alone.
+    pub fn note<'s>(&self, spot: impl Into<Spot<'s>>, message: impl Into<String>) {
+        self.sink.note(&self.path_of(spot.into()), || self.told(message.into()));
+    }
+
     /// Whether something in it was wrong.
     pub fn has_fault(&self) -> bool {
         self.sink.has_fault_in(self.path)

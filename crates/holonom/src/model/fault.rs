@@ -74,6 +74,10 @@ pub struct Sink {
     dropped: Cell<usize>,
     /// Functions of time at whose zeros something of the model changes abruptly, found while formulas are read.
     pub switches: RefCell<Vec<Program>>,
+    /// Motions that are told by formulas of time which may change abruptly, with their paths; of a repeated entry the first.
+    pub motions: RefCell<Vec<(String, Program)>>,
+    /// What looks like a slip and is no fault, with its path.
+    notes: RefCell<Vec<(String, String)>>,
 }
 
 impl Sink {
@@ -86,6 +90,27 @@ impl Sink {
             self.dropped.set(self.dropped.get() + 1);
         }
         Refused
+    }
+
+    /// Records a motion that may change abruptly.
+    pub fn motion(&self, path: String, formula: &Program) {
+        let mut motions = self.motions.borrow_mut();
+        if motions.last().is_none_or(|(known, _)| *known != path) {
+            motions.push((path, formula.clone()));
+        }
+    }
+
+    /// Records what looks like a slip and is no fault, once for each path.
+    pub fn note(&self, path: &str, message: impl FnOnce() -> String) {
+        let mut notes = self.notes.borrow_mut();
+        if notes.len() < MOST && notes.iter().all(|(known, _)| known != path) {
+            notes.push((path.to_string(), message()));
+        }
+    }
+
+    /// All notes, each with its path.
+    pub fn notes(&self) -> Vec<String> {
+        self.notes.borrow().iter().map(|(path, message)| format!("{path}: {message}")).collect()
     }
 
     /// Whether further faults are only counted.

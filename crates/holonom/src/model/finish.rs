@@ -9,6 +9,7 @@ use crate::system::Place;
 
 /// Puts together what has been read without a fault.
 pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, output: Output, bars: Vec<BarInfo>) -> Model {
+    let notes = assembly.sink.notes();
     let Assembly {
         mut builder,
         axes,
@@ -71,6 +72,7 @@ pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, 
         },
         bodies,
         joints,
+        notes,
         frames,
     }
 }

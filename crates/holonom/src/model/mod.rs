@@ -25,6 +25,7 @@ mod fields;
 mod finish;
 mod geometry;
 mod input;
+mod jumps;
 mod key;
 mod measure;
 mod parameters;
@@ -122,6 +123,8 @@ pub struct Model {
     pub joints: Vec<joints::JointInfo>,
     /// What is recorded of it.
     pub channels: Channels,
+    /// What looks like a slip and was taken all the same, each with its place in the description.
+    pub notes: Vec<String>,
     frames: Vec<Frame>,
 }
 

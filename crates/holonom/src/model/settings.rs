@@ -1,6 +1,7 @@
 //! `[simulation]` and `[output]`: how a model is run and what is recorded.
 
 use super::assembly::Assembly;
+use super::bodies::short;
 use super::entry::{Entry, Spot, all};
 use super::fault::{Read, suggest};
 use super::fields::{Keys, List, Map, Number};
@@ -154,6 +155,11 @@ impl SimulationKeys {
             |key, number: &Option<Number>| entry.optional(key, number, |number, entry, key| number.whole(entry, key, 1)).unwrap_or(None);
         let small = |number: Option<u32>| number.map(|number| number.min(u8::MAX.into()) as u8);
         let (end, step) = (positive("end", &self.end), positive("step", &self.step));
+        if let (Some(end), Some(step)) = (end, step)
+            && step > end
+        {
+            entry.note("step", format!("the step of {} s is longer than the run of {} s", short(step), short(end)));
+        }
         let choice = Choice {
             method: self.method.clone(),
             formulation: self.formulation.clone(),

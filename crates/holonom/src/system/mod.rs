@@ -44,6 +44,7 @@ pub(crate) use reading::{Look, Slopes};
 pub use reading::{Reading, Sense};
 pub(crate) use slots::RowSlot;
 pub(crate) use slots::{Slots, add_along_rows, along, scatter, scatter_rows};
+pub(crate) use switches::zeros;
 pub(crate) use terms::{place_of, rate_of};
 
 use std::borrow::Cow;

@@ -15,7 +15,8 @@ impl System {
     }
 }
 
-fn zeros(switch: &dyn Signal, end: f64) -> Vec<f64> {
+/// Times of a run at which a function of time changes its sign, each a rounding before.
+pub(crate) fn zeros(switch: &dyn Signal, end: f64) -> Vec<f64> {
     let is_over = |t: f64| switch.at(t)[0] > 0.0;
     let at = |k: usize| end * k as f64 / LOOKS as f64;
     let changes = (0..LOOKS).filter(|&k| is_over(at(k)) != is_over(at(k + 1)));

@@ -8,8 +8,7 @@ const TOLERANCE: f64 = 1e-9;
 /// Most sweeps over the three entries beside the diagonal; some six are needed.
 const SWEEPS: usize = 32;
 
-/// Whether a body can have this inertia tensor, kg m²: it is symmetric, no principal moment is negative, and none exceeds
-/// the sum of the others.
+/// Whether this inertia tensor, kg m², is symmetric and has no negative principal moment.
 ///
 /// # Errors
 /// In words, what is wrong with it.
@@ -24,29 +23,40 @@ pub fn check(inertia: [[f64; 3]; 3]) -> Result<(), String> {
             return Err(format!("the inertia is not symmetric: {first} = {}, but {second} = {}", inertia[i][j], inertia[j][i]));
         }
     }
-    check_moments(&inertia, allowed)
+    let (moments, which) = moments(inertia);
+    match moments.iter().find(|&&moment| moment < -allowed) {
+        Some(&moment) => Err(no_body(moments, which, &format!("{} is negative", short(moment)))),
+        None => Ok(()),
+    }
 }
 
-/// Whether principal moments are those of a body, in the order of the diagonal where it has them.
-fn check_moments(inertia: &[[f64; 3]; 3], allowed: f64) -> Result<(), String> {
-    let diagonal = inertia[0][1] == 0.0 && inertia[0][2] == 0.0 && inertia[1][2] == 0.0;
-    let (moments, which) = match diagonal {
-        true => ([inertia[0][0], inertia[1][1], inertia[2][2]], "moments"),
-        false => (principal(*inertia).0, "principal moments"),
-    };
-    let shown = moments.map(short);
-    let refused = |why: String| Err(format!("the {which} {} cannot belong to a body: {why}", shown.join(", ")));
-    if let Some(k) = (0..3).find(|&k| moments[k] < -allowed) {
-        return refused(format!("{} is negative", shown[k]));
-    }
+/// Whether no principal moment, kg m², exceeds the sum of the others, as none of a body does.
+///
+/// # Errors
+/// In words, which one does.
+pub fn check_sums(inertia: [[f64; 3]; 3]) -> Result<(), String> {
+    let (moments, which) = moments(inertia);
     for (k, i, j) in [(0, 1, 2), (1, 0, 2), (2, 0, 1)] {
         // Differences, as a sum could overflow.
         let excess = moments[k] - moments[i] - moments[j];
-        if excess > allowed {
-            return refused(format!("{} exceeds {} + {} by {}", shown[k], shown[i], shown[j], short(excess)));
+        if excess > TOLERANCE * largest(inertia) {
+            let [k, i, j] = [k, i, j].map(|k| short(moments[k]));
+            return Err(no_body(moments, which, &format!("{k} exceeds {i} + {j} by {}", short(excess))));
         }
     }
     Ok(())
+}
+
+fn no_body(moments: [f64; 3], which: &str, why: &str) -> String {
+    format!("the {which} {} cannot belong to a body: {why}", moments.map(short).join(", "))
+}
+
+/// Principal moments, in the order of the diagonal where that has them, and what they are called then.
+fn moments(inertia: [[f64; 3]; 3]) -> ([f64; 3], &'static str) {
+    match inertia[0][1] == 0.0 && inertia[0][2] == 0.0 && inertia[1][2] == 0.0 {
+        true => ([inertia[0][0], inertia[1][1], inertia[2][2]], "moments"),
+        false => (principal(inertia).0, "principal moments"),
+    }
 }
 
 /// Principal moments, kg m², in ascending order, and the unit vectors of their axes (3 × 3: axis, component), right-handed.
@@ -123,7 +133,7 @@ fn largest(inertia: [[f64; 3]; 3]) -> f64 {
 }
 
 /// A number for people, with six digits.
-pub(super) fn short(number: f64) -> String {
+pub(in crate::model) fn short(number: f64) -> String {
     let rounded = format!("{number:.5e}").parse().unwrap_or(number);
     if rounded == 0.0 || (1e-4..1e7).contains(&f64::abs(rounded)) { format!("{}", rounded + 0.0) } else { format!("{rounded:e}") }
 }
@@ -201,6 +211,7 @@ mod tests {
 
     #[test]
     fn sound_tensors_pass() {
+        let check = |inertia| check(inertia).and_then(|()| check_sums(inertia));
         for moments in [[1.0, 2.0, 3.0], [0.0, 1.0, 1.0], [0.0; 3], [1.0, 1.0, 2.0 + 1e-10], [1e300, 1e300, 1e300]] {
             assert_eq!(check(diagonal(moments)), Ok(()));
             assert_eq!(check(turned(moments, [1.0, 2.0, 3.0], 0.7).0), Ok(()));
@@ -209,7 +220,7 @@ mod tests {
 
     #[test]
     fn what_no_body_has_is_told() {
-        let told = |inertia| check(inertia).unwrap_err();
+        let told = |inertia| check(inertia).and_then(|()| check_sums(inertia)).unwrap_err();
         assert_eq!(told(diagonal([1.0, 3.5, 2.0])), "the moments 1, 3.5, 2 cannot belong to a body: 3.5 exceeds 1 + 2 by 0.5");
         assert_eq!(told(diagonal([1.0, -0.5, 2.0])), "the moments 1, -0.5, 2 cannot belong to a body: -0.5 is negative");
         assert_eq!(

@@ -77,8 +77,9 @@ impl<T: Into<Number>> From<[[T; 3]; 3]> for Inertia {
 }
 
 impl Inertia {
-    /// The inertia tensor, which must be one that a body can have.
-    pub(super) fn tensor(&self, entry: &Entry<'_>, key: &str, dim: usize) -> Read<Matrix3<f64>> {
+    /// The inertia tensor, which must be one that a body can have: with `is_checked` false a moment may exceed the sum of the others, which
+    /// is noted.
+    pub(super) fn tensor(&self, entry: &Entry<'_>, key: &str, dim: usize, is_checked: bool) -> Read<Matrix3<f64>> {
         if dim == 2 {
             let Self::Polar(moment) = self else {
                 let cure = format!("write {key} = …, about the normal of the plane");
@@ -107,10 +108,15 @@ impl Inertia {
             let symmetric = (0..3).all(|i| tensor[i][(i + 1) % 3] == tensor[(i + 1) % 3][i]);
             entry.refuse(key, why, if symmetric { CURE } else { "a tensor of inertia is symmetric: write the same number at both places" })
         })?;
+        match inertia::check_sums(tensor) {
+            Err(why) if is_checked => return Err(entry.refuse(key, why, CURE)),
+            Err(why) => entry.note(key, why),
+            Ok(()) => (),
+        }
         Ok(Matrix3::from_fn(|i, j| tensor[i][j]))
     }
 }
 
 const SPELLINGS: &str = "[Ixx, Iyy, Izz], or with the products behind them [.., Ixy, Ixz, Iyz]";
 
-const CURE: &str = "check the units and that it is about the centre of mass; each principal moment is at most the sum of the other two";
+const CURE: &str = "check the units and that it is about the centre of mass; each principal moment is at most the sum of the other two, unless check_inertia = false";

@@ -14,6 +14,7 @@ mod shape_key;
 
 use std::sync::Arc;
 
+pub(super) use inertia::short;
 pub use inertia_key::Inertia;
 pub use info::BodyInfo;
 pub use mesh::Mesh;

@@ -263,11 +263,12 @@ impl Group<'_> {
         (moments.map(|moment| half - moment), axes)
     }
 
-    /// The principal axes along which the body extends: three, two of a plate, one of a rod.
+    /// The principal axes along which the body extends: three, two of a plate, one of a rod. Second moments below zero are those of an
+    /// inertia that was not to be checked.
     fn solid(&self, dim: usize) -> Vec<Vec3> {
         let (second, axes) = self.principal();
         let largest = second.iter().copied().fold(0.0, f64::max);
-        let solid: Vec<Vec3> = (0..3).filter(|&k| second[k] > THIN * largest).map(|k| axes[k]).collect();
+        let solid: Vec<Vec3> = (0..3).filter(|&k| second[k].abs() > THIN * largest).map(|k| axes[k]).collect();
         if dim == 2 || solid.is_empty() { axes.to_vec() } else { solid }
     }
 

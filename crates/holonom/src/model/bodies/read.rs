@@ -23,6 +23,9 @@ pub struct Body {
     /// [.., Ixy, Ixz, Iyz] with Ixy = −∫ x y dm, or the tensor (3 × 3); one number in a planar model
     #[key(unit = "kg·m²", default = "that of the shape")]
     pub inertia: Option<Inertia>,
+    /// false lets a principal moment exceed the sum of the others, which is noted
+    #[key(default = "true")]
+    pub check_inertia: Option<bool>,
     /// a shape of uniform density, for mass, inertia and picture
     #[key(unit = "m", default = "none: mass and inertia are needed")]
     pub shape: Option<Solid>,
@@ -55,7 +58,8 @@ impl Body {
         let vector = |list: &List<Number>, entry: &Entry<'_>, key: &str| list.vector(entry, key, dim);
         let mass = entry.optional("mass", &self.mass, Number::positive);
         let density = entry.optional("density", &self.density, Number::positive);
-        let inertia = entry.optional("inertia", &self.inertia, |inertia, entry, key| inertia.tensor(entry, key, dim));
+        let inertia = entry
+            .optional("inertia", &self.inertia, |inertia, entry, key| inertia.tensor(entry, key, dim, self.check_inertia != Some(false)));
         let shape = entry.optional("shape", &self.shape, |solid, entry, key| entry.within(key, solid, |entry| solid.evaluate(entry, dim)));
         let position = self.position.vector(entry, "position", dim);
         let orientation = entry.optional("orientation", &self.orientation, |orientation, entry, key| {

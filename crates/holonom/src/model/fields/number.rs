@@ -127,9 +127,14 @@ impl Number {
             Self::Given(_) => return self.number(entry, at).map(Program::constant),
             Self::Formula(text) => text,
         };
-        let program = program(text, entry, at.into(), variables, names)?;
+        let at = at.into();
+        let program = program(text, entry, at, variables, names)?;
         if let Some(t) = variables.iter().position(|name| *name == "t") {
-            entry.sink.switches.borrow_mut().extend(program.switches(t));
+            let switches = program.switches(t);
+            if variables.len() == 1 && !switches.is_empty() {
+                entry.sink.motion(entry.path_of(at), &program);
+            }
+            entry.sink.switches.borrow_mut().extend(switches);
         }
         Ok(program)
     }

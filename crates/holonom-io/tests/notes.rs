@@ -1,0 +1,127 @@
+//! What looks like a slip in a model and is taken all the same: it is noted, and the model moves as it is written.
+
+use holonom::model::Model;
+use holonom::record::{Constraints, Recorder, Recording};
+use holonom::simulation::{Choice, Method, Simulation, Status};
+use holonom_io::Source;
+
+fn read(text: &str) -> Result<Model, String> {
+    Source::read("model.toml", text.as_bytes()).and_then(|source| source.model())
+}
+
+fn model(text: &str) -> Model {
+    read(text).unwrap_or_else(|message| panic!("{message}\n{text}"))
+}
+
+fn run(model: &Model, choice: Choice, step: f64, end: f64) -> (Simulation, Recording) {
+    let method = Method::resolve(&choice).unwrap();
+    let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
+    let mut recorder = Recorder::new(&model.channels, &model.system, 1, Constraints::Nothing);
+    assert_eq!(simulation.run(end, &mut recorder), Status::Completed);
+    (simulation, recorder.finish())
+}
+
+/// A free body that no body has: the last moment exceeds the sum of the others.
+const MOMENTS: [f64; 3] = [0.5, 1.0, 2.0];
+const SPIN: [f64; 3] = [0.3, 1.5, 0.4];
+
+fn top(waived: &str) -> String {
+    format!("gravity = [0, 0, 0]\n[body.top]\nmass = 3\ninertia = {MOMENTS:?}\nposition = [0, 0, 0]\nangular_velocity = {SPIN:?}\n{waived}")
+}
+
+/// Angular velocity in world axes by Euler's equations and the quaternion's, with the rule of Runge and Kutta in small steps.
+fn euler(end: f64) -> [f64; 3] {
+    let rate = |y: [f64; 7]| {
+        let ([q, a, b, c], w) = ([y[0], y[1], y[2], y[3]], [y[4], y[5], y[6]]);
+        let turn = |k: usize| {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            (MOMENTS[i] - MOMENTS[j]) / MOMENTS[k] * w[i] * w[j]
+        };
+        [
+            0.5 * (-a * w[0] - b * w[1] - c * w[2]),
+            0.5 * (q * w[0] + b * w[2] - c * w[1]),
+            0.5 * (q * w[1] + c * w[0] - a * w[2]),
+            0.5 * (q * w[2] + a * w[1] - b * w[0]),
+            turn(0),
+            turn(1),
+            turn(2),
+        ]
+    };
+    let steps = 20_000;
+    let h = end / f64::from(steps);
+    let mut y = [1.0, 0.0, 0.0, 0.0, SPIN[0], SPIN[1], SPIN[2]];
+    for _ in 0..steps {
+        let after = |slope: [f64; 7], h: f64| std::array::from_fn(|k| y[k] + h * slope[k]);
+        let first = rate(y);
+        let second = rate(after(first, 0.5 * h));
+        let third = rate(after(second, 0.5 * h));
+        let fourth = rate(after(third, h));
+        y = std::array::from_fn(|k| y[k] + h / 6.0 * (first[k] + 2.0 * second[k] + 2.0 * third[k] + fourth[k]));
+    }
+    let turn = nalgebra::UnitQuaternion::new_normalize(nalgebra::Quaternion::new(y[0], y[1], y[2], y[3]));
+    (turn * nalgebra::Vector3::new(y[4], y[5], y[6])).into()
+}
+
+#[test]
+fn an_inertia_that_no_body_has_moves_as_it_is_written() {
+    assert!(read(&top("")).err().expect("it is checked").contains("check_inertia = false"));
+    let model = model(&top("check_inertia = false\n"));
+    assert_eq!(model.notes, ["body.top.inertia: the moments 0.5, 1, 2 cannot belong to a body: 2 exceeds 0.5 + 1 by 0.5"]);
+    let expected = euler(3.0);
+    for method in ["radau", "conserving-ggl", "conserving", "generalized-alpha"] {
+        let choice = Choice { method: Some(method.into()), ..Choice::default() };
+        let (simulation, recording) = run(&model, choice, 1e-3, 3.0);
+        let found = ["top.wx", "top.wy", "top.wz"].map(|column| *recording.column(column).unwrap().last().unwrap());
+        let off = found.iter().zip(expected).fold(0.0, |worst: f64, (found, expected)| worst.max((found - expected).abs()));
+        println!("{method}: {off:e}, {:e} J", simulation.audit().energy_summary().max_drift);
+        assert!(off < 1e-5, "{method}: {found:?} and {expected:?}");
+    }
+}
+
+/// A moment about the axis alone, as people write it of what only turns there.
+#[test]
+fn a_door_may_have_a_moment_about_its_hinge_alone() {
+    let door = "[body.door]\nmass = 2\ninertia = [0, 0, 0.3]\nposition = [0.5, 0, 0]\nangular_velocity = [0, 0, 1]\nvelocity = [0, 0.5, 0]\n\
+                check_inertia = false\n[joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"door\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n\
+                [force.closer]\ntype = \"torsion\"\njoint = \"hinge\"\nstiffness = 2\n";
+    let model = model(door);
+    let (simulation, recording) = run(&model, Choice::default(), 1e-3, 2.0);
+    let omega = (2.0_f64 / (0.3 + 2.0 * 0.25)).sqrt();
+    let (t, angle) = (recording.column("t").unwrap(), recording.column("hinge.angle").unwrap());
+    let off = t.iter().zip(angle).fold(0.0, |worst: f64, (t, angle)| worst.max((angle - (omega * t).sin() / omega).abs()));
+    assert!(off < 1e-6 && simulation.audit().energy_summary().max_drift < 1e-12, "{off}");
+}
+
+#[test]
+fn negative_moments_are_refused_all_the_same() {
+    let text = top("check_inertia = false\n").replace("[0.5, 1.0, 2.0]", "[0.5, -1.0, 2.0]");
+    assert!(read(&text).err().expect("it is wrong").contains("-1 is negative"));
+}
+
+/// A crank that is driven and a rod, with a run.
+fn driven(profile: &str, length: &str, run: &str) -> Vec<String> {
+    let text = format!(
+        "[body.crank]\nrepeat = \"i = 1 to 3\"\nmass = 1\nshape = {{ box = [1, 0.1, 0.1] }}\nposition = [\"i\", 0, 0]\n\
+         [joint.hinge]\nrepeat = \"i = 1 to 3\"\ntype = \"revolute\"\nbetween = [\"ground\", \"crank[i]\"]\nat = [\"i\", 0, 0]\naxis = [0, 0, 1]\n\
+         [drive.motor]\nrepeat = \"i = 1 to 3\"\ntype = \"angle\"\njoint = \"hinge[i]\"\nprofile = \"{profile}\"\n\
+         [point.bob]\nmass = 1\nposition = [0, 0, -1]\n[constraint.rod]\ntype = \"distance\"\nbetween = [\"ground\", \"bob\"]\nlength = \"{length}\"\n\
+         [force.push]\ntype = \"effort\"\njoint = \"hinge[1]\"\neffort = \"step(t - 0.5)\"\n[simulation]\n{run}\n"
+    );
+    model(&text).notes
+}
+
+#[test]
+fn motions_that_jump_and_long_steps_are_noted() {
+    let run = "end = 2\nstep = 0.01";
+    assert_eq!(driven("sin(t)", "1 + 0.1*t^2", run), [""; 0]);
+    assert_eq!(driven("step(t - 3)", "1", run), [""; 0], "it is after the end");
+    assert_eq!(
+        driven("i*step(t - 1)", "1 + 0.1*max(t - 0.5, 0)", run),
+        [
+            "constraint.rod.length: its rate jumps by 0.1 per s at 0.5 s, which is a blow: round it off",
+            "drive.motor.profile: it jumps by 1 at 1 s, which nothing can follow: let it change over some steps"
+        ]
+    );
+    assert_eq!(driven("0", "1", "end = 2\nstep = 3"), ["simulation.step: the step of 3 s is longer than the run of 2 s"]);
+    assert_eq!(driven("step(t - 1)", "1", "step = 3"), [""; 0], "the end is not known");
+}
