@@ -34,7 +34,7 @@ const IRREVERSIBLE: &[&str] = &[
     "drive:distance",
     "drive:point",
     "force:spring",
-            "force:rope",
+    "force:rope",
     "force:torsion",
     "force:bushing",
     "force:force",

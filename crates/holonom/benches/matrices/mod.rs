@@ -2,7 +2,7 @@
 
 use faer::sparse::Triplet;
 use holonom::linalg::fill_reducing_order;
-use holonom::model::Model;
+use holonom::model::{BarInfo, Model};
 use holonom::system::{Place, System};
 
 /// Share of the rows' own size in −δ, as a stage has it.
@@ -34,8 +34,9 @@ impl Matrix {
         for (k, bar) in model.bars.iter().enumerate() {
             let row = dim * free + k;
             entries.push((row, row, -SOFT));
-            let [from, to] = bar.ends.map(|end| position(system, end));
-            for (end, sign) in bar.ends.iter().zip([-1.0, 1.0]) {
+            let ends = ends(bar);
+            let [from, to] = ends.map(|end| position(system, end));
+            for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
                 let Some(node) = free_node(system, *end) else { continue };
                 for c in 0..dim {
                     let slope = sign * (to[c] - from[c]);
@@ -81,7 +82,7 @@ fn order(model: &Model) -> Vec<u32> {
     let edges: Vec<(u32, u32)> = model
         .bars
         .iter()
-        .filter_map(|bar| match nodes_of(bar.ends).collect::<Vec<_>>()[..] {
+        .filter_map(|bar| match nodes_of(ends(bar)).collect::<Vec<_>>()[..] {
             [a, b] => Some((a as u32, b as u32)),
             _ => None,
         })
@@ -91,9 +92,13 @@ fn order(model: &Model) -> Vec<u32> {
     nodes.iter().enumerate().for_each(|(k, &node)| place[node as usize] = k);
     let mut rows_after = vec![Vec::new(); free];
     for (k, bar) in model.bars.iter().enumerate() {
-        let last = nodes_of(bar.ends).map(|node| place[node]).max().expect("a bar has a free end");
+        let last = nodes_of(ends(bar)).map(|node| place[node]).max().expect("a bar has a free end");
         rows_after[last].push(dim * free as u32 + k as u32);
     }
     let with_rows = nodes.iter().zip(&rows_after);
     with_rows.flat_map(|(&node, rows)| (0..dim).map(move |c| dim * node + c).chain(rows.iter().copied())).collect()
+}
+
+fn ends(bar: &BarInfo) -> [Place; 2] {
+    bar.ends.expect("these models have no bodies")
 }

@@ -8,7 +8,7 @@ use super::fields::{Keys, List, Number, Place};
 use super::geometry::norm;
 use super::key::Shape;
 use crate::record::LineKind;
-use crate::system;
+use crate::system::{self, Term};
 
 /// A uniform rigid rod between two points.
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -27,8 +27,8 @@ pub struct Bar {
 pub struct BarInfo {
     /// With its index where it is repeated.
     pub name: String,
-    /// Nodes at both ends, or where one is fixed.
-    pub ends: [system::Place; 2],
+    /// Nodes at both ends, or where one is fixed; none where an end is a place of a body.
+    pub ends: Option<[system::Place; 2]>,
     /// kg
     pub mass: f64,
     /// m
@@ -46,22 +46,45 @@ impl Bar {
         if length == 0.0 {
             return Err(zero_length(entry, &ends));
         }
-        let (Some(first), Some(second)) = (a.place(), b.place()) else {
-            let cure = "give the bar ends of its own, [point.NAME], and join them, or use a body with shape = { rod = … }";
-            return Err(entry.refuse("between", "a bar ends at points and fixed places, not at places of bodies", cure));
-        };
-        add_mass(assembly, [first, second], mass);
+        if a.body.is_some() && a.body == b.body {
+            return Err(entry.refuse(
+                "between",
+                format!("both ends are on `{}`", a.name),
+                "tie the bar to two bodies, or give the body its mass",
+            ));
+        }
+        let places = a.place().zip(b.place()).map(|(a, b)| [a, b]);
+        match places {
+            Some(places) => add_mass(assembly, places, mass),
+            None => add_mass_of_terms(assembly, [&a.terms, &b.terms], mass),
+        }
         ends.iter().filter_map(|end| end.point).for_each(|point| assembly.points[point].carries_bar = true);
         let half_square = assembly.builder.square(&from_to(a, b));
         assembly.builder.constant_row(entry.name, half_square, 0.5 * length * length);
         assembly.draw(entry, LineKind::Bar, a, b);
-        Ok(BarInfo { name: entry.name.to_string(), ends: [first, second], mass, length })
+        Ok(BarInfo { name: entry.name.to_string(), ends: places, mass, length })
     }
 }
 
 fn zero_length(entry: &Entry<'_>, [a, b]: &[End; 2]) -> Refused {
     let message = format!("the bar has no length: `{}` and `{}` start at the same place", a.name, b.name);
     entry.refuse("between", message, "move one of them, or use a point with mass")
+}
+
+/// The same where ends are sums of nodes: with x = Σ (f + g J) x_i each product of two ends is one of all their nodes.
+fn add_mass_of_terms(assembly: &mut Assembly<'_>, ends: [&[Term]; 2], mass: f64) {
+    for (k, l, share) in [(0, 0, mass / 3.0), (1, 1, mass / 3.0), (0, 1, mass / 6.0)] {
+        for (i, a) in ends[k].iter().enumerate() {
+            // Of an end with itself each pair of nodes once, as a block comes with its transpose.
+            for b in &ends[l][if k == l { i } else { 0 }..] {
+                let m = share * (a.factor * b.factor + a.turn * b.turn);
+                let s = share * (a.factor * b.turn - a.turn * b.factor);
+                let twice = k != l && a.place == b.place;
+                assembly.builder.couple(a.place, b.place, if twice { 2.0 * m } else { m }, if twice { 0.0 } else { s });
+            }
+        }
+    }
+    ends.iter().for_each(|end| end.iter().for_each(|&term| assembly.builder.weight(term, 0.5 * mass)));
 }
 
 fn add_mass(assembly: &mut Assembly<'_>, [a, b]: [system::Place; 2], mass: f64) {

@@ -10,7 +10,11 @@ fn folders() -> [(&'static str, Vec<&'static Kind>, &'static [&'static str]); 4]
         ("constraints", constraints::KINDS.iter().collect(), &[]),
         ("joints", joints::kinds().collect(), &["coupler", "curve", "geometry", "pair"]),
         ("drives", drives::KINDS.iter().collect(), &["coordinate", "profile"]),
-        ("forces", forces::KINDS.iter().collect(), &["body-load", "coordinate-laws", "joint", "laws", "point-load"]),
+        (
+            "forces",
+            forces::KINDS.iter().collect(),
+            &["body-load", "along-laws", "coordinate-laws", "joint", "laws", "point-load", "rope-laws"],
+        ),
     ]
 }
 

@@ -193,6 +193,16 @@ impl SystemBuilder {
         NodeId((self.free + self.motions.len()) as u32 - 1)
     }
 
+    /// Adds the block m 1 + s J (kg) to (a, b) of the mass matrix, and its transpose to (b, a), of something that moves with the nodes as they
+    /// are; without weight.
+    pub fn couple(&mut self, a: Place, b: Place, m: f64, s: f64) {
+        self.inertia(a, b, m, s);
+        self.moves(a, b, m, s, self.velocity_of(b));
+        if a != b {
+            self.moves(b, a, m, -s, self.velocity_of(a));
+        }
+    }
+
     /// Adds `m` (kg) of points to the entries (a, b) and (b, a) of the mass matrix, once when a = b, and its weight to
     /// both. What belongs to a fixed place never moves: of it only the weight is kept.
     pub fn mass(&mut self, a: Place, b: Place, m: f64) {

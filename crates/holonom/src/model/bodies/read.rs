@@ -9,7 +9,7 @@ use super::shape_key::{Shaped, Solid};
 use crate::model::entry::{Entry, all};
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Map, Number, Turn};
-use crate::model::geometry::Vec3;
+use crate::model::geometry::{Vec3, subtract};
 use crate::model::key::Shape;
 
 /// A rigid body as it is written.
@@ -32,19 +32,22 @@ pub struct Body {
     /// of the shape, instead of a mass; of a rod in kg/m
     #[key(unit = "kg/m³", default = "none")]
     pub density: Option<Number>,
-    /// of the centre of mass, at the start
+    /// centre of mass in body axes; position, velocity and points are then those of the origin of these axes, and counted from there
+    #[key(unit = "m", default = "the origin of the body axes", shape = Shape::Vector)]
+    pub com: Option<List<Number>>,
+    /// of the centre of mass, or with `com` of the origin of the body axes, at the start
     #[key(unit = "m", shape = Shape::Vector)]
     pub position: List<Number>,
     /// of the body's axes, at the start
     #[key(default = "that of the model's axes")]
     pub orientation: Option<Orientation>,
-    /// of the centre of mass, at the start
+    /// of the same place, at the start
     #[key(unit = "m/s", default = "0", shape = Shape::Vector)]
     pub velocity: Option<List<Number>>,
     /// in the axes of the model, at the start; one number in a planar model
     #[key(unit = "rad/s", default = "0")]
     pub angular_velocity: Option<Turn>,
-    /// named places in body axes from the centre of mass, used as "NAME.POINT"
+    /// named places in body axes from the centre of mass, or with `com` from the origin of these axes, used as "NAME.POINT"
     #[key(unit = "m", default = "none")]
     pub points: Option<Map<List<Number>>>,
     /// named directions in body axes, used as "NAME.AXIS"
@@ -61,6 +64,7 @@ impl Body {
         let inertia = entry
             .optional("inertia", &self.inertia, |inertia, entry, key| inertia.tensor(entry, key, dim, self.check_inertia != Some(false)));
         let shape = entry.optional("shape", &self.shape, |solid, entry, key| entry.within(key, solid, |entry| solid.evaluate(entry, dim)));
+        let com = entry.optional("com", &self.com, vector);
         let position = self.position.vector(entry, "position", dim);
         let orientation = entry.optional("orientation", &self.orientation, |orientation, entry, key| {
             entry.within(key, orientation, |entry| orientation.rotation(entry, dim))
@@ -69,7 +73,7 @@ impl Body {
         let angular_velocity = entry.optional("angular_velocity", &self.angular_velocity, |turn, entry, key| turn.vector(entry, key, dim));
         let points = entry.optional("points", &self.points, |points, entry, key| vectors(entry, key, points, dim));
         let axes = entry.optional("axes", &self.axes, |axes, entry, key| vectors(entry, key, axes, dim));
-        let (mass, density, inertia, shape) = (mass?, density?, inertia?, shape?);
+        let (mass, density, inertia, shape, com) = (mass?, density?, inertia?, shape?, com?);
         let (mass, inertia) = substance(entry, dim, mass, density, inertia, shape.as_ref())?;
         let world_from_body = orientation?.unwrap_or_else(Matrix3::identity);
         let mut body = RigidBody {
@@ -85,7 +89,12 @@ impl Body {
             axes: Vec::new(),
             shape: shape.map(|shaped| shaped.picture),
         };
-        body.points = points?.into_iter().flatten().map(|(name, local)| (name, body.place(local))).collect();
+        if let Some(com) = com {
+            let centre = body.place(com);
+            (body.velocity, body.position) = (body.velocity_at(centre), centre);
+        }
+        let from_centre = |local: Vec3| subtract(local, com.unwrap_or_default());
+        body.points = points?.into_iter().flatten().map(|(name, local)| (name, body.place(from_centre(local)))).collect();
         body.axes = axes?.into_iter().flatten().map(|(name, local)| (name, body.direction(local))).collect();
         Ok(body)
     }
