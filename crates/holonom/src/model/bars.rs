@@ -47,11 +47,7 @@ impl Bar {
             return Err(zero_length(entry, &ends));
         }
         if a.body.is_some() && a.body == b.body {
-            return Err(entry.refuse(
-                "between",
-                format!("both ends are on `{}`", a.name),
-                "tie the bar to two bodies, or give the body its mass",
-            ));
+            return Err(entry.refuse("between", "both ends are on the same body", "tie the bar to two bodies, or give the body its mass"));
         }
         let places = a.place().zip(b.place()).map(|(a, b)| [a, b]);
         match places {

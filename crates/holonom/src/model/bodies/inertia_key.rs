@@ -109,7 +109,7 @@ impl Inertia {
             entry.refuse(key, why, if symmetric { CURE } else { "a tensor of inertia is symmetric: write the same number at both places" })
         })?;
         match inertia::check_sums(tensor) {
-            Err(why) if is_checked => return Err(entry.refuse(key, why, CURE)),
+            Err(why) if is_checked => return Err(entry.refuse(key, why, SUMS)),
             Err(why) => entry.note(key, why),
             Ok(()) => (),
         }
@@ -119,4 +119,6 @@ impl Inertia {
 
 const SPELLINGS: &str = "[Ixx, Iyy, Izz], or with the products behind them [.., Ixy, Ixz, Iyz]";
 
-const CURE: &str = "check the units and that it is about the centre of mass; each principal moment is at most the sum of the other two, unless check_inertia = false";
+const CURE: &str = "check the units and that it is about the centre of mass; each principal moment is at most the sum of the other two";
+
+const SUMS: &str = "check the units and that it is about the centre of mass; check_inertia = false takes it as it is";
