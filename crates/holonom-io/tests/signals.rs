@@ -385,3 +385,12 @@ direction = "falling"
     let expected = [0.15, 0.15 + PI / 20.0];
     assert!(times.len() == 2 && times.iter().zip(expected).all(|(t, known)| (t - known).abs() < 1e-7), "{times:?}, {expected:?}");
 }
+
+/// Units are factors in measures, too, and an input that is called like one comes first.
+#[test]
+fn what_a_model_calls_like_a_unit_comes_before_it() {
+    let text = "[input.bar]\ndefault = 3\n[measure.low]\nvalue = \"bob.x/mm\"\n[measure.pressure]\nvalue = \"2*bar + 0*bob.x\"\n";
+    let (_, recording) = run(&model(&format!("{OSCILLATOR}{text}")), "radau", 0.01, 0.1, 1);
+    assert!((last(&recording, "low") - 1e3 * last(&recording, "bob.x")).abs() < 1e-9);
+    assert_eq!(last(&recording, "pressure"), 6.0);
+}

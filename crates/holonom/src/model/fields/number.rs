@@ -112,7 +112,13 @@ impl Number {
 
     /// A formula of some variables.
     pub fn formula<'s>(&self, entry: &Entry<'_>, at: impl Into<Spot<'s>>, variables: &[&str]) -> Read<Program> {
-        self.formula_reading(entry, at, variables, &mut Nothing)
+        let at = at.into();
+        let program = self.formula_reading(entry, at, variables, &mut Nothing)?;
+        // A motion, as forces are formulas of more.
+        if variables == ["t"] && !program.switches(0).is_empty() {
+            entry.sink.motion(entry.path_of(at), &program);
+        }
+        Ok(program)
     }
 
     /// The same of a formula that also reads what the mechanism does.
@@ -127,14 +133,9 @@ impl Number {
             Self::Given(_) => return self.number(entry, at).map(Program::constant),
             Self::Formula(text) => text,
         };
-        let at = at.into();
-        let program = program(text, entry, at, variables, names)?;
+        let program = program(text, entry, at.into(), variables, names)?;
         if let Some(t) = variables.iter().position(|name| *name == "t") {
-            let switches = program.switches(t);
-            if variables.len() == 1 && !switches.is_empty() {
-                entry.sink.motion(entry.path_of(at), &program);
-            }
-            entry.sink.switches.borrow_mut().extend(switches);
+            entry.sink.switches.borrow_mut().extend(program.switches(t));
         }
         Ok(program)
     }
