@@ -428,7 +428,8 @@ impl Parser<'_> {
         // Parameters have no order of their own, and messages must be the same every time.
         let mut named: Vec<&str> = self.scope.names().collect();
         named.sort_unstable();
-        let known: Vec<&str> = self.variables.iter().copied().chain(named).chain(constants).collect();
+        let variables = self.variables.iter().copied().filter(|name| !name.is_empty());
+        let known: Vec<&str> = variables.chain(named).chain(constants).collect();
         if FUNCTIONS.iter().any(|function| function.0 == name) {
             return self.mistake(format!("the function `{name}` needs its arguments"), format!("write {name}(…)"));
         }

@@ -140,7 +140,7 @@ fn parameters_fold_and_never_hide_a_variable() {
 #[test]
 fn names_of_a_model_come_before_units() {
     let parameters: HashMap<String, Value> = [("mm".to_string(), Value::Known(7.0))].into();
-    let scope = Scope { parameters: Some(&parameters), indices: &[("deg".to_string(), 3.0)] };
+    let scope = Scope { parameters: Some(&parameters), indices: &[("deg".to_string(), 3.0)], ..Scope::default() };
     assert_eq!(Program::parse("mm + deg", &[], &scope).unwrap().as_constant(), Some(10.0));
     assert_eq!(Program::parse("bar", &["bar"], &Scope::default()).unwrap().evaluate(&[2.0]), 2.0);
 }
