@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::path::Path;
 
-use holonom::model::Model;
+use holonom::model::{Model, Table, Value, nearest};
 use holonom::record::RecorderMark;
 use holonom::run::RunError;
 use holonom::simulation::{Checkpoint, Method, MethodError, StartError};
@@ -43,6 +43,8 @@ pub struct Loaded {
     /// Name of the file without its ending, or of the example.
     pub name: String,
     pub text: String,
+    /// Parameters that nothing uses.
+    pub unused: Vec<String>,
 }
 
 /// Keys of the model file that the command line sets.
@@ -97,14 +99,19 @@ fn read_at_most(path: &Path) -> std::io::Result<Vec<u8>> {
 pub fn load(argument: &str, overrides: Overrides) -> Result<Loaded, Failure> {
     let (source, name) = open(argument, &overrides)?;
     let model = source.model().map_err(Failure::Model)?;
-    Ok(Loaded { model, name, text: source.text().to_string() })
+    Ok(loaded(model, name, &source))
 }
 
 /// The same for a run that records forces.
 pub fn load_to_run(argument: &str, overrides: Overrides) -> Result<Loaded, Failure> {
     let (source, name) = open(argument, &overrides)?;
     let model = source.model_with_forces().map_err(Failure::Model)?;
-    Ok(Loaded { model, name, text: source.text().to_string() })
+    Ok(loaded(model, name, &source))
+}
+
+fn loaded(model: Model, name: String, source: &Source) -> Loaded {
+    let unused = source.unused_parameters().into_iter().map(str::to_string).collect();
+    Loaded { model, name, text: source.text().to_string(), unused }
 }
 
 /// Reads a model file, or an example, as a description with the overrides of the command line; and its name.
@@ -123,9 +130,39 @@ pub fn open(argument: &str, overrides: &Overrides) -> Result<(Source, String), F
     }
     for given in &overrides.0 {
         let (key, value) = split(given)?;
+        require_key("--set", key, &source)?;
         source.set(key, value).map_err(Failure::Model)?;
     }
     Ok((source, name))
+}
+
+/// Refuses a parameter that the model does not have, as nothing would come of it, and the bare name of one that it has. `option` is how
+/// the key was given.
+pub fn require_key(option: &str, key: &str, source: &Source) -> Result<(), Failure> {
+    let parameters = match source.get("parameters") {
+        Some(Value::Table(table)) => table,
+        _ => &Table::default(),
+    };
+    match key.strip_prefix("parameters.") {
+        Some(name) if parameters.get(name).is_none() => {
+            let cure = nearest(name, parameters.keys())
+                .map_or("add it to [parameters], and name it in the model".to_string(), |near| format!("did you mean `{near}`?"));
+            Err(Failure::usage(format!("the model has no parameter `{name}`"), cure))
+        }
+        None if parameters.get(key).is_some() && !is_of_file(key) => Err(Failure::usage(
+            format!("`{key}` is a parameter and no key of the model file"),
+            format!("write {option} parameters.{key}=…"),
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Whether a model file may have a key outside all tables, or a table, of this name.
+fn is_of_file(key: &str) -> bool {
+    match holonom::model::schema() {
+        Value::Table(schema) => matches!(schema.get("properties"), Some(Value::Table(keys)) if keys.get(key).is_some()),
+        _ => false,
+    }
 }
 
 /// Key and value of an override.

@@ -4,6 +4,7 @@ mod clock;
 mod commands;
 mod failure;
 mod load;
+mod message;
 mod options;
 mod output;
 mod progress;

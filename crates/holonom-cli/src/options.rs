@@ -53,7 +53,7 @@ pub struct Destination {
     /// Print the result as JSON on standard output, nothing else there
     #[arg(long)]
     pub json: bool,
-    /// Print nothing on standard output but errors
+    /// Print nothing but errors and why a run stopped
     #[arg(long)]
     pub quiet: bool,
 }

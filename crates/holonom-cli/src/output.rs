@@ -19,6 +19,7 @@ use serde_json::{Value, json};
 use crate::clock::Clock;
 use crate::failure::Failure;
 use crate::load::{self, Kept, Loaded};
+use crate::message::{listed, note};
 use crate::progress::Watched;
 use crate::table::short;
 
@@ -102,29 +103,22 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
 fn announce_corrections(model: &Model, simulation: &Simulation) {
     let start = simulation.start();
     if start.moved > 1e-12 {
-        eprintln!("note: positions were moved by up to {:.2e} m onto their constraints", start.moved);
+        note(&format!("positions were moved by up to {:.2e} m onto their constraints", start.moved));
     }
     let changes = model.start_changes(&simulation.state().x, simulation.velocities());
     if !changes.is_empty() {
-        eprintln!("note: to meet the constraints, start velocities were changed: {}", changes_in_words(&changes));
+        note(&format!("to meet the constraints, start velocities were changed: {}", changes_in_words(&changes)));
     }
 }
 
-/// Bodies and points with the change of their velocities at the start, at most [`NAMED_CHANGES`].
+/// Bodies and points with the change of their velocities at the start.
 pub fn changes_in_words(changes: &[StartChange]) -> String {
-    let words = changes.iter().take(NAMED_CHANGES).map(|change| match change.angular_velocity > 0.0 {
+    let words = changes.iter().map(|change| match change.angular_velocity > 0.0 {
         true => format!("`{}` by {} m/s and {} rad/s", change.name, short(change.velocity), short(change.angular_velocity)),
         false => format!("`{}` by {} m/s", change.name, short(change.velocity)),
     });
-    let words: Vec<String> = words.collect();
-    match changes.len().saturating_sub(NAMED_CHANGES) {
-        0 => words.join(", "),
-        more => format!("{}, and {more} more", words.join(", ")),
-    }
+    listed(&words.collect::<Vec<_>>())
 }
-
-/// Changes of velocities that are said by name.
-const NAMED_CHANGES: usize = 5;
 
 /// The writers of the formats asked for.
 pub fn writers(formats: &[String]) -> Result<Vec<&'static Writer>, Failure> {

@@ -23,6 +23,11 @@ fn wrong_use_ends_with_two_and_says_what_there_is() {
         (format!("run {PAPER} --set simulation.stp=1"), "did you mean `step`"),
         (format!("run {PAPER} --set title.x=1"), "not a table"),
         (format!("run {PAPER} --set simulation.step=-1"), "above 0"),
+        ("run example:four-bar --set parameters.n=3".into(), "did you mean `N`"),
+        ("check example:four-bar --set parameters.stiffness=3".into(), "no parameter `stiffness`"),
+        ("compare example:four-bar --set N=3".into(), "write --set parameters.N="),
+        ("sweep example:four-bar --vary N=3,4".into(), "write --vary parameters.N="),
+        (format!("stability {PAPER} --set parameters.k=3"), "no parameter `k`"),
         (format!("run {PAPER} --step abc"), "abc"),
         (format!("run {PAPER} --end 0.5 --set simulation.integrator=euler"), "conserving-ggl"),
         (format!("check {PAPER} --set simulation.projection.matrix=unit"), "identity"),
@@ -110,6 +115,28 @@ fn check_says_what_a_model_is_made_of() {
 }
 
 #[test]
+fn parameters_that_nothing_uses_are_named() {
+    let folder = folder();
+    // `b` is used by `a` only, which nothing uses; `c` by a list, `n` by a reference and `d` through `c`.
+    let model = "title = \"a and b\"\n[parameters]\na = \"2*b\"\nb = 1\nc = \"d\"\nd = 2\nn = 2\n\
+                 [simulation]\nstep = 0.1\nend = 0.2\n[point.p]\nrepeat = \"i = 1 to 2\"\nmass = 1\nposition = [\"c*i\", 0, 0]\n\
+                 [constraint.rod]\ntype = \"distance\"\nbetween = [\"ground\", \"p[n]\"]\n";
+    fs::write(folder.path().join("model.toml"), model).unwrap();
+    let told = "nothing uses the parameters `a`, `b`";
+    let output = holonom(&folder, "run model.toml");
+    assert!(text(&output.stderr).contains(&format!("note: {told}\n")), "{}", text(&output.stderr));
+    assert!(prints(&folder, "check model.toml", 0).contains(told));
+    assert_eq!(json(&folder, "check model.toml --json")["notes"][0], told);
+    let one = holonom(&folder, "run model.toml --set gravity=[0,0,\"-a\"] --set parameters.c=3");
+    assert!(text(&one.stderr).contains("nothing uses the parameter `d`\n"), "{}", text(&one.stderr));
+    assert!(holonom(&folder, "run model.toml --quiet").stderr.is_empty());
+
+    let many: String = (0..1000).map(|k| format!("a{k} = {k}\n")).collect();
+    fs::write(folder.path().join("many.toml"), format!("[parameters]\n{many}[point.p]\nmass = 1\nposition = [1, 0, 0]\n")).unwrap();
+    assert!(prints(&folder, "check many.toml", 0).contains("`a0`, `a1`, `a2`, `a3`, `a4`, and 995 more\n"));
+}
+
+#[test]
 fn only_the_mass_matrix_never_adds_energy() {
     let folder = folder();
     let heavy = "--set point.m2.mass=10 --projection";
@@ -156,7 +183,7 @@ fn the_gallery_is_listed_shown_copied_and_runs() {
         assert_eq!(prints(&folder, &format!("examples {name}"), 0), text);
         prints(&folder, &format!("examples {name} --copy copies"), 0);
         assert_eq!(fs::read_to_string(folder.path().join("copies").join(&file)).unwrap(), text);
-        prints(&folder, &format!("check example:{name}"), 0);
+        assert!(!prints(&folder, &format!("check example:{name}"), 0).contains("nothing uses"), "{name}");
         let summary = json(&folder, &format!("run copies/{file} --end 0.05 --json"));
         assert_eq!((&summary["status"], &summary["model"]), (&"completed".into(), &name.into()));
         assert!(summary["energy"]["max_drift"].as_f64().unwrap() < 1e-6, "{name}");

@@ -110,6 +110,10 @@ fn a_run_that_stops_keeps_its_results() {
                  --set simulation.subdivide=false";
     let out = prints(&folder, &format!("run {PAPER} --method trapezoidal {words} --out a"), 3);
     assert!(out.contains("stopped at"), "{out}");
+    let quiet = holonom(&folder, &format!("run {PAPER} --method trapezoidal {words} --out b --quiet --no-report"));
+    let (told, reason) = (text(&quiet.stderr), read_json(folder.path().join("b/summary.json"))["reason"].clone());
+    assert_eq!((quiet.status.code(), quiet.stdout.len(), told.lines().count()), (Some(3), 0, 1), "{told}");
+    assert!(told.starts_with("stopped at ") && told.contains(reason.as_str().unwrap()), "{told}");
     let results = folder.path().join("a");
     assert_eq!(files(&results), names(&["checkpoint.json", "columns.json", "report.html", "summary.json", "trajectory.csv"]));
     let summary = read_json(results.join("summary.json"));

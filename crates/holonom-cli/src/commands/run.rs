@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use crate::failure::{Failure, STOPPED};
 use crate::load::{self, Loaded};
+use crate::message::{note, unused_parameters};
 use crate::options::{OutputArguments, RunArguments};
 use crate::output::{Finished, Folder, Order, simulate, writers};
 use crate::progress::interrupt_flag;
@@ -20,6 +21,9 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     overrides.number("simulation.end", arguments.method.end.as_deref());
     let loaded = load::load_to_run(&arguments.model.model, overrides)?;
     let output = &arguments.output;
+    if !output.to.quiet {
+        unused_parameters(&loaded.unused).iter().for_each(|text| note(text));
+    }
     let writers = writers(&output.formats)?;
     let order = Order {
         method: load::method(&loaded.model, arguments.method.name.as_deref())?,
@@ -38,6 +42,8 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     } else if !output.to.quiet {
         println!("{}", describe(&loaded, &finished.summary));
         println!("\nresults in {}", folder.path.display());
+    } else if !finished.completed {
+        eprintln!("{}", status(&finished.summary).replace('\n', " "));
     }
     Ok(if finished.completed { ExitCode::SUCCESS } else { ExitCode::from(STOPPED) })
 }
@@ -102,15 +108,19 @@ fn events(of: &Value) -> String {
     lines.join("\n")
 }
 
+/// How a run ended.
+fn status(summary: &Value) -> String {
+    match summary["stopped_at"].as_f64() {
+        None => "completed".to_string(),
+        Some(at) => format!("stopped at {} s: {}", short(at), summary["reason"].as_str().unwrap_or("")),
+    }
+}
+
 /// The summary as people read it.
 fn describe(loaded: &Loaded, summary: &Value) -> String {
     let number = |group: &str, key: &str| short(summary[group][key].as_f64().unwrap_or(f64::NAN));
-    let status = match summary["stopped_at"].as_f64() {
-        None => "completed".to_string(),
-        Some(at) => format!("stopped at {} s: {}", short(at), summary["reason"].as_str().unwrap_or("")),
-    };
     let time = |key: &str| summary["time"][key].as_f64().map_or("–".into(), measured);
-    let mut items = vec![("method", summary["method"]["name"].as_str().unwrap_or("").to_string()), ("status", status)];
+    let mut items = vec![("method", summary["method"]["name"].as_str().unwrap_or("").to_string()), ("status", status(summary))];
     items.extend(
         [("drives", "drives"), ("forces", "forces"), ("joints", "joints")].map(|(word, sort)| (word, peaks(&summary["peaks"][sort]))),
     );

@@ -110,7 +110,7 @@ fn summary(name: &str, plan: &Plan, sheet: &Sheet, table: &Table, spent: &Spent)
 
 /// Says how it went.
 fn tell(arguments: &SweepArguments, folder: &Folder, summary: &Value, is_whole: bool) {
-    if !is_whole && !arguments.to.quiet {
+    if !is_whole {
         eprintln!("interrupted: {JOURNAL} holds the finished runs, and the same command goes on");
     }
     if arguments.to.json {

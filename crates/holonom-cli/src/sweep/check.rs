@@ -65,19 +65,8 @@ fn check_key(vary: &Vary, arguments: &SweepArguments, overrides: &Overrides, sou
         let key = table.keys().next().unwrap_or("key");
         return Err(Failure::usage(format!("`{path}` is a table and has no values"), format!("name a key in it, such as {path}.{key}")));
     }
-    match path.strip_prefix("parameters.") {
-        // A parameter that nothing names would make runs that are all alike.
-        Some(name) if source.get(path).is_none() => {
-            let known: Vec<&str> = match source.get("parameters") {
-                Some(Value::Table(table)) => table.keys().collect(),
-                _ => Vec::new(),
-            };
-            let near = nearest(name, known)
-                .map_or("add it to [parameters], and name it in the model".to_string(), |near| format!("did you mean `{near}`?"));
-            Err(Failure::usage(format!("the model has no parameter `{name}`"), near))
-        }
-        _ => Ok(()),
-    }
+    // A parameter that nothing names would make runs that are all alike.
+    load::require_key("--vary", path, source)
 }
 
 /// Whether a fault says that a varied key is none of the model file, or belongs to nothing that is there.

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use holonom::model::{Description, Fault, Faults, Files, Kinds, Mesh, Model, NoFiles, NumberFile, Table, Value};
+use holonom::model::{Description, Fault, Faults, Files, Kinds, Mesh, Model, NoFiles, NumberFile, Table, Value, unused_parameters};
 
 pub use mesh::{LARGEST_MESH, MOST_TRIANGLES, MeshError, read_mesh};
 pub use numbers::{LARGEST_NUMBERS, NumbersError, read_numbers};
@@ -79,6 +79,11 @@ impl Source {
             Value::Table(table) => table.get(part),
             _ => None,
         })
+    }
+
+    /// The parameters that nothing uses.
+    pub fn unused_parameters(&self) -> Vec<&str> {
+        unused_parameters(&self.value)
     }
 
     /// Reads the description as a model.
