@@ -11,6 +11,7 @@ use holonom_io::Source;
 use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
+use crate::provenance::{Override, Provenance, VERSION, command_line, now};
 use crate::table::short;
 
 /// The gallery: name and text of every example.
@@ -42,9 +43,7 @@ pub struct Loaded {
     pub model: Model,
     /// Name of the file without its ending, or of the example.
     pub name: String,
-    pub text: String,
-    /// Parameters that nothing uses.
-    pub unused: Vec<String>,
+    pub source: Source,
 }
 
 /// Keys of the model file that the command line sets.
@@ -99,19 +98,14 @@ fn read_at_most(path: &Path) -> std::io::Result<Vec<u8>> {
 pub fn load(argument: &str, overrides: Overrides) -> Result<Loaded, Failure> {
     let (source, name) = open(argument, &overrides)?;
     let model = source.model().map_err(Failure::Model)?;
-    Ok(loaded(model, name, &source))
+    Ok(Loaded { model, name, source })
 }
 
 /// The same for a run that records forces.
 pub fn load_to_run(argument: &str, overrides: Overrides) -> Result<Loaded, Failure> {
     let (source, name) = open(argument, &overrides)?;
     let model = source.model_with_forces().map_err(Failure::Model)?;
-    Ok(loaded(model, name, &source))
-}
-
-fn loaded(model: Model, name: String, source: &Source) -> Loaded {
-    let unused = source.unused_parameters().into_iter().map(str::to_string).collect();
-    Loaded { model, name, text: source.text().to_string(), unused }
+    Ok(Loaded { model, name, source })
 }
 
 /// Reads a model file, or an example, as a description with the overrides of the command line; and its name.
@@ -202,6 +196,32 @@ impl Loaded {
         if self.model.title.is_empty() { &self.name } else { &self.model.title }
     }
 
+    /// What a run by a method is. The command line may have named the method, and the share of the steps that is recorded.
+    pub fn provenance(&self, method: &Method, named: Option<&str>, every: Option<u64>) -> Result<Provenance, Failure> {
+        let json = |value: Option<&Value>| value.map_or(serde_json::Value::Null, holonom_io::to_json);
+        let replaced = |(key, file): &(String, Option<Value>)| Override {
+            key: key.clone(),
+            file: json(file.as_ref()),
+            run: json(self.source.get(key)),
+        };
+        let option = |key: &str, run| Override { key: key.into(), file: json(self.source.get(key)), run };
+        let mut overrides: Vec<Override> = self.source.replaced().iter().map(replaced).collect();
+        overrides.extend(named.map(|name| option("simulation.method", name.into())));
+        overrides.extend(every.map(|every| option("output.every", every.into())));
+        Ok(Provenance {
+            version: VERSION.into(),
+            date: now(),
+            command: command_line(),
+            method: method.name.clone(),
+            step: self.step()?,
+            end: self.end()?,
+            every: every.unwrap_or_else(|| self.every()),
+            overrides,
+            files: self.source.files(),
+            model: self.source.text().into(),
+        })
+    }
+
     /// Gravity for people.
     pub fn gravity(&self) -> String {
         let [x, y, z] = self.model.gravity;
@@ -250,6 +270,7 @@ pub struct Kept {
     #[serde(flatten)]
     pub run: Checkpoint,
     pub recorder: RecorderMark,
+    pub provenance: Provenance,
 }
 
 /// Reads a `checkpoint.json`.

@@ -3,11 +3,13 @@
 mod clock;
 mod commands;
 mod failure;
+mod folder;
 mod load;
 mod message;
 mod options;
 mod output;
 mod progress;
+mod provenance;
 mod sweep;
 mod table;
 

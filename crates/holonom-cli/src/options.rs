@@ -47,22 +47,18 @@ pub struct ModelArguments {
 /// Where results go, and what is said of them.
 #[derive(Debug, Args)]
 pub struct Destination {
-    /// Folder for the results [default: results/<model>-<method>, -compare, -sweep or -stability]
+    /// Folder for the results [default: results/<model>-<method>, -compare, -sweep or -stability; with -2, -3, … where these hold others]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Overwrite the results of another run
+    #[arg(long)]
+    pub force: bool,
     /// Print the result as JSON on standard output, nothing else there
     #[arg(long)]
     pub json: bool,
     /// Print nothing but errors and why a run stopped
     #[arg(long)]
     pub quiet: bool,
-}
-
-impl Destination {
-    /// The folder asked for, or `usual` in the folder `results`.
-    pub fn folder(&self, usual: &str) -> PathBuf {
-        self.out.clone().unwrap_or_else(|| PathBuf::from(format!("results/{usual}")))
-    }
 }
 
 /// What is kept of a run.

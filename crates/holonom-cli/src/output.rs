@@ -1,9 +1,6 @@
 //! One run and what it leaves in its folder.
 
 use std::collections::HashSet;
-use std::fs::File;
-use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -18,9 +15,12 @@ use serde_json::{Value, json};
 
 use crate::clock::Clock;
 use crate::failure::Failure;
+use crate::folder::Folder;
 use crate::load::{self, Kept, Loaded};
 use crate::message::{listed, note};
+use crate::options::OutputArguments;
 use crate::progress::Watched;
+use crate::provenance::Provenance;
 use crate::table::short;
 
 /// A finished run.
@@ -36,17 +36,25 @@ pub struct Finished {
 /// What a run is asked to do.
 pub struct Order {
     pub method: Method,
-    pub step: f64,
-    pub end: f64,
-    pub every: u64,
+    pub provenance: Provenance,
     pub quiet: bool,
     pub resume: Option<Kept>,
+}
+
+impl Order {
+    /// A run of a model from its start, by its own method or a named one.
+    pub fn new(loaded: &Loaded, method: Option<&str>, output: &OutputArguments) -> Result<Self, Failure> {
+        let named = load::method(&loaded.model, method)?;
+        let provenance = loaded.provenance(&named, method, output.every)?;
+        Ok(Self { method: named, provenance, quiet: output.to.quiet, resume: None })
+    }
 }
 
 /// Simulates a model by a method.
 pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) -> Result<Finished, Failure> {
     let model = &loaded.model;
-    let Order { method, step, end, every, quiet, resume } = order;
+    let Order { method, provenance, quiet, resume } = order;
+    let Provenance { step, end, every, .. } = provenance;
     let name = method.name.clone();
     let (resume, mark) = resume.map_or((None, None), |kept| (Some(kept.run), Some(kept.recorder)));
     if let Some(t) = resume.as_ref().map(|run| run.state.t).filter(|t| *t >= end) {
@@ -93,7 +101,8 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
     if !step_us.is_null() {
         value["time"]["step_us"] = step_us;
     }
-    let kept = Kept { run: simulation.checkpoint(), recorder: watched.recorder.mark() };
+    value["provenance"] = serde_json::to_value(&provenance).expect("a provenance is plain data");
+    let kept = Kept { run: simulation.checkpoint(), recorder: watched.recorder.mark(), provenance };
     let recording = watched.finish();
     value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording)).expect("peaks are plain data");
     Ok(Finished { method: name, recording, summary: value, completed: status == Status::Completed, kept })
@@ -180,37 +189,7 @@ fn owner_and_suffix(column: &str) -> Option<(&str, &str)> {
     column.rsplit_once('.')
 }
 
-/// Makes a folder and writes into it through a closure for each file.
-pub struct Folder {
-    pub path: PathBuf,
-}
-
 impl Folder {
-    /// Creates the folder where it is missing.
-    pub fn create(path: &Path) -> Result<Self, Failure> {
-        std::fs::create_dir_all(path).map_err(|source| Failure::File { doing: "create", path: path.into(), source })?;
-        Ok(Self { path: path.into() })
-    }
-
-    /// Writes one file.
-    pub fn write(&self, name: &str, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<(), Failure> {
-        let path = self.path.join(name);
-        let file = File::create(&path).and_then(|file| {
-            let mut out = BufWriter::new(file);
-            write(&mut out)?;
-            out.flush()
-        });
-        file.map_err(|source| Failure::File { doing: "write", path, source })
-    }
-
-    /// Writes one file in full before it takes the place of an older one.
-    pub fn replace(&self, name: &str, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<(), Failure> {
-        let new = format!("{name}.new");
-        self.write(&new, write)?;
-        let path = self.path.join(name);
-        std::fs::rename(self.path.join(new), &path).map_err(|source| Failure::File { doing: "write", path, source })
-    }
-
     /// Writes the table of a run with each writer: the points that `[output]` asks for, in its order.
     pub fn write_trajectory(&self, prefix: &str, writers: &[&Writer], loaded: &Loaded, recording: &Recording) -> Result<(), Failure> {
         let asked = loaded.model.output.points.as_ref().map(|points| only(recording, points, &loaded.model));
@@ -223,7 +202,7 @@ impl Folder {
 
     /// Writes the report of some runs.
     pub fn write_report(&self, loaded: &Loaded, runs: &[Run<'_>]) -> Result<(), Failure> {
-        let report = Report { title: loaded.title(), model_text: &loaded.text, runs };
+        let report = Report { title: loaded.title(), model_text: loaded.source.text(), runs };
         self.write("report.html", |out| report.write(out))
     }
 }

@@ -4,13 +4,14 @@ use std::process::ExitCode;
 
 use holonom_io::Writer;
 use holonom_report::Run;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::failure::{Failure, STOPPED};
+use crate::folder::{Folder, file_stem, holds};
 use crate::load::{self, Loaded};
 use crate::message::{note, unused_parameters};
 use crate::options::{OutputArguments, RunArguments};
-use crate::output::{Finished, Folder, Order, simulate, writers};
+use crate::output::{Finished, Order, simulate, writers};
 use crate::progress::interrupt_flag;
 use crate::table::{list, measured, short};
 
@@ -22,19 +23,13 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let loaded = load::load_to_run(&arguments.model.model, overrides)?;
     let output = &arguments.output;
     if !output.to.quiet {
-        unused_parameters(&loaded.unused).iter().for_each(|text| note(text));
+        unused_parameters(&loaded.source).iter().for_each(|text| note(text));
     }
     let writers = writers(&output.formats)?;
-    let order = Order {
-        method: load::method(&loaded.model, arguments.method.name.as_deref())?,
-        step: loaded.step()?,
-        end: loaded.end()?,
-        every: output.every.unwrap_or(loaded.every()),
-        quiet: output.to.quiet,
-        resume: arguments.resume.as_deref().map(load::checkpoint).transpose()?,
-    };
-    let path = output.to.folder(&format!("{}-{}", loaded.name, order.method.name.replace('/', "-")));
-    let folder = Folder::create(&path)?;
+    let mut order = Order::new(&loaded, arguments.method.name.as_deref(), output)?;
+    order.resume = arguments.resume.as_deref().map(load::checkpoint).transpose()?;
+    let usual = format!("{}-{}", loaded.name, file_stem(&order.method.name));
+    let folder = Folder::claim(&output.to, &usual, |path| holds(path, &json!({ "provenance": order.provenance })))?;
     let finished = simulate(&loaded, order, &interrupt_flag())?;
     write(&folder, &loaded, &finished, &writers, output)?;
     if output.to.json {
