@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+use crate::checkpoint;
 use crate::failure::Failure;
 use crate::message::note;
 use crate::options::Destination;
 
 /// Files by which a folder is known to hold results.
-const RESULTS: [&str; 10] = [
+const RESULTS: [&str; 11] = [
     "summary.json",
     "stability.json",
     "checkpoint.json",
@@ -20,6 +21,7 @@ const RESULTS: [&str; 10] = [
     "trajectory.csv",
     "trajectory.npz",
     "trajectory.parquet",
+    "recording.csv",
     "columns.json",
     "report.html",
 ];
@@ -48,7 +50,7 @@ impl Folder {
             let is_foreign = folder.has_results() && !is_same(path);
             return match (is_foreign, to.force) {
                 (false, _) => Ok(folder),
-                (true, true) => folder.emptied(),
+                (true, true) => folder.remove_results(&[]).map(|()| folder),
                 (true, false) => Err(Failure::usage(
                     format!("{} holds the results of another run{}", path.display(), folder.made_by()),
                     "give another --out, or --force to overwrite them",
@@ -65,7 +67,7 @@ impl Folder {
                 return Ok(folder);
             }
             if to.force {
-                return folder.emptied();
+                return folder.remove_results(&[]).map(|()| folder);
             }
         }
         unreachable!("numbers do not end")
@@ -91,14 +93,28 @@ impl Folder {
         made["provenance"]["command"].as_str().map_or(String::new(), |command| format!(": {command}"))
     }
 
-    /// The folder without the results in it, so that none of them is taken for those that come.
-    fn emptied(self) -> Result<Self, Failure> {
+    /// The folder of an earlier run, to go on in.
+    pub fn of(path: &Path) -> Result<Self, Failure> {
+        Self::create(path)?
+            .locked()
+            .ok_or_else(|| Failure::usage(format!("another run is writing to {}", path.display()), "wait for it, or end it"))
+    }
+
+    /// The time of the checkpoint that is there, s.
+    pub fn reached(&self) -> Option<f64> {
+        let value: Value = serde_json::from_slice(&std::fs::read(self.path.join(checkpoint::FILE)).ok()?).ok()?;
+        value["state"]["t"].as_f64()
+    }
+
+    /// Removes all results but some, so that none of them is taken for those that come.
+    pub fn remove_results(&self, but: &[&str]) -> Result<(), Failure> {
         // Tables of compared runs have the names of their runs.
         let compared = summary(&self.path);
         let labels = compared.as_array().into_iter().flatten().filter_map(|run| run["label"].as_str());
         let tables =
             labels.flat_map(|label| holonom_io::WRITERS.iter().map(move |writer| format!("{}.{}", file_stem(label), writer.extension)));
-        for name in RESULTS.iter().map(|name| name.to_string()).chain(tables) {
+        let names = RESULTS.iter().map(|name| name.to_string()).chain(tables);
+        for name in names.filter(|name| !but.contains(&name.as_str())) {
             let path = self.path.join(name);
             match std::fs::remove_file(&path) {
                 Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
@@ -107,7 +123,7 @@ impl Folder {
                 _ => (),
             }
         }
-        Ok(self)
+        Ok(())
     }
 
     /// Writes one file in full before it takes the place of an older one.

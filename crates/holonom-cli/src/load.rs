@@ -4,11 +4,9 @@ use std::io::Read;
 use std::path::Path;
 
 use holonom::model::{Model, Table, Value, nearest};
-use holonom::record::RecorderMark;
 use holonom::run::RunError;
-use holonom::simulation::{Checkpoint, Method, MethodError, StartError};
+use holonom::simulation::{Method, MethodError, StartError};
 use holonom_io::Source;
-use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
 use crate::provenance::{Override, Provenance, VERSION, command_line, now};
@@ -129,6 +127,16 @@ pub fn open(argument: &str, overrides: &Overrides) -> Result<(Source, String), F
     }
     Ok((source, name))
 }
+
+/// Keys that the name of a method on the command line replaces.
+pub const OF_METHOD: [&str; 6] = [
+    "simulation.method",
+    "simulation.formulation",
+    "simulation.index",
+    "simulation.integrator",
+    "simulation.order",
+    "simulation.projection.levels",
+];
 
 /// Refuses a parameter that the model does not have, as nothing would come of it, and the bare name of one that it has. `option` is how
 /// the key was given.
@@ -262,21 +270,4 @@ pub fn start_failure(error: StartError) -> Failure {
         _ => "move what is named there, or take away or loosen one of the constraints",
     };
     Failure::usage(error.to_string(), cure)
-}
-
-/// What is kept in `checkpoint.json`.
-#[derive(Serialize, Deserialize)]
-pub struct Kept {
-    #[serde(flatten)]
-    pub run: Checkpoint,
-    pub recorder: RecorderMark,
-    pub provenance: Provenance,
-}
-
-/// Reads a `checkpoint.json`.
-pub fn checkpoint(path: &Path) -> Result<Kept, Failure> {
-    let bytes = std::fs::read(path).map_err(|source| Failure::File { doing: "read", path: path.into(), source })?;
-    serde_json::from_slice(&bytes).map_err(|error| {
-        Failure::usage(format!("{} is no checkpoint: {error}", path.display()), "give the checkpoint.json of an earlier run")
-    })
 }

@@ -1,9 +1,11 @@
 //! The command `holonom`.
 
+mod checkpoint;
 mod clock;
 mod commands;
 mod failure;
 mod folder;
+mod keeper;
 mod load;
 mod message;
 mod options;

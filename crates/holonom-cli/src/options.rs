@@ -97,8 +97,8 @@ pub struct RunArguments {
     pub model: ModelArguments,
     #[command(flatten)]
     pub method: MethodArguments,
-    /// Go on from the checkpoint.json of an earlier run
-    #[arg(long, value_name = "CHECKPOINT")]
+    /// Go on with an earlier run, that was ended or killed, in its folder; with a later --end, too
+    #[arg(long, value_name = "FOLDER or CHECKPOINT")]
     pub resume: Option<PathBuf>,
     #[command(flatten)]
     pub output: OutputArguments,

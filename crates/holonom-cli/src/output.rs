@@ -13,10 +13,12 @@ use holonom_io::{WriteTable, Writer};
 use holonom_report::{Report, Run};
 use serde_json::{Value, json};
 
+use crate::checkpoint::Point;
 use crate::clock::Clock;
 use crate::failure::Failure;
 use crate::folder::Folder;
-use crate::load::{self, Kept, Loaded};
+use crate::keeper::Keeper;
+use crate::load::{self, Loaded};
 use crate::message::{listed, note};
 use crate::options::OutputArguments;
 use crate::progress::Watched;
@@ -30,7 +32,9 @@ pub struct Finished {
     /// Content of `summary.json`.
     pub summary: Value,
     pub completed: bool,
-    pub kept: Kept,
+    /// Where the run is, and where it was before a last step that its end cut short.
+    pub last: Point,
+    pub before_end: Option<Point>,
 }
 
 /// What a run is asked to do.
@@ -38,7 +42,8 @@ pub struct Order {
     pub method: Method,
     pub provenance: Provenance,
     pub quiet: bool,
-    pub resume: Option<Kept>,
+    /// Where to go on, and the rows before.
+    pub resume: Option<(Point, Recording)>,
 }
 
 impl Order {
@@ -50,38 +55,50 @@ impl Order {
     }
 }
 
-/// Simulates a model by a method.
-pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) -> Result<Finished, Failure> {
+/// The recorder of a model's runs.
+pub fn recorder(model: &Model, every: u64) -> Recorder<'_> {
+    Recorder::new(&model.channels, &model.system, every, constraints(model))
+}
+
+fn constraints(model: &Model) -> Constraints {
+    match model.output.reactions {
+        Some(false) => Constraints::Nothing,
+        None => Constraints::Joints,
+        Some(true) => Constraints::Rows,
+    }
+}
+
+/// Simulates a model by a method, and saves it meanwhile where there is a keeper.
+pub fn simulate(
+    loaded: &Loaded,
+    order: Order,
+    interrupted: &Arc<AtomicBool>,
+    keeper: Option<&mut Keeper<'_>>,
+) -> Result<Finished, Failure> {
     let model = &loaded.model;
     let Order { method, provenance, quiet, resume } = order;
     let Provenance { step, end, every, .. } = provenance;
     let name = method.name.clone();
-    let (resume, mark) = resume.map_or((None, None), |kept| (Some(kept.run), Some(kept.recorder)));
-    if let Some(t) = resume.as_ref().map(|run| run.state.t).filter(|t| *t >= end) {
-        let message = format!("the checkpoint is at {} s, and the run ends at {} s", short(t), short(end));
-        return Err(Failure::usage(message, "give a later --end"));
-    }
+    let (resume, before) = resume.map_or((None, None), |(point, rows)| (Some(point.run), Some((point.recorder, rows))));
     let mut simulation = match resume {
-        Some(run) => Simulation::resume(model.system.clone(), method, step, run).ok_or_else(|| {
-            Failure::usage("the checkpoint is of another model", "resume with the model and the --set options that made it")
-        })?,
+        Some(run) => Simulation::resume(model.system.clone(), method, step, run)
+            .ok_or_else(|| Failure::usage("the checkpoint is of another model", "run from the start, without --resume"))?,
         None => Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?,
     };
-    if !quiet && mark.is_none() {
+    if !quiet && before.is_none() {
         announce_corrections(model, &simulation);
     }
     let rank = analysis::rank_of(&simulation);
-    let constraints = match model.output.reactions {
-        Some(false) => Constraints::Nothing,
-        None => Constraints::Joints,
-        Some(true) => Constraints::Rows,
-    };
-    if constraints != Constraints::Nothing || !model.channels.efforts.is_empty() {
+    if constraints(model) != Constraints::Nothing || !model.channels.efforts.is_empty() {
         model.find_reactions(&mut simulation);
     }
-    let recorder = Recorder::new(&model.channels, &model.system, every, constraints);
-    let recorder = if let Some(mark) = &mark { recorder.resume(mark) } else { recorder };
-    let mut watched = Watched::new(recorder, end, quiet, interrupted.clone());
+    let recorder = recorder(model, every);
+    let recorder = match before {
+        Some((mark, rows)) => recorder.resume(&mark).after(rows),
+        None => recorder,
+    };
+    let mut watched = Watched::new(recorder, step, end, quiet, interrupted.clone()).kept(keeper);
+    let (first_step, first_time) = (simulation.steps(), simulation.state().t);
     let (wall, cpu) = (std::time::Instant::now(), ProcessTime::now());
     let (status, step_us) = match simulation.method().settings.iterations {
         None => (simulation.run(end, &mut watched), Value::Null),
@@ -95,17 +112,18 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
     let mut value = serde_json::to_value(&summary).expect("a summary is plain data");
     value["time"] = json!({
         "cpu_s": cpu,
-        "us_per_step": 1e6 * cpu / simulation.steps().max(1) as f64,
-        "realtime_factor": simulation.state().t / wall.max(1e-9),
+        "us_per_step": 1e6 * cpu / (simulation.steps() - first_step).max(1) as f64,
+        "realtime_factor": (simulation.state().t - first_time) / wall.max(1e-9),
     });
     if !step_us.is_null() {
         value["time"]["step_us"] = step_us;
     }
     value["provenance"] = serde_json::to_value(&provenance).expect("a provenance is plain data");
-    let kept = Kept { run: simulation.checkpoint(), recorder: watched.recorder.mark(), provenance };
+    let last = Point::of(&simulation, &watched.recorder);
+    let before_end = watched.before_end.take().filter(|_| !last.run.is_at_nominal_step());
     let recording = watched.finish();
     value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording)).expect("peaks are plain data");
-    Ok(Finished { method: name, recording, summary: value, completed: status == Status::Completed, kept })
+    Ok(Finished { method: name, recording, summary: value, completed: status == Status::Completed, last, before_end })
 }
 
 /// Says on standard error what was put right before the start.

@@ -160,6 +160,24 @@ fn comparisons_searches_and_sweeps_have_folders_of_their_own_too() {
     assert_eq!(files(folder.path().join("results")).len(), 6);
 }
 
+#[test]
+fn the_commands_of_the_chapter_on_results_run() {
+    let folder = folder();
+    let chapter = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/results.md")).unwrap();
+    let commands: Vec<&str> =
+        chapter.lines().filter(|line| line.starts_with("holonom run ")).filter_map(|line| line.strip_prefix("holonom ")).collect();
+    let printed: Vec<String> = commands.iter().map(|words| prints(&folder, words, 0)).collect();
+    let told: Vec<&str> = printed.iter().map(|out| out.trim_end().rsplit_once(' ').unwrap().1).collect();
+    assert_eq!(told, ["results/four-bar-conserving-ggl", "results/four-bar-conserving-ggl-2", "long", "long"]);
+    let refused = fails(&folder, &format!("{} --set parameters.N=2", commands[3].replace("--end 2", "--end 3")), 2);
+    assert!(chapter.contains(&format!("```text\n{refused}```\n")), "{refused}");
+    // The table of files has all that there are.
+    prints(&folder, "run example:four-bar --end 0.1 --quiet --format npz --out b", 0);
+    for name in files(folder.path().join("long")).iter().chain(&files(folder.path().join("b"))).filter(|name| !name.ends_with(".npz")) {
+        assert!(chapter.contains(&format!("\n| `{name}` |")), "{name}");
+    }
+}
+
 /// Runs that begin at the same moment find each other's folders free.
 #[test]
 fn runs_at_the_same_time_do_not_meet() {

@@ -133,7 +133,11 @@ fn formats_rows_and_report_are_chosen() {
     assert!(fs::read(out.join("trajectory.npz")).unwrap().starts_with(b"PK"));
 
     prints(&folder, &format!("run {PAPER} --end 0.1 --out b --format npz --no-report"), 0);
-    assert_eq!(files(folder.path().join("b")), names(&["checkpoint.json", "columns.json", "summary.json", "trajectory.npz"]));
+    // A run goes on from a table in CSV of all columns.
+    assert_eq!(
+        files(folder.path().join("b")),
+        names(&["checkpoint.json", "columns.json", "recording.csv", "summary.json", "trajectory.npz"])
+    );
 
     if cfg!(feature = "parquet") {
         prints(&folder, &format!("run {PAPER} --end 0.1 --out b --format parquet --no-report"), 0);
@@ -193,41 +197,4 @@ fn a_run_that_stops_keeps_its_results() {
     let (_, rows) = csv(results.join("trajectory.csv"));
     assert_eq!(rows.len() as u64, summary["steps"].as_u64().unwrap() + 1);
     assert!((rows.last().unwrap()[0] - at).abs() < 1e-9);
-}
-
-#[test]
-fn a_resumed_run_ends_where_one_long_run_does() {
-    for method in NAMED {
-        let folder = folder();
-        let run = |words: &str| prints(&folder, &format!("run {PAPER} --method {method} --quiet --no-report {words}"), 0);
-        run("--end 1 --out half");
-        run("--end 2 --out rest --resume half/checkpoint.json");
-        run("--end 2 --out whole");
-        let state = |name: &str| read_json(folder.path().join(name).join("checkpoint.json"))["state"].clone();
-        let (rest, whole) = (state("rest"), state("whole"));
-        assert_eq!(rest["t"], 2.0);
-        for key in ["x", "v"] {
-            for (a, b) in rest[key].as_array().unwrap().iter().zip(whole[key].as_array().unwrap()) {
-                let (a, b) = (a.as_f64().unwrap(), b.as_f64().unwrap());
-                assert!((a - b).abs() < 1e-9, "{method} {key}: {a} {b}");
-            }
-        }
-        let (_, rows) = csv(folder.path().join("rest/trajectory.csv"));
-        assert_eq!((rows[0][0], rows.len()), (1.0, 41));
-    }
-}
-
-#[test]
-fn a_checkpoint_that_does_not_fit_is_refused() {
-    let folder = folder();
-    prints(&folder, &format!("run {PAPER} --end 1 --quiet --no-report --out a"), 0);
-    fs::write(folder.path().join("no.json"), "{}").unwrap();
-    for (words, told) in [
-        ("run example:four-bar --end 2 --resume a/checkpoint.json".to_string(), "another model"),
-        (format!("run {PAPER} --end 2 --resume no.json"), "no checkpoint"),
-        (format!("run {PAPER} --end 0.5 --resume a/checkpoint.json"), "later --end"),
-    ] {
-        let message = fails(&folder, &words, 2);
-        assert!(message.contains(told), "{words}\n{message}");
-    }
 }

@@ -36,7 +36,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
     let interrupted = interrupt_flag();
     let mut finished: Vec<(String, Finished)> = Vec::new();
     for Planned { label, model, order } in planned {
-        let mut run = simulate(&models[model], order, &interrupted)?;
+        let mut run = simulate(&models[model], order, &interrupted, None)?;
         name(&mut run.summary, &label, &models[model]);
         finished.push((label, run));
     }

@@ -6,14 +6,20 @@ use holonom_io::Writer;
 use holonom_report::Run;
 use serde_json::{Value, json};
 
+use crate::checkpoint::Resumed;
 use crate::failure::{Failure, STOPPED};
 use crate::folder::{Folder, file_stem, holds};
+use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
 use crate::message::{note, unused_parameters};
 use crate::options::{OutputArguments, RunArguments};
-use crate::output::{Finished, Order, simulate, writers};
+use crate::output::{Finished, Order, recorder, simulate, writers};
 use crate::progress::interrupt_flag;
 use crate::table::{list, measured, short};
+
+/// Of runs whose steps are chosen.
+const CHANGED_ACCURACY: &str = "an accuracy is that of the whole run, so its steps depend on its end: the rows up to the checkpoint are those of the \
+                                earlier end";
 
 /// Simulates one model by one method and leaves everything in a folder.
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
@@ -27,11 +33,29 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     }
     let writers = writers(&output.formats)?;
     let mut order = Order::new(&loaded, arguments.method.name.as_deref(), output)?;
-    order.resume = arguments.resume.as_deref().map(load::checkpoint).transpose()?;
-    let usual = format!("{}-{}", loaded.name, file_stem(&order.method.name));
-    let folder = Folder::claim(&output.to, &usual, |path| holds(path, &json!({ "provenance": order.provenance })))?;
-    let finished = simulate(&loaded, order, &interrupt_flag())?;
-    write(&folder, &loaded, &finished, &writers, output)?;
+    let resumed = arguments.resume.as_deref().map(|path| Resumed::open(path, &order.provenance, &loaded.source)).transpose()?;
+    let mut keeper_goes_on = None;
+    let folder = match resumed {
+        None => claim(&loaded, &order, output)?,
+        Some(resumed) => {
+            if !output.to.quiet && loaded.model.settings.choice.accuracy.is_some() && resumed.end != order.provenance.end {
+                note(CHANGED_ACCURACY);
+            }
+            let mut rows = recorder(&loaded.model, order.provenance.every).finish();
+            let bytes = resumed.rows(&mut rows)?;
+            let stays = output.to.out.as_deref().is_none_or(|out| resumed.is_in(out));
+            keeper_goes_on = stays.then(|| (resumed.table, rows.rows(), bytes));
+            order.resume = Some((resumed.point, rows));
+            if stays { resumed.folder } else { claim(&loaded, &order, output)? }
+        }
+    };
+    let mut keeper = Keeper::new(&folder, &loaded, &writers, &order.provenance);
+    if let Some((table, rows, bytes)) = keeper_goes_on {
+        keeper.go_on(&table, rows, bytes);
+    }
+    let finished = simulate(&loaded, order, &interrupt_flag(), Some(&mut keeper))?;
+    keeper.finish(&finished.recording, finished.last.clone(), finished.before_end.clone())?;
+    write(&folder, &loaded, &finished, &keeper.others(&writers), output)?;
     if output.to.json {
         println!("{}", serde_json::to_string_pretty(&finished.summary).expect("a summary is plain data"));
     } else if !output.to.quiet {
@@ -43,17 +67,21 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     Ok(if finished.completed { ExitCode::SUCCESS } else { ExitCode::from(STOPPED) })
 }
 
+/// The folder for a run that does not go on in that of an earlier one.
+fn claim(loaded: &Loaded, order: &Order, output: &OutputArguments) -> Result<Folder, Failure> {
+    let usual = format!("{}-{}", loaded.name, file_stem(&order.method.name));
+    Folder::claim(&output.to, &usual, |path| holds(path, &json!({ "provenance": order.provenance })))
+}
+
+/// Writes what follows from a finished run; the summary comes last, and says that it is finished.
 fn write(folder: &Folder, loaded: &Loaded, finished: &Finished, writers: &[&Writer], output: &OutputArguments) -> Result<(), Failure> {
-    folder.write("summary.json", |out| holonom_io::write_json(&finished.summary, out))?;
-    let kept = serde_json::to_value(&finished.kept).expect("a checkpoint is plain data");
-    folder.write("checkpoint.json", |out| holonom_io::write_json(&kept, out))?;
     folder.write_trajectory("trajectory", writers, loaded, &finished.recording)?;
     if !output.no_report {
         let runs =
             [Run { label: &finished.method, recording: &finished.recording, scene: &loaded.model.scene, summary: &finished.summary }];
         folder.write_report(loaded, &runs)?;
     }
-    Ok(())
+    folder.write("summary.json", |out| holonom_io::write_json(&finished.summary, out))
 }
 
 /// Rounded to five figures.

@@ -8,19 +8,9 @@ use super::plan::Plan;
 use super::run::{Task, constraints};
 use super::vary::Vary;
 use crate::failure::Failure;
-use crate::load::{self, Overrides};
+use crate::load::{self, OF_METHOD, Overrides};
 use crate::options::SweepArguments;
 use crate::output;
-
-/// Keys that the name of a method on the command line replaces.
-const OF_METHOD: [&str; 6] = [
-    "simulation.method",
-    "simulation.formulation",
-    "simulation.index",
-    "simulation.integrator",
-    "simulation.order",
-    "simulation.projection.levels",
-];
 
 /// Refuses keys that nothing can be made of and a model that is not sound; names the columns whose last values are kept.
 pub fn check(arguments: &SweepArguments, overrides: &Overrides, source: &Source, plan: &Plan) -> Result<Vec<String>, Failure> {

@@ -4,6 +4,7 @@ mod mesh;
 mod numbers;
 mod places;
 mod render;
+mod rows;
 mod toml;
 
 use std::collections::{BTreeMap, HashMap};
@@ -16,6 +17,7 @@ use sha2::{Digest, Sha256};
 pub use mesh::{LARGEST_MESH, MOST_TRIANGLES, MeshError, read_mesh};
 pub use numbers::{LARGEST_NUMBERS, NumbersError, read_numbers};
 use places::Places;
+pub use rows::read_csv;
 
 /// Largest model file that is read, bytes: some 40 000 entries, while parsing takes up to fifty times as much memory.
 pub const LARGEST_FILE: usize = 4 * 1024 * 1024;

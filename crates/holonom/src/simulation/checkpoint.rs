@@ -19,6 +19,14 @@ pub struct Checkpoint {
     run: Option<Run>,
 }
 
+impl Checkpoint {
+    /// Whether the run is where a nominal step ends. After a step that the end of the run has cut short it is not, and goes on otherwise
+    /// than it would have without that end.
+    pub fn is_at_nominal_step(&self) -> bool {
+        self.run.as_ref().is_some_and(|run| self.state.t == run.grid.at(run.grid.passed))
+    }
+}
+
 impl From<State> for Checkpoint {
     /// A run that begins at a state: nothing is booked of what was before.
     fn from(state: State) -> Self {
