@@ -1,7 +1,9 @@
 //! From what was typed to a model and a method.
 
+use std::fs::File;
 use std::io::Read;
 use std::path::Path;
+use std::sync::Mutex;
 
 use holonom::model::{Model, Table, Value, nearest};
 use holonom::run::RunError;
@@ -86,10 +88,20 @@ pub fn example(name: &str) -> Result<&'static str, Failure> {
 }
 
 /// The bytes of a file, but no more than show that it is too large for a model.
-fn read_at_most(path: &Path) -> std::io::Result<Vec<u8>> {
+fn read_at_most(file: impl Read) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    std::fs::File::open(path)?.take(holonom_io::LARGEST_FILE as u64 + 1).read_to_end(&mut bytes)?;
+    file.take(holonom_io::LARGEST_FILE as u64 + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+/// The model on standard input. That can be read once only, and some commands need the model more often.
+fn standard_input() -> std::io::Result<Vec<u8>> {
+    static READ: Mutex<Option<Vec<u8>>> = Mutex::new(None);
+    let mut read = READ.lock().expect("no reader panics");
+    match &*read {
+        Some(bytes) => Ok(bytes.clone()),
+        None => Ok(read.insert(read_at_most(std::io::stdin().lock())?).clone()),
+    }
 }
 
 /// Reads a model file, or an example, with the overrides of the command line.
@@ -106,19 +118,26 @@ pub fn load_to_run(argument: &str, overrides: Overrides) -> Result<Loaded, Failu
     Ok(Loaded { model, name, source })
 }
 
+/// The name of a model file that is standard input.
+const STANDARD_INPUT: &str = "-";
+
 /// Reads a model file, or an example, as a description with the overrides of the command line; and its name.
 pub fn open(argument: &str, overrides: &Overrides) -> Result<(Source, String), Failure> {
-    let (name, shown, bytes) = match argument.strip_prefix("example:") {
-        Some(name) => (name.to_string(), format!("{name}.toml"), example(name)?.as_bytes().to_vec()),
-        None => {
+    let fail = |source| Failure::File { doing: "read", path: argument.into(), source };
+    // The name, the file as messages call it, its bytes, and the folder of the files that it names.
+    let (name, shown, bytes, folder) = match (argument, argument.strip_prefix("example:")) {
+        (_, Some(name)) => (name.to_string(), format!("{name}.toml"), example(name)?.as_bytes().to_vec(), None),
+        (STANDARD_INPUT, _) => ("stdin".to_string(), "stdin".to_string(), standard_input().map_err(fail)?, Some(Path::new(""))),
+        _ => {
             let path = Path::new(argument);
-            let bytes = read_at_most(path).map_err(|source| Failure::File { doing: "read", path: path.into(), source })?;
-            (path.file_stem().map_or_else(|| argument.to_string(), |stem| stem.to_string_lossy().into_owned()), argument.to_string(), bytes)
+            let bytes = File::open(path).and_then(read_at_most).map_err(fail)?;
+            let name = path.file_stem().map_or_else(|| argument.to_string(), |stem| stem.to_string_lossy().into_owned());
+            (name, argument.to_string(), bytes, path.parent())
         }
     };
     let mut source = Source::read(&shown, &bytes).map_err(Failure::Model)?;
-    if !argument.starts_with("example:") {
-        source = source.beside(Path::new(argument).parent().unwrap_or(Path::new(".")));
+    if let Some(folder) = folder {
+        source = source.beside(folder);
     }
     for given in &overrides.0 {
         let (key, value) = split(given)?;

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueHint};
+use clap_complete::Shell;
 
 /// Dynamics of mechanisms: exact constraints, audited energy, large steps.
 #[derive(Debug, Parser)]
@@ -28,16 +29,19 @@ pub enum Command {
     Methods(MethodsArguments),
     /// The gallery inside the binary
     Examples(ExamplesArguments),
-    /// Serve the report of a run on 127.0.0.1
+    /// Show the report of a run in the browser, served on 127.0.0.1
     View(ViewArguments),
     /// JSON Schema of the model file
     Schema,
+    /// Print what makes a shell complete commands and options
+    Completions(CompletionsArguments),
 }
 
 /// A model and what is changed of it.
 #[derive(Debug, Args)]
 pub struct ModelArguments {
-    /// A model file, or example:NAME
+    /// A model file, - for standard input, or example:NAME
+    #[arg(value_hint = ValueHint::FilePath)]
     pub model: String,
     /// Set any key of the model file, such as simulation.step=0.01 or parameters.N=40
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -203,4 +207,13 @@ pub struct ViewArguments {
     /// Port; 0 takes a free one
     #[arg(long, default_value_t = 0)]
     pub port: u16,
+    /// Print the address only
+    #[arg(long)]
+    pub no_browser: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct CompletionsArguments {
+    /// The shell
+    pub shell: Shell,
 }

@@ -209,7 +209,7 @@ fn view_serves_the_report_on_this_machine() {
     let folder = folder();
     prints(&folder, &format!("run {PAPER} --end 0.1 --quiet --out a"), 0);
     let mut process = Process::new(env!("CARGO_BIN_EXE_holonom"));
-    let mut server = Ends(process.current_dir(&folder).args(["view", "a"]).stdout(Stdio::piped()).spawn().unwrap());
+    let mut server = Ends(process.current_dir(&folder).args(["view", "a", "--no-browser"]).stdout(Stdio::piped()).spawn().unwrap());
     let mut line = String::new();
     BufReader::new(server.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
     let address = line.trim().strip_prefix("http://").unwrap_or_else(|| panic!("{line}"));
@@ -225,4 +225,107 @@ fn view_serves_the_report_on_this_machine() {
     assert!(page.starts_with("HTTP/1.1 200") && page.contains("text/html"), "{}", &page[..page.len().min(300)]);
     assert!(page.ends_with(&fs::read_to_string(folder.path().join("a/report.html")).unwrap()) || page.contains("chunked"));
     assert!(missing.starts_with("HTTP/1.1 404"), "{missing}");
+}
+
+/// A program in the folder is called as the desktop's own is.
+#[cfg(target_os = "linux")]
+#[test]
+fn view_opens_the_browser_where_there_is_one() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = folder();
+    prints(&folder, &format!("run {PAPER} --end 0.1 --quiet --out a"), 0);
+    let (browser, opened) = (folder.path().join("xdg-open"), folder.path().join("opened"));
+    fs::write(&browser, "#!/bin/sh\necho \"$1\" > opened.new && mv opened.new opened\n").unwrap();
+    fs::set_permissions(&browser, fs::Permissions::from_mode(0o755)).unwrap();
+    let path = format!("{}:{}", folder.path().display(), std::env::var("PATH").unwrap());
+    let mut process = Process::new(env!("CARGO_BIN_EXE_holonom"));
+    let mut server = Ends(process.current_dir(&folder).env("PATH", path).args(["view", "a"]).stdout(Stdio::piped()).spawn().unwrap());
+    let mut line = String::new();
+    BufReader::new(server.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    let begun = std::time::Instant::now();
+    while !opened.exists() && begun.elapsed() < std::time::Duration::from_secs(60) {
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    assert_eq!(fs::read_to_string(opened).unwrap(), line);
+}
+
+/// What a command that reads a model from standard input prints and says, with its exit status.
+fn fed(folder: &tempfile::TempDir, model: &str, words: &str) -> (String, String, Option<i32>) {
+    let mut command = assert_cmd::Command::cargo_bin("holonom").unwrap();
+    let output = command.current_dir(folder).args(words.split_whitespace()).write_stdin(model).output().unwrap();
+    (text(&output.stdout), text(&output.stderr), output.status.code())
+}
+
+#[test]
+fn a_model_may_come_from_standard_input() {
+    let folder = folder();
+    let solid = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    fs::write(folder.path().join("part.obj"), solid).unwrap();
+    let model = "[body.b]\nposition = [0, 0, 0]\ndensity = 1000\nshape = { mesh = \"part.obj\" }\n[simulation]\nstep = 0.1\nend = 0.2\n";
+    let (out, err, status) = fed(&folder, model, "run -");
+    assert!(status == Some(0) && out.ends_with("results in results/stdin-conserving-ggl\n"), "{out}\n{err}");
+    assert_eq!(read_json(folder.path().join("results/stdin-conserving-ggl/summary.json"))["provenance"]["model"], model);
+    // Commands that read the model several times read the same.
+    for words in
+        ["check -", "compare - --method radau --quiet", "stability - --method radau --quiet", "sweep - --vary body.b.density=1,2 --quiet"]
+    {
+        let (_, err, status) = fed(&folder, model, words);
+        assert_eq!((status, err.as_str()), (Some(0), ""), "{words}");
+    }
+    let (_, err, status) = fed(&folder, "[point.a]\nmas = 1\n", "check -");
+    assert!(status == Some(2) && err.contains("--> stdin:2:1"), "{err}");
+    let (_, err, status) = fed(&folder, "", "run -");
+    assert!(status == Some(2) && err.contains("stdin:1:1") && err.contains("empty"), "{err}");
+}
+
+#[test]
+fn messages_have_colours_where_these_are_wanted() {
+    let folder = folder();
+    fs::write(folder.path().join("wrong.toml"), "[point.a]\nmas = 1\nposition = [1, 0, 0] # error: note: cure:\n").unwrap();
+    let said = |words: &str, force: bool, no_color: bool| {
+        let mut command = assert_cmd::Command::cargo_bin("holonom").unwrap();
+        command.current_dir(&folder).args(words.split(' ')).env_remove("NO_COLOR").env_remove("CLICOLOR_FORCE");
+        force.then(|| command.env("CLICOLOR_FORCE", "1"));
+        no_color.then(|| command.env("NO_COLOR", "1"));
+        text(&command.output().unwrap().stderr)
+    };
+    for words in ["check wrong.toml", "run nothing.toml", "run example:chain --method fast", "run example:chain --set x"] {
+        let (plain, coloured) = (said(words, false, false), said(words, true, false));
+        assert!(!plain.contains('\x1b') && coloured.contains("\x1b[1m\x1b[31merror:\x1b[0m "), "{coloured:?}");
+        assert_eq!(coloured.contains("\x1b[1m\x1b[32mcure:\x1b[0m "), plain.contains("cure: "), "{coloured:?}");
+        assert_eq!(said(words, true, true), plain);
+        let mut bare = coloured.clone();
+        ["\x1b[1m", "\x1b[31m", "\x1b[32m", "\x1b[0m"].iter().for_each(|code| bare = bare.replace(code, ""));
+        assert_eq!(bare, plain);
+    }
+}
+
+#[test]
+fn shells_complete_commands_and_options() {
+    let folder = folder();
+    let listed: Vec<String> =
+        prints(&folder, "--help", 0).lines().filter_map(|line| line.strip_prefix("  ")?.split(' ').next().map(str::to_string)).collect();
+    let commands: Vec<&String> = listed.iter().filter(|word| word.chars().all(char::is_alphabetic) && !word.is_empty()).collect();
+    assert!(commands.len() > 10, "{commands:?}");
+    for shell in ["bash", "zsh", "fish"] {
+        let script = prints(&folder, &format!("completions {shell}"), 0);
+        for word in commands.iter().map(|word| word.as_str()).chain(["no-report", "resume", "force"]) {
+            assert!(script.contains(word), "{shell}: {word}");
+        }
+    }
+    assert!(fails_to_parse(&folder, "completions tcsh").contains("bash"));
+
+    // What bash makes of it, where there is one.
+    fs::write(folder.path().join("script"), prints(&folder, "completions bash", 0)).unwrap();
+    let ask = "source ./script; COMP_WORDS=(holonom run --res); COMP_CWORD=2; _holonom holonom --res run; echo \"${COMPREPLY[@]}\"";
+    if let Ok(output) = Process::new("bash").current_dir(&folder).args(["--norc", "-c", ask]).output() {
+        assert_eq!(text(&output.stdout), "--resume\n", "{}", text(&output.stderr));
+    }
+}
+
+/// Runs a command that the command line refuses and hands back its message.
+fn fails_to_parse(folder: &tempfile::TempDir, words: &str) -> String {
+    let output = holonom(folder, words);
+    assert_eq!(output.status.code(), Some(2), "{words}");
+    text(&output.stderr)
 }
