@@ -59,7 +59,7 @@ def command(model, keys, method, step, end, out):
     chosen = ["--method", method] if method else []
     sets = [part for key in keys for part in ("--set", key)]
     steps = ["--step", repr(step), "--end", repr(end), "--every", "1000000000"]
-    return [HOLONOM, "run", model, *sets, *chosen, *steps, "--json", "--no-report", "--out", out]
+    return [HOLONOM, "run", model, *sets, *chosen, *steps, "--json", "--no-report", "--force", "--out", out]
 
 
 def summary(*run):

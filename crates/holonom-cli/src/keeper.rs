@@ -88,6 +88,11 @@ impl<'a> Keeper<'a> {
         Ok(())
     }
 
+    /// The time (s) that the results in the folder reach, where the same run ended later there than at `t`.
+    pub fn is_behind(&self, t: f64) -> Option<f64> {
+        Some(self.beyond).filter(|&beyond| t < beyond && beyond.is_finite())
+    }
+
     /// Saves the end of a run. Results of the same run may stay beside it.
     pub fn finish(&mut self, recording: &Recording, last: Point, before_end: Option<Point>) -> Result<(), Failure> {
         self.is_stale &= self.beyond == f64::NEG_INFINITY;

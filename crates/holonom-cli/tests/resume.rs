@@ -3,8 +3,9 @@
 mod common;
 
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Child, Command as Process};
+use std::process::{Child, Command as Process, Stdio};
 use std::time::{Duration, Instant};
 
 use common::*;
@@ -218,6 +219,22 @@ fn reached(folder: &Path) -> Option<f64> {
     value["state"]["t"].as_f64()
 }
 
+/// As where a run is interrupted that was interrupted later before.
+#[test]
+fn a_shorter_part_of_a_run_does_not_replace_a_longer_one() {
+    let folder = folder();
+    let out = folder.path().join("a");
+    prints(&folder, &format!("run {PAPER} --end 1 --quiet --out a"), 0);
+    let mut checkpoint = read_json(out.join("checkpoint.json"));
+    checkpoint["state"]["t"] = 7.5.into();
+    fs::write(out.join("checkpoint.json"), checkpoint.to_string()).unwrap();
+    let content = || -> Vec<Vec<u8>> { files(&out).iter().map(|name| fs::read(out.join(name)).unwrap()).collect() };
+    let before = content();
+    let output = holonom(&folder, &format!("run {PAPER} --end 1 --out a"));
+    assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), "note: a holds the same run up to 7.5 s, which stays\n"));
+    assert!(before == content());
+}
+
 #[test]
 fn a_run_that_was_killed_or_interrupted_goes_on_to_the_same_bytes() {
     let folder = folder();
@@ -233,6 +250,22 @@ fn a_run_that_was_killed_or_interrupted_goes_on_to_the_same_bytes() {
     child.wait().unwrap();
     assert_eq!(files(&out), names(&["checkpoint.json", "columns.json", "trajectory.csv"]));
     let killed = reached(&out).unwrap();
+    // A run from the start may take the folder, but as long as it is behind, what is there stays.
+    let before = fs::read(out.join("checkpoint.json")).unwrap();
+    let mut process = Process::new(env!("CARGO_BIN_EXE_holonom"));
+    let again = format!("run {words} {long} --out a").replace("--quiet ", "");
+    let mut child =
+        process.current_dir(&folder).args(again.split_whitespace()).stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
+    let mut note = String::new();
+    BufReader::new(child.stderr.take().unwrap()).read_line(&mut note).unwrap();
+    assert!(
+        note.starts_with("note: a holds this run up to ") && note.ends_with("where it was killed; --resume a goes on from there\n"),
+        "{note}"
+    );
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert_eq!(before, fs::read(out.join("checkpoint.json")).unwrap());
+
     // Every whole line can be read, and a kill may tear the last one.
     let mut table = fs::read(out.join("trajectory.csv")).unwrap();
     assert!(table.iter().filter(|&&byte| byte == b'\n').count() as f64 > killed / 0.5);

@@ -33,29 +33,20 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     }
     let writers = writers(&output.formats)?;
     let mut order = Order::new(&loaded, arguments.method.name.as_deref(), output)?;
-    let resumed = arguments.resume.as_deref().map(|path| Resumed::open(path, &order.provenance, &loaded.source)).transpose()?;
-    let mut keeper_goes_on = None;
-    let folder = match resumed {
-        None => claim(&loaded, &order, output)?,
-        Some(resumed) => {
-            if !output.to.quiet && loaded.model.settings.choice.accuracy.is_some() && resumed.end != order.provenance.end {
-                note(CHANGED_ACCURACY);
-            }
-            let mut rows = recorder(&loaded.model, order.provenance.every).finish();
-            let bytes = resumed.rows(&mut rows)?;
-            let stays = output.to.out.as_deref().is_none_or(|out| resumed.is_in(out));
-            keeper_goes_on = stays.then(|| (resumed.table, rows.rows(), bytes));
-            order.resume = Some((resumed.point, rows));
-            if stays { resumed.folder } else { claim(&loaded, &order, output)? }
-        }
-    };
+    let (folder, on_disk) = place(arguments, &loaded, &mut order)?;
     let mut keeper = Keeper::new(&folder, &loaded, &writers, &order.provenance);
-    if let Some((table, rows, bytes)) = keeper_goes_on {
+    if let Some(OnDisk { table, rows, bytes }) = on_disk {
         keeper.go_on(&table, rows, bytes);
     }
     let finished = simulate(&loaded, order, &interrupt_flag(), Some(&mut keeper))?;
-    keeper.finish(&finished.recording, finished.last.clone(), finished.before_end.clone())?;
-    write(&folder, &loaded, &finished, &keeper.others(&writers), output)?;
+    match keeper.is_behind(finished.last.run.state.t) {
+        Some(t) if !output.to.quiet => note(&format!("{} holds the same run up to {} s, which stays", folder.path.display(), short(t))),
+        Some(_) => (),
+        None => {
+            keeper.finish(&finished.recording, finished.last.clone(), finished.before_end.clone())?;
+            write(&folder, &loaded, &finished, &keeper.others(&writers), output)?;
+        }
+    }
     if output.to.json {
         println!("{}", serde_json::to_string_pretty(&finished.summary).expect("a summary is plain data"));
     } else if !output.to.quiet {
@@ -67,10 +58,41 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     Ok(if finished.completed { ExitCode::SUCCESS } else { ExitCode::from(STOPPED) })
 }
 
+/// Rows of an earlier run in the folder, and the file and the bytes that have them.
+struct OnDisk {
+    table: String,
+    rows: usize,
+    bytes: u64,
+}
+
+/// The folder for a run. One that is resumed is told where to go on, and stays in the folder of the earlier run unless another is named.
+fn place(arguments: &RunArguments, loaded: &Loaded, order: &mut Order) -> Result<(Folder, Option<OnDisk>), Failure> {
+    let output = &arguments.output;
+    let Some(path) = &arguments.resume else { return Ok((claim(loaded, order, output)?, None)) };
+    let resumed = Resumed::open(path, &order.provenance, &loaded.source)?;
+    if !output.to.quiet && loaded.model.settings.choice.accuracy.is_some() && resumed.end != order.provenance.end {
+        note(CHANGED_ACCURACY);
+    }
+    let mut before = recorder(&loaded.model, order.provenance.every).finish();
+    let bytes = resumed.rows(&mut before)?;
+    let rows = before.rows();
+    let stays = output.to.out.as_deref().is_none_or(|out| resumed.is_in(out));
+    order.resume = Some((resumed.point, before));
+    match stays {
+        true => Ok((resumed.folder, Some(OnDisk { table: resumed.table, rows, bytes }))),
+        false => Ok((claim(loaded, order, output)?, None)),
+    }
+}
+
 /// The folder for a run that does not go on in that of an earlier one.
 fn claim(loaded: &Loaded, order: &Order, output: &OutputArguments) -> Result<Folder, Failure> {
     let usual = format!("{}-{}", loaded.name, file_stem(&order.method.name));
-    Folder::claim(&output.to, &usual, |path| holds(path, &json!({ "provenance": order.provenance })))
+    let folder = Folder::claim(&output.to, &usual, |path| holds(path, &json!({ "provenance": order.provenance })))?;
+    if let Some(t) = folder.reached().filter(|_| !output.to.quiet && !folder.path.join("summary.json").exists()) {
+        let path = folder.path.display();
+        note(&format!("{path} holds this run up to {} s, where it was killed; --resume {path} goes on from there", short(t)));
+    }
+    Ok(folder)
 }
 
 /// Writes what follows from a finished run; the summary comes last, and says that it is finished.
