@@ -189,6 +189,27 @@ fn another_run_is_refused_with_what_differs() {
     assert!(fails(&folder, "run two.toml --end 2 --resume two", 2).contains("another order"));
 }
 
+/// An unbroken run stops there, too, and so must one that goes on.
+#[test]
+fn a_run_that_stopped_of_itself_stays_stopped() {
+    let folder = folder();
+    let words = format!(
+        "run {PAPER} --method trapezoidal --set simulation.iteration=simultaneous --set simulation.penalty=1e7 \
+                         --set simulation.tolerance=1e-9 --set simulation.subdivide=false --no-report --quiet"
+    );
+    prints(&folder, &format!("{words} --out a"), 3);
+    prints(&folder, &format!("{words} --end 25 --resume a"), 3);
+    prints(&folder, &format!("{words} --end 25 --out whole"), 3);
+    // Attempts at the step that fails are counted each time, so only the table is the same.
+    let [a, whole] = ["a", "whole"].map(|name| fs::read(folder.path().join(name).join("trajectory.csv")).unwrap());
+    assert!(a == whole);
+    // Too small an error for so long a run: the last step is left in its midst.
+    let words = "run example:double-pendulum --set simulation.accuracy=1e-6 --no-report --quiet --step 0.01 --end 2500";
+    prints(&folder, &format!("{words} --out b"), 3);
+    let message = fails(&folder, &format!("{words} --resume b"), 2);
+    assert!(message.contains("stopped within a step, at 0.259"), "{message}");
+}
+
 #[test]
 fn a_mesh_that_was_changed_is_refused() {
     let folder = folder();
