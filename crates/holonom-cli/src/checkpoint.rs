@@ -91,9 +91,9 @@ impl Resumed {
             return Err(refuse(format!("is at {reached} s, and the run ends at {} s", run.end), "give a later --end"));
         }
         let point = kept.before_end.unwrap_or(kept.last);
-        if !point.run.is_at_nominal_step() {
-            let message = format!("is of a run that stopped within a step, at {reached} s, where an unbroken run stops, too");
-            return Err(refuse(message, "run from the start with another step, method or accuracy"));
+        if !point.run.goes_on_unbroken() {
+            let message = format!("is of a run that an event or a failed step ended at {reached} s, where an unbroken run ends, too");
+            return Err(refuse(message, "run from the start without that event, or with another step, method or accuracy"));
         }
         Ok(Self { folder, end: kept.provenance.end, point, table: kept.table })
     }

@@ -120,7 +120,7 @@ pub fn simulate(
     }
     value["provenance"] = serde_json::to_value(&provenance).expect("a provenance is plain data");
     let last = Point::of(&simulation, &watched.recorder);
-    let before_end = watched.before_end.take().filter(|_| !last.run.is_at_nominal_step());
+    let before_end = watched.before_end.take().filter(|_| !last.run.goes_on_unbroken());
     let recording = watched.finish();
     value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording)).expect("peaks are plain data");
     Ok(Finished { method: name, recording, summary: value, completed: status == Status::Completed, last, before_end })

@@ -207,7 +207,70 @@ fn a_run_that_stopped_of_itself_stays_stopped() {
     let words = "run example:double-pendulum --set simulation.accuracy=1e-6 --no-report --quiet --step 0.01 --end 2500";
     prints(&folder, &format!("{words} --out b"), 3);
     let message = fails(&folder, &format!("{words} --resume b"), 2);
-    assert!(message.contains("stopped within a step, at 0.259"), "{message}");
+    assert!(message.contains("an event or a failed step ended at 0.259"), "{message}");
+}
+
+const CRANE: &str = "plane = \"xz\"\n[simulation]\nstep = 0.01\nend = 2\n[input.command]\ndefault = 2\n\
+    [body.trolley]\nmass = 100\ninertia = 10\nposition = [0, 0]\n[body.load]\nmass = 300\ninertia = 30\nposition = [0.5, -5]\n\
+    [joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"trolley\"]\naxis = [1, 0]\n\
+    [joint.pivot]\ntype = \"revolute\"\nbetween = [\"trolley\", \"load\"]\nat = [0, 0]\n\
+    [force.controller]\ntype = \"effort\"\njoint = \"rail\"\neffort = \"80*(command - q) - 150*q_rate\"\n\
+    [measure.sway]\nvalue = \"load.x - trolley.x\"\n[measure.most]\nvalue = \"max(abs(sway))\"\n\
+    [measure.rms]\nvalue = \"rms(sway)\"\n[measure.sum]\nvalue = \"integral(sway)\"\n\
+    [event.later]\nwhen = \"t - 0.555\"\nset = { command = 3 }\n";
+
+#[test]
+fn running_measures_and_inputs_that_were_set_go_on() {
+    let file = std::env::temp_dir().join(format!("holonom-crane-{}.toml", std::process::id()));
+    fs::write(&file, CRANE).unwrap();
+    for method in ["conserving-ggl", "radau", "generalized-alpha"] {
+        for options in ["--no-report", "--every 7 --no-report"] {
+            let model = file.display();
+            in_parts(
+                &model.to_string(),
+                &format!("--method {method} {options}"),
+                &["0.3", "0.5", "0.55", "0.555", "0.56", "0.8123"],
+                "1.5",
+            );
+        }
+    }
+    fs::remove_file(file).unwrap();
+}
+
+/// An unbroken run to a later end does not pass it, either.
+#[test]
+fn an_event_that_ended_a_run_is_not_passed() {
+    let folder = folder();
+    for (time, last) in [("0.5", "2"), ("0.512", "2"), ("0.5", "0.505"), ("0.512", "0.515")] {
+        fs::write(folder.path().join("m.toml"), format!("{CRANE}[event.end]\nwhen = \"t - {time}\"\nstop = true\n")).unwrap();
+        prints(&folder, &format!("run m.toml --end {last} --quiet --no-report --out a --force"), 0);
+        let before = fs::read(folder.path().join("a/trajectory.csv")).unwrap();
+        if last == "2" {
+            let message = fails(&folder, "run m.toml --end 3 --resume a", 2);
+            assert!(message.contains(&format!("an event or a failed step ended at {time}")), "{message}");
+        } else {
+            // The last step is taken again, and the event happens again.
+            prints(&folder, "run m.toml --end 3 --quiet --no-report --resume a", 0);
+        }
+        assert!(before == fs::read(folder.path().join("a/trajectory.csv")).unwrap(), "{time} {last}");
+    }
+}
+
+#[test]
+fn a_table_that_was_changed_is_refused_and_is_another_run() {
+    let folder = folder();
+    let model = "[table.law]\nfile = \"law.csv\"\n[point.p]\nmass = 1\nposition = [0, 0, 1]\n\
+                 [force.f]\ntype = \"spring\"\nbetween = [\"ground\", \"p\"]\nstiffness = 1\nforce = \"law(rate)\"\n\
+                 [simulation]\nstep = 0.01\nend = 0.1\n";
+    fs::write(folder.path().join("m.toml"), model).unwrap();
+    for (number, law) in ["v,f\n-1,-1\n1,1\n", "v,f\n-1,-2\n1,2\n"].iter().enumerate() {
+        fs::write(folder.path().join("law.csv"), law).unwrap();
+        if number == 1 {
+            assert!(fails(&folder, "run m.toml --end 1 --resume results/m-conserving-ggl", 2).contains("the file `law.csv` was changed"));
+        }
+        prints(&folder, "run m.toml --quiet --no-report", 0);
+        assert_eq!(files(folder.path().join("results")).len(), number + 1);
+    }
 }
 
 #[test]

@@ -20,10 +20,13 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// Whether the run is where a nominal step ends. After a step that the end of the run has cut short it is not, and goes on otherwise
-    /// than it would have without that end.
-    pub fn is_at_nominal_step(&self) -> bool {
-        self.run.as_ref().is_some_and(|run| self.state.t == run.grid.at(run.grid.passed))
+    /// Whether a run that goes on from here is as one that did not end here: not from within a nominal step, as after a last one that the
+    /// end of the run has cut short, and not where an event has ended the run.
+    pub fn goes_on_unbroken(&self) -> bool {
+        self.run.as_ref().is_some_and(|run| {
+            let is_ended = run.happenings.last().is_some_and(|last| last.stopped && last.t == self.state.t);
+            self.state.t == run.grid.at(run.grid.passed) && !is_ended
+        })
     }
 }
 
