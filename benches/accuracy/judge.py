@@ -53,7 +53,7 @@ def run(case, method, end, limit, folder, **keys):
     path = folder / "model.toml"
     path.write_text(toml(case.model))
     settings = [part for key, value in keys.items() for part in ("--set", f"simulation.{key}={value!r}")]
-    command = [HOLONOM, "run", path, "--method", method, "--end", repr(end), *settings, "--json", "--no-report", "--out", folder / "out"]
+    command = [HOLONOM, "run", path, "--method", method, "--end", repr(end), *settings, "--json", "--no-report", "--force", "--out", folder / "out"]
     if "step" in keys:
         command += ["--every", str(round(end / ROWS / keys["step"]))]
     else:

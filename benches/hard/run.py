@@ -96,7 +96,7 @@ def run(case, method, halvings, folder):
     steps, count = samples(case, method)
     step, end = case.step / 2**halvings, steps * case.step
     command = [HOLONOM, "run", model_of(case, folder), "--method", method, "--step", repr(step), "--end", repr(end),
-               "--every", str((steps // count) * 2**halvings), "--json", "--no-report", "--out", str(folder / "out")]
+               "--every", str((steps // count) * 2**halvings), "--json", "--no-report", "--force", "--out", str(folder / "out")]
     found = result_of(call(command))
     if case.truth is None:
         return found, None

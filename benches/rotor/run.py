@@ -27,7 +27,7 @@ ENERGY = 1.0  # J, of the rotor at the start
 
 
 def run(folder):
-    command = [os.environ.get("HOLONOM", "holonom"), "compare", str(MODEL), "--every", "100", "--no-report", "--quiet", "--out", folder]
+    command = [os.environ.get("HOLONOM", "holonom"), "compare", str(MODEL), "--every", "100", "--no-report", "--quiet", "--force", "--out", folder]
     command += [f"--method={method}" for method in METHODS] + [f"--step={step}" for step in STEPS]
     # Runs that stop are part of the table.
     subprocess.run(command, check=False)

@@ -58,7 +58,7 @@ class Holonom:
             else:
                 command += ["--step", repr(step)]
                 every = max(1, round(problem.samples / step)) if compared else every
-            command += ["--every", str(every), "--json", "--no-report", "--out", folder]
+            command += ["--every", str(every), "--json", "--no-report", "--force", "--out", folder]
             done = call(command, limit)
             if not done.stdout.startswith("{"):
                 raise Failed("does not start")

@@ -27,7 +27,7 @@ def run(holonom, method, step):
     with tempfile.TemporaryDirectory() as folder:
         for _ in range(3):
             command = [holonom, "run", "example:chain", "--method", method, "--step", str(step), "--end", "5"]
-            command += ["--every", "1000000", "--out", folder, "--no-report", "--json"]
+            command += ["--every", "1000000", "--force", "--out", folder, "--no-report", "--json"]
             summary = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
             times.append(summary["time"]["cpu_s"])
         with open(f"{folder}/checkpoint.json") as file:

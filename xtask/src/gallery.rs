@@ -60,7 +60,7 @@ fn picture(root: &Path, part: &str, shot: &Shot, model: &Path) -> Result<(), Str
 fn run(root: &Path, shot: &Shot, model: &Path, results: &Path) -> Result<(), String> {
     let mut command = Command::new("cargo");
     command.current_dir(root).args(["run", "--release", "--quiet", "-p", "holonom-cli", "--", "run"]);
-    command.arg(model).args(shot.run).args(["--quiet", "--out"]).arg(results);
+    command.arg(model).args(shot.run).args(["--quiet", "--force", "--out"]).arg(results);
     match command.status() {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(format!("the run of {} ended with {status}", model.display())),

@@ -1,16 +1,17 @@
 //! From what was typed to a model and a method.
 
+use std::fs::File;
 use std::io::Read;
 use std::path::Path;
+use std::sync::Mutex;
 
-use holonom::model::Model;
-use holonom::record::RecorderMark;
+use holonom::model::{Model, Table, Value, nearest};
 use holonom::run::RunError;
-use holonom::simulation::{Checkpoint, Method, MethodError, StartError};
+use holonom::simulation::{Method, MethodError, StartError};
 use holonom_io::Source;
-use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
+use crate::provenance::{Override, Provenance, VERSION, command_line, now};
 use crate::table::short;
 
 /// The gallery: name and text of every example.
@@ -42,7 +43,7 @@ pub struct Loaded {
     pub model: Model,
     /// Name of the file without its ending, or of the example.
     pub name: String,
-    pub text: String,
+    pub source: Source,
 }
 
 /// Keys of the model file that the command line sets.
@@ -87,45 +88,102 @@ pub fn example(name: &str) -> Result<&'static str, Failure> {
 }
 
 /// The bytes of a file, but no more than show that it is too large for a model.
-fn read_at_most(path: &Path) -> std::io::Result<Vec<u8>> {
+fn read_at_most(file: impl Read) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    std::fs::File::open(path)?.take(holonom_io::LARGEST_FILE as u64 + 1).read_to_end(&mut bytes)?;
+    file.take(holonom_io::LARGEST_FILE as u64 + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+/// The model on standard input. That can be read once only, and some commands need the model more often.
+fn standard_input() -> std::io::Result<Vec<u8>> {
+    static READ: Mutex<Option<Vec<u8>>> = Mutex::new(None);
+    let mut read = READ.lock().expect("no reader panics");
+    match &*read {
+        Some(bytes) => Ok(bytes.clone()),
+        None => Ok(read.insert(read_at_most(std::io::stdin().lock())?).clone()),
+    }
 }
 
 /// Reads a model file, or an example, with the overrides of the command line.
 pub fn load(argument: &str, overrides: Overrides) -> Result<Loaded, Failure> {
     let (source, name) = open(argument, &overrides)?;
     let model = source.model().map_err(Failure::Model)?;
-    Ok(Loaded { model, name, text: source.text().to_string() })
+    Ok(Loaded { model, name, source })
 }
 
 /// The same for a run that records forces.
 pub fn load_to_run(argument: &str, overrides: Overrides) -> Result<Loaded, Failure> {
     let (source, name) = open(argument, &overrides)?;
     let model = source.model_with_forces().map_err(Failure::Model)?;
-    Ok(Loaded { model, name, text: source.text().to_string() })
+    Ok(Loaded { model, name, source })
 }
+
+/// The name of a model file that is standard input.
+const STANDARD_INPUT: &str = "-";
 
 /// Reads a model file, or an example, as a description with the overrides of the command line; and its name.
 pub fn open(argument: &str, overrides: &Overrides) -> Result<(Source, String), Failure> {
-    let (name, shown, bytes) = match argument.strip_prefix("example:") {
-        Some(name) => (name.to_string(), format!("{name}.toml"), example(name)?.as_bytes().to_vec()),
-        None => {
+    let fail = |source| Failure::File { doing: "read", path: argument.into(), source };
+    // The name, the file as messages call it, its bytes, and the folder of the files that it names.
+    let (name, shown, bytes, folder) = match (argument, argument.strip_prefix("example:")) {
+        (_, Some(name)) => (name.to_string(), format!("{name}.toml"), example(name)?.as_bytes().to_vec(), None),
+        (STANDARD_INPUT, _) => ("stdin".to_string(), "stdin".to_string(), standard_input().map_err(fail)?, Some(Path::new(""))),
+        _ => {
             let path = Path::new(argument);
-            let bytes = read_at_most(path).map_err(|source| Failure::File { doing: "read", path: path.into(), source })?;
-            (path.file_stem().map_or_else(|| argument.to_string(), |stem| stem.to_string_lossy().into_owned()), argument.to_string(), bytes)
+            let bytes = File::open(path).and_then(read_at_most).map_err(fail)?;
+            let name = path.file_stem().map_or_else(|| argument.to_string(), |stem| stem.to_string_lossy().into_owned());
+            (name, argument.to_string(), bytes, path.parent())
         }
     };
     let mut source = Source::read(&shown, &bytes).map_err(Failure::Model)?;
-    if !argument.starts_with("example:") {
-        source = source.beside(Path::new(argument).parent().unwrap_or(Path::new(".")));
+    if let Some(folder) = folder {
+        source = source.beside(folder);
     }
     for given in &overrides.0 {
         let (key, value) = split(given)?;
+        require_key("--set", key, &source)?;
         source.set(key, value).map_err(Failure::Model)?;
     }
     Ok((source, name))
+}
+
+/// Keys that the name of a method on the command line replaces.
+pub const OF_METHOD: [&str; 6] = [
+    "simulation.method",
+    "simulation.formulation",
+    "simulation.index",
+    "simulation.integrator",
+    "simulation.order",
+    "simulation.projection.levels",
+];
+
+/// Refuses a parameter that the model does not have, as nothing would come of it, and the bare name of one that it has. `option` is how
+/// the key was given.
+pub fn require_key(option: &str, key: &str, source: &Source) -> Result<(), Failure> {
+    let parameters = match source.get("parameters") {
+        Some(Value::Table(table)) => table,
+        _ => &Table::default(),
+    };
+    match key.strip_prefix("parameters.") {
+        Some(name) if parameters.get(name).is_none() => {
+            let cure = nearest(name, parameters.keys())
+                .map_or("add it to [parameters], and name it in the model".to_string(), |near| format!("did you mean `{near}`?"));
+            Err(Failure::usage(format!("the model has no parameter `{name}`"), cure))
+        }
+        None if parameters.get(key).is_some() && !is_of_file(key) => Err(Failure::usage(
+            format!("`{key}` is a parameter and no key of the model file"),
+            format!("write {option} parameters.{key}=…"),
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Whether a model file may have a key outside all tables, or a table, of this name.
+fn is_of_file(key: &str) -> bool {
+    match holonom::model::schema() {
+        Value::Table(schema) => matches!(schema.get("properties"), Some(Value::Table(keys)) if keys.get(key).is_some()),
+        _ => false,
+    }
 }
 
 /// Key and value of an override.
@@ -163,6 +221,32 @@ impl Loaded {
     /// Name of a run's report: the model's title, or the file's name.
     pub fn title(&self) -> &str {
         if self.model.title.is_empty() { &self.name } else { &self.model.title }
+    }
+
+    /// What a run by a method is. The command line may have named the method, and the share of the steps that is recorded.
+    pub fn provenance(&self, method: &Method, named: Option<&str>, every: Option<u64>) -> Result<Provenance, Failure> {
+        let json = |value: Option<&Value>| value.map_or(serde_json::Value::Null, holonom_io::to_json);
+        let replaced = |(key, file): &(String, Option<Value>)| Override {
+            key: key.clone(),
+            file: json(file.as_ref()),
+            run: json(self.source.get(key)),
+        };
+        let option = |key: &str, run| Override { key: key.into(), file: json(self.source.get(key)), run };
+        let mut overrides: Vec<Override> = self.source.replaced().iter().map(replaced).collect();
+        overrides.extend(named.map(|name| option("simulation.method", name.into())));
+        overrides.extend(every.map(|every| option("output.every", every.into())));
+        Ok(Provenance {
+            version: VERSION.into(),
+            date: now(),
+            command: command_line(),
+            method: method.name.clone(),
+            step: self.step()?,
+            end: self.end()?,
+            every: every.unwrap_or_else(|| self.every()),
+            overrides,
+            files: self.source.files(),
+            model: self.source.text().into(),
+        })
     }
 
     /// Gravity for people.
@@ -205,20 +289,4 @@ pub fn start_failure(error: StartError) -> Failure {
         _ => "move what is named there, or take away or loosen one of the constraints",
     };
     Failure::usage(error.to_string(), cure)
-}
-
-/// What is kept in `checkpoint.json`.
-#[derive(Serialize, Deserialize)]
-pub struct Kept {
-    #[serde(flatten)]
-    pub run: Checkpoint,
-    pub recorder: RecorderMark,
-}
-
-/// Reads a `checkpoint.json`.
-pub fn checkpoint(path: &Path) -> Result<Kept, Failure> {
-    let bytes = std::fs::read(path).map_err(|source| Failure::File { doing: "read", path: path.into(), source })?;
-    serde_json::from_slice(&bytes).map_err(|error| {
-        Failure::usage(format!("{} is no checkpoint: {error}", path.display()), "give the checkpoint.json of an earlier run")
-    })
 }

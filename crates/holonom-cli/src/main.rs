@@ -1,12 +1,17 @@
 //! The command `holonom`.
 
+mod checkpoint;
 mod clock;
 mod commands;
 mod failure;
+mod folder;
+mod keeper;
 mod load;
+mod message;
 mod options;
 mod output;
 mod progress;
+mod provenance;
 mod sweep;
 mod table;
 
@@ -30,9 +35,10 @@ fn main() -> ExitCode {
         Command::Examples(arguments) => commands::examples::examples(arguments),
         Command::View(arguments) => commands::view::view(arguments),
         Command::Schema => commands::schema::schema(),
+        Command::Completions(arguments) => commands::completions::completions(arguments),
     };
     outcome.unwrap_or_else(|failure| {
-        eprintln!("{failure}");
+        message::say(&failure.to_string());
         failure.exit_code()
     })
 }

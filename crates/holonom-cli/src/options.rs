@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueHint};
+use clap_complete::Shell;
 
 /// Dynamics of mechanisms: exact constraints, audited energy, large steps.
 #[derive(Debug, Parser)]
@@ -28,16 +29,19 @@ pub enum Command {
     Methods(MethodsArguments),
     /// The gallery inside the binary
     Examples(ExamplesArguments),
-    /// Serve the report of a run on 127.0.0.1
+    /// Show the report of a run in the browser, served on 127.0.0.1
     View(ViewArguments),
     /// JSON Schema of the model file
     Schema,
+    /// Print what makes a shell complete commands and options
+    Completions(CompletionsArguments),
 }
 
 /// A model and what is changed of it.
 #[derive(Debug, Args)]
 pub struct ModelArguments {
-    /// A model file, or example:NAME
+    /// A model file, - for standard input, or example:NAME
+    #[arg(value_hint = ValueHint::FilePath)]
     pub model: String,
     /// Set any key of the model file, such as simulation.step=0.01 or parameters.N=40
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -47,22 +51,18 @@ pub struct ModelArguments {
 /// Where results go, and what is said of them.
 #[derive(Debug, Args)]
 pub struct Destination {
-    /// Folder for the results [default: results/<model>-<method>, -compare, -sweep or -stability]
+    /// Folder for the results [default: results/<model>-<method>, -compare, -sweep or -stability; with -2, -3, … where these hold others]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Overwrite the results of another run
+    #[arg(long)]
+    pub force: bool,
     /// Print the result as JSON on standard output, nothing else there
     #[arg(long)]
     pub json: bool,
-    /// Print nothing on standard output but errors
+    /// Print nothing but errors and why a run stopped
     #[arg(long)]
     pub quiet: bool,
-}
-
-impl Destination {
-    /// The folder asked for, or `usual` in the folder `results`.
-    pub fn folder(&self, usual: &str) -> PathBuf {
-        self.out.clone().unwrap_or_else(|| PathBuf::from(format!("results/{usual}")))
-    }
 }
 
 /// What is kept of a run.
@@ -101,8 +101,8 @@ pub struct RunArguments {
     pub model: ModelArguments,
     #[command(flatten)]
     pub method: MethodArguments,
-    /// Go on from the checkpoint.json of an earlier run
-    #[arg(long, value_name = "CHECKPOINT")]
+    /// Go on with an earlier run, that was ended or killed, in its folder; with a later --end, too
+    #[arg(long, value_name = "FOLDER or CHECKPOINT")]
     pub resume: Option<PathBuf>,
     #[command(flatten)]
     pub output: OutputArguments,
@@ -207,4 +207,13 @@ pub struct ViewArguments {
     /// Port; 0 takes a free one
     #[arg(long, default_value_t = 0)]
     pub port: u16,
+    /// Print the address only
+    #[arg(long)]
+    pub no_browser: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct CompletionsArguments {
+    /// The shell
+    pub shell: Shell,
 }

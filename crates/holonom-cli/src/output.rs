@@ -1,9 +1,6 @@
 //! One run and what it leaves in its folder.
 
 use std::collections::HashSet;
-use std::fs::File;
-use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -16,10 +13,16 @@ use holonom_io::{WriteTable, Writer};
 use holonom_report::{Report, Run};
 use serde_json::{Value, json};
 
+use crate::checkpoint::Point;
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::load::{self, Kept, Loaded};
+use crate::folder::Folder;
+use crate::keeper::Keeper;
+use crate::load::{self, Loaded};
+use crate::message::{listed, note};
+use crate::options::OutputArguments;
 use crate::progress::Watched;
+use crate::provenance::Provenance;
 use crate::table::short;
 
 /// A finished run.
@@ -29,50 +32,73 @@ pub struct Finished {
     /// Content of `summary.json`.
     pub summary: Value,
     pub completed: bool,
-    pub kept: Kept,
+    /// Where the run is, and where it was before a last step that its end cut short.
+    pub last: Point,
+    pub before_end: Option<Point>,
 }
 
 /// What a run is asked to do.
 pub struct Order {
     pub method: Method,
-    pub step: f64,
-    pub end: f64,
-    pub every: u64,
+    pub provenance: Provenance,
     pub quiet: bool,
-    pub resume: Option<Kept>,
+    /// Where to go on, and the rows before.
+    pub resume: Option<(Point, Recording)>,
 }
 
-/// Simulates a model by a method.
-pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) -> Result<Finished, Failure> {
-    let model = &loaded.model;
-    let Order { method, step, end, every, quiet, resume } = order;
-    let name = method.name.clone();
-    let (resume, mark) = resume.map_or((None, None), |kept| (Some(kept.run), Some(kept.recorder)));
-    if let Some(t) = resume.as_ref().map(|run| run.state.t).filter(|t| *t >= end) {
-        let message = format!("the checkpoint is at {} s, and the run ends at {} s", short(t), short(end));
-        return Err(Failure::usage(message, "give a later --end"));
+impl Order {
+    /// A run of a model from its start, by its own method or a named one.
+    pub fn new(loaded: &Loaded, method: Option<&str>, output: &OutputArguments) -> Result<Self, Failure> {
+        let named = load::method(&loaded.model, method)?;
+        let provenance = loaded.provenance(&named, method, output.every)?;
+        Ok(Self { method: named, provenance, quiet: output.to.quiet, resume: None })
     }
-    let mut simulation = match resume {
-        Some(run) => Simulation::resume(model.system.clone(), method, step, run).ok_or_else(|| {
-            Failure::usage("the checkpoint is of another model", "resume with the model and the --set options that made it")
-        })?,
-        None => Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?,
-    };
-    if !quiet && mark.is_none() {
-        announce_corrections(model, &simulation);
-    }
-    let rank = analysis::rank_of(&simulation);
-    let constraints = match model.output.reactions {
+}
+
+/// The recorder of a model's runs.
+pub fn recorder(model: &Model, every: u64) -> Recorder<'_> {
+    Recorder::new(&model.channels, &model.system, every, constraints(model))
+}
+
+fn constraints(model: &Model) -> Constraints {
+    match model.output.reactions {
         Some(false) => Constraints::Nothing,
         None => Constraints::Joints,
         Some(true) => Constraints::Rows,
+    }
+}
+
+/// Simulates a model by a method, and saves it meanwhile where there is a keeper.
+pub fn simulate(
+    loaded: &Loaded,
+    order: Order,
+    interrupted: &Arc<AtomicBool>,
+    keeper: Option<&mut Keeper<'_>>,
+) -> Result<Finished, Failure> {
+    let model = &loaded.model;
+    let Order { method, provenance, quiet, resume } = order;
+    let Provenance { step, end, every, .. } = provenance;
+    let name = method.name.clone();
+    let (resume, before) = resume.map_or((None, None), |(point, rows)| (Some(point.run), Some((point.recorder, rows))));
+    let mut simulation = match resume {
+        Some(run) => Simulation::resume(model.system.clone(), method, step, run)
+            .ok_or_else(|| Failure::usage("the checkpoint is of another model", "run from the start, without --resume"))?,
+        None => Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?,
     };
-    if constraints != Constraints::Nothing || !model.channels.efforts.is_empty() {
+    if !quiet && before.is_none() {
+        announce_corrections(model, &simulation);
+    }
+    let rank = analysis::rank_of(&simulation);
+    if constraints(model) != Constraints::Nothing || !model.channels.efforts.is_empty() {
         model.find_reactions(&mut simulation);
     }
-    let recorder = Recorder::new(&model.channels, &model.system, every, constraints);
-    let recorder = if let Some(mark) = &mark { recorder.resume(mark) } else { recorder };
-    let mut watched = Watched::new(recorder, end, quiet, interrupted.clone());
+    let recorder = recorder(model, every);
+    let recorder = match before {
+        Some((mark, rows)) => recorder.resume(&mark).after(rows),
+        None => recorder,
+    };
+    let mut watched = Watched::new(recorder, step, end, quiet, interrupted.clone()).kept(keeper);
+    let (first_step, first_time) = (simulation.steps(), simulation.state().t);
     let (wall, cpu) = (std::time::Instant::now(), ProcessTime::now());
     let (status, step_us) = match simulation.method().settings.iterations {
         None => (simulation.run(end, &mut watched), Value::Null),
@@ -86,16 +112,18 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
     let mut value = serde_json::to_value(&summary).expect("a summary is plain data");
     value["time"] = json!({
         "cpu_s": cpu,
-        "us_per_step": 1e6 * cpu / simulation.steps().max(1) as f64,
-        "realtime_factor": simulation.state().t / wall.max(1e-9),
+        "us_per_step": 1e6 * cpu / (simulation.steps() - first_step).max(1) as f64,
+        "realtime_factor": (simulation.state().t - first_time) / wall.max(1e-9),
     });
     if !step_us.is_null() {
         value["time"]["step_us"] = step_us;
     }
-    let kept = Kept { run: simulation.checkpoint(), recorder: watched.recorder.mark() };
+    value["provenance"] = serde_json::to_value(&provenance).expect("a provenance is plain data");
+    let last = Point::of(&simulation, &watched.recorder);
+    let before_end = watched.before_end.take().filter(|_| !last.run.goes_on_unbroken());
     let recording = watched.finish();
     value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording)).expect("peaks are plain data");
-    Ok(Finished { method: name, recording, summary: value, completed: status == Status::Completed, kept })
+    Ok(Finished { method: name, recording, summary: value, completed: status == Status::Completed, last, before_end })
 }
 
 /// Says on standard error what looks like a slip, and what was put right before the start.
@@ -103,29 +131,22 @@ fn announce_corrections(model: &Model, simulation: &Simulation) {
     model.notes.iter().for_each(|note| eprintln!("note: {note}"));
     let start = simulation.start();
     if start.moved > 1e-12 {
-        eprintln!("note: positions were moved by up to {:.2e} m onto their constraints", start.moved);
+        note(&format!("positions were moved by up to {:.2e} m onto their constraints", start.moved));
     }
     let changes = model.start_changes(&simulation.state().x, simulation.velocities());
     if !changes.is_empty() {
-        eprintln!("note: to meet the constraints, start velocities were changed: {}", changes_in_words(&changes));
+        note(&format!("to meet the constraints, start velocities were changed: {}", changes_in_words(&changes)));
     }
 }
 
-/// Bodies and points with the change of their velocities at the start, at most [`NAMED_CHANGES`].
+/// Bodies and points with the change of their velocities at the start.
 pub fn changes_in_words(changes: &[StartChange]) -> String {
-    let words = changes.iter().take(NAMED_CHANGES).map(|change| match change.angular_velocity > 0.0 {
+    let words = changes.iter().map(|change| match change.angular_velocity > 0.0 {
         true => format!("`{}` by {} m/s and {} rad/s", change.name, short(change.velocity), short(change.angular_velocity)),
         false => format!("`{}` by {} m/s", change.name, short(change.velocity)),
     });
-    let words: Vec<String> = words.collect();
-    match changes.len().saturating_sub(NAMED_CHANGES) {
-        0 => words.join(", "),
-        more => format!("{}, and {more} more", words.join(", ")),
-    }
+    listed(&words.collect::<Vec<_>>())
 }
-
-/// Changes of velocities that are said by name.
-const NAMED_CHANGES: usize = 5;
 
 /// The writers of the formats asked for.
 pub fn writers(formats: &[String]) -> Result<Vec<&'static Writer>, Failure> {
@@ -187,37 +208,7 @@ fn owner_and_suffix(column: &str) -> Option<(&str, &str)> {
     column.rsplit_once('.')
 }
 
-/// Makes a folder and writes into it through a closure for each file.
-pub struct Folder {
-    pub path: PathBuf,
-}
-
 impl Folder {
-    /// Creates the folder where it is missing.
-    pub fn create(path: &Path) -> Result<Self, Failure> {
-        std::fs::create_dir_all(path).map_err(|source| Failure::File { doing: "create", path: path.into(), source })?;
-        Ok(Self { path: path.into() })
-    }
-
-    /// Writes one file.
-    pub fn write(&self, name: &str, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<(), Failure> {
-        let path = self.path.join(name);
-        let file = File::create(&path).and_then(|file| {
-            let mut out = BufWriter::new(file);
-            write(&mut out)?;
-            out.flush()
-        });
-        file.map_err(|source| Failure::File { doing: "write", path, source })
-    }
-
-    /// Writes one file in full before it takes the place of an older one.
-    pub fn replace(&self, name: &str, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<(), Failure> {
-        let new = format!("{name}.new");
-        self.write(&new, write)?;
-        let path = self.path.join(name);
-        std::fs::rename(self.path.join(new), &path).map_err(|source| Failure::File { doing: "write", path, source })
-    }
-
     /// Writes the table of a run with each writer: the points that `[output]` asks for, in its order.
     pub fn write_trajectory(&self, prefix: &str, writers: &[&Writer], loaded: &Loaded, recording: &Recording) -> Result<(), Failure> {
         let asked = loaded.model.output.points.as_ref().map(|points| only(recording, points, &loaded.model));
@@ -230,7 +221,7 @@ impl Folder {
 
     /// Writes the report of some runs.
     pub fn write_report(&self, loaded: &Loaded, runs: &[Run<'_>]) -> Result<(), Failure> {
-        let report = Report { title: loaded.title(), model_text: &loaded.text, runs };
+        let report = Report { title: loaded.title(), model_text: loaded.source.text(), runs };
         self.write("report.html", |out| report.write(out))
     }
 }

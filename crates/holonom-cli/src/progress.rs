@@ -8,23 +8,36 @@ use holonom::record::Recorder;
 use holonom::simulation::{Observer, Simulation, Verdict};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// Steps between looks at the clock and at the interrupt.
+use crate::checkpoint::Point;
+use crate::keeper::Keeper;
+
+/// Steps between looks at the clocks and at the interrupt.
 const LOOK: u64 = 64;
 
-/// A recorder with a progress bar that stops on an interrupt.
-pub struct Watched<'a> {
+/// A recorder with a progress bar that saves the run from time to time and stops on an interrupt.
+pub struct Watched<'a, 'f> {
     pub recorder: Recorder<'a>,
+    /// Where the run was before a step that may be its last.
+    pub before_end: Option<Point>,
+    keeper: Option<&'a mut Keeper<'f>>,
     bar: ProgressBar,
+    step: f64,
     end: f64,
     seen: u64,
     interrupted: Arc<AtomicBool>,
 }
 
-impl<'a> Watched<'a> {
-    /// Watches a run to `end` (s).
-    pub fn new(recorder: Recorder<'a>, end: f64, quiet: bool, interrupted: Arc<AtomicBool>) -> Self {
+impl<'a, 'f> Watched<'a, 'f> {
+    /// Watches a run in steps of `step` to `end` (s).
+    pub fn new(recorder: Recorder<'a>, step: f64, end: f64, quiet: bool, interrupted: Arc<AtomicBool>) -> Self {
         let bar = bar(1000, "{bar:30} {percent:>3} %  {eta} left  {msg}", quiet);
-        Self { recorder, bar, end, seen: 0, interrupted }
+        Self { recorder, before_end: None, keeper: None, bar, step, end, seen: 0, interrupted }
+    }
+
+    /// The same run, saved while it goes on.
+    pub fn kept(mut self, keeper: Option<&'a mut Keeper<'f>>) -> Self {
+        self.keeper = keeper;
+        self
     }
 
     /// Ends the bar.
@@ -40,13 +53,19 @@ impl<'a> Watched<'a> {
     }
 }
 
-impl Observer for Watched<'_> {
+impl Observer for Watched<'_, '_> {
     fn after_step(&mut self, simulation: &Simulation) -> Verdict {
         self.recorder.after_step(simulation);
         self.seen += 1;
+        if (self.end - 1.5 * self.step..self.end).contains(&simulation.state().t) {
+            self.before_end = Some(Point::of(simulation, &self.recorder));
+        }
         if self.seen.is_multiple_of(LOOK) {
             if !self.bar.is_hidden() {
                 self.show(simulation);
+            }
+            if let Some(keeper) = &mut self.keeper {
+                keeper.look(simulation, &self.recorder);
             }
             if self.interrupted.load(Ordering::Relaxed) {
                 return Verdict::Stop;

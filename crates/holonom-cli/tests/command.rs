@@ -23,6 +23,11 @@ fn wrong_use_ends_with_two_and_says_what_there_is() {
         (format!("run {PAPER} --set simulation.stp=1"), "did you mean `step`"),
         (format!("run {PAPER} --set title.x=1"), "not a table"),
         (format!("run {PAPER} --set simulation.step=-1"), "above 0"),
+        ("run example:four-bar --set parameters.n=3".into(), "did you mean `N`"),
+        ("check example:four-bar --set parameters.stiffness=3".into(), "no parameter `stiffness`"),
+        ("compare example:four-bar --set N=3".into(), "write --set parameters.N="),
+        ("sweep example:four-bar --vary N=3,4".into(), "write --vary parameters.N="),
+        (format!("stability {PAPER} --set parameters.k=3"), "no parameter `k`"),
         (format!("run {PAPER} --step abc"), "abc"),
         (format!("run {PAPER} --end 0.5 --set simulation.integrator=euler"), "conserving-ggl"),
         (format!("check {PAPER} --set simulation.projection.matrix=unit"), "identity"),
@@ -110,6 +115,28 @@ fn check_says_what_a_model_is_made_of() {
 }
 
 #[test]
+fn parameters_that_nothing_uses_are_named() {
+    let folder = folder();
+    // `b` is used by `a` only, which nothing uses; `c` by a list, `n` by a reference and `d` through `c`.
+    let model = "title = \"a and b\"\n[parameters]\na = \"2*b\"\nb = 1\nc = \"d\"\nd = 2\nn = 2\n\
+                 [simulation]\nstep = 0.1\nend = 0.2\n[point.p]\nrepeat = \"i = 1 to 2\"\nmass = 1\nposition = [\"c*i\", 0, 0]\n\
+                 [constraint.rod]\ntype = \"distance\"\nbetween = [\"ground\", \"p[n]\"]\n";
+    fs::write(folder.path().join("model.toml"), model).unwrap();
+    let told = "nothing uses the parameters `a`, `b`";
+    let output = holonom(&folder, "run model.toml");
+    assert!(text(&output.stderr).contains(&format!("note: {told}\n")), "{}", text(&output.stderr));
+    assert!(prints(&folder, "check model.toml", 0).contains(told));
+    assert_eq!(json(&folder, "check model.toml --json")["notes"][0], told);
+    let one = holonom(&folder, "run model.toml --set gravity=[0,0,\"-a\"] --set parameters.c=3");
+    assert!(text(&one.stderr).contains("nothing uses the parameter `d`\n"), "{}", text(&one.stderr));
+    assert!(holonom(&folder, "run model.toml --quiet").stderr.is_empty());
+
+    let many: String = (0..1000).map(|k| format!("a{k} = {k}\n")).collect();
+    fs::write(folder.path().join("many.toml"), format!("[parameters]\n{many}[point.p]\nmass = 1\nposition = [1, 0, 0]\n")).unwrap();
+    assert!(prints(&folder, "check many.toml", 0).contains("`a0`, `a1`, `a2`, `a3`, `a4`, and 995 more\n"));
+}
+
+#[test]
 fn only_the_mass_matrix_never_adds_energy() {
     let folder = folder();
     let heavy = "--set point.m2.mass=10 --projection";
@@ -156,7 +183,7 @@ fn the_gallery_is_listed_shown_copied_and_runs() {
         assert_eq!(prints(&folder, &format!("examples {name}"), 0), text);
         prints(&folder, &format!("examples {name} --copy copies"), 0);
         assert_eq!(fs::read_to_string(folder.path().join("copies").join(&file)).unwrap(), text);
-        prints(&folder, &format!("check example:{name}"), 0);
+        assert!(!prints(&folder, &format!("check example:{name}"), 0).contains("nothing uses"), "{name}");
         let summary = json(&folder, &format!("run copies/{file} --end 0.05 --json"));
         assert_eq!((&summary["status"], &summary["model"]), (&"completed".into(), &name.into()));
         assert!(summary["energy"]["max_drift"].as_f64().unwrap() < 1e-6, "{name}");
@@ -182,7 +209,7 @@ fn view_serves_the_report_on_this_machine() {
     let folder = folder();
     prints(&folder, &format!("run {PAPER} --end 0.1 --quiet --out a"), 0);
     let mut process = Process::new(env!("CARGO_BIN_EXE_holonom"));
-    let mut server = Ends(process.current_dir(&folder).args(["view", "a"]).stdout(Stdio::piped()).spawn().unwrap());
+    let mut server = Ends(process.current_dir(&folder).args(["view", "a", "--no-browser"]).stdout(Stdio::piped()).spawn().unwrap());
     let mut line = String::new();
     BufReader::new(server.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
     let address = line.trim().strip_prefix("http://").unwrap_or_else(|| panic!("{line}"));
@@ -198,4 +225,107 @@ fn view_serves_the_report_on_this_machine() {
     assert!(page.starts_with("HTTP/1.1 200") && page.contains("text/html"), "{}", &page[..page.len().min(300)]);
     assert!(page.ends_with(&fs::read_to_string(folder.path().join("a/report.html")).unwrap()) || page.contains("chunked"));
     assert!(missing.starts_with("HTTP/1.1 404"), "{missing}");
+}
+
+/// A program in the folder is called as the desktop's own is.
+#[cfg(target_os = "linux")]
+#[test]
+fn view_opens_the_browser_where_there_is_one() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = folder();
+    prints(&folder, &format!("run {PAPER} --end 0.1 --quiet --out a"), 0);
+    let (browser, opened) = (folder.path().join("xdg-open"), folder.path().join("opened"));
+    fs::write(&browser, "#!/bin/sh\necho \"$1\" > opened.new && mv opened.new opened\n").unwrap();
+    fs::set_permissions(&browser, fs::Permissions::from_mode(0o755)).unwrap();
+    let path = format!("{}:{}", folder.path().display(), std::env::var("PATH").unwrap());
+    let mut process = Process::new(env!("CARGO_BIN_EXE_holonom"));
+    let mut server = Ends(process.current_dir(&folder).env("PATH", path).args(["view", "a"]).stdout(Stdio::piped()).spawn().unwrap());
+    let mut line = String::new();
+    BufReader::new(server.0.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    let begun = std::time::Instant::now();
+    while !opened.exists() && begun.elapsed() < std::time::Duration::from_secs(60) {
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    assert_eq!(fs::read_to_string(opened).unwrap(), line);
+}
+
+/// What a command that reads a model from standard input prints and says, with its exit status.
+fn fed(folder: &tempfile::TempDir, model: &str, words: &str) -> (String, String, Option<i32>) {
+    let mut command = assert_cmd::Command::cargo_bin("holonom").unwrap();
+    let output = command.current_dir(folder).args(words.split_whitespace()).write_stdin(model).output().unwrap();
+    (text(&output.stdout), text(&output.stderr), output.status.code())
+}
+
+#[test]
+fn a_model_may_come_from_standard_input() {
+    let folder = folder();
+    let solid = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    fs::write(folder.path().join("part.obj"), solid).unwrap();
+    let model = "[body.b]\nposition = [0, 0, 0]\ndensity = 1000\nshape = { mesh = \"part.obj\" }\n[simulation]\nstep = 0.1\nend = 0.2\n";
+    let (out, err, status) = fed(&folder, model, "run -");
+    assert!(status == Some(0) && out.ends_with("results in results/stdin-conserving-ggl\n"), "{out}\n{err}");
+    assert_eq!(read_json(folder.path().join("results/stdin-conserving-ggl/summary.json"))["provenance"]["model"], model);
+    // Commands that read the model several times read the same.
+    for words in
+        ["check -", "compare - --method radau --quiet", "stability - --method radau --quiet", "sweep - --vary body.b.density=1,2 --quiet"]
+    {
+        let (_, err, status) = fed(&folder, model, words);
+        assert_eq!((status, err.as_str()), (Some(0), ""), "{words}");
+    }
+    let (_, err, status) = fed(&folder, "[point.a]\nmas = 1\n", "check -");
+    assert!(status == Some(2) && err.contains("--> stdin:2:1"), "{err}");
+    let (_, err, status) = fed(&folder, "", "run -");
+    assert!(status == Some(2) && err.contains("stdin:1:1") && err.contains("empty"), "{err}");
+}
+
+#[test]
+fn messages_have_colours_where_these_are_wanted() {
+    let folder = folder();
+    fs::write(folder.path().join("wrong.toml"), "[point.a]\nmas = 1\nposition = [1, 0, 0] # error: note: cure:\n").unwrap();
+    let said = |words: &str, force: bool, no_color: bool| {
+        let mut command = assert_cmd::Command::cargo_bin("holonom").unwrap();
+        command.current_dir(&folder).args(words.split(' ')).env_remove("NO_COLOR").env_remove("CLICOLOR_FORCE");
+        force.then(|| command.env("CLICOLOR_FORCE", "1"));
+        no_color.then(|| command.env("NO_COLOR", "1"));
+        text(&command.output().unwrap().stderr)
+    };
+    for words in ["check wrong.toml", "run nothing.toml", "run example:chain --method fast", "run example:chain --set x"] {
+        let (plain, coloured) = (said(words, false, false), said(words, true, false));
+        assert!(!plain.contains('\x1b') && coloured.contains("\x1b[1m\x1b[31merror:\x1b[0m "), "{coloured:?}");
+        assert_eq!(coloured.contains("\x1b[1m\x1b[32mcure:\x1b[0m "), plain.contains("cure: "), "{coloured:?}");
+        assert_eq!(said(words, true, true), plain);
+        let mut bare = coloured.clone();
+        ["\x1b[1m", "\x1b[31m", "\x1b[32m", "\x1b[0m"].iter().for_each(|code| bare = bare.replace(code, ""));
+        assert_eq!(bare, plain);
+    }
+}
+
+#[test]
+fn shells_complete_commands_and_options() {
+    let folder = folder();
+    let listed: Vec<String> =
+        prints(&folder, "--help", 0).lines().filter_map(|line| line.strip_prefix("  ")?.split(' ').next().map(str::to_string)).collect();
+    let commands: Vec<&String> = listed.iter().filter(|word| word.chars().all(char::is_alphabetic) && !word.is_empty()).collect();
+    assert!(commands.len() > 10, "{commands:?}");
+    for shell in ["bash", "zsh", "fish"] {
+        let script = prints(&folder, &format!("completions {shell}"), 0);
+        for word in commands.iter().map(|word| word.as_str()).chain(["no-report", "resume", "force"]) {
+            assert!(script.contains(word), "{shell}: {word}");
+        }
+    }
+    assert!(fails_to_parse(&folder, "completions tcsh").contains("bash"));
+
+    // What bash makes of it, where there is one.
+    fs::write(folder.path().join("script"), prints(&folder, "completions bash", 0)).unwrap();
+    let ask = "source ./script; COMP_WORDS=(holonom run --res); COMP_CWORD=2; _holonom holonom --res run; echo \"${COMPREPLY[@]}\"";
+    if let Ok(output) = Process::new("bash").current_dir(&folder).args(["--norc", "-c", ask]).output() {
+        assert_eq!(text(&output.stdout), "--resume\n", "{}", text(&output.stderr));
+    }
+}
+
+/// Runs a command that the command line refuses and hands back its message.
+fn fails_to_parse(folder: &tempfile::TempDir, words: &str) -> String {
+    let output = holonom(folder, words);
+    assert_eq!(output.status.code(), Some(2), "{words}");
+    text(&output.stderr)
 }

@@ -17,7 +17,7 @@ fn every_step_takes_as_many_iterations_as_asked_for_and_is_timed() {
     ] {
         for count in [1.0, 3.0] {
             let words = format!("run {PAPER} --end 1 --step 0.005 --method {method} --set simulation.iterations={count} --no-report");
-            let summary = json(&folder, &format!("{words} --json --out a"));
+            let summary = json(&folder, &format!("{words} --json --force --out a"));
             assert_eq!(
                 (&summary["status"], &summary["work"]["iterations_per_step"]),
                 (&"completed".into(), &(parts * count).into()),
@@ -44,7 +44,7 @@ fn every_step_takes_as_many_iterations_as_asked_for_and_is_timed() {
 fn more_iterations_come_nearer_to_the_solution() {
     let folder = folder();
     let last = |words: &str| {
-        prints(&folder, &format!("run {PAPER} --end 2 --step 0.05 --quiet --no-report --out a {words}"), 0);
+        prints(&folder, &format!("run {PAPER} --end 2 --step 0.05 --quiet --no-report --force --out a {words}"), 0);
         csv(folder.path().join("a/trajectory.csv")).1.last().unwrap()[11..14].to_vec()
     };
     let solution = last("");

@@ -46,6 +46,74 @@ fn run_leaves_what_is_documented() {
 }
 
 #[test]
+fn what_was_run_stands_with_the_results() {
+    let folder = folder();
+    let text = prints(&folder, "examples four-bar", 0);
+    fs::write(folder.path().join("four bar.toml"), &text).unwrap();
+    let words = ["run", "four bar.toml", "--set", "parameters.N=3", "--set", "parameters.N=1+1", "--set", "output.reactions=true"];
+    let more = ["--step", "0.02", "--end", "0.1", "--method", "conserving", "--every", "2", "--quiet", "--out", "a"];
+    let mut command = assert_cmd::Command::cargo_bin("holonom").unwrap();
+    command.current_dir(&folder).args(words).args(more).assert().success();
+
+    let summary = read_json(folder.path().join("a/summary.json"));
+    let found = &summary["provenance"];
+    assert_eq!(*found, read_json(folder.path().join("a/checkpoint.json"))["provenance"]);
+    assert_eq!((&found["model"], &found["version"]), (&text.as_str().into(), &env!("CARGO_PKG_VERSION").into()));
+    let typed = "holonom run 'four bar.toml' --set 'parameters.N=3' --set 'parameters.N=1+1' --set 'output.reactions=true' --step 0.02 \
+                 --end 0.1 --method conserving --every 2 --quiet --out a";
+    assert_eq!(found["command"], typed);
+    assert_eq!(
+        (&found["method"], &found["step"], &found["end"], &found["every"]),
+        (&"conserving".into(), &0.02.into(), &0.1.into(), &2.into())
+    );
+    // Years of four digits, in UTC.
+    let date = found["date"].as_str().unwrap();
+    let shape: String = date.chars().map(|c| if c.is_ascii_digit() { '0' } else { c }).collect();
+    assert_eq!(shape, "0000-00-00T00:00:00Z", "{date}");
+    let changes: Vec<[&Value; 3]> =
+        found["overrides"].as_array().unwrap().iter().map(|change| ["key", "file", "run"].map(|key| &change[key])).collect();
+    let expected = serde_json::json!([
+        ["parameters.N", 1, "1+1"],
+        ["output.reactions", null, true],
+        ["simulation.step", 0.01, 0.02],
+        ["simulation.end", 10, 0.1],
+        ["simulation.method", null, "conserving"],
+        ["output.every", null, 2],
+    ]);
+    let expected: Vec<[&Value; 3]> = expected.as_array().unwrap().iter().map(|row| [&row[0], &row[1], &row[2]]).collect();
+    assert_eq!(changes, expected);
+    let report = fs::read_to_string(folder.path().join("a/report.html")).unwrap();
+    assert!(report.contains("<th scope=\"row\">parameters.N</th><td>1</td><td>1+1</td>"));
+
+    // Nothing is said of the machine: neither where the program is, nor whose home it is.
+    let home = folder.path().join("home of ada");
+    fs::create_dir(&home).unwrap();
+    let mut command = assert_cmd::Command::cargo_bin("holonom").unwrap();
+    let model = home.join("four.toml");
+    fs::write(&model, &text).unwrap();
+    let words = [model.as_os_str(), "--end".as_ref(), "0.01".as_ref(), "--out".as_ref(), "b".as_ref()];
+    command.current_dir(&folder).env("HOME", &home).arg("run").args(words).assert().success();
+    for file in files(folder.path().join("b")) {
+        let bytes = fs::read(folder.path().join("b").join(&file)).unwrap();
+        assert!(!bytes.windows(11).any(|part| part == b"home of ada"), "{file}");
+    }
+    assert_eq!(read_json(folder.path().join("b/summary.json"))["provenance"]["command"], "holonom run ~/four.toml --end 0.01 --out b");
+}
+
+#[test]
+fn files_of_the_model_are_known_by_their_sums() {
+    let folder = folder();
+    // A tetrahedron; the sum is that of sha256sum.
+    let solid = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    fs::write(folder.path().join("part.obj"), solid).unwrap();
+    let model = "[body.b]\nposition = [0, 0, 0]\ndensity = 1000\nshape = { mesh = \"part.obj\" }\n";
+    fs::write(folder.path().join("model.toml"), model).unwrap();
+    let summary = json(&folder, "run model.toml --step 0.1 --end 0.2 --json --no-report");
+    let sum = "b391f08159e507ad3a0fa80558bdb046e150e38868378c9972072d54ad65f858";
+    assert_eq!(summary["provenance"]["files"], serde_json::json!({ "part.obj": sum }));
+}
+
+#[test]
 fn json_is_all_that_is_printed() {
     let folder = folder();
     let summary = json(&folder, &format!("run {PAPER} --end 0.1 --json --out a"));
@@ -65,7 +133,11 @@ fn formats_rows_and_report_are_chosen() {
     assert!(fs::read(out.join("trajectory.npz")).unwrap().starts_with(b"PK"));
 
     prints(&folder, &format!("run {PAPER} --end 0.1 --out b --format npz --no-report"), 0);
-    assert_eq!(files(folder.path().join("b")), names(&["checkpoint.json", "columns.json", "summary.json", "trajectory.npz"]));
+    // A run goes on from a table in CSV of all columns.
+    assert_eq!(
+        files(folder.path().join("b")),
+        names(&["checkpoint.json", "columns.json", "recording.csv", "summary.json", "trajectory.npz"])
+    );
 
     if cfg!(feature = "parquet") {
         prints(&folder, &format!("run {PAPER} --end 0.1 --out b --format parquet --no-report"), 0);
@@ -110,6 +182,10 @@ fn a_run_that_stops_keeps_its_results() {
                  --set simulation.subdivide=false";
     let out = prints(&folder, &format!("run {PAPER} --method trapezoidal {words} --out a"), 3);
     assert!(out.contains("stopped at"), "{out}");
+    let quiet = holonom(&folder, &format!("run {PAPER} --method trapezoidal {words} --out b --quiet --no-report"));
+    let (told, reason) = (text(&quiet.stderr), read_json(folder.path().join("b/summary.json"))["reason"].clone());
+    assert_eq!((quiet.status.code(), quiet.stdout.len(), told.lines().count()), (Some(3), 0, 1), "{told}");
+    assert!(told.starts_with("stopped at ") && told.contains(reason.as_str().unwrap()), "{told}");
     let results = folder.path().join("a");
     assert_eq!(files(&results), names(&["checkpoint.json", "columns.json", "report.html", "summary.json", "trajectory.csv"]));
     let summary = read_json(results.join("summary.json"));
@@ -121,43 +197,6 @@ fn a_run_that_stops_keeps_its_results() {
     let (_, rows) = csv(results.join("trajectory.csv"));
     assert_eq!(rows.len() as u64, summary["steps"].as_u64().unwrap() + 1);
     assert!((rows.last().unwrap()[0] - at).abs() < 1e-9);
-}
-
-#[test]
-fn a_resumed_run_ends_where_one_long_run_does() {
-    for method in NAMED {
-        let folder = folder();
-        let run = |words: &str| prints(&folder, &format!("run {PAPER} --method {method} --quiet --no-report {words}"), 0);
-        run("--end 1 --out half");
-        run("--end 2 --out rest --resume half/checkpoint.json");
-        run("--end 2 --out whole");
-        let state = |name: &str| read_json(folder.path().join(name).join("checkpoint.json"))["state"].clone();
-        let (rest, whole) = (state("rest"), state("whole"));
-        assert_eq!(rest["t"], 2.0);
-        for key in ["x", "v"] {
-            for (a, b) in rest[key].as_array().unwrap().iter().zip(whole[key].as_array().unwrap()) {
-                let (a, b) = (a.as_f64().unwrap(), b.as_f64().unwrap());
-                assert!((a - b).abs() < 1e-9, "{method} {key}: {a} {b}");
-            }
-        }
-        let (_, rows) = csv(folder.path().join("rest/trajectory.csv"));
-        assert_eq!((rows[0][0], rows.len()), (1.0, 41));
-    }
-}
-
-#[test]
-fn a_checkpoint_that_does_not_fit_is_refused() {
-    let folder = folder();
-    prints(&folder, &format!("run {PAPER} --end 1 --quiet --no-report --out a"), 0);
-    fs::write(folder.path().join("no.json"), "{}").unwrap();
-    for (words, told) in [
-        ("run example:four-bar --end 2 --resume a/checkpoint.json".to_string(), "another model"),
-        (format!("run {PAPER} --end 2 --resume no.json"), "no checkpoint"),
-        (format!("run {PAPER} --end 0.5 --resume a/checkpoint.json"), "later --end"),
-    ] {
-        let message = fails(&folder, &words, 2);
-        assert!(message.contains(told), "{words}\n{message}");
-    }
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod figures;
 mod format;
 mod outcome;
 mod page;
+mod provenance;
 mod stability;
 mod summary;
 #[cfg(test)]

@@ -3,8 +3,9 @@
 use crate::data::RunData;
 use crate::escape::{html, json_in_script};
 use crate::outcome::outcomes;
-use crate::{Report, Run, figures, summary};
+use crate::{Report, Run, figures, provenance, summary};
 use serde::Serialize;
+use serde_json::Value;
 use std::io::{self, Write};
 
 /// Nothing may be loaded from anywhere: what is not in the file does not exist.
@@ -38,6 +39,8 @@ pub fn write(report: &Report, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "<section>\n<h2>Summary</h2>")?;
     summary::write(report.runs, out)?;
     writeln!(out, "</section>")?;
+    let provenances: Vec<(&str, &Value)> = report.runs.iter().map(|run| (run.label, &run.summary["provenance"])).collect();
+    provenance::write(&provenances, out)?;
     model(report.model_text, out)?;
     writeln!(out, "</main>")?;
     if let Some((_, script)) = VIEWER {

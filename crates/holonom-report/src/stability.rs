@@ -1,7 +1,7 @@
 //! The page about the largest steps: a bar for each method on a logarithmic axis.
 
 use crate::escape::html;
-use crate::{format, page};
+use crate::{format, page, provenance};
 use std::io;
 
 /// What the search found for one method; steps in s.
@@ -22,6 +22,8 @@ pub struct StabilityReport<'a> {
     pub title: &'a str,
     /// The model file, shown at the bottom.
     pub model_text: &'a str,
+    /// What was run, as in `summary.json`.
+    pub provenance: &'a serde_json::Value,
     /// Length of the run, s.
     pub end: f64,
     /// Step the search began with, s.
@@ -44,6 +46,7 @@ impl StabilityReport<'_> {
         writeln!(out, "<section>\n<h2>Largest step that completes {} s</h2>", format::number(self.end))?;
         self.chart(out)?;
         writeln!(out, "<p class=\"note\">{}</p>\n</section>", self.explanation())?;
+        provenance::write(&[(self.title, self.provenance)], out)?;
         page::model(self.model_text, out)?;
         writeln!(out, "</main>")?;
         page::end(out)
@@ -171,6 +174,7 @@ mod tests {
         let report = StabilityReport {
             title: "A & B",
             model_text: "title = \"A\"",
+            provenance: &serde_json::Value::Null,
             end: 20.0,
             first: 0.025,
             limit: 2.0,
@@ -221,6 +225,7 @@ mod tests {
         let report = StabilityReport {
             title: "",
             model_text: "",
+            provenance: &serde_json::Value::Null,
             end: 20.0,
             first: 0.025,
             limit: 2.0,

@@ -25,8 +25,8 @@ const UNITS: [(&str, &str); 13] = [
 /// Keys that say nothing beside the heading of a column.
 const HEADINGS: [&str; 1] = ["label"];
 
-/// Begin of the keys that stand at the top of the page.
-const ELSEWHERE: [&str; 2] = ["peaks.", "events"];
+/// Beginnings of the keys that stand elsewhere on the page: at the top, and above the model.
+const ELSEWHERE: [&str; 3] = ["peaks.", "events", "provenance."];
 
 /// The summary of one run in two halves side by side; of several, what is the same in all of them so, and a column of the
 /// rest for each run.

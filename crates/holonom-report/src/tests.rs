@@ -73,6 +73,37 @@ fn status_and_figures_are_readable_without_a_script() {
     assert!(!page.contains("time per step"), "the summary has no time");
 }
 
+#[test]
+fn what_was_run_and_what_was_changed_stands_above_the_model() {
+    let provenance = |key: &str, run: Value| {
+        json!({"version": "9.8.7", "date": "2026-01-02T03:04:05Z", "command": "holonom run '<m>'", "model": "secret",
+               "overrides": [{"key": "simulation.end", "file": 1.0, "run": "2*T<"}, {"key": key, "file": null, "run": run}]})
+    };
+    let summary = json!({"status": "completed", "provenance": provenance("parameters.k", json!(0.123456789012345))});
+    let alone = page("t", "m", &recording(3, 0.0), &summary);
+    for part in [
+        "holonom 9.8.7",
+        "2026-01-02T03:04:05Z",
+        "holonom run &#39;&lt;m&gt;&#39;",
+        ">parameters.k<",
+        "<td>–</td>",
+        "0.123456789012345",
+        "2*T&lt;",
+    ] {
+        assert!(alone.contains(part), "{part}");
+    }
+    assert!(!alone.contains("secret") && !alone.contains(">provenance.") && !alone.contains(">runs</th>"));
+    assert!(!page("t", "m", &recording(3, 0.0), &json!({"status": "completed"})).contains("What was run"));
+
+    // What was changed for one run only says for which.
+    let of = |key: &str| json!({"status": "completed", "provenance": provenance(key, json!(3))});
+    let page = compared(&[("first", 1.0, of("parameters.a")), ("second", 1.0, of("parameters.b"))]);
+    for (key, labels) in [("simulation.end", "all"), ("parameters.a", "first"), ("parameters.b", "second")] {
+        let (_, row) = page.split_once(&format!("<th scope=\"row\">{key}</th>")).expect(key);
+        assert!(row.split_once("</tr>").unwrap().0.ends_with(&format!("<td>{labels}</td>")), "{key}");
+    }
+}
+
 /// A page that compares runs of summaries, each with a recording of its kinetic energy.
 fn compared(cases: &[(&str, f64, Value)]) -> String {
     let recordings: Vec<Recording> = cases.iter().map(|(_, kinetic, _)| moving(*kinetic)).collect();

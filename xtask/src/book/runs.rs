@@ -134,7 +134,7 @@ impl Runs {
         for (key, value) in keys.iter().flat_map(|(key, values)| values.iter().map(move |value| (key, value))) {
             command.args([key, value]);
         }
-        command.args(["--end", self.end, "--every", "1", "--no-report", "--quiet", "--out", &format!("{folder}/{}", self.name)]);
+        command.args(["--end", self.end, "--every", "1", "--no-report", "--quiet", "--force", "--out", &format!("{folder}/{}", self.name)]);
         match command.status() {
             Ok(status) if status.success() => Ok(()),
             Ok(status) => Err(format!("the runs `{}` ended with {status}", self.name)),

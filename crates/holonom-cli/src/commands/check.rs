@@ -11,6 +11,7 @@ use serde_json::json;
 
 use crate::failure::Failure;
 use crate::load::{self, Loaded};
+use crate::message::unused_parameters;
 use crate::options::CheckArguments;
 use crate::output::changes_in_words;
 use crate::table::{list, short};
@@ -37,6 +38,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     plain.set("output.reactions=true");
     let plain = load::load(&arguments.model.model, plain)?;
     let mut held = Held::new(&plain, load::method(&plain.model, None)?, step)?;
+    held.notes.extend(unused_parameters(&loaded.source));
     let found = &held.rank;
     let near = found.weakest.as_ref().filter(|(_, independence)| *independence < NEAR_SINGULAR);
     let form = match arguments.projection {

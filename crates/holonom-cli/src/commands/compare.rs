@@ -8,9 +8,10 @@ use holonom_report::Run;
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
+use crate::folder::{Folder, file_stem, holds};
 use crate::load::{self, Loaded};
 use crate::options::CompareArguments;
-use crate::output::{Finished, Folder, Order, simulate, writers};
+use crate::output::{Finished, Order, simulate, writers};
 use crate::progress::interrupt_flag;
 use crate::table::{short, table};
 
@@ -30,12 +31,12 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
     let models = models(arguments)?;
     let planned = plan(arguments, &models)?;
     let loaded = models.last().expect("there is at least one step");
-    let path = output.to.folder(&format!("{}-compare", loaded.name));
-    let folder = Folder::create(&path)?;
+    let summaries: Value = planned.iter().map(|run| json!({ "provenance": run.order.provenance })).collect();
+    let folder = Folder::claim(&output.to, &format!("{}-compare", loaded.name), |path| holds(path, &summaries))?;
     let interrupted = interrupt_flag();
     let mut finished: Vec<(String, Finished)> = Vec::new();
     for Planned { label, model, order } in planned {
-        let mut run = simulate(&models[model], order, &interrupted)?;
+        let mut run = simulate(&models[model], order, &interrupted, None)?;
         name(&mut run.summary, &label, &models[model]);
         finished.push((label, run));
     }
@@ -72,15 +73,8 @@ fn plan(arguments: &CompareArguments, models: &[Loaded]) -> Result<Vec<Planned>,
     let mut planned = Vec::new();
     for (model, loaded) in models.iter().enumerate() {
         for name in &methods {
-            let order = Order {
-                method: load::method(&loaded.model, Some(name))?,
-                step: loaded.step()?,
-                end: loaded.end()?,
-                every: arguments.output.every.unwrap_or(loaded.every()),
-                quiet: arguments.output.to.quiet,
-                resume: None,
-            };
-            let label = if models.len() > 1 { format!("{name}, {} s", short(order.step)) } else { name.to_string() };
+            let order = Order::new(loaded, Some(name), &arguments.output)?;
+            let label = if models.len() > 1 { format!("{name}, {} s", short(order.provenance.step)) } else { name.to_string() };
             planned.push(Planned { label, model, order });
         }
     }
@@ -97,8 +91,7 @@ fn name(summary: &mut Value, label: &str, loaded: &Loaded) {
 
 fn write(folder: &Folder, loaded: &Loaded, finished: &[(String, Finished)], writers: &[&Writer], no_report: bool) -> Result<(), Failure> {
     for (label, run) in finished {
-        let prefix = label.replace(", ", "-").replace(' ', "").replace('/', "-");
-        folder.write_trajectory(&prefix, writers, loaded, &run.recording)?;
+        folder.write_trajectory(&file_stem(label), writers, loaded, &run.recording)?;
     }
     let summaries: Vec<&Value> = finished.iter().map(|(_, run)| &run.summary).collect();
     folder.write("summary.json", |out| holonom_io::write_json(&json!(summaries), out))?;

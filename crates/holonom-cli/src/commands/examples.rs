@@ -3,9 +3,9 @@
 use std::process::ExitCode;
 
 use crate::failure::Failure;
+use crate::folder::Folder;
 use crate::load::EXAMPLES;
 use crate::options::ExamplesArguments;
-use crate::output::Folder;
 use crate::table::list;
 
 /// Lists the gallery, shows one of its files, or copies it.

@@ -4,14 +4,22 @@ use std::process::ExitCode;
 
 use holonom_io::Writer;
 use holonom_report::Run;
-use serde_json::Value;
+use serde_json::{Value, json};
 
+use crate::checkpoint::Resumed;
 use crate::failure::{Failure, STOPPED};
+use crate::folder::{Folder, file_stem, holds};
+use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
+use crate::message::{note, unused_parameters};
 use crate::options::{OutputArguments, RunArguments};
-use crate::output::{Finished, Folder, Order, simulate, writers};
+use crate::output::{Finished, Order, recorder, simulate, writers};
 use crate::progress::interrupt_flag;
 use crate::table::{list, measured, short};
+
+/// Of runs whose steps are chosen.
+const CHANGED_ACCURACY: &str = "an accuracy is that of the whole run, so its steps depend on its end: the rows up to the checkpoint are those of the \
+                                earlier end";
 
 /// Simulates one model by one method and leaves everything in a folder.
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
@@ -20,39 +28,82 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     overrides.number("simulation.end", arguments.method.end.as_deref());
     let loaded = load::load_to_run(&arguments.model.model, overrides)?;
     let output = &arguments.output;
+    if !output.to.quiet {
+        unused_parameters(&loaded.source).iter().for_each(|text| note(text));
+    }
     let writers = writers(&output.formats)?;
-    let order = Order {
-        method: load::method(&loaded.model, arguments.method.name.as_deref())?,
-        step: loaded.step()?,
-        end: loaded.end()?,
-        every: output.every.unwrap_or(loaded.every()),
-        quiet: output.to.quiet,
-        resume: arguments.resume.as_deref().map(load::checkpoint).transpose()?,
-    };
-    let path = output.to.folder(&format!("{}-{}", loaded.name, order.method.name.replace('/', "-")));
-    let folder = Folder::create(&path)?;
-    let finished = simulate(&loaded, order, &interrupt_flag())?;
-    write(&folder, &loaded, &finished, &writers, output)?;
+    let mut order = Order::new(&loaded, arguments.method.name.as_deref(), output)?;
+    let (folder, on_disk) = place(arguments, &loaded, &mut order)?;
+    let mut keeper = Keeper::new(&folder, &loaded, &writers, &order.provenance);
+    if let Some(OnDisk { table, rows, bytes }) = on_disk {
+        keeper.go_on(&table, rows, bytes);
+    }
+    let finished = simulate(&loaded, order, &interrupt_flag(), Some(&mut keeper))?;
+    match keeper.is_behind(finished.last.run.state.t) {
+        Some(t) if !output.to.quiet => note(&format!("{} holds the same run up to {} s, which stays", folder.path.display(), short(t))),
+        Some(_) => (),
+        None => {
+            keeper.finish(&finished.recording, finished.last.clone(), finished.before_end.clone())?;
+            write(&folder, &loaded, &finished, &keeper.others(&writers), output)?;
+        }
+    }
     if output.to.json {
         println!("{}", serde_json::to_string_pretty(&finished.summary).expect("a summary is plain data"));
     } else if !output.to.quiet {
         println!("{}", describe(&loaded, &finished.summary));
         println!("\nresults in {}", folder.path.display());
+    } else if !finished.completed {
+        eprintln!("{}", status(&finished.summary).replace('\n', " "));
     }
     Ok(if finished.completed { ExitCode::SUCCESS } else { ExitCode::from(STOPPED) })
 }
 
+/// Rows of an earlier run in the folder, and the file and the bytes that have them.
+struct OnDisk {
+    table: String,
+    rows: usize,
+    bytes: u64,
+}
+
+/// The folder for a run. One that is resumed is told where to go on, and stays in the folder of the earlier run unless another is named.
+fn place(arguments: &RunArguments, loaded: &Loaded, order: &mut Order) -> Result<(Folder, Option<OnDisk>), Failure> {
+    let output = &arguments.output;
+    let Some(path) = &arguments.resume else { return Ok((claim(loaded, order, output)?, None)) };
+    let resumed = Resumed::open(path, &order.provenance, &loaded.source)?;
+    if !output.to.quiet && loaded.model.settings.choice.accuracy.is_some() && resumed.end != order.provenance.end {
+        note(CHANGED_ACCURACY);
+    }
+    let mut before = recorder(&loaded.model, order.provenance.every).finish();
+    let bytes = resumed.rows(&mut before)?;
+    let rows = before.rows();
+    let stays = output.to.out.as_deref().is_none_or(|out| resumed.is_in(out));
+    order.resume = Some((resumed.point, before));
+    match stays {
+        true => Ok((resumed.folder, Some(OnDisk { table: resumed.table, rows, bytes }))),
+        false => Ok((claim(loaded, order, output)?, None)),
+    }
+}
+
+/// The folder for a run that does not go on in that of an earlier one.
+fn claim(loaded: &Loaded, order: &Order, output: &OutputArguments) -> Result<Folder, Failure> {
+    let usual = format!("{}-{}", loaded.name, file_stem(&order.method.name));
+    let folder = Folder::claim(&output.to, &usual, |path| holds(path, &json!({ "provenance": order.provenance })))?;
+    if let Some(t) = folder.reached().filter(|_| !output.to.quiet && !folder.path.join("summary.json").exists()) {
+        let path = folder.path.display();
+        note(&format!("{path} holds this run up to {} s, where it was killed; --resume {path} goes on from there", short(t)));
+    }
+    Ok(folder)
+}
+
+/// Writes what follows from a finished run; the summary comes last, and says that it is finished.
 fn write(folder: &Folder, loaded: &Loaded, finished: &Finished, writers: &[&Writer], output: &OutputArguments) -> Result<(), Failure> {
-    folder.write("summary.json", |out| holonom_io::write_json(&finished.summary, out))?;
-    let kept = serde_json::to_value(&finished.kept).expect("a checkpoint is plain data");
-    folder.write("checkpoint.json", |out| holonom_io::write_json(&kept, out))?;
     folder.write_trajectory("trajectory", writers, loaded, &finished.recording)?;
     if !output.no_report {
         let runs =
             [Run { label: &finished.method, recording: &finished.recording, scene: &loaded.model.scene, summary: &finished.summary }];
         folder.write_report(loaded, &runs)?;
     }
-    Ok(())
+    folder.write("summary.json", |out| holonom_io::write_json(&finished.summary, out))
 }
 
 /// Rounded to five figures.
@@ -102,15 +153,19 @@ fn events(of: &Value) -> String {
     lines.join("\n")
 }
 
+/// How a run ended.
+fn status(summary: &Value) -> String {
+    match summary["stopped_at"].as_f64() {
+        None => "completed".to_string(),
+        Some(at) => format!("stopped at {} s: {}", short(at), summary["reason"].as_str().unwrap_or("")),
+    }
+}
+
 /// The summary as people read it.
 fn describe(loaded: &Loaded, summary: &Value) -> String {
     let number = |group: &str, key: &str| short(summary[group][key].as_f64().unwrap_or(f64::NAN));
-    let status = match summary["stopped_at"].as_f64() {
-        None => "completed".to_string(),
-        Some(at) => format!("stopped at {} s: {}", short(at), summary["reason"].as_str().unwrap_or("")),
-    };
     let time = |key: &str| summary["time"][key].as_f64().map_or("–".into(), measured);
-    let mut items = vec![("method", summary["method"]["name"].as_str().unwrap_or("").to_string()), ("status", status)];
+    let mut items = vec![("method", summary["method"]["name"].as_str().unwrap_or("").to_string()), ("status", status(summary))];
     items.extend(
         [("drives", "drives"), ("forces", "forces"), ("joints", "joints")].map(|(word, sort)| (word, peaks(&summary["peaks"][sort]))),
     );

@@ -8,9 +8,10 @@ use holonom_report::{Search, StabilityReport};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
+use crate::folder::{Folder, holds};
 use crate::load::{self, Loaded};
 use crate::options::StabilityArguments;
-use crate::output::Folder;
+use crate::provenance::Provenance;
 use crate::table::{short, table};
 
 /// Largest step tried, over the length of the run: beyond it there is little left to complete.
@@ -37,14 +38,15 @@ pub fn stability(arguments: &StabilityArguments) -> Result<ExitCode, Failure> {
     let loaded = load::load(&arguments.model.model, overrides)?;
     let end = loaded.end()?;
     let bounds = Bounds { end, first: loaded.step()?, limit: LARGEST_SHARE * end };
-    let choices = choices(arguments, &loaded)?;
-    let path = arguments.to.folder(&format!("{}-stability", loaded.name));
-    let folder = Folder::create(&path)?;
-    let found: Vec<(String, LargestStep)> = choices.into_iter().map(|(name, choice)| (name, search(&loaded, &choice, &bounds))).collect();
-    let results = results(&loaded, &bounds, &found);
+    let searches = searches(arguments, &loaded)?;
+    let planned: Value = searches.iter().map(|(.., provenance)| json!({ "provenance": provenance })).collect();
+    let folder = Folder::claim(&arguments.to, &format!("{}-stability", loaded.name), |path| holds(path, &planned))?;
+    let (provenances, found): (Vec<Provenance>, Vec<(String, LargestStep)>) =
+        searches.into_iter().map(|(name, choice, provenance)| (provenance, (name, search(&loaded, &choice, &bounds)))).unzip();
+    let results = results(&loaded, &bounds, &found, &provenances);
     folder.write("stability.json", |out| holonom_io::write_json(&results, out))?;
     if !arguments.no_report {
-        write_report(&folder, &loaded, &bounds, &found)?;
+        write_report(&folder, &loaded, &bounds, &found, &results[0]["provenance"])?;
     }
     if arguments.to.json {
         println!("{}", serde_json::to_string_pretty(&results).expect("a result is plain data"));
@@ -54,19 +56,19 @@ pub fn stability(arguments: &StabilityArguments) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Names and choices of the methods; what is wrong with one is said before anything runs.
-fn choices(arguments: &StabilityArguments, loaded: &Loaded) -> Result<Vec<(String, Choice)>, Failure> {
+/// Names and choices of the methods, and what their runs are; what is wrong with one is said before anything runs.
+fn searches(arguments: &StabilityArguments, loaded: &Loaded) -> Result<Vec<(String, Choice, Provenance)>, Failure> {
     let names: Vec<&str> = match arguments.methods.is_empty() {
         true => NAMED.iter().map(|named| named.name).collect(),
         false => arguments.methods.iter().map(String::as_str).collect(),
     };
-    let choice = |name: &str| {
+    let search = |name: &str| {
         let mut choice = loaded.model.choice(Some(name));
         choice.subdivide = Some(false);
-        Method::resolve(&choice).map_err(load::method_failure)?;
-        Ok((name.to_string(), choice))
+        let method = Method::resolve(&choice).map_err(load::method_failure)?;
+        Ok((name.to_string(), choice, loaded.provenance(&method, None, None)?))
     };
-    names.into_iter().map(choice).collect()
+    names.into_iter().map(search).collect()
 }
 
 fn search(loaded: &Loaded, choice: &Choice, bounds: &Bounds) -> LargestStep {
@@ -86,23 +88,31 @@ fn completes(loaded: &Loaded, choice: &Choice, step: f64, end: f64) -> bool {
 }
 
 /// Content of `stability.json`.
-fn results(loaded: &Loaded, bounds: &Bounds, found: &[(String, LargestStep)]) -> Value {
-    let result = |(name, found): &(String, LargestStep)| {
+fn results(loaded: &Loaded, bounds: &Bounds, found: &[(String, LargestStep)], provenances: &[Provenance]) -> Value {
+    let result = |((name, found), provenance): (&(String, LargestStep), &Provenance)| {
         json!({
             "method": name, "completes": found.completes, "fails": found.fails, "runs": found.runs,
             "model": loaded.name, "end": bounds.end, "first": bounds.first, "limit": bounds.limit,
+            "provenance": provenance,
         })
     };
-    Value::Array(found.iter().map(result).collect())
+    Value::Array(found.iter().zip(provenances).map(result).collect())
 }
 
-fn write_report<'a>(folder: &Folder, loaded: &Loaded, bounds: &Bounds, found: &'a [(String, LargestStep)]) -> Result<(), Failure> {
+fn write_report<'a>(
+    folder: &Folder,
+    loaded: &Loaded,
+    bounds: &Bounds,
+    found: &'a [(String, LargestStep)],
+    provenance: &Value,
+) -> Result<(), Failure> {
     let search =
         |(method, found): &'a (String, LargestStep)| Search { method, completes: found.completes, fails: found.fails, runs: found.runs };
     let searches: Vec<Search<'_>> = found.iter().map(search).collect();
     let report = StabilityReport {
         title: loaded.title(),
-        model_text: &loaded.text,
+        model_text: loaded.source.text(),
+        provenance,
         end: bounds.end,
         first: bounds.first,
         limit: bounds.limit,

@@ -1,5 +1,6 @@
 //! `holonom sweep`.
 
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
@@ -10,9 +11,10 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::failure::{Failure, STOPPED};
+use crate::folder::Folder;
 use crate::load;
 use crate::options::SweepArguments;
-use crate::output::{Folder, table_writers};
+use crate::output::table_writers;
 use crate::progress::{interrupt_flag, runs_bar};
 use crate::sweep::{Ending, Journal, Plan, Runner, Sheet, check};
 use crate::table::{list, measured};
@@ -30,8 +32,8 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
     let (source, name) = load::open(&arguments.model.model, &overrides)?;
     let columns = check(arguments, &overrides, &source, &plan)?;
     let sheet = Sheet::new(&plan, &columns);
-    let folder = Folder::create(&arguments.to.folder(&format!("{name}-sweep")))?;
     let identity = identity(arguments, overrides.given(), source.text());
+    let folder = Folder::claim(&arguments.to, &format!("{name}-sweep"), |path| is_of(path, arguments, &identity))?;
     let mut journal = open(&folder, &identity, &plan, &sheet)?;
     let runner = Runner {
         source: &source,
@@ -45,7 +47,7 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
     let table = sheet.table(journal.lines.iter().flatten());
     let is_whole = journal.missing().is_empty();
     if is_whole {
-        writers.iter().try_for_each(|(writer, write)| folder.replace(&format!("sweep.{}", writer.extension), |out| write(&table, out)))?;
+        writers.iter().try_for_each(|(writer, write)| folder.write(&format!("sweep.{}", writer.extension), |out| write(&table, out)))?;
     }
     tell(arguments, &folder, &summary(&name, &plan, &sheet, &table, &spent), is_whole);
     Ok(if is_whole { ExitCode::SUCCESS } else { ExitCode::from(STOPPED) })
@@ -60,13 +62,20 @@ fn identity(arguments: &SweepArguments, set: &[String], text: &str) -> Value {
     })
 }
 
+/// Whether a folder holds runs of the same sweep. Where the user names a folder with another sweep in it, its journal says what differs.
+fn is_of(path: &Path, arguments: &SweepArguments, identity: &Value) -> bool {
+    let journal = path.join(JOURNAL);
+    let is_named = arguments.to.out.is_some() && !arguments.to.force;
+    Journal::is_of(&journal, identity) || (is_named && (journal.exists() || path.join("sweep.csv").exists()))
+}
+
 /// The journal of the folder. A table that no journal vouches for is left alone.
 fn open(folder: &Folder, identity: &Value, plan: &Plan, sheet: &Sheet) -> Result<Journal, Failure> {
     let (journal, table) = (folder.path.join(JOURNAL), folder.path.join("sweep.csv"));
     if table.exists() && !journal.exists() {
         return Err(Failure::usage(
             format!("{} is there without its {JOURNAL}", table.display()),
-            "give another --out, or remove the folder if its results are not wanted",
+            "give another --out, or --force to overwrite it",
         ));
     }
     Journal::open(&journal, identity, plan.runs, sheet)
@@ -110,7 +119,7 @@ fn summary(name: &str, plan: &Plan, sheet: &Sheet, table: &Table, spent: &Spent)
 
 /// Says how it went.
 fn tell(arguments: &SweepArguments, folder: &Folder, summary: &Value, is_whole: bool) {
-    if !is_whole && !arguments.to.quiet {
+    if !is_whole {
         eprintln!("interrupted: {JOURNAL} holds the finished runs, and the same command goes on");
     }
     if arguments.to.json {

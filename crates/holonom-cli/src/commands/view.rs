@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use tiny_http::{Header, Response, Server};
 
 use crate::failure::Failure;
+use crate::message::note;
 use crate::options::ViewArguments;
 
 /// Serves the report of a folder on this machine only, until it is interrupted.
@@ -14,7 +15,13 @@ pub fn view(arguments: &ViewArguments) -> Result<ExitCode, Failure> {
     let server = Server::http(("127.0.0.1", arguments.port)).map_err(|error| {
         Failure::usage(format!("cannot serve on port {}: {error}", arguments.port), "take another port, or 0 for a free one")
     })?;
-    println!("http://{}", server.server_addr());
+    let address = format!("http://{}", server.server_addr());
+    println!("{address}");
+    if !arguments.no_browser
+        && let Err(error) = open::that_detached(&address)
+    {
+        note(&format!("no browser could be opened ({error}): open the address yourself"));
+    }
     let html = Header::from_bytes("Content-Type", "text/html; charset=utf-8").expect("the header is valid");
     for request in server.incoming_requests() {
         let response = match request.url() {

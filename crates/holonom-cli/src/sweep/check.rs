@@ -8,19 +8,9 @@ use super::plan::Plan;
 use super::run::{Task, constraints};
 use super::vary::Vary;
 use crate::failure::Failure;
-use crate::load::{self, Overrides};
+use crate::load::{self, OF_METHOD, Overrides};
 use crate::options::SweepArguments;
 use crate::output;
-
-/// Keys that the name of a method on the command line replaces.
-const OF_METHOD: [&str; 6] = [
-    "simulation.method",
-    "simulation.formulation",
-    "simulation.index",
-    "simulation.integrator",
-    "simulation.order",
-    "simulation.projection.levels",
-];
 
 /// Refuses keys that nothing can be made of and a model that is not sound; names the columns whose last values are kept.
 pub fn check(arguments: &SweepArguments, overrides: &Overrides, source: &Source, plan: &Plan) -> Result<Vec<String>, Failure> {
@@ -65,19 +55,8 @@ fn check_key(vary: &Vary, arguments: &SweepArguments, overrides: &Overrides, sou
         let key = table.keys().next().unwrap_or("key");
         return Err(Failure::usage(format!("`{path}` is a table and has no values"), format!("name a key in it, such as {path}.{key}")));
     }
-    match path.strip_prefix("parameters.") {
-        // A parameter that nothing names would make runs that are all alike.
-        Some(name) if source.get(path).is_none() => {
-            let known: Vec<&str> = match source.get("parameters") {
-                Some(Value::Table(table)) => table.keys().collect(),
-                _ => Vec::new(),
-            };
-            let near = nearest(name, known)
-                .map_or("add it to [parameters], and name it in the model".to_string(), |near| format!("did you mean `{near}`?"));
-            Err(Failure::usage(format!("the model has no parameter `{name}`"), near))
-        }
-        _ => Ok(()),
-    }
+    // A parameter that nothing names would make runs that are all alike.
+    load::require_key("--vary", path, source)
 }
 
 /// Whether a fault says that a varied key is none of the model file, or belongs to nothing that is there.

@@ -51,6 +51,15 @@ impl Journal {
         Ok(journal)
     }
 
+    /// Whether a journal is of this sweep; one that was torn before it said so has nothing of another.
+    pub fn is_of(path: &Path, identity: &Value) -> bool {
+        let Ok(bytes) = std::fs::read(path) else { return false };
+        match bytes.iter().position(|&byte| byte == b'\n') {
+            Some(end) => check(&String::from_utf8_lossy(&bytes[..end]), identity, path).is_ok(),
+            None => whole_file_is_torn(&bytes, path).is_ok(),
+        }
+    }
+
     /// Notes a finished run.
     pub fn add(&mut self, run: u64, line: String) -> Result<(), Failure> {
         self.append(&line)?;
@@ -77,7 +86,7 @@ fn check(first: &str, identity: &Value, path: &Path) -> Result<(), Failure> {
         true => Ok(()),
         false => Err(Failure::usage(
             format!("{} is of another sweep, which differs in: {}", path.display(), differing.join(", ")),
-            "give another --out, or remove the folder if its results are not wanted",
+            "give another --out, or --force to overwrite it",
         )),
     }
 }
@@ -88,5 +97,5 @@ fn whole_file_is_torn(bytes: &[u8], path: &Path) -> Result<(), Failure> {
 }
 
 fn foreign(path: &Path) -> Failure {
-    Failure::usage(format!("{} is not the journal of a sweep", path.display()), "give another --out")
+    Failure::usage(format!("{} is not the journal of a sweep", path.display()), "give another --out, or --force to overwrite it")
 }

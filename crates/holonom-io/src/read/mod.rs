@@ -4,17 +4,20 @@ mod mesh;
 mod numbers;
 mod places;
 mod render;
+mod rows;
 mod toml;
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use holonom::model::{Description, Fault, Faults, Files, Kinds, Mesh, Model, NoFiles, NumberFile, Table, Value};
+use holonom::model::{Description, Fault, Faults, Files, Kinds, Mesh, Model, NoFiles, NumberFile, Table, Value, unused_parameters};
+use sha2::{Digest, Sha256};
 
 pub use mesh::{LARGEST_MESH, MOST_TRIANGLES, MeshError, read_mesh};
 pub use numbers::{LARGEST_NUMBERS, NumbersError, read_numbers};
 use places::Places;
+pub use rows::read_csv;
 
 /// Largest model file that is read, bytes: some 40 000 entries, while parsing takes up to fifty times as much memory.
 pub const LARGEST_FILE: usize = 4 * 1024 * 1024;
@@ -28,6 +31,8 @@ pub struct Source {
     text: String,
     /// The description; [`Source::set`] changes it.
     value: Value,
+    /// What stood in the file at the keys that were set.
+    replaced: Vec<(String, Option<Value>)>,
     places: Places,
     /// The files that the model names, where they can be read.
     files: Option<FilesBeside>,
@@ -43,12 +48,13 @@ impl Source {
         let text = decode(name, bytes)?;
         let mut places = Places::default();
         let value = toml::parse(&text, &mut places).map_err(|error| render::syntax(name, &text, &error))?;
-        Ok(Self { name: name.into(), text, value, places, files: None, kinds: Kinds::default() })
+        Ok(Self { name: name.into(), text, value, replaced: Vec::new(), places, files: None, kinds: Kinds::default() })
     }
 
     /// Says in which folder the files are that the model names.
     pub fn beside(mut self, folder: &Path) -> Self {
-        self.files = Some(FilesBeside { folder: folder.into(), meshes: Mutex::default(), numbers: Mutex::default() });
+        let (meshes, numbers, sums) = Default::default();
+        self.files = Some(FilesBeside { folder: folder.into(), meshes, numbers, sums });
         self
     }
 
@@ -64,13 +70,32 @@ impl Source {
     /// # Errors
     /// When a part of the key before the last is no table.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
+        let before = self.get(key).cloned();
         put(&mut self.value, key, read_value(value)).map_err(|part| {
             format!(
                 "error: `{key}` cannot be set: `{part}` is not a table\n  = cure: name a key of the model file, such as simulation.step"
             )
         })?;
         self.places.forget(key);
+        if self.replaced.iter().all(|(known, _)| known != key) {
+            self.replaced.push((key.into(), before));
+        }
         Ok(())
+    }
+
+    /// The keys that were set, in the order in which they first were, with what stands in the file there.
+    pub fn replaced(&self) -> &[(String, Option<Value>)] {
+        &self.replaced
+    }
+
+    /// The whole description, with all that was set.
+    pub fn value(&self) -> &Value {
+        &self.value
+    }
+
+    /// Names of the files that the model was read with beside its own, with the SHA-256 of their bytes.
+    pub fn files(&self) -> BTreeMap<String, String> {
+        self.files.as_ref().map(|files| files.sums.lock().expect("no reader panics").clone()).unwrap_or_default()
     }
 
     /// What stands at a key such as `simulation.step`.
@@ -79,6 +104,11 @@ impl Source {
             Value::Table(table) => table.get(part),
             _ => None,
         })
+    }
+
+    /// The parameters that nothing uses.
+    pub fn unused_parameters(&self) -> Vec<&str> {
+        unused_parameters(&self.value)
     }
 
     /// Reads the description as a model.
@@ -179,6 +209,8 @@ struct FilesBeside {
     folder: PathBuf,
     meshes: Mutex<HashMap<String, Arc<Mesh>>>,
     numbers: Mutex<HashMap<String, Arc<NumberFile>>>,
+    /// SHA-256 of each.
+    sums: Mutex<BTreeMap<String, String>>,
 }
 
 impl Files for FilesBeside {
@@ -212,7 +244,10 @@ impl FilesBeside {
         if size > largest as u64 {
             return Err(format!("{} is larger than {} MB", path.display(), largest / 1_000_000));
         }
-        std::fs::read(&path).map_err(|error| format!("{} cannot be read: {error}", path.display()))
+        let bytes = std::fs::read(&path).map_err(|error| format!("{} cannot be read: {error}", path.display()))?;
+        let sum = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        self.sums.lock().expect("no reader panics").insert(name.into(), sum);
+        Ok(bytes)
     }
 }
 

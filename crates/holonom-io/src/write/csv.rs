@@ -8,10 +8,17 @@ use super::Table;
 
 /// Writes a header and one line a row. Numbers are the shortest that read back to the same bits.
 pub(super) fn write(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
+    append_csv(recording, 0, out)
+}
+
+/// Writes the rows from `first` on, as they follow those before in a file; the header, too, where there are none before.
+pub fn append_csv(recording: &Recording, first: usize, out: &mut dyn Write) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
-    table.write_record(recording.columns().iter().map(|column| &column.heading.name))?;
+    if first == 0 {
+        table.write_record(recording.columns().iter().map(|column| &column.heading.name))?;
+    }
     let mut number = zmij::Buffer::new();
-    for row in 0..recording.rows() {
+    for row in first..recording.rows() {
         for column in recording.columns() {
             let digits = number.format(column.values[row]);
             table.write_field(digits.strip_suffix(".0").unwrap_or(digits))?;

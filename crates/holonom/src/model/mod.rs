@@ -58,6 +58,7 @@ pub use fields::{Described, Field, Keys, List, Map, Number, Place, Rows, Site, T
 pub use input::Input;
 pub use key::{Key, Kind, Kinds, REPEAT, Shape};
 pub use measure::Measure;
+pub use parameters::unused as unused_parameters;
 pub use points::Point;
 pub use reader::Reader;
 pub use schema::schema;

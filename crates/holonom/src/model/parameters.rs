@@ -35,6 +35,36 @@ pub fn read(table: &Table, sink: &Sink) -> HashMap<String, Known> {
     known
 }
 
+/// The parameters of a file that nothing outside `[parameters]` names, neither by itself nor through other parameters.
+///
+/// Words are compared and formulas are not read, as references such as `m[N]` and ranges of `repeat` hold formulas, too. So a parameter
+/// that has the name of something else counts as used.
+pub fn unused(file: &Value) -> Vec<&str> {
+    let Value::Table(file) = file else { return Vec::new() };
+    let Some(Value::Table(parameters)) = file.get("parameters") else { return Vec::new() };
+    let mut open: Vec<&str> = Vec::new();
+    file.iter().filter(|(key, _)| !["parameters", "title"].contains(key)).for_each(|(_, value)| words(value, &mut open));
+    let mut used: HashSet<&str> = HashSet::new();
+    while let Some(word) = open.pop() {
+        if let Some(value) = parameters.get(word)
+            && used.insert(word)
+        {
+            words(value, &mut open);
+        }
+    }
+    parameters.keys().filter(|name| !used.contains(name)).collect()
+}
+
+/// Adds every word of the texts in a value.
+fn words<'a>(value: &'a Value, found: &mut Vec<&'a str>) {
+    match value {
+        Value::Text(text) => found.extend(text.split(|c: char| !(c.is_alphanumeric() || c == '_'))),
+        Value::List(items) => items.iter().for_each(|item| words(item, found)),
+        Value::Table(table) => table.iter().for_each(|(_, value)| words(value, found)),
+        Value::Number(_) | Value::Bool(_) => (),
+    }
+}
+
 /// Refuses a key that could not be written as a name in expressions.
 pub fn require_name(entry: &Entry<'_>, name: &str) -> Read<()> {
     unfit(name).map_or(Ok(()), |[message, cure]| Err(entry.refuse_key(name, message, cure)))

@@ -104,6 +104,13 @@ impl<'a> Recorder<'a> {
         self
     }
 
+    /// Appends to the rows that were recorded before, of a recording with the same columns; the row where the run was left is among them,
+    /// and is not recorded once more.
+    pub fn after(mut self, rows: Recording) -> Self {
+        self.recording = rows;
+        self
+    }
+
     /// What a resumed recording goes on from.
     pub fn mark(&self) -> RecorderMark {
         let orientations = self.orientations.iter().map(|q| [q.w, q.i, q.j, q.k]).collect();
@@ -153,8 +160,8 @@ impl Observer for Recorder<'_> {
 
     fn after_step(&mut self, simulation: &Simulation) -> Verdict {
         if std::mem::take(&mut self.resumed) {
-            // Where the run was left, that row is the first once more.
-            if (self.seen.max(1) - 1).is_multiple_of(self.every) {
+            // Where the run was left, that row is the first once more, unless it is there.
+            if self.recording.rows() == 0 && (self.seen.max(1) - 1).is_multiple_of(self.every) {
                 self.look(simulation);
                 self.recording.push(&self.row);
             }

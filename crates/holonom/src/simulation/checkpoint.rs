@@ -19,6 +19,17 @@ pub struct Checkpoint {
     run: Option<Run>,
 }
 
+impl Checkpoint {
+    /// Whether a run that goes on from here is as one that did not end here: not from within a nominal step, as after a last one that the
+    /// end of the run has cut short, and not where an event has ended the run.
+    pub fn goes_on_unbroken(&self) -> bool {
+        self.run.as_ref().is_some_and(|run| {
+            let is_ended = run.happenings.last().is_some_and(|last| last.stopped && last.t == self.state.t);
+            self.state.t == run.grid.at(run.grid.passed) && !is_ended
+        })
+    }
+}
+
 impl From<State> for Checkpoint {
     /// A run that begins at a state: nothing is booked of what was before.
     fn from(state: State) -> Self {

@@ -1,0 +1,127 @@
+//! A run on disk while it goes on, so that a kill costs no more than its last second or two.
+
+use std::fs::OpenOptions;
+use std::io::{BufWriter, Seek, SeekFrom, Write};
+use std::time::{Duration, Instant};
+
+use holonom::record::{Recorder, Recording};
+use holonom::simulation::Simulation;
+use holonom_io::Writer;
+
+use crate::checkpoint::{FILE, Kept, Point};
+use crate::failure::Failure;
+use crate::folder::Folder;
+use crate::load::Loaded;
+use crate::message::note;
+use crate::provenance::Provenance;
+
+/// Least time between two savings.
+const PAUSE: Duration = Duration::from_secs(1);
+
+/// The time between two savings is at least so many times what the last one took.
+const COST: u32 = 50;
+
+/// Writes the rows and the checkpoint of a run from time to time. Rows are appended, and come before the checkpoint that counts them, so
+/// that a checkpoint always has its rows.
+pub struct Keeper<'a> {
+    folder: &'a Folder,
+    provenance: Provenance,
+    table: &'static str,
+    /// Rows of the table that are on disk, and the bytes that they take.
+    rows: usize,
+    bytes: u64,
+    /// Time of the results in the folder, s: they are replaced when the run is beyond it.
+    beyond: f64,
+    /// Whether results in the folder are of an earlier end.
+    is_stale: bool,
+    next: Instant,
+}
+
+/// The file that has the rows of all columns: the trajectory, where that is CSV and not of some points only.
+fn table(loaded: &Loaded, writers: &[&Writer]) -> &'static str {
+    let is_whole = loaded.model.output.points.is_none() && writers.iter().any(|writer| writer.extension == "csv");
+    if is_whole { "trajectory.csv" } else { "recording.csv" }
+}
+
+impl<'a> Keeper<'a> {
+    /// For a run from its start, into a folder that is free or has the same run.
+    pub fn new(folder: &'a Folder, loaded: &Loaded, writers: &[&Writer], provenance: &Provenance) -> Self {
+        let (table, next) = (table(loaded, writers), Instant::now() + PAUSE);
+        let beyond = folder.reached().unwrap_or(f64::NEG_INFINITY);
+        Self { folder, provenance: provenance.clone(), table, rows: 0, bytes: 0, beyond, is_stale: true, next }
+    }
+
+    /// For a run that goes on from a checkpoint: the table in `file` of the same folder has so many rows of it, in so many bytes.
+    pub fn go_on(&mut self, file: &str, rows: usize, bytes: u64) {
+        self.beyond = f64::NEG_INFINITY;
+        if file == self.table {
+            (self.rows, self.bytes) = (rows, bytes);
+        }
+    }
+
+    /// Saves the run if it is time to.
+    pub fn look(&mut self, simulation: &Simulation, recorder: &Recorder<'_>) {
+        let begun = Instant::now();
+        if begun < self.next || simulation.state().t <= self.beyond {
+            return;
+        }
+        let last = Point::of(simulation, recorder);
+        match self.save(recorder.recording(), last, None) {
+            Ok(()) => self.next = Instant::now() + PAUSE.max(COST * begun.elapsed()),
+            Err(failure) => {
+                note(&format!("{failure}; the run goes on, and is not saved before its end"));
+                self.beyond = f64::INFINITY;
+            }
+        }
+    }
+
+    /// Saves rows and checkpoint.
+    pub fn save(&mut self, recording: &Recording, last: Point, before_end: Option<Point>) -> Result<(), Failure> {
+        self.append(recording)?;
+        let kept = Kept { last, before_end, table: self.table.into(), provenance: self.provenance.clone() };
+        let kept = serde_json::to_value(&kept).expect("a checkpoint is plain data");
+        self.folder.write(FILE, |out| holonom_io::write_json(&kept, out))?;
+        if std::mem::take(&mut self.is_stale) {
+            self.folder.remove_results(&[self.table, FILE])?;
+            self.folder.write("columns.json", |out| holonom_io::write_json(&holonom_io::headings(recording), out))?;
+        }
+        Ok(())
+    }
+
+    /// The time (s) that the results in the folder reach, where the same run ended later there than at `t`.
+    pub fn is_behind(&self, t: f64) -> Option<f64> {
+        Some(self.beyond).filter(|&beyond| t < beyond && beyond.is_finite())
+    }
+
+    /// Saves the end of a run. Results of the same run may stay beside it.
+    pub fn finish(&mut self, recording: &Recording, last: Point, before_end: Option<Point>) -> Result<(), Failure> {
+        self.is_stale &= self.beyond == f64::NEG_INFINITY;
+        self.save(recording, last, before_end)
+    }
+
+    /// The writers of the tables that are not written yet.
+    pub fn others<'w>(&self, writers: &[&'w Writer]) -> Vec<&'w Writer> {
+        writers.iter().copied().filter(|writer| format!("trajectory.{}", writer.extension) != self.table).collect()
+    }
+
+    /// Appends the rows that are not on disk yet. What is behind those that are, a kill has left.
+    fn append(&mut self, recording: &Recording) -> Result<(), Failure> {
+        let path = self.folder.path.join(self.table);
+        if self.rows == 0 {
+            self.folder.write(self.table, |out| holonom_io::append_csv(recording, 0, out))?;
+            self.bytes = std::fs::metadata(&path).map_or(0, |file| file.len());
+        } else {
+            let appended = OpenOptions::new().write(true).open(&path).and_then(|mut file| {
+                file.set_len(self.bytes)?;
+                file.seek(SeekFrom::End(0))?;
+                let mut out = BufWriter::new(file);
+                holonom_io::append_csv(recording, self.rows, &mut out)?;
+                out.flush()?;
+                out.stream_position()
+            });
+            self.bytes = appended.map_err(|source| Failure::File { doing: "write", path, source })?;
+        }
+        self.rows = recording.rows();
+        Ok(())
+    }
+}
