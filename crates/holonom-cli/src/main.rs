@@ -3,6 +3,8 @@
 mod clock;
 mod commands;
 mod failure;
+mod interpolation;
+mod items;
 mod load;
 mod options;
 mod output;

@@ -160,8 +160,9 @@ pub struct SweepArguments {
     pub seed: u64,
     #[command(flatten)]
     pub method: MethodArguments,
-    /// Columns of the trajectory whose last values are kept [default: energy, and all of points, bodies, joints and drives]
-    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    /// Columns of the table: last values of columns of the trajectory, or max(…), min(…), mean(…), rms(…), at(…, t) of them
+    /// [default: energy, and all of points, bodies, joints and drives]
+    #[arg(long, value_name = "COLUMN,…")]
     pub columns: Vec<String>,
     /// Runs at a time [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]

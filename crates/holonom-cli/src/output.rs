@@ -62,11 +62,7 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
         announce_corrections(model, &simulation);
     }
     let rank = analysis::rank_of(&simulation);
-    let constraints = match model.output.reactions {
-        Some(false) => Constraints::Nothing,
-        None => Constraints::Joints,
-        Some(true) => Constraints::Rows,
-    };
+    let constraints = constraints(model);
     if constraints != Constraints::Nothing || !model.channels.efforts.is_empty() {
         model.find_reactions(&mut simulation);
     }
@@ -96,6 +92,15 @@ pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) ->
     let recording = watched.finish();
     value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording)).expect("peaks are plain data");
     Ok(Finished { method: name, recording, summary: value, completed: status == Status::Completed, kept })
+}
+
+/// What a run of a model records of the forces of its constraints.
+pub fn constraints(model: &Model) -> Constraints {
+    match model.output.reactions {
+        Some(false) => Constraints::Nothing,
+        None => Constraints::Joints,
+        Some(true) => Constraints::Rows,
+    }
 }
 
 /// Says on standard error what was put right before the start.

@@ -9,4 +9,4 @@ pub use read::{
     DEEPEST, LARGEST_FILE, LARGEST_MESH, LARGEST_NUMBERS, MOST_TRIANGLES, MeshError, NumbersError, Source, read_mesh, read_numbers,
     read_value,
 };
-pub use write::{Cells, Table, WRITERS, WriteTable, Writer, csv_cells, csv_line, headings, write_json};
+pub use write::{Cells, Table, WRITERS, WriteTable, Writer, csv_cells, csv_line, csv_number, headings, write_json};

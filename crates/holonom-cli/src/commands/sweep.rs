@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::failure::{Failure, STOPPED};
+use crate::items::items;
 use crate::load;
 use crate::options::SweepArguments;
 use crate::output::{Folder, table_writers};
@@ -55,7 +56,8 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
 fn identity(arguments: &SweepArguments, set: &[String], text: &str) -> Value {
     json!({
         "version": env!("CARGO_PKG_VERSION"), "vary": arguments.vary, "samples": arguments.samples,
-        "seed": arguments.samples.map(|_| arguments.seed), "set": set, "method": arguments.method.name, "columns": arguments.columns,
+        "seed": arguments.samples.map(|_| arguments.seed), "set": set, "method": arguments.method.name,
+        "columns": arguments.columns.iter().flat_map(|given| items(given)).collect::<Vec<_>>(),
         "model": text,
     })
 }

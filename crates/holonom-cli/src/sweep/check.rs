@@ -1,13 +1,17 @@
 //! What is looked at before a sweep runs: keys that can be varied, a model that is sound, columns that there are.
 
-use holonom::model::{Fault, Faults, Model, Value, nearest};
-use holonom::record::{COLUMNS, Recorder};
+use holonom::model::{Fault, Faults, Model, Value, nearest, nearest_few};
+use holonom::record::{COLUMNS, Constraints, Recorder};
 use holonom_io::Source;
 
+use super::column::Asked;
 use super::plan::Plan;
-use super::run::{Task, constraints};
+use super::reduction::Function;
+use super::run::Task;
 use super::vary::Vary;
+use super::watch::{Columns, recorder};
 use crate::failure::Failure;
+use crate::items::items;
 use crate::load::{self, Overrides};
 use crate::options::SweepArguments;
 use crate::output;
@@ -22,37 +26,73 @@ const OF_METHOD: [&str; 6] = [
     "simulation.projection.levels",
 ];
 
-/// Refuses keys that nothing can be made of and a model that is not sound; names the columns whose last values are kept.
-pub fn check(arguments: &SweepArguments, overrides: &Overrides, source: &Source, plan: &Plan) -> Result<Vec<String>, Failure> {
+/// Refuses keys that nothing can be made of, a model that is not sound and columns that there are not; finds out what the columns take.
+pub fn check(arguments: &SweepArguments, overrides: &Overrides, source: &Source, plan: &Plan) -> Result<Columns, Failure> {
+    let asked = asked(arguments)?;
     plan.varied.iter().try_for_each(|vary| check_key(vary, arguments, overrides, source))?;
     let mut with_first = overrides.clone();
     plan.varied.iter().zip(plan.settings(1)).for_each(|(vary, setting)| with_first.number(&vary.path, Some(&setting.text)));
     let (first, _) = load::open(&arguments.model.model, &with_first)?;
     let method = arguments.method.name.as_deref();
     // A value may be missing in the file and given by each run, or the values of the first run may not be possible.
-    let model = match first.model_with(&[]) {
+    let model = match compile(&first, &asked) {
         Err(faults) => {
             let of_keys: Vec<Fault> = faults.0.iter().filter(|fault| is_of_key(fault, plan, source)).cloned().collect();
             if !of_keys.is_empty() {
                 return Err(Failure::Model(first.render(&Faults(of_keys))));
             }
-            sound(source, method).map_err(|_| Failure::Model(first.render(&faults)))?
+            sound(source, &asked, method).map_err(|_| Failure::Model(first.render(&faults)))?
         }
         Ok(model) => match Task::new(&model, method) {
             Ok(_) => model,
-            Err(failure) => sound(source, method).map_err(|_| failure)?,
+            Err(failure) => sound(source, &asked, method).map_err(|_| failure)?,
         },
     };
-    columns(&model, &arguments.columns)
+    refuse_late(&asked, source, plan)?;
+    if asked.is_empty() { Ok(usual(&model)) } else { columns(&model, asked) }
 }
 
 /// The model as it is, if it could run.
-fn sound(source: &Source, method: Option<&str>) -> Result<Model, Failure> {
-    let model = source.model().map_err(Failure::Model)?;
+fn sound(source: &Source, asked: &[Asked], method: Option<&str>) -> Result<Model, Failure> {
+    let model = compile(source, asked).map_err(|faults| Failure::Model(source.render(&faults)))?;
     Task::new(&model, method)?;
     Ok(model)
 }
 
+/// Refuses times after the end of all runs, where these have one end.
+fn refuse_late(asked: &[Asked], source: &Source, plan: &Plan) -> Result<(), Failure> {
+    let (Some(&Value::Number(end)), false) = (source.get("simulation.end"), plan.varied.iter().any(|vary| vary.path == "simulation.end"))
+    else {
+        return Ok(());
+    };
+    match asked.iter().find(|asked| matches!(asked.function, Function::At(t) if t > end)) {
+        None => Ok(()),
+        Some(late) => {
+            let message = format!("`{}` asks for a time after the end of the runs, {end} s", late.text);
+            Err(Failure::usage(message, "ask for an earlier time, or give a later --end"))
+        }
+    }
+}
+
+/// The columns asked for.
+fn asked(arguments: &SweepArguments) -> Result<Vec<Asked>, Failure> {
+    let mut found: Vec<Asked> = Vec::new();
+    for text in arguments.columns.iter().flat_map(|given| items(given)) {
+        let asked = Asked::parse(text)?;
+        if found.iter().any(|other| other.text == asked.text) {
+            return Err(Failure::usage(format!("the column `{text}` is asked for twice"), "leave out one of them"));
+        }
+        found.push(asked);
+    }
+    Ok(found)
+}
+
+/// The model of a source, with what tells the forces of joints where columns may ask for them.
+fn compile(source: &Source, asked: &[Asked]) -> Result<Model, Faults> {
+    if asked.is_empty() { source.model_with(&[]) } else { source.model_with_forces_and(&[]) }
+}
+
+/// Refuses a key that cannot be varied.
 fn check_key(vary: &Vary, arguments: &SweepArguments, overrides: &Overrides, source: &Source) -> Result<(), Failure> {
     let path = vary.path.as_str();
     if overrides.has(path) {
@@ -89,23 +129,60 @@ fn is_of_key(fault: &Fault, plan: &Plan, source: &Source) -> bool {
     })
 }
 
-/// The columns asked for, or the energy and all of the motion.
-fn columns(model: &Model, asked: &[String]) -> Result<Vec<String>, Failure> {
-    let recorder = Recorder::new(&model.channels, &model.system, 1, constraints(model));
-    let all: Vec<&str> = recorder.recording().columns().iter().map(|column| column.heading.name.as_str()).collect();
-    if let Some(unknown) = asked.iter().find(|name| !all.contains(&name.as_str())) {
-        let cure = match nearest(unknown, all.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("take some of: {}", all.join(", ")),
-        };
-        return Err(Failure::usage(format!("there is no column `{unknown}`"), cure));
-    }
-    if !asked.is_empty() {
-        return Ok(asked.to_vec());
-    }
+/// Where no column is asked for: the last values of the energy and of all that is recorded without the forces of constraints.
+fn usual(model: &Model) -> Columns {
+    // Of many runs nothing is found that was not asked for.
+    let constraints = if model.output.reactions == Some(true) { Constraints::Rows } else { Constraints::Nothing };
+    let recorder = recorder(model, constraints);
     let written = match &model.output.points {
         Some(points) => output::columns(recorder.recording(), points, model),
-        None => all.iter().map(|name| name.to_string()).collect(),
+        None => recorder.recording().columns().iter().map(|column| column.heading.name.clone()).collect(),
     };
-    Ok(written.into_iter().filter(|name| name == "energy" || !COLUMNS.contains(&name.as_str())).collect())
+    let shown = written.iter().filter(|name| *name == "energy" || !COLUMNS.contains(&name.as_str()));
+    Columns { asked: shown.map(|name| Asked::last(name)).collect(), constraints, forces: false }
+}
+
+/// What may be recorded of the forces of constraints, the least first.
+const LEVELS: [Constraints; 3] = [Constraints::Nothing, Constraints::Joints, Constraints::Rows];
+
+/// The columns asked for, if a run records them, with no more of the forces of constraints than they need.
+fn columns(model: &Model, asked: Vec<Asked>) -> Result<Columns, Failure> {
+    let recorders = LEVELS.map(|level| recorder(model, level));
+    let recorded = LEVELS.iter().position(|level| *level == output::constraints(model)).expect("every level is listed");
+    let mut needed = 0;
+    for Asked { of, .. } in &asked {
+        match recorders.iter().position(|recorder| recorder.recording().find(of).is_some()) {
+            Some(level) if level <= recorded => needed = needed.max(level),
+            Some(_) => {
+                return Err(Failure::usage(format!("runs of this model do not record `{of}`"), "give --set output.reactions=true"));
+            }
+            None => return Err(unknown(of, &recorders[recorded])),
+        }
+    }
+    let is_effort = |of: &str| {
+        let owner = of.strip_suffix(".effort").or(of.strip_suffix(".power"));
+        owner.is_some_and(|owner| model.channels.efforts.iter().any(|effort| effort.name == owner))
+    };
+    let mut over_time = asked.iter().filter(|asked| asked.function != Function::Last).peekable();
+    let forces = over_time.peek().is_some() && (needed > 0 || over_time.any(|asked| is_effort(&asked.of)));
+    Ok(Columns { asked, constraints: LEVELS[needed], forces })
+}
+
+/// Near names that are told, or columns where none is near.
+const NEAR: usize = 3;
+const SHOWN: usize = 25;
+
+/// Refuses a column that there is not.
+fn unknown(name: &str, recorder: &Recorder<'_>) -> Failure {
+    let all = || recorder.recording().columns().iter().map(|column| column.heading.name.as_str());
+    let near: Vec<String> = nearest_few(name, all(), NEAR).into_iter().map(|near| format!("`{near}`")).collect();
+    let cure = match near.split_last() {
+        Some((last, [])) => format!("did you mean {last}?"),
+        Some((last, others)) => format!("did you mean {} or {last}?", others.join(", ")),
+        None => {
+            let more = if all().count() > SHOWN { ", and more: columns.json of a run has all" } else { "" };
+            format!("take some of: {}{more}", all().take(SHOWN).collect::<Vec<_>>().join(", "))
+        }
+    };
+    Failure::usage(format!("there is no column `{name}`"), cure)
 }

@@ -1,11 +1,14 @@
 //! Independent runs of one model that differ in some of its keys.
 
 mod check;
+mod column;
 mod journal;
 mod plan;
+mod reduction;
 mod run;
 mod sheet;
 mod vary;
+mod watch;
 
 pub use check::check;
 pub use journal::Journal;

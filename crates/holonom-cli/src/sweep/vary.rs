@@ -1,9 +1,10 @@
 //! What a key of the model is varied over, as it is typed: `lo..hi:20`, `lo..hi:20log`, or `a,b,c`.
 
 use holonom::model::Value;
-use holonom_io::read_value;
+use holonom_io::{csv_number, read_value};
 
 use crate::failure::Failure;
+use crate::items::items;
 
 /// A key of the model file and the values that it takes.
 #[derive(Debug, PartialEq)]
@@ -38,7 +39,7 @@ pub struct Setting {
 
 impl Setting {
     fn number(number: f64) -> Self {
-        Self { text: number.to_string(), value: Value::Number(number) }
+        Self { text: csv_number(number), value: Value::Number(number) }
     }
 
     fn typed(text: &str) -> Self {
@@ -112,27 +113,12 @@ fn range(text: &str) -> Option<Result<Range, String>> {
     })
 }
 
-/// Items between commas that stand outside brackets and quotes.
+/// Values between commas.
 fn list(text: &str) -> Result<Vec<Setting>, String> {
-    let (mut items, mut depth, mut quote, mut start) = (Vec::new(), 0, None, 0);
-    for (at, c) in text.char_indices() {
-        match (quote, c) {
-            (Some(open), c) if c == open => quote = None,
-            (Some(_), _) => (),
-            (None, '"' | '\'') => quote = Some(c),
-            (None, '[' | '{' | '(') => depth += 1,
-            (None, ']' | '}' | ')') => depth -= 1,
-            (None, ',') if depth == 0 => {
-                items.push(&text[start..at]);
-                start = at + 1;
-            }
-            _ => (),
-        }
-    }
-    items.push(&text[start..]);
-    match items.iter().any(|item| item.trim().is_empty()) {
+    let items = items(text);
+    match items.contains(&"") {
         true => Err("has an empty place in its list".into()),
-        false => Ok(items.into_iter().map(|item| Setting::typed(item.trim())).collect()),
+        false => Ok(items.into_iter().map(Setting::typed).collect()),
     }
 }
 

@@ -94,10 +94,18 @@ impl Source {
     /// # Errors
     /// Every fault of it, ready to be shown.
     pub fn model_with_forces(&self) -> Result<Model, String> {
-        let mut model = self.model()?;
+        self.model_with_forces_and(&[]).map_err(|faults| self.render(&faults))
+    }
+
+    /// The same with some keys set to other values.
+    ///
+    /// # Errors
+    /// Every fault of it.
+    pub fn model_with_forces_and(&self, changes: &[(&str, Value)]) -> Result<Model, Faults> {
+        let mut model = self.model_with(changes)?;
         if model.shares_nodes() && model.output.reactions != Some(false) {
-            let apart = self.model_with(&[("output.reactions", Value::Bool(true))]);
-            model.tell_forces(apart.map_err(|faults| self.render(&faults))?);
+            let apart = [changes, &[("output.reactions", Value::Bool(true))]].concat();
+            model.tell_forces(self.model_with(&apart)?);
         }
         Ok(model)
     }
