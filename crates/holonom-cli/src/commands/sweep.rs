@@ -48,8 +48,13 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
     if is_whole {
         writers.iter().try_for_each(|(writer, write)| folder.replace(&format!("sweep.{}", writer.extension), |out| write(&table, out)))?;
     }
+    let any_completed = sheet.count(&table, Ending::Completed) > 0;
     tell(arguments, &folder, &summary(&name, &plan, &sheet, &table, &spent), is_whole);
-    Ok(if is_whole { ExitCode::SUCCESS } else { ExitCode::from(STOPPED) })
+    // Whatever was asked not to be said, a status of failure has its reason.
+    if !arguments.to.quiet || !any_completed {
+        tell_failures(&sheet.failures(&table), any_completed);
+    }
+    Ok(if is_whole && any_completed { ExitCode::SUCCESS } else { ExitCode::from(STOPPED) })
 }
 
 /// What two sweeps must have in common for one to go on with the other's runs.
@@ -119,6 +124,20 @@ fn tell(arguments: &SweepArguments, folder: &Folder, summary: &Value, is_whole: 
         println!("{}", serde_json::to_string_pretty(summary).expect("a summary is plain data"));
     } else if !arguments.to.quiet {
         println!("{}\n\nresults in {}", describe(summary), folder.path.display());
+    }
+}
+
+/// Runs that did not complete of which the reasons are told.
+const TOLD: usize = 5;
+
+/// Says on standard error why runs did not complete.
+fn tell_failures(failures: &[String], any_completed: bool) {
+    failures.iter().take(TOLD).for_each(|failure| eprintln!("{failure}"));
+    if failures.len() > TOLD {
+        eprintln!("and {} more runs did not complete: the column `reason` of the table has why", failures.len() - TOLD);
+    }
+    if !any_completed && !failures.is_empty() {
+        eprintln!("no run completed");
     }
 }
 

@@ -71,6 +71,22 @@ impl Sheet {
         }
     }
 
+    /// What became of the runs of a table that did not complete, in words.
+    pub fn failures(&self, table: &Table) -> Vec<String> {
+        let cell = |column: usize, row: usize| table.columns[column].1.text(row);
+        let status = 1 + self.varied.len();
+        let failed = (0..table.rows()).filter(|&row| cell(status, row) != Ending::Completed.word());
+        let words = |row: usize| {
+            let settings: Vec<String> = (1..status).map(|k| format!("{}={}", table.columns[k].0, cell(k, row))).collect();
+            let at = match cell(status + 1, row) {
+                at if at.is_empty() => String::new(),
+                at => format!(" at {at} s"),
+            };
+            format!("run {} ({}) {}{at}: {}", cell(0, row), settings.join(", "), cell(status, row), cell(status + 2, row))
+        };
+        failed.map(words).collect()
+    }
+
     fn width(&self) -> usize {
         1 + self.varied.len() + 3 + FIGURES.len() + self.shown.len()
     }
