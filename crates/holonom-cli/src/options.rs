@@ -167,6 +167,9 @@ pub struct SweepArguments {
     /// Runs at a time [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
+    /// Write no report
+    #[arg(long)]
+    pub no_report: bool,
     /// Write the table in another format, too; may be given several times
     #[arg(long = "format", value_name = "FORMAT")]
     pub formats: Vec<String>,

@@ -36,7 +36,7 @@ fn a_row_holds_what_the_run_alone_gives() {
     let out = prints(&folder, &format!("sweep {PAPER} --vary point.m2.mass=1,3 --vary simulation.step=0.02,0.05 --end 1"), 0);
     assert!(out.contains("4 completed, 0 stopped, 0 refused"), "{out}");
     let results = folder.path().join("results/spherical-compound-pendulum-sweep");
-    assert_eq!(files(&results), names(&["sweep.csv", "sweep.journal"]));
+    assert_eq!(files(&results), names(&["report.html", "sweep.csv", "sweep.journal"]));
     let (header, rows) = cells(&fs::read_to_string(results.join("sweep.csv")).unwrap());
     assert_eq!(column(&header, &rows, "run"), ["1", "2", "3", "4"]);
     assert_eq!(column(&header, &rows, "point.m2.mass"), ["1", "1", "3", "3"]);

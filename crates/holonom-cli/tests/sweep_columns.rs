@@ -124,6 +124,8 @@ fn the_table_is_the_same_for_any_threads_and_after_a_kill() {
     run("--threads 1 --out one");
     run("--threads 2 --out two");
     assert_eq!((table("one"), table("one").lines().count()), (table("two"), 11));
+    let report = |out: &str| fs::read_to_string(folder.path().join(out).join("report.html")).unwrap();
+    assert_eq!(report("one"), report("two"));
     let journal = folder.path().join("two/sweep.journal");
     let whole = fs::read_to_string(&journal).unwrap();
     let lines: Vec<&str> = whole.split_inclusive('\n').collect();
@@ -131,6 +133,28 @@ fn the_table_is_the_same_for_any_threads_and_after_a_kill() {
     fs::write(&journal, lines[..4].concat() + &lines[4][..20]).unwrap();
     run("--threads 2 --out two");
     assert_eq!(table("one"), table("two"));
+}
+
+#[test]
+fn the_report_shows_what_was_asked_for() {
+    let folder = folder();
+    fs::write(folder.path().join("oscillator.toml"), OSCILLATOR).unwrap();
+    let columns = "max(abs(strut.force)), at(m.x, 0.5)";
+    let words = "--vary parameters.n=1..4:4 --set simulation.step=0.005 --quiet --out";
+    for words in [format!("{words} a"), format!("{words} b --no-report"), format!("{words} c --vary point.m.mass=-1,1,2")] {
+        assert!(sweep(&folder, "oscillator.toml", columns, &words).status.success());
+    }
+    assert_eq!(files(folder.path().join("b")), names(&["sweep.csv", "sweep.journal"]));
+    let report = |out: &str| fs::read_to_string(folder.path().join(out).join("report.html")).unwrap();
+    let curve = report("a");
+    for told in ["<h1>oscillator</h1>", "max(abs(strut.force)) <small>N</small>", "at(m.x, 0.5) <small>m</small>", "simulation.step=0.005"]
+    {
+        assert!(curve.contains(told), "{told}");
+    }
+    assert_eq!((curve.matches("class=\"curve\"").count(), curve.matches("<circle").count()), (2, 8));
+    let map = report("c");
+    assert_eq!((map.matches("<title>run ").count(), map.matches("class=\"failed\" d=").count()), (24, 8));
+    assert!(map.contains("12 runs · 8 completed · 4 refused · grid of parameters.n, point.m.mass"));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The HTML report of one or several runs, and of a search for the largest steps: one file that needs no network and opens from disk.
+//! The HTML report of one or several runs, of a sweep, and of a search for the largest steps: one file that needs no network and opens from disk.
 //!
 //! The page is made of three parts. What can be read without a script (title, key figures, summary, model file) is written as
 //! HTML here. The numbers go in as JSON. The viewer, bundled by `build.rs` from `viewer/`, turns them into the moving
@@ -14,6 +14,7 @@ mod outcome;
 mod page;
 mod stability;
 mod summary;
+mod sweep;
 #[cfg(test)]
 mod tests;
 mod thin;
@@ -22,6 +23,7 @@ use holonom::record::{Recording, Scene};
 use std::io;
 
 pub use stability::{Search, StabilityReport};
+pub use sweep::{SweepColumn, SweepKey, SweepReport, SweepRun};
 
 /// What is known of one run.
 pub struct Run<'a> {

@@ -15,7 +15,7 @@ use crate::load;
 use crate::options::SweepArguments;
 use crate::output::{Folder, table_writers};
 use crate::progress::{interrupt_flag, runs_bar};
-use crate::sweep::{Ending, Journal, Plan, Runner, Sheet, check};
+use crate::sweep::{Ending, Journal, Plan, Runner, Sheet, check, write_report};
 use crate::table::{list, measured};
 
 /// The file in the folder that holds finished runs.
@@ -47,6 +47,9 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
     let is_whole = journal.missing().is_empty();
     if is_whole {
         writers.iter().try_for_each(|(writer, write)| folder.replace(&format!("sweep.{}", writer.extension), |out| write(&table, out)))?;
+        if !arguments.no_report {
+            folder.replace("report.html", |out| write_report((&source, &name), overrides.given(), &plan, &columns, &table, out))?;
+        }
     }
     let any_completed = sheet.count(&table, Ending::Completed) > 0;
     tell(arguments, &folder, &summary(&name, &plan, &sheet, &table, &spent), is_whole);

@@ -139,7 +139,8 @@ fn usual(model: &Model) -> Columns {
         None => recorder.recording().columns().iter().map(|column| column.heading.name.clone()).collect(),
     };
     let shown = written.iter().filter(|name| *name == "energy" || !COLUMNS.contains(&name.as_str()));
-    Columns { asked: shown.map(|name| Asked::last(name)).collect(), constraints, forces: false }
+    let asked: Vec<Asked> = shown.map(|name| Asked::last(name)).collect();
+    Columns { units: units(&asked, &recorder), asked, constraints, forces: false }
 }
 
 /// What may be recorded of the forces of constraints, the least first.
@@ -165,7 +166,13 @@ fn columns(model: &Model, asked: Vec<Asked>) -> Result<Columns, Failure> {
     };
     let mut over_time = asked.iter().filter(|asked| asked.function != Function::Last).peekable();
     let forces = over_time.peek().is_some() && (needed > 0 || over_time.any(|asked| is_effort(&asked.of)));
-    Ok(Columns { asked, constraints: LEVELS[needed], forces })
+    Ok(Columns { units: units(&asked, &recorders[needed]), asked, constraints: LEVELS[needed], forces })
+}
+
+/// Units of columns, which functions of them keep.
+fn units(asked: &[Asked], recorder: &Recorder<'_>) -> Vec<String> {
+    let unit = |asked: &Asked| recorder.recording().find(&asked.of).map_or("1".into(), |column| column.heading.unit.to_string());
+    asked.iter().map(unit).collect()
 }
 
 /// Near names that are told, or columns where none is near.

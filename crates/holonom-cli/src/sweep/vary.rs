@@ -27,7 +27,7 @@ pub struct Range {
     /// How many values there are in a grid.
     pub count: Option<u64>,
     /// Whether ratios are equal, not differences.
-    geometric: bool,
+    pub geometric: bool,
 }
 
 /// A value for a key of the model, and how tables show it.

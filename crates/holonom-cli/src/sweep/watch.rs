@@ -11,6 +11,8 @@ use super::reduction::{Function, Gathered};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
     pub asked: Vec<Asked>,
+    /// The SI unit of each, `"1"` of numbers without one.
+    pub units: Vec<String>,
     /// What is recorded of the forces of constraints.
     pub constraints: Constraints,
     /// Whether these forces are needed after every step, and not only after the last.
