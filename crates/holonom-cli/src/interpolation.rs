@@ -15,6 +15,13 @@ pub fn through(rows: &[(f64, f64)], t: f64) -> f64 {
 /// Rows that a value between rows follows from: half of them before it, half of them after it, where there are so many.
 pub const ROWS: usize = 4;
 
+/// The value at a time between the first and the last of some rows, in the order of their times, from those around it.
+pub fn between(rows: &[(f64, f64)], t: f64) -> f64 {
+    let after = rows.partition_point(|(at, _)| *at < t);
+    let first = after.saturating_sub(ROWS / 2).min(rows.len().saturating_sub(ROWS));
+    through(&rows[first..rows.len().min(first + ROWS)], t)
+}
+
 /// The value of a column at one time, from rows that come one after the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
@@ -64,6 +71,7 @@ mod tests {
         for t in [0.0, 0.04, 0.1, 0.2, 0.29, 0.5, 0.72, 0.9, 1.0] {
             let (found, exact) = (read(&times, t).unwrap(), t * t * t - 2.0 * t);
             assert!((found - exact).abs() < 1e-14, "{t}: {found} {exact}");
+            assert_eq!(between(&times.map(|at| (at, at * at * at - 2.0 * at)), t), found, "the same rows");
         }
         assert_eq!(read(&times, 0.25), Some(0.25_f64.powi(3) - 0.5), "a row is met to the bit");
     }

@@ -1,11 +1,14 @@
 //! The command `holonom`.
 
 mod clock;
+mod columns;
 mod commands;
+mod comparison;
 mod failure;
 mod interpolation;
 mod items;
 mod load;
+mod mean;
 mod options;
 mod output;
 mod progress;

@@ -234,7 +234,7 @@ impl Folder {
 
     /// Writes the report of some runs.
     pub fn write_report(&self, loaded: &Loaded, runs: &[Run<'_>]) -> Result<(), Failure> {
-        let report = Report { title: loaded.title(), model_text: &loaded.text, runs };
+        let report = Report { title: loaded.title(), model_text: &loaded.text, runs, columns: &[] };
         self.write("report.html", |out| report.write(out))
     }
 }

@@ -45,6 +45,8 @@ pub struct Report<'a> {
     pub model_text: &'a str,
     /// One run, or those that are compared.
     pub runs: &'a [Run<'a>],
+    /// Columns that are plotted first, in place of those that are shown otherwise.
+    pub columns: &'a [String],
 }
 
 impl Report<'_> {

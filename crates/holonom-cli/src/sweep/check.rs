@@ -1,6 +1,6 @@
 //! What is looked at before a sweep runs: keys that can be varied, a model that is sound, columns that there are.
 
-use holonom::model::{Fault, Faults, Model, Value, nearest, nearest_few};
+use holonom::model::{Fault, Faults, Model, Value, nearest};
 use holonom::record::{COLUMNS, Constraints, Recorder};
 use holonom_io::Source;
 
@@ -10,6 +10,7 @@ use super::reduction::Function;
 use super::run::Task;
 use super::vary::Vary;
 use super::watch::{Columns, recorder};
+use crate::columns::unknown;
 use crate::failure::Failure;
 use crate::items::items;
 use crate::load::{self, Overrides};
@@ -157,7 +158,7 @@ fn columns(model: &Model, asked: Vec<Asked>) -> Result<Columns, Failure> {
             Some(_) => {
                 return Err(Failure::usage(format!("runs of this model do not record `{of}`"), "give --set output.reactions=true"));
             }
-            None => return Err(unknown(of, &recorders[recorded])),
+            None => return Err(unknown(of, recorders[recorded].recording())),
         }
     }
     let is_effort = |of: &str| {
@@ -173,23 +174,4 @@ fn columns(model: &Model, asked: Vec<Asked>) -> Result<Columns, Failure> {
 fn units(asked: &[Asked], recorder: &Recorder<'_>) -> Vec<String> {
     let unit = |asked: &Asked| recorder.recording().find(&asked.of).map_or("1".into(), |column| column.heading.unit.to_string());
     asked.iter().map(unit).collect()
-}
-
-/// Near names that are told, or columns where none is near.
-const NEAR: usize = 3;
-const SHOWN: usize = 25;
-
-/// Refuses a column that there is not.
-fn unknown(name: &str, recorder: &Recorder<'_>) -> Failure {
-    let all = || recorder.recording().columns().iter().map(|column| column.heading.name.as_str());
-    let near: Vec<String> = nearest_few(name, all(), NEAR).into_iter().map(|near| format!("`{near}`")).collect();
-    let cure = match near.split_last() {
-        Some((last, [])) => format!("did you mean {last}?"),
-        Some((last, others)) => format!("did you mean {} or {last}?", others.join(", ")),
-        None => {
-            let more = if all().count() > SHOWN { ", and more: columns.json of a run has all" } else { "" };
-            format!("take some of: {}{more}", all().take(SHOWN).collect::<Vec<_>>().join(", "))
-        }
-    };
-    Failure::usage(format!("there is no column `{name}`"), cure)
 }

@@ -3,6 +3,7 @@
 mod mesh;
 mod numbers;
 mod places;
+mod recording;
 mod render;
 mod toml;
 
@@ -15,6 +16,7 @@ use holonom::model::{Description, Fault, Faults, Files, Kinds, Mesh, Model, NoFi
 pub use mesh::{LARGEST_MESH, MOST_TRIANGLES, MeshError, read_mesh};
 pub use numbers::{LARGEST_NUMBERS, NumbersError, read_numbers};
 use places::Places;
+pub use recording::{TableError, read_recording};
 
 /// Largest model file that is read, bytes: some 40 000 entries, while parsing takes up to fifty times as much memory.
 pub const LARGEST_FILE: usize = 4 * 1024 * 1024;
