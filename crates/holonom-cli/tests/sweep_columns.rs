@@ -111,6 +111,25 @@ fn forces_of_joints_accelerations_and_efforts_are_those_of_the_run_alone() {
     }
 }
 
+/// Of the two quaternions of an orientation rows have the one near the row before: after half a turn that is not the one near the start.
+#[test]
+fn the_last_orientation_is_that_of_the_run_alone_whatever_else_is_asked() {
+    let folder = folder();
+    prints(&folder, "run example:heavy-top --end 0.2 --step 0.001 --quiet --no-report --out alone", 0);
+    let (header, rows) = csv(folder.path().join("alone/trajectory.csv"));
+    let place = header.split(',').position(|name| name == "top.qw").unwrap();
+    let (first, last) = (rows[0][place], rows[rows.len() - 1][place]);
+    assert!(first * last < 0.0, "it has turned: {first} {last}");
+    for (out, columns) in
+        [("a", "top.qw"), ("b", "top.qw,min(top.qw),at(top.qw, 0.2)"), ("c", "top.qw,top.ax"), ("d", "top.qw,max(top.ax)")]
+    {
+        let words = format!("--vary simulation.step=0.001 --end 0.2 --quiet --out {out}");
+        assert!(sweep(&folder, "example:heavy-top", columns, &words).status.success());
+        assert_eq!(numbers(&folder, out, "top.qw"), [last], "{columns}");
+    }
+    assert_eq!(numbers(&folder, "b", "at(top.qw, 0.2)"), [last]);
+}
+
 #[test]
 fn the_table_is_the_same_for_any_threads_and_after_a_kill() {
     let folder = folder();

@@ -38,7 +38,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
         let (model, recording, mut summary) = match of {
             Of::Read(recording, summary) => (None, recording, summary),
             Of::Run(model, order) => {
-                let run = simulate(&plan.models[model], order, &interrupted)?;
+                let run = simulate(&plan.models[model], *order, &interrupted)?;
                 (Some(model), run.recording, run.summary)
             }
         };

@@ -40,7 +40,7 @@ pub struct Entry {
 /// What a curve is of.
 pub enum Of {
     /// A run that is still to be made, of the model of this index.
-    Run(usize, Order),
+    Run(usize, Box<Order>),
     /// What there is already, and its summary.
     Read(Recording, Value),
 }
@@ -75,17 +75,13 @@ impl Plan {
             }
         }
         tell_apart(&mut entries);
-        let mut shown: Vec<&Loaded> = prepared.iter().filter_map(|one| models.get(*one.models.first()?.1.first()?)).collect();
-        shown.dedup_by(|a, b| a.name == b.name && a.text == b.text);
-        let text = |loaded: &&Loaded| if shown.len() > 1 { format!("# {}\n{}", loaded.name, loaded.text) } else { loaded.text.clone() };
+        let shown = shown(&prepared, &models);
         let names: Vec<&str> = prepared.iter().map(|one| one.name.as_str()).collect();
-        let title = if let ([_], [loaded]) = (&names[..], &shown[..]) { loaded.title().to_string() } else { names.join(" · ") };
-        let axes = shown.first().map_or("xyz", |loaded| &loaded.model.scene.axes).to_string();
         let plan = Self {
-            title,
+            title: if let ([_], [loaded]) = (&names[..], &shown[..]) { loaded.title().to_string() } else { names.join(" · ") },
             name: subjects[0].name(),
-            text: shown.iter().map(text).collect::<Vec<_>>().join("\n"),
-            blank: Scene { axes, ..Scene::default() },
+            text: texts(&shown),
+            blank: Scene { axes: shown.first().map_or("xyz", |loaded| &loaded.model.scene.axes).to_string(), ..Scene::default() },
             columns: arguments.columns.iter().flat_map(|given| items(given)).map(str::to_string).collect(),
             models,
             entries,
@@ -120,6 +116,21 @@ impl Plan {
             }
         }
         Ok(())
+    }
+}
+
+/// Each model once, without variants and other steps.
+fn shown<'a>(prepared: &[Prepared], models: &'a [Loaded]) -> Vec<&'a Loaded> {
+    let mut shown: Vec<&Loaded> = prepared.iter().filter_map(|one| models.get(*one.models.first()?.1.first()?)).collect();
+    shown.dedup_by(|a, b| a.name == b.name && a.text == b.text);
+    shown
+}
+
+/// The texts of model files, with their names where they are several.
+fn texts(shown: &[&Loaded]) -> String {
+    match shown {
+        [loaded] => loaded.text.clone(),
+        _ => shown.iter().map(|loaded| format!("# {}\n{}", loaded.name, loaded.text)).collect::<Vec<_>>().join("\n"),
     }
 }
 
@@ -220,7 +231,7 @@ fn runs(
                 if indices.len() > 1 {
                     parts.push(format!("{} s", short(order.step)));
                 }
-                entries.push(Entry { label: parts.join(", "), of: Of::Run(model, order) });
+                entries.push(Entry { label: parts.join(", "), of: Of::Run(model, Box::new(order)) });
             }
         }
     }

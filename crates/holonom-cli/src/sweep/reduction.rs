@@ -26,7 +26,6 @@ impl Function {
 /// What is gathered of a column over a run. Steps in which the column has no number are left out.
 #[derive(Clone, Debug)]
 pub enum Gathered {
-    Last(f64),
     Max(Option<f64>),
     Min(Option<f64>),
     Mean(Mean),
@@ -35,21 +34,21 @@ pub enum Gathered {
 }
 
 impl Gathered {
-    pub fn new(function: Function) -> Self {
+    /// Nothing yet of a function of all steps; `None` of one that needs the last only.
+    pub fn new(function: Function) -> Option<Self> {
         match function {
-            Function::Last => Self::Last(f64::NAN),
-            Function::Max => Self::Max(None),
-            Function::Min => Self::Min(None),
-            Function::Mean => Self::Mean(Mean::default()),
-            Function::Rms => Self::Rms(Mean::default()),
-            Function::At(t) => Self::At(Reading::new(t)),
+            Function::Last => None,
+            Function::Max => Some(Self::Max(None)),
+            Function::Min => Some(Self::Min(None)),
+            Function::Mean => Some(Self::Mean(Mean::default())),
+            Function::Rms => Some(Self::Rms(Mean::default())),
+            Function::At(t) => Some(Self::At(Reading::new(t))),
         }
     }
 
     /// Sees the value after a step, and the one at the start.
     pub fn see(&mut self, t: f64, value: f64) {
         match self {
-            Self::Last(last) => *last = value,
             Self::Max(most) if !value.is_nan() => *most = Some(most.map_or(value, |most| most.max(value))),
             Self::Min(least) if !value.is_nan() => *least = Some(least.map_or(value, |least| least.min(value))),
             Self::Max(_) | Self::Min(_) => (),
@@ -59,17 +58,9 @@ impl Gathered {
         }
     }
 
-    /// Sees the value in the last row once more, where it has become known only after the run.
-    pub fn settle(&mut self, value: f64) {
-        if let Self::Last(last) = self {
-            *last = value;
-        }
-    }
-
     /// What the function makes of what was seen; nothing where it has no value.
     pub fn value(&self) -> Option<f64> {
         match self {
-            Self::Last(last) => Some(*last),
             Self::Max(found) | Self::Min(found) => *found,
             Self::Mean(mean) => mean.value(),
             Self::Rms(mean) => mean.value().map(f64::sqrt),
@@ -83,7 +74,7 @@ mod tests {
     use super::*;
 
     fn of(function: Function, rows: &[(f64, f64)]) -> Option<f64> {
-        let mut gathered = Gathered::new(function);
+        let mut gathered = Gathered::new(function).unwrap();
         rows.iter().for_each(|&(t, value)| gathered.see(t, value));
         gathered.value()
     }
@@ -92,14 +83,15 @@ mod tests {
     fn functions_of_a_few_rows_are_those_by_hand() {
         // Steps of unequal length weigh as long as they are.
         let rows = [(0.0, 1.0), (1.0, -3.0), (3.0, 5.0)];
-        assert_eq!([Function::Last, Function::Max, Function::Min].map(|function| of(function, &rows)), [Some(5.0), Some(5.0), Some(-3.0)]);
+        assert_eq!([Function::Max, Function::Min].map(|function| of(function, &rows)), [Some(5.0), Some(-3.0)]);
+        assert!(Gathered::new(Function::Last).is_none());
         assert_eq!(of(Function::Mean, &rows), Some((-1.0 + 2.0) / 3.0));
         assert_eq!(of(Function::Rms, &rows), Some(((5.0 + 34.0) / 3.0_f64).sqrt()));
         assert_eq!(of(Function::At(1.0), &rows), Some(-3.0));
     }
 
     #[test]
-    fn a_single_row_has_them_all_and_none_has_none_but_the_last() {
+    fn a_single_row_has_them_all_and_none_has_none() {
         for (function, value) in [(Function::Max, -2.0), (Function::Min, -2.0), (Function::Mean, -2.0), (Function::Rms, 2.0)] {
             assert_eq!(of(function, &[(0.0, -2.0)]), Some(value));
             assert_eq!(of(function, &[]), None);

@@ -22,40 +22,56 @@ pub struct Columns {
 /// Gathers columns of one run.
 pub struct Watch<'a> {
     model: &'a Model,
-    recorder: Recorder<'a>,
     constraints: Constraints,
     forces: bool,
-    /// Where each column is in the row, and what was gathered of it; `None` for those that the run's model does not have.
-    gathered: Vec<Option<(usize, bool, Gathered)>>,
-    /// Whether there are any that the last row is not enough for.
+    /// Looks at every step where that is needed: at forces of constraints only where these are found.
+    recorder: Recorder<'a>,
     needs_steps: bool,
+    /// What is gathered of each column; `None` for those that the run's model does not have.
+    columns: Vec<Option<Column>>,
+}
+
+/// A column of one run.
+struct Column {
+    /// Where it is in the rows of steps, or of a last value in the row after the last step.
+    place: usize,
+    is_absolute: bool,
+    /// What was seen over the steps; `None` where the last value is asked for.
+    gathered: Option<Gathered>,
 }
 
 impl<'a> Watch<'a> {
     pub fn new(model: &'a Model, columns: &Columns) -> Self {
-        let recorder = recorder(model, columns.constraints);
-        let gather = |asked: &Asked| Some((recorder.recording().place(&asked.of)?, asked.is_absolute, Gathered::new(asked.function)));
+        let Columns { asked, constraints, forces, .. } = columns;
+        let at_end = recorder(model, *constraints);
+        let recorder = recorder(model, if *forces { *constraints } else { Constraints::Nothing });
+        let column = |asked: &Asked| {
+            let gathered = Gathered::new(asked.function);
+            let row = if gathered.is_some() { &recorder } else { &at_end };
+            Some(Column { place: row.recording().place(&asked.of)?, is_absolute: asked.is_absolute, gathered })
+        };
+        // Of the two quaternions of an orientation, the last is the one near that of the step before.
+        let is_orientation =
+            |asked: &Asked| model.axes.len() == 3 && [".qw", ".qx", ".qy", ".qz"].iter().any(|end| asked.of.ends_with(end));
         Self {
-            gathered: columns.asked.iter().map(gather).collect(),
-            needs_steps: columns.asked.iter().any(|asked| asked.function != Function::Last),
+            columns: asked.iter().map(column).collect(),
+            needs_steps: asked.iter().any(|asked| asked.function != Function::Last || is_orientation(asked)),
             model,
-            constraints: columns.constraints,
-            forces: columns.forces,
+            constraints: *constraints,
+            forces: *forces,
             recorder,
         }
     }
 
-    /// What was gathered of each column, with the last values as they are now.
-    pub fn values(mut self, simulation: &Simulation) -> Vec<Option<f64>> {
-        // Of the two quaternions of an orientation a recorder takes the one near that before: the last is not to depend on what else is asked.
-        let mut last = recorder(self.model, self.constraints);
-        let row = last.look(simulation);
-        let value = |gathered: &mut Option<(usize, bool, Gathered)>| {
-            let (place, is_absolute, gathered) = gathered.as_mut()?;
-            gathered.settle(signed(row[*place], *is_absolute));
-            gathered.value()
+    /// What the columns make of the run, after its last step.
+    pub fn values(self, simulation: &Simulation) -> Vec<Option<f64>> {
+        let mut at_end = recorder(self.model, self.constraints).resume(&self.recorder.mark());
+        let row = at_end.look(simulation);
+        let value = |column: &Column| match &column.gathered {
+            Some(gathered) => gathered.value(),
+            None => Some(signed(row[column.place], column.is_absolute)),
         };
-        self.gathered.iter_mut().map(value).collect()
+        self.columns.iter().map(|column| column.as_ref().and_then(value)).collect()
     }
 }
 
@@ -63,8 +79,10 @@ impl Observer for Watch<'_> {
     fn after_step(&mut self, simulation: &Simulation) -> Verdict {
         if self.needs_steps {
             let (t, row) = (simulation.state().t, self.recorder.look(simulation));
-            for (place, is_absolute, gathered) in self.gathered.iter_mut().flatten() {
-                gathered.see(t, signed(row[*place], *is_absolute));
+            for Column { place, is_absolute, gathered } in self.columns.iter_mut().flatten() {
+                if let Some(gathered) = gathered {
+                    gathered.see(t, signed(row[*place], *is_absolute));
+                }
             }
         }
         Verdict::GoOn
