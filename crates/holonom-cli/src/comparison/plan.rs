@@ -174,13 +174,7 @@ fn prepare(subject: &Subject, all: &[Subject], arguments: &CompareArguments, mod
         for step in &steps {
             let mut overrides = load::overrides(&arguments.set);
             for given in variant.into_iter().flat_map(|variant| items(variant)) {
-                if !given.contains('=') {
-                    let message = format!("`--variant {}` has a part without `=`", variant.map_or("", String::as_str));
-                    return Err(Failure::usage(
-                        message,
-                        "write --variant KEY=VALUE,KEY=VALUE, such as --variant parameters.k=100,parameters.c=2",
-                    ));
-                }
+                refuse_part(given, arguments)?;
                 overrides.set(given);
             }
             overrides.number("simulation.step", *step);
@@ -191,6 +185,25 @@ fn prepare(subject: &Subject, all: &[Subject], arguments: &CompareArguments, mod
         prepared.models.push((variant.cloned(), indices));
     }
     Ok(prepared)
+}
+
+/// Refuses a part of a variant that sets nothing, or what an option of its own sets.
+fn refuse_part(given: &str, arguments: &CompareArguments) -> Result<(), Failure> {
+    let Some((key, _)) = given.split_once('=') else {
+        return Err(Failure::usage(
+            format!("`{given}` in --variant has no `=`"),
+            "write --variant KEY=VALUE,KEY=VALUE, such as --variant parameters.k=100,parameters.c=2",
+        ));
+    };
+    let options = [
+        ("simulation.step", "--step", !arguments.steps.is_empty()),
+        ("simulation.end", "--end", arguments.end.is_some()),
+        ("simulation.method", "--method", !arguments.methods.is_empty()),
+    ];
+    match options.iter().find(|(of, _, is_given)| *is_given && *of == key.trim()) {
+        Some((key, option, _)) => Err(Failure::usage(format!("--variant and {option} both set `{key}`"), "leave out one of them")),
+        None => Ok(()),
+    }
 }
 
 /// The methods that each model is run with; `None` is its own. A single model without variants is run with all.
