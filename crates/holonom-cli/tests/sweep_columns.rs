@@ -71,7 +71,8 @@ fn functions_over_an_oscillation_are_those_of_the_closed_form() {
         };
         is("max(abs(strut.force))", 2.0 * omega * omega * 0.1, 1e-12);
         is("min(m.vx)", -0.1 * omega, 1e-8);
-        is("rms(m.vx)", 0.1 * omega / 2f64.sqrt(), 1e-8);
+        // Straight from step to step: h/3 (a² + ab + b²) of a sine over whole periods.
+        is("rms(m.vx)", 0.1 * omega * ((2.0 + (omega * 2.5e-3).cos()) / 6.0).sqrt(), 1e-8);
         is("mean(m.x)", 1.0, 1e-9);
         is("at(m.x, 0.1234)", 1.0 + 0.1 * (omega * 0.1234).cos(), 1e-7);
         is("max(m.ax)", 0.1 * omega * omega, 1e-8);
@@ -128,6 +129,53 @@ fn the_last_orientation_is_that_of_the_run_alone_whatever_else_is_asked() {
         assert_eq!(numbers(&folder, out, "top.qw"), [last], "{columns}");
     }
     assert_eq!(numbers(&folder, "b", "at(top.qw, 0.2)"), [last]);
+}
+
+/// Measures are columns like any other: running ones see every step, and forces are found where they read them.
+#[test]
+fn measures_are_those_of_the_run_alone() {
+    let folder = folder();
+    let model = example("slider-crank");
+    let measures = [
+        ("pull", "sqrt(B.fx^2 + B.fy^2 + B.fz^2)"),
+        ("peak", "max(pull)"),
+        ("mean-square", "rms(slider.vx)"),
+        ("way", "integral(abs(slider.vx))"),
+        ("double", "2*slider.x"),
+    ];
+    let measures: String = measures.iter().map(|(name, value)| format!("[measure.{name}]\nvalue = \"{value}\"\n")).collect();
+    fs::write(folder.path().join("crank.toml"), model + &measures).unwrap();
+    prints(&folder, "run crank.toml --end 0.2 --quiet --no-report --out alone", 0);
+    let (header, rows) = csv(folder.path().join("alone/trajectory.csv"));
+    let alone = |name: &str| {
+        let place = header.split(',').position(|known| known == name).unwrap_or_else(|| panic!("{name} in {header}"));
+        rows.iter().map(|row| row[place]).collect::<Vec<f64>>()
+    };
+    let names = ["pull", "peak", "mean-square", "way", "double"];
+    let words = "--vary parameters.spin=6,7 --end 0.2 --quiet --out";
+    prints(&folder, &format!("sweep crank.toml {words} usual"), 0);
+    assert!(sweep(&folder, "crank.toml", "pull,peak,mean-square,way,double", &format!("{words} asked")).status.success());
+    assert!(sweep(&folder, "crank.toml", "max(pull),rms(slider.vx),min(way)", &format!("{words} functions")).status.success());
+    let is = |out: &str, name: &str, value: f64| {
+        let found = numbers(&folder, out, name)[0];
+        assert!((found - value).abs() <= 1e-11 * value.abs(), "{out}: {name}: {found} and {value}");
+    };
+    for name in names {
+        let last = *alone(name).last().unwrap();
+        assert!(last.is_finite() && last != 0.0, "{name}");
+        is("usual", name, last);
+        is("asked", name, last);
+    }
+    is("functions", "max(pull)", *alone("peak").last().unwrap());
+    is("functions", "rms(slider.vx)", *alone("mean-square").last().unwrap());
+    assert_eq!(numbers(&folder, "functions", "min(way)"), [0.0, 0.0]);
+    let usual = fs::read_to_string(folder.path().join("usual/sweep.csv")).unwrap();
+    assert!(!usual.lines().next().unwrap().contains("B.fx"), "of forces only what measures make of them: {usual}");
+}
+
+/// The text of an example.
+fn example(name: &str) -> String {
+    fs::read_to_string(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../examples/{name}.toml"))).unwrap()
 }
 
 #[test]

@@ -25,16 +25,17 @@ pub fn difference(reference: &Recording, other: &Recording, column: &str) -> Opt
     let common = mine.0.max(theirs.0)..=mine.1.min(theirs.1);
     let within = |rows: &[(f64, f64)]| rows.iter().filter(|(t, _)| common.contains(t)).count();
     let (few, many) = if within(&other) <= within(&reference) { (&other, &reference) } else { (&reference, &other) };
-    let (mut found, mut mean): (Option<Difference>, _) = (None, Mean::default());
+    let (mut found, mut mean): (Option<Difference>, _) = (None, Mean::of_squares());
     for &(t, value) in few.iter().filter(|(t, _)| common.contains(t)) {
-        let size = (value - between(many, t)).abs();
-        mean.see(t, size * size);
+        let distance = value - between(many, t);
+        let size = distance.abs();
+        mean.see(t, distance);
         if found.as_ref().is_none_or(|found| size > found.largest) {
             found = Some(Difference { largest: size, at: t, rms: 0.0 });
         }
     }
     let mut found = found?;
-    found.rms = mean.value()?.sqrt();
+    found.rms = mean.value()?;
     Some(found)
 }
 

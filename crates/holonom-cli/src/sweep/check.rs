@@ -130,44 +130,91 @@ fn is_of_key(fault: &Fault, plan: &Plan, source: &Source) -> bool {
     })
 }
 
-/// Where no column is asked for: the last values of the energy and of all that is recorded without the forces of constraints.
+/// Where no column is asked for: the last values of the energy and of all that is recorded without the forces of constraints. Of many runs
+/// nothing is found that was not asked for, but by measures.
 fn usual(model: &Model) -> Columns {
-    // Of many runs nothing is found that was not asked for.
-    let constraints = if model.output.reactions == Some(true) { Constraints::Rows } else { Constraints::Nothing };
-    let recorder = recorder(model, constraints);
+    let recorders = LEVELS.map(|level| recorder(model, level));
+    let mut takes = Takes { level: if model.output.reactions == Some(true) { 2 } else { 0 }, ..Takes::default() };
+    let mut forces = false;
+    for measure in &model.channels.measures {
+        let own = Takes::of(&measure.name, model, &recorders).unwrap_or_default();
+        forces |= own.needs_forces_of_steps(Function::Last);
+        takes = takes.and(own);
+    }
+    let all = recorders[takes.level].recording();
     let written = match &model.output.points {
-        Some(points) => output::columns(recorder.recording(), points, model),
-        None => recorder.recording().columns().iter().map(|column| column.heading.name.clone()).collect(),
+        Some(points) => output::columns(all, points, model),
+        None => all.columns().iter().map(|column| column.heading.name.clone()).collect(),
     };
-    let shown = written.iter().filter(|name| *name == "energy" || !COLUMNS.contains(&name.as_str()));
+    let asks_forces = model.output.reactions == Some(true);
+    let is_usual = |name: &String| asks_forces || recorders[0].recording().find(name).is_some();
+    let shown = written.iter().filter(|name| is_usual(name) && (*name == "energy" || !COLUMNS.contains(&name.as_str())));
     let asked: Vec<Asked> = shown.map(|name| Asked::last(name)).collect();
-    Columns { units: units(&asked, &recorder), asked, constraints, forces: false }
+    let steps = takes.steps || asked.iter().any(|asked| is_orientation(&asked.of, model));
+    Columns { units: units(&asked, &recorders[takes.level]), asked, constraints: LEVELS[takes.level], steps, forces }
 }
 
 /// What may be recorded of the forces of constraints, the least first.
 const LEVELS: [Constraints; 3] = [Constraints::Nothing, Constraints::Joints, Constraints::Rows];
 
+/// What a column takes of a run, and the columns that it follows from.
+#[derive(Clone, Copy, Debug, Default)]
+struct Takes {
+    /// The least of [`LEVELS`] that has it.
+    level: usize,
+    /// Whether it shows what drives exert.
+    efforts: bool,
+    /// Whether its value at a step follows from the steps before.
+    steps: bool,
+}
+
+impl Takes {
+    /// What the column of a name takes; `None` where there is none.
+    fn of(name: &str, model: &Model, recorders: &[Recorder<'_>; 3]) -> Option<Self> {
+        let level = recorders.iter().position(|recorder| recorder.recording().find(name).is_some())?;
+        let owner = name.strip_suffix(".effort").or(name.strip_suffix(".power"));
+        let efforts = owner.is_some_and(|owner| model.channels.efforts.iter().any(|effort| effort.name == owner));
+        let own = Self { level, efforts, steps: is_orientation(name, model) };
+        let Some(measure) = model.channels.measures.iter().find(|measure| measure.name == name) else { return Some(own) };
+        // What a run does not record is no number in it, and so it is here.
+        let read = measure.columns().filter_map(|column| Self::of(column, model, recorders)).filter(|read| read.level <= recorded(model));
+        Some(read.fold(Self { steps: measure.is_running(), ..own }, Self::and))
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self { level: self.level.max(other.level), efforts: self.efforts || other.efforts, steps: self.steps || other.steps }
+    }
+
+    /// Whether a function of the column needs forces of constraints after every step.
+    fn needs_forces_of_steps(self, function: Function) -> bool {
+        (self.steps || function != Function::Last) && (self.level > 0 || self.efforts)
+    }
+}
+
+/// Which of [`LEVELS`] a run records.
+fn recorded(model: &Model) -> usize {
+    LEVELS.iter().position(|level| *level == output::constraints(model)).expect("every level is listed")
+}
+
+/// Whether a column is part of an orientation in space: of its two quaternions, rows have the one near that of the row before.
+fn is_orientation(name: &str, model: &Model) -> bool {
+    model.axes.len() == 3 && [".qw", ".qx", ".qy", ".qz"].iter().any(|end| name.ends_with(end))
+}
+
 /// The columns asked for, if a run records them, with no more of the forces of constraints than they need.
 fn columns(model: &Model, asked: Vec<Asked>) -> Result<Columns, Failure> {
     let recorders = LEVELS.map(|level| recorder(model, level));
-    let recorded = LEVELS.iter().position(|level| *level == output::constraints(model)).expect("every level is listed");
-    let mut needed = 0;
-    for Asked { of, .. } in &asked {
-        match recorders.iter().position(|recorder| recorder.recording().find(of).is_some()) {
-            Some(level) if level <= recorded => needed = needed.max(level),
-            Some(_) => {
-                return Err(Failure::usage(format!("runs of this model do not record `{of}`"), "give --set output.reactions=true"));
-            }
-            None => return Err(unknown(of, recorders[recorded].recording())),
+    let (mut all, mut steps, mut forces) = (Takes::default(), false, false);
+    for Asked { of, function, .. } in &asked {
+        let Some(takes) = Takes::of(of, model, &recorders) else { return Err(unknown(of, recorders[recorded(model)].recording())) };
+        if takes.level > recorded(model) {
+            return Err(Failure::usage(format!("runs of this model do not record `{of}`"), "give --set output.reactions=true"));
         }
+        all = all.and(takes);
+        steps |= takes.steps || *function != Function::Last;
+        forces |= takes.needs_forces_of_steps(*function);
     }
-    let is_effort = |of: &str| {
-        let owner = of.strip_suffix(".effort").or(of.strip_suffix(".power"));
-        owner.is_some_and(|owner| model.channels.efforts.iter().any(|effort| effort.name == owner))
-    };
-    let mut over_time = asked.iter().filter(|asked| asked.function != Function::Last).peekable();
-    let forces = over_time.peek().is_some() && (needed > 0 || over_time.any(|asked| is_effort(&asked.of)));
-    Ok(Columns { units: units(&asked, &recorders[needed]), asked, constraints: LEVELS[needed], forces })
+    Ok(Columns { units: units(&asked, &recorders[all.level]), asked, constraints: LEVELS[all.level], steps, forces })
 }
 
 /// Units of columns, which functions of them keep.

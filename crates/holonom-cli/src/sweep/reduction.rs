@@ -23,13 +23,12 @@ impl Function {
         [("last", Self::Last), ("max", Self::Max), ("min", Self::Min), ("mean", Self::Mean), ("rms", Self::Rms)];
 }
 
-/// What is gathered of a column over a run. Steps in which the column has no number are left out.
+/// What is gathered of a column over a run. Where the column has no number at a step, neither have the functions of all steps.
 #[derive(Clone, Debug)]
 pub enum Gathered {
     Max(Option<f64>),
     Min(Option<f64>),
     Mean(Mean),
-    Rms(Mean),
     At(Reading),
 }
 
@@ -41,7 +40,7 @@ impl Gathered {
             Function::Max => Some(Self::Max(None)),
             Function::Min => Some(Self::Min(None)),
             Function::Mean => Some(Self::Mean(Mean::default())),
-            Function::Rms => Some(Self::Rms(Mean::default())),
+            Function::Rms => Some(Self::Mean(Mean::of_squares())),
             Function::At(t) => Some(Self::At(Reading::new(t))),
         }
     }
@@ -49,11 +48,11 @@ impl Gathered {
     /// Sees the value after a step, and the one at the start.
     pub fn see(&mut self, t: f64, value: f64) {
         match self {
-            Self::Max(most) if !value.is_nan() => *most = Some(most.map_or(value, |most| most.max(value))),
-            Self::Min(least) if !value.is_nan() => *least = Some(least.map_or(value, |least| least.min(value))),
-            Self::Max(_) | Self::Min(_) => (),
+            // Written so that a value that is no number shows, and stays.
+            Self::Max(Some(most)) if value <= *most || most.is_nan() => (),
+            Self::Min(Some(least)) if value >= *least || least.is_nan() => (),
+            Self::Max(found) | Self::Min(found) => *found = Some(value),
             Self::Mean(mean) => mean.see(t, value),
-            Self::Rms(mean) => mean.see(t, value * value),
             Self::At(reading) => reading.see(t, value),
         }
     }
@@ -63,7 +62,6 @@ impl Gathered {
         match self {
             Self::Max(found) | Self::Min(found) => *found,
             Self::Mean(mean) => mean.value(),
-            Self::Rms(mean) => mean.value().map(f64::sqrt),
             Self::At(reading) => reading.value(),
         }
     }
@@ -86,7 +84,8 @@ mod tests {
         assert_eq!([Function::Max, Function::Min].map(|function| of(function, &rows)), [Some(5.0), Some(-3.0)]);
         assert!(Gathered::new(Function::Last).is_none());
         assert_eq!(of(Function::Mean, &rows), Some((-1.0 + 2.0) / 3.0));
-        assert_eq!(of(Function::Rms, &rows), Some(((5.0 + 34.0) / 3.0_f64).sqrt()));
+        // Of 1 to −3 straight within 1 s and −3 to 5 within 2 s: (1 − 3 + 9)/3 + 2 (9 − 15 + 25)/3 = 15.
+        assert_eq!(of(Function::Rms, &rows), Some(5.0_f64.sqrt()));
         assert_eq!(of(Function::At(1.0), &rows), Some(-3.0));
     }
 
@@ -100,9 +99,12 @@ mod tests {
     }
 
     #[test]
-    fn steps_without_a_number_are_left_out() {
-        let rows = [(0.0, f64::NAN), (1.0, 1.0), (2.0, 3.0), (3.0, f64::NAN), (4.0, 5.0), (5.0, 5.0)];
-        assert_eq!((of(Function::Max, &rows), of(Function::Min, &rows), of(Function::Mean, &rows)), (Some(5.0), Some(1.0), Some(3.5)));
-        assert_eq!(of(Function::Rms, &[(0.0, f64::NAN), (1.0, f64::NAN)]), None);
+    fn a_step_without_a_number_shows() {
+        for at in 0..3 {
+            let rows: Vec<(f64, f64)> = (0..3).map(|k| (f64::from(k), if k == at { f64::NAN } else { f64::from(k) })).collect();
+            for function in [Function::Max, Function::Min, Function::Mean, Function::Rms] {
+                assert!(of(function, &rows).is_some_and(f64::is_nan), "{function:?} {at}");
+            }
+        }
     }
 }

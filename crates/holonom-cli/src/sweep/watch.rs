@@ -5,7 +5,7 @@ use holonom::record::{Constraints, Recorder};
 use holonom::simulation::{Observer, Simulation, Verdict};
 
 use super::column::Asked;
-use super::reduction::{Function, Gathered};
+use super::reduction::Gathered;
 
 /// The columns of the table that show the motion, and what has to be found for them.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +15,8 @@ pub struct Columns {
     pub units: Vec<String>,
     /// What is recorded of the forces of constraints.
     pub constraints: Constraints,
+    /// Whether every step is looked at, and not only the last.
+    pub steps: bool,
     /// Whether these forces are needed after every step, and not only after the last.
     pub forces: bool,
 }
@@ -42,7 +44,7 @@ struct Column {
 
 impl<'a> Watch<'a> {
     pub fn new(model: &'a Model, columns: &Columns) -> Self {
-        let Columns { asked, constraints, forces, .. } = columns;
+        let Columns { asked, constraints, steps, forces, .. } = columns;
         let at_end = recorder(model, *constraints);
         let recorder = recorder(model, if *forces { *constraints } else { Constraints::Nothing });
         let column = |asked: &Asked| {
@@ -50,12 +52,9 @@ impl<'a> Watch<'a> {
             let row = if gathered.is_some() { &recorder } else { &at_end };
             Some(Column { place: row.recording().place(&asked.of)?, is_absolute: asked.is_absolute, gathered })
         };
-        // Of the two quaternions of an orientation, the last is the one near that of the step before.
-        let is_orientation =
-            |asked: &Asked| model.axes.len() == 3 && [".qw", ".qx", ".qy", ".qz"].iter().any(|end| asked.of.ends_with(end));
         Self {
             columns: asked.iter().map(column).collect(),
-            needs_steps: asked.iter().any(|asked| asked.function != Function::Last || is_orientation(asked)),
+            needs_steps: *steps,
             model,
             constraints: *constraints,
             forces: *forces,
@@ -63,7 +62,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// What the columns make of the run, after its last step.
+    /// What the columns make of the run, after its last step. Orientations and running values of measures go on from what was looked at.
     pub fn values(self, simulation: &Simulation) -> Vec<Option<f64>> {
         let mut at_end = recorder(self.model, self.constraints).resume(&self.recorder.mark());
         let row = at_end.look(simulation);

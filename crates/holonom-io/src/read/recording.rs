@@ -74,14 +74,14 @@ impl TableError {
 /// Name of the column of time.
 const TIME: &str = "t";
 
-/// Reads CSV: names in the first line, then a line for each time. The time is the column `t`, or else the first. Cells may be empty. What is
-/// known of a column beside its name, `heading` tells.
+/// Reads CSV: names in the first line, then a line for each time. The time is the column `t`, or else the first. Cells may be empty, and lines with a `#` at
+/// their start are left out. What is known of a column beside its name, `heading` tells.
 ///
 /// # Errors
 /// When the bytes are no such table.
 pub fn read_recording(bytes: &[u8], heading: impl Fn(&str) -> Heading) -> Result<Recording, TableError> {
     let text = std::str::from_utf8(bytes).map_err(|_| TableError::NotText)?.trim_start_matches('\u{feff}');
-    let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(text.as_bytes());
+    let mut reader = ReaderBuilder::new().trim(Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
     let names = names(reader.headers().map_err(uneven)?)?;
     let time = names.iter().position(|name| name == TIME).unwrap_or(0);
     let order = || std::iter::once(time).chain((0..names.len()).filter(move |k| *k != time));
@@ -145,7 +145,9 @@ mod tests {
 
     #[test]
     fn the_time_is_its_column_or_the_first() {
-        for text in ["t,a.z,b\n0,1,\n0.5,2,3\n", "\u{feff}a.z, t ,b\r\n1,0,\r\n2,0.5,3\r\n\r\n", "time,a.z,\"b\"\n0,1,\n5e-1,2,3"] {
+        for text in
+            ["t,a.z,b\n0,1,\n0.5,2,3\n", "\u{feff}a.z, t ,b\r\n# rig 3\r\n1,0,\r\n2,0.5,3\r\n\r\n", "time,a.z,\"b\"\n0,1,\n5e-1,2,3"]
+        {
             let recording = read(text).unwrap();
             let names: Vec<&str> = recording.columns().iter().map(|column| column.heading.name.as_str()).collect();
             assert_eq!(names, ["t", "a.z", "b"], "{text}");
