@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Exit status of a run that stopped before its end; everything up to there is written.
+/// Exit status of a run that stopped before its end, and of a sweep that was interrupted or of which no run completed; everything up to
+/// there is written.
 pub const STOPPED: u8 = 3;
 
 /// Why a command did not do what it was asked to.

@@ -111,8 +111,8 @@ impl Folder {
         // Tables of compared runs have the names of their runs.
         let compared = summary(&self.path);
         let labels = compared.as_array().into_iter().flatten().filter_map(|run| run["label"].as_str());
-        let tables =
-            labels.flat_map(|label| holonom_io::WRITERS.iter().map(move |writer| format!("{}.{}", file_stem(label), writer.extension)));
+        let stems = file_stems(labels).into_iter();
+        let tables = stems.flat_map(|stem| holonom_io::WRITERS.iter().map(move |writer| format!("{stem}.{}", writer.extension)));
         let names = RESULTS.iter().map(|name| name.to_string()).chain(tables);
         for name in names.filter(|name| !but.contains(&name.as_str())) {
             let path = self.path.join(name);
@@ -144,7 +144,21 @@ impl Folder {
 
 /// The name of a run as the name of a file.
 pub fn file_stem(label: &str) -> String {
-    label.replace(", ", "-").replace(' ', "").replace('/', "-")
+    let plain = label.replace(", ", "-").replace(' ', "");
+    plain.chars().map(|c| if c.is_alphanumeric() || "._-+=()".contains(c) { c } else { '-' }).collect()
+}
+
+/// The same of several runs: all different.
+pub fn file_stems<'a>(labels: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut stems: Vec<String> = Vec::new();
+    for label in labels {
+        let mut stem = file_stem(label);
+        while stems.contains(&stem) {
+            stem.push('_');
+        }
+        stems.push(stem);
+    }
+    stems
 }
 
 /// What the results in a folder say of themselves; null where there are none that do.

@@ -141,7 +141,7 @@ pub fn open(argument: &str, overrides: &Overrides) -> Result<(Source, String), F
     }
     for given in &overrides.0 {
         let (key, value) = split(given)?;
-        require_key("--set", key, &source)?;
+        require_key(key, &source)?;
         source.set(key, value).map_err(Failure::Model)?;
     }
     Ok((source, name))
@@ -157,9 +157,8 @@ pub const OF_METHOD: [&str; 6] = [
     "simulation.projection.levels",
 ];
 
-/// Refuses a parameter that the model does not have, as nothing would come of it, and the bare name of one that it has. `option` is how
-/// the key was given.
-pub fn require_key(option: &str, key: &str, source: &Source) -> Result<(), Failure> {
+/// Refuses a parameter that the model does not have, as nothing would come of it, and the bare name of one that it has.
+pub fn require_key(key: &str, source: &Source) -> Result<(), Failure> {
     let parameters = match source.get("parameters") {
         Some(Value::Table(table)) => table,
         _ => &Table::default(),
@@ -170,10 +169,9 @@ pub fn require_key(option: &str, key: &str, source: &Source) -> Result<(), Failu
                 .map_or("add it to [parameters], and name it in the model".to_string(), |near| format!("did you mean `{near}`?"));
             Err(Failure::usage(format!("the model has no parameter `{name}`"), cure))
         }
-        None if parameters.get(key).is_some() && !is_of_file(key) => Err(Failure::usage(
-            format!("`{key}` is a parameter and no key of the model file"),
-            format!("write {option} parameters.{key}=…"),
-        )),
+        None if parameters.get(key).is_some() && !is_of_file(key) => {
+            Err(Failure::usage(format!("`{key}` is a parameter and no key of the model file"), format!("write parameters.{key}=…")))
+        }
         _ => Ok(()),
     }
 }

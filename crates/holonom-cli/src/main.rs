@@ -2,11 +2,16 @@
 
 mod checkpoint;
 mod clock;
+mod columns;
 mod commands;
+mod comparison;
 mod failure;
 mod folder;
+mod interpolation;
+mod items;
 mod keeper;
 mod load;
+mod mean;
 mod message;
 mod options;
 mod output;

@@ -17,7 +17,7 @@ pub struct Cli {
 pub enum Command {
     /// Simulate a model; table on screen, results and report in a folder
     Run(RunArguments),
-    /// Several methods or steps in one report, curves overlaid
+    /// Methods, steps, models, variants, earlier results and measured data in one report, curves overlaid
     Compare(CompareArguments),
     /// Many runs of a model whose keys take several values, on all cores, in one table
     Sweep(SweepArguments),
@@ -110,9 +110,19 @@ pub struct RunArguments {
 
 #[derive(Debug, Args)]
 pub struct CompareArguments {
-    #[command(flatten)]
-    pub model: ModelArguments,
-    /// Method by name; give several [default: all named methods]
+    /// Models (files or example:NAME), folders of earlier runs, CSV files of measured data; the first is what the others are compared with
+    #[arg(required = true, value_name = "MODEL|FOLDER|CSV")]
+    pub subjects: Vec<String>,
+    /// Set any key of all models, such as simulation.step=0.01 or parameters.N=40
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Run each model once more with these keys set, too; give several
+    #[arg(long = "variant", value_name = "KEY=VALUE,…")]
+    pub variants: Vec<String>,
+    /// Columns whose largest and rms difference to the first is told, and that are plotted first
+    #[arg(long, value_name = "COLUMN,…")]
+    pub columns: Vec<String>,
+    /// Method by name; give several [default: all named methods, or of several models and variants their own]
     #[arg(long = "method", value_name = "NAME")]
     pub methods: Vec<String>,
     /// Step, s; give several
@@ -160,12 +170,16 @@ pub struct SweepArguments {
     pub seed: u64,
     #[command(flatten)]
     pub method: MethodArguments,
-    /// Columns of the trajectory whose last values are kept [default: energy, and all of points, bodies, joints and drives]
-    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    /// Columns of the table: last values of columns of the trajectory, or max(…), min(…), mean(…), rms(…), at(…, t) of them
+    /// [default: energy, and all of points, bodies, joints and drives]
+    #[arg(long, value_name = "COLUMN,…")]
     pub columns: Vec<String>,
     /// Runs at a time [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
+    /// Write no report
+    #[arg(long)]
+    pub no_report: bool,
     /// Write the table in another format, too; may be given several times
     #[arg(long = "format", value_name = "FORMAT")]
     pub formats: Vec<String>,

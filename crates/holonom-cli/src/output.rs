@@ -60,14 +60,6 @@ pub fn recorder(model: &Model, every: u64) -> Recorder<'_> {
     Recorder::new(&model.channels, &model.system, every, constraints(model))
 }
 
-fn constraints(model: &Model) -> Constraints {
-    match model.output.reactions {
-        Some(false) => Constraints::Nothing,
-        None => Constraints::Joints,
-        Some(true) => Constraints::Rows,
-    }
-}
-
 /// Simulates a model by a method, and saves it meanwhile where there is a keeper.
 pub fn simulate(
     loaded: &Loaded,
@@ -124,6 +116,15 @@ pub fn simulate(
     let recording = watched.finish();
     value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording)).expect("peaks are plain data");
     Ok(Finished { method: name, recording, summary: value, completed: status == Status::Completed, last, before_end })
+}
+
+/// What a run of a model records of the forces of its constraints.
+pub fn constraints(model: &Model) -> Constraints {
+    match model.output.reactions {
+        Some(false) => Constraints::Nothing,
+        None => Constraints::Joints,
+        Some(true) => Constraints::Rows,
+    }
 }
 
 /// Says on standard error what looks like a slip, and what was put right before the start.
@@ -221,7 +222,7 @@ impl Folder {
 
     /// Writes the report of some runs.
     pub fn write_report(&self, loaded: &Loaded, runs: &[Run<'_>]) -> Result<(), Failure> {
-        let report = Report { title: loaded.title(), model_text: loaded.source.text(), runs };
+        let report = Report { title: loaded.title(), model_text: loaded.source.text(), runs, columns: &[] };
         self.write("report.html", |out| report.write(out))
     }
 }

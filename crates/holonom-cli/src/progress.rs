@@ -58,7 +58,11 @@ impl Observer for Watched<'_, '_> {
         self.recorder.after_step(simulation);
         self.seen += 1;
         if (self.end - 1.5 * self.step..self.end).contains(&simulation.state().t) {
-            self.before_end = Some(Point::of(simulation, &self.recorder));
+            // An event before the end may end the run within a step.
+            let point = Point::of(simulation, &self.recorder);
+            if point.run.goes_on_unbroken() {
+                self.before_end = Some(point);
+            }
         }
         if self.seen.is_multiple_of(LOOK) {
             if !self.bar.is_hidden() {

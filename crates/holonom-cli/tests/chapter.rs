@@ -207,3 +207,23 @@ fn a_joint_is_one_short_file() {
         assert!(code <= 80, "{} has {code} lines of code", file.display());
     }
 }
+
+/// What the chapters on sweeps and comparisons tell to type for examples runs as it stands there.
+#[test]
+fn commands_on_sweeps_and_comparisons_run() {
+    let folder = folder();
+    for name in ["sweep.md", "compare.md"] {
+        let chapter = chapter(name);
+        let commands: Vec<&str> = chapter.lines().filter(|line| line.starts_with("holonom ") && line.contains(" example:")).collect();
+        assert!(!commands.is_empty(), "docs/{name} has no command");
+        for command in commands {
+            let words = command.strip_prefix("holonom ").unwrap();
+            let mut process = std::process::Command::new("sh");
+            // Shorter than in the book, where that says nothing of it.
+            let end = if words.contains("--end") || words.contains("at(") { "" } else { " --end 0.2" };
+            let program = assert_cmd::cargo::cargo_bin("holonom");
+            let output = process.current_dir(&folder).args(["-c", &format!("\"{}\" {words}{end}", program.display())]).output().unwrap();
+            assert!(output.status.success(), "docs/{name}: {command}\n{}", text(&output.stderr));
+        }
+    }
+}

@@ -36,7 +36,7 @@ fn a_row_holds_what_the_run_alone_gives() {
     let out = prints(&folder, &format!("sweep {PAPER} --vary point.m2.mass=1,3 --vary simulation.step=0.02,0.05 --end 1"), 0);
     assert!(out.contains("4 completed, 0 stopped, 0 refused"), "{out}");
     let results = folder.path().join("results/spherical-compound-pendulum-sweep");
-    assert_eq!(files(&results), names(&["sweep.csv", "sweep.journal"]));
+    assert_eq!(files(&results), names(&["report.html", "sweep.csv", "sweep.journal"]));
     let (header, rows) = cells(&fs::read_to_string(results.join("sweep.csv")).unwrap());
     assert_eq!(column(&header, &rows, "run"), ["1", "2", "3", "4"]);
     assert_eq!(column(&header, &rows, "point.m2.mass"), ["1", "1", "3", "3"]);
@@ -81,6 +81,36 @@ fn runs_that_stop_or_are_refused_are_rows_with_a_reason() {
         assert_eq!(column(&header, &rows, "m1.x")[k].is_empty(), status[k] == "refused", "{:?}", rows[k]);
     }
     assert!(reasons[0].contains("point.m1.mass") && reasons[0].contains("-1"), "{}", reasons[0]);
+}
+
+#[test]
+fn why_runs_did_not_complete_is_said_on_the_screen() {
+    let folder = folder();
+    let output = holonom(&folder, &format!("{} --out a", GRID.replace("--quiet", "")));
+    let told = text(&output.stderr);
+    let of_runs: Vec<&str> = told.lines().filter(|line| line.starts_with("run ")).collect();
+    assert_eq!((output.status.code(), of_runs.len()), (Some(0), 5), "{told}");
+    assert!(of_runs[0].starts_with("run 1 (point.m1.mass=-1, simulation.step=0.01, simulation.iteration=newton) refused: "), "{told}");
+    let (header, rows) = cells(&table(&folder, "a"));
+    let failed = column(&header, &rows, "status").iter().filter(|status| **status != "completed").count();
+    assert!(failed > 6 && told.contains(&format!("and {} more", failed - 5)), "{told}");
+    assert!(text(&holonom(&folder, &format!("{GRID} --out a")).stderr).is_empty(), "quiet is quiet where some completed");
+
+    // Where none completes, also a quiet sweep says why, however often it is asked.
+    for words in ["--vary point.m1.mass=-1,-2", "--vary point.m2.mass=1,2 --vary point.m1.mass=-1"] {
+        for _ in 0..2 {
+            let output = holonom(&folder, &format!("sweep {PAPER} {words} --end 1 --quiet --out none-{}", words.len()));
+            let told = text(&output.stderr);
+            assert_eq!((output.status.code(), output.stdout.is_empty()), (Some(3), true), "{words}\n{told}");
+            assert!(told.contains("point.m1.mass=-1) refused: ") && told.ends_with("no run completed\n"), "{told}");
+        }
+    }
+    // A run that stops has when and why.
+    let words = "--set simulation.iteration=simultaneous --set simulation.penalty=1e7 --set simulation.tolerance=1e-9 --end 7";
+    let words = format!("sweep {PAPER} --method trapezoidal --vary simulation.subdivide=false {words} --json --out stopped");
+    let output = holonom(&folder, &words);
+    assert_eq!((output.status.code(), serde_json::from_slice::<Value>(&output.stdout).unwrap()["stopped"].as_u64()), (Some(3), Some(1)));
+    assert!(text(&output.stderr).contains("run 1 (simulation.subdivide=false) stopped at 5."), "{}", text(&output.stderr));
 }
 
 #[test]
@@ -229,6 +259,9 @@ fn what_cannot_be_swept_is_refused_before_anything_runs() {
         (format!("{PAPER} --vary point.m1.mass"), "no `=`"),
         (format!("{PAPER} --vary point.m1.mass=1..2"), "--samples"),
         (format!("{PAPER} --vary point.m1.mass=1..2:1"), "at least 2"),
+        (format!("{PAPER} --vary point.m1.mass=20-30:5"), "looks like a range"),
+        (format!("{PAPER} --vary point.m1.mass=1.."), "ends its range with nothing"),
+        (format!("{PAPER} --vary point.m1.mass=3..1:5"), "write 1..3"),
         (format!("{PAPER} --vary point.m1.mass=1..2:5 --samples 9"), "--samples"),
         (format!("{PAPER} --vary point.m1.mass=1,2 --vary point.m1.mass=3,4"), "twice"),
         (format!("{PAPER} --vary point.m1.mass=1,2 --set point.m1.mass=3"), "set and varied"),

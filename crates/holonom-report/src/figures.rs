@@ -1,6 +1,7 @@
 //! The top of the page: which method, how it ended, and the figures a run is judged by.
 
 use crate::escape::html;
+use crate::outcome::is_measured;
 use crate::{Run, comparison, format};
 use serde_json::Value;
 use std::io;
@@ -146,6 +147,9 @@ pub fn badge(summary: &Value) -> String {
     let status = text(summary, "status").unwrap_or_else(|| "unknown".to_owned());
     if status == "completed" {
         return r#"<span class="badge completed">completed</span>"#.to_owned();
+    }
+    if is_measured(summary) {
+        return r#"<span class="badge">measured</span>"#.to_owned();
     }
     let when = text(summary, "stopped_at").map_or(String::new(), |t| format!(" at {t} s"));
     format!(r#"<span class="badge stopped">{status}{when}</span>"#)

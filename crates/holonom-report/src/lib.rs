@@ -1,4 +1,4 @@
-//! The HTML report of one or several runs, and of a search for the largest steps: one file that needs no network and opens from disk.
+//! The HTML report of one or several runs, of a sweep, and of a search for the largest steps: one file that needs no network and opens from disk.
 //!
 //! The page is made of three parts. What can be read without a script (title, key figures, summary, model file) is written as
 //! HTML here. The numbers go in as JSON. The viewer, bundled by `build.rs` from `viewer/`, turns them into the moving
@@ -15,6 +15,7 @@ mod page;
 mod provenance;
 mod stability;
 mod summary;
+mod sweep;
 #[cfg(test)]
 mod tests;
 mod thin;
@@ -23,6 +24,7 @@ use holonom::record::{Recording, Scene};
 use std::io;
 
 pub use stability::{Search, StabilityReport};
+pub use sweep::{SweepColumn, SweepKey, SweepReport, SweepRun};
 
 /// What is known of one run.
 pub struct Run<'a> {
@@ -44,6 +46,8 @@ pub struct Report<'a> {
     pub model_text: &'a str,
     /// One run, or those that are compared.
     pub runs: &'a [Run<'a>],
+    /// Columns that are plotted first, in place of those that are shown otherwise.
+    pub columns: &'a [String],
 }
 
 impl Report<'_> {

@@ -9,7 +9,7 @@ const BLOWN_UP: f64 = 10.0;
 /// What became of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// Completed, with an energy of the right size.
+    /// Completed, with an energy of the right size; or measured.
     Sound,
     /// Its energy left all bounds, whether it completed or not.
     BlownUp,
@@ -29,13 +29,18 @@ fn outcome(run: &Run, moved: Option<f64>) -> Outcome {
     let size = drift.map(|drift| drift.as_f64().unwrap_or(f64::INFINITY));
     match (size, moved) {
         (Some(size), Some(moved)) if size > BLOWN_UP * moved => Outcome::BlownUp,
-        _ if completed(run.summary) => Outcome::Sound,
+        _ if completed(run.summary) || is_measured(run.summary) => Outcome::Sound,
         _ => Outcome::Stopped,
     }
 }
 
 pub fn completed(summary: &Value) -> bool {
     summary["status"] == "completed"
+}
+
+/// Whether this is no run but what was measured.
+pub fn is_measured(summary: &Value) -> bool {
+    summary["status"] == "measured"
 }
 
 /// How much energy goes back and forth, J: the least of what the runs say, as errors of this kind only add to it.
@@ -79,6 +84,13 @@ mod tests {
             ("stopped", 1e300, Value::Null),
         ]);
         assert_eq!(found, [Outcome::Sound, Outcome::BlownUp, Outcome::Sound, Outcome::Stopped, Outcome::BlownUp]);
+        let measured = |kinetic: f64| {
+            let mut recording = Recording::new(["t", "kinetic"].map(str::to_owned));
+            recording.push(&[0.0, kinetic]);
+            let run = Run { label: "", recording: &recording, scene: &Scene::default(), summary: &json!({"status": "measured"}) };
+            outcomes(&[run])
+        };
+        assert_eq!(measured(0.0), [Outcome::Sound], "axes are scaled to what was measured");
     }
 
     #[test]

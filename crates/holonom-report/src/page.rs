@@ -41,10 +41,12 @@ pub fn write(report: &Report, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "</section>")?;
     let provenances: Vec<(&str, &Value)> = report.runs.iter().map(|run| (run.label, &run.summary["provenance"])).collect();
     provenance::write(&provenances, out)?;
-    model(report.model_text, out)?;
+    if !report.model_text.is_empty() {
+        model(report.model_text, out)?;
+    }
     writeln!(out, "</main>")?;
     if let Some((_, script)) = VIEWER {
-        scripts(&data, script, out)?;
+        scripts(&Data { runs: &data, columns: report.columns }, script, out)?;
     }
     end(out)
 }
@@ -118,10 +120,12 @@ fn stage(runs: &[RunData], out: &mut dyn Write) -> io::Result<()> {
 #[derive(Serialize)]
 struct Data<'a> {
     runs: &'a [RunData<'a>],
+    /// Columns that are plotted first, in place of those that are shown otherwise.
+    columns: &'a [String],
 }
 
-fn scripts(runs: &[RunData], script: &str, out: &mut dyn Write) -> io::Result<()> {
-    let json = serde_json::to_string(&Data { runs }).map_err(io::Error::other)?;
+fn scripts(data: &Data, script: &str, out: &mut dyn Write) -> io::Result<()> {
+    let json = serde_json::to_string(data).map_err(io::Error::other)?;
     writeln!(out, "<script type=\"application/json\" id=\"holonom-data\">{}</script>", json_in_script(&json))?;
     writeln!(out, "<script>\n{script}</script>")
 }

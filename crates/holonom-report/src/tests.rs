@@ -40,7 +40,7 @@ fn page(title: &str, model_text: &str, recording: &Recording, summary: &Value) -
     let scene = scene();
     let runs = [Run { label: title, recording, scene: &scene, summary }];
     let mut out = Vec::new();
-    Report { title, model_text, runs: &runs }.write(&mut out).unwrap();
+    Report { title, model_text, runs: &runs, columns: &[] }.write(&mut out).unwrap();
     String::from_utf8(out).unwrap()
 }
 
@@ -111,7 +111,7 @@ fn compared(cases: &[(&str, f64, Value)]) -> String {
     let pairs = cases.iter().zip(&recordings);
     let runs: Vec<Run> = pairs.map(|((label, _, summary), recording)| Run { label, recording, scene: &scene, summary }).collect();
     let mut out = Vec::new();
-    Report { title: "t", model_text: "m", runs: &runs }.write(&mut out).unwrap();
+    Report { title: "t", model_text: "m", runs: &runs, columns: &[] }.write(&mut out).unwrap();
     String::from_utf8(out).unwrap()
 }
 
@@ -202,7 +202,7 @@ fn with_body(axes: &str, columns: &[&str]) -> Value {
     };
     let run = |label| Run { label, recording: &recording, scene: &scene, summary: &Value::Null };
     let mut out = Vec::new();
-    Report { title: "t", model_text: "m", runs: &[run("a"), run("b")] }.write(&mut out).unwrap();
+    Report { title: "t", model_text: "m", runs: &[run("a"), run("b")], columns: &[] }.write(&mut out).unwrap();
     embedded(&String::from_utf8(out).unwrap())["runs"].take()
 }
 
@@ -261,5 +261,5 @@ fn without_the_viewer_the_page_says_so() {
 fn no_rows_and_no_runs_are_fine() {
     page("t", "m", &recording(0, 0.0), &json!({}));
     let mut out = Vec::new();
-    Report { title: "t", model_text: "m", runs: &[] }.write(&mut out).unwrap();
+    Report { title: "t", model_text: "m", runs: &[], columns: &[] }.write(&mut out).unwrap();
 }

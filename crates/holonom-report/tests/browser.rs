@@ -43,6 +43,19 @@ fn what_the_machine_does_comes_first() {
 }
 
 #[test]
+fn a_run_beside_what_was_measured() {
+    let run = sample::motor();
+    let measured = sample::measured(&run, "crank.power");
+    for samples in [[run, measured], [sample::measured(&sample::motor(), "crank.power"), sample::motor()]] {
+        let seen = open_with("measured", &samples, &["crank.power".to_string()]);
+        assert_eq!((&seen["faults"], &seen["ready"]), (&Value::Array(Vec::new()), &Value::Bool(true)), "{seen:#}");
+        // What is asked for takes the place of what is shown otherwise, and has a curve for each.
+        assert_eq!(seen["machine"]["first"], Value::from(vec!["crank.power (W)"]), "{seen:#}");
+        assert_eq!((&seen["emptyPlots"], &seen["samples"]), (&Value::from(0), &Value::from(2)), "{seen:#}");
+    }
+}
+
+#[test]
 fn two_runs_compared() {
     let runs = [sample::pendulum("conserving-ggl", 0.025, 800, 1.0), sample::pendulum("trapezoidal", 0.04, 500, 30.0)];
     let seen = open("compare", &runs);
@@ -159,10 +172,15 @@ fn bodies_move(seen: &Value, name: &str, count: usize) {
 
 /// What the checks saw in the page.
 fn open(name: &str, samples: &[Sample]) -> Value {
+    open_with(name, samples, &[])
+}
+
+/// The same where some columns are asked for.
+fn open_with(name: &str, samples: &[Sample], columns: &[String]) -> Value {
     let runs: Vec<Run> =
         samples.iter().map(|s| Run { label: &s.label, recording: &s.recording, scene: &s.scene, summary: &s.summary }).collect();
     let mut page = Vec::new();
-    Report { title: samples[0].summary["model"].as_str().unwrap(), model_text: MODEL, runs: &runs }.write(&mut page).unwrap();
+    Report { title: samples[0].summary["model"].as_str().unwrap(), model_text: MODEL, runs: &runs, columns }.write(&mut page).unwrap();
     assert!(page.len() < 3_000_000, "the page has {} bytes", page.len());
     if let Some(folder) = std::env::var_os("HOLONOM_KEEP_PAGES") {
         fs::write(Path::new(&folder).join(format!("{name}.html")), &page).unwrap();

@@ -2,106 +2,125 @@
 
 use std::process::ExitCode;
 
-use holonom::simulation::NAMED;
+use holonom::record::Recording;
 use holonom_io::Writer;
-use holonom_report::Run;
-use serde_json::{Value, json};
+use holonom_report::{Report, Run};
+use serde_json::{Map, Value, json};
 
+use crate::comparison::{Difference, Entry, Of, Plan, difference};
 use crate::failure::Failure;
-use crate::folder::{Folder, file_stem, holds};
-use crate::load::{self, Loaded};
+use crate::folder::{Folder, file_stems, holds};
+use crate::load::Loaded;
 use crate::options::CompareArguments;
-use crate::output::{Finished, Order, simulate, writers};
+use crate::output::{simulate, writers};
 use crate::progress::interrupt_flag;
 use crate::table::{short, table};
 
-/// A run that is asked for.
-struct Planned {
+/// What is compared, after all runs.
+struct Compared {
     label: String,
-    /// Index of its model, which differ in the step.
-    model: usize,
-    order: Order,
+    /// Of a run that was made now, the index of its model.
+    model: Option<usize>,
+    recording: Recording,
+    summary: Value,
 }
 
-/// Runs every method with every step and puts the curves into one report. A run that stops early is part of the
+/// Runs the models and puts their curves, those of earlier runs and what was measured into one report. A run that stops early is part of the
 /// comparison, not a failure of the command.
 pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
     let output = &arguments.output;
     let writers = writers(&output.formats)?;
-    let models = models(arguments)?;
-    let planned = plan(arguments, &models)?;
-    let loaded = models.last().expect("there is at least one step");
-    let summaries: Value = planned.iter().map(|run| json!({ "provenance": run.order.provenance })).collect();
-    let folder = Folder::claim(&output.to, &format!("{}-compare", loaded.name), |path| holds(path, &summaries))?;
+    let mut plan = Plan::new(arguments)?;
+    let summaries: Value = plan.entries.iter().map(Entry::identity).collect();
+    let folder = Folder::claim(&output.to, &format!("{}-compare", plan.name), |path| holds(path, &summaries))?;
     let interrupted = interrupt_flag();
-    let mut finished: Vec<(String, Finished)> = Vec::new();
-    for Planned { label, model, order } in planned {
-        let mut run = simulate(&models[model], order, &interrupted, None)?;
-        name(&mut run.summary, &label, &models[model]);
-        finished.push((label, run));
+    let mut compared: Vec<Compared> = Vec::new();
+    for Entry { label, of } in std::mem::take(&mut plan.entries) {
+        let (model, recording, mut summary) = match of {
+            Of::Read(recording, summary) => (None, recording, summary),
+            Of::Run(model, order) => {
+                let run = simulate(&plan.models[model], *order, &interrupted, None)?;
+                (Some(model), run.recording, run.summary)
+            }
+        };
+        name(&mut summary, &label, model.map(|model| &plan.models[model]));
+        compared.push(Compared { label, model, recording, summary });
     }
-    write(&folder, loaded, &finished, &writers, output.no_report)?;
-    let summaries: Vec<&Value> = finished.iter().map(|(_, run)| &run.summary).collect();
+    tell_differences(&plan.columns, &mut compared);
+    write(&folder, &plan, &compared, &writers, output.no_report)?;
+    let summaries: Vec<&Value> = compared.iter().map(|one| &one.summary).collect();
     if output.to.json {
         println!("{}", serde_json::to_string_pretty(&summaries).expect("a summary is plain data"));
     } else if !output.to.quiet {
-        println!("{}\n{}\n\nresults in {}", loaded.title(), describe(&summaries), folder.path.display());
+        let differences = describe_differences(&plan.columns, &compared);
+        println!("{}\n{}{differences}\n\nresults in {}", plan.title, describe(&summaries), folder.path.display());
     }
     Ok(ExitCode::SUCCESS)
 }
 
-/// The model once for each step asked for.
-fn models(arguments: &CompareArguments) -> Result<Vec<Loaded>, Failure> {
-    let with_step = |step: Option<&str>| {
-        let mut overrides = load::overrides(&arguments.model.set);
-        overrides.number("simulation.step", step);
-        overrides.number("simulation.end", arguments.end.as_deref());
-        load::load_to_run(&arguments.model.model, overrides)
-    };
-    match arguments.steps.is_empty() {
-        true => Ok(vec![with_step(None)?]),
-        false => arguments.steps.iter().map(|step| with_step(Some(step))).collect(),
-    }
-}
-
-/// Every method with every step; what is wrong with a name is said before anything runs.
-fn plan(arguments: &CompareArguments, models: &[Loaded]) -> Result<Vec<Planned>, Failure> {
-    let methods: Vec<&str> = match arguments.methods.is_empty() {
-        true => NAMED.iter().map(|named| named.name).collect(),
-        false => arguments.methods.iter().map(String::as_str).collect(),
-    };
-    let mut planned = Vec::new();
-    for (model, loaded) in models.iter().enumerate() {
-        for name in &methods {
-            let order = Order::new(loaded, Some(name), &arguments.output)?;
-            let label = if models.len() > 1 { format!("{name}, {} s", short(order.provenance.step)) } else { name.to_string() };
-            planned.push(Planned { label, model, order });
-        }
-    }
-    Ok(planned)
-}
-
 /// Puts into a summary how the run is called, and the accuracy where its steps follow from one.
-fn name(summary: &mut Value, label: &str, loaded: &Loaded) {
+fn name(summary: &mut Value, label: &str, loaded: Option<&Loaded>) {
     summary["label"] = json!(label);
-    if let Some(accuracy) = loaded.model.settings.choice.accuracy {
+    if let Some(accuracy) = loaded.and_then(|loaded| loaded.model.settings.choice.accuracy) {
         summary["accuracy"] = json!(accuracy);
     }
 }
 
-fn write(folder: &Folder, loaded: &Loaded, finished: &[(String, Finished)], writers: &[&Writer], no_report: bool) -> Result<(), Failure> {
-    for (label, run) in finished {
-        folder.write_trajectory(&file_stem(label), writers, loaded, &run.recording)?;
+/// Puts the differences to the first into the summaries of the others.
+fn tell_differences(columns: &[String], compared: &mut [Compared]) {
+    let Some((first, others)) = compared.split_first_mut().filter(|_| !columns.is_empty()) else { return };
+    for other in others {
+        let of = |column: &String| {
+            let Difference { largest, at, rms } = difference(&first.recording, &other.recording, column)?;
+            Some((column.clone(), json!({ "largest": largest, "at": at, "rms": rms })))
+        };
+        let differences: Map<String, Value> = columns.iter().filter_map(of).collect();
+        other.summary["differences"] = Value::Object(differences);
     }
-    let summaries: Vec<&Value> = finished.iter().map(|(_, run)| &run.summary).collect();
+}
+
+fn write(folder: &Folder, plan: &Plan, compared: &[Compared], writers: &[&Writer], no_report: bool) -> Result<(), Failure> {
+    let stems = file_stems(compared.iter().map(|one| one.label.as_str()));
+    let mut headings = Map::new();
+    for (one, stem) in compared.iter().zip(&stems) {
+        let Some(model) = one.model else { continue };
+        folder.write_trajectory(stem, writers, &plan.models[model], &one.recording)?;
+        if let Value::Object(own) = holonom_io::headings(&one.recording) {
+            headings.extend(own);
+        }
+    }
+    if plan.models.len() > 1 {
+        folder.write("columns.json", |out| holonom_io::write_json(&Value::Object(headings), out))?;
+    }
+    let summaries: Vec<&Value> = compared.iter().map(|one| &one.summary).collect();
     folder.write("summary.json", |out| holonom_io::write_json(&json!(summaries), out))?;
     if no_report {
         return Ok(());
     }
-    let scene = &loaded.model.scene;
-    let runs: Vec<Run<'_>> =
-        finished.iter().map(|(label, run)| Run { label, recording: &run.recording, scene, summary: &run.summary }).collect();
-    folder.write_report(loaded, &runs)
+    let runs: Vec<Run<'_>> = compared.iter().map(|one| run(one, plan)).collect();
+    let report = Report { title: &plan.title, model_text: &plan.text, runs: &runs, columns: &plan.columns };
+    folder.write("report.html", |out| report.write(out))
+}
+
+/// What the report is told of one curve.
+fn run<'a>(one: &'a Compared, plan: &'a Plan) -> Run<'a> {
+    let scene = one.model.map_or(&plan.blank, |model| &plan.models[model].model.scene);
+    Run { label: &one.label, recording: &one.recording, scene, summary: &one.summary }
+}
+
+/// How far the columns asked for are from those of the first, below the table of runs.
+fn describe_differences(columns: &[String], compared: &[Compared]) -> String {
+    let Some((first, others)) = compared.split_first().filter(|_| !columns.is_empty()) else { return String::new() };
+    let rows = columns.iter().flat_map(|column| {
+        let unit = first.recording.find(column).map_or("1", |column| &*column.heading.unit);
+        let heading = if unit == "1" { column.clone() } else { format!("{column} ({unit})") };
+        others.iter().map(move |other| {
+            let number = |key: &str| digits(other.summary["differences"][column.as_str()][key].as_f64().unwrap_or(f64::NAN));
+            vec![heading.clone(), other.label.clone(), number("largest"), number("at"), number("rms")]
+        })
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    format!("\n\n{}", table(&["difference", &format!("to {}", first.label), "largest", "at s", "rms"], &rows))
 }
 
 /// A table of all runs, and why those stopped that did.

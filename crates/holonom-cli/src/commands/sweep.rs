@@ -12,11 +12,12 @@ use serde_json::{Value, json};
 
 use crate::failure::{Failure, STOPPED};
 use crate::folder::Folder;
+use crate::items::items;
 use crate::load;
 use crate::options::SweepArguments;
 use crate::output::table_writers;
 use crate::progress::{interrupt_flag, runs_bar};
-use crate::sweep::{Ending, Journal, Plan, Runner, Sheet, check};
+use crate::sweep::{Ending, Journal, Plan, Runner, Sheet, check, write_report};
 use crate::table::{list, measured};
 
 /// The file in the folder that holds finished runs.
@@ -48,16 +49,25 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
     let is_whole = journal.missing().is_empty();
     if is_whole {
         writers.iter().try_for_each(|(writer, write)| folder.write(&format!("sweep.{}", writer.extension), |out| write(&table, out)))?;
+        if !arguments.no_report {
+            folder.write("report.html", |out| write_report((&source, &name), overrides.given(), &plan, &columns, &table, out))?;
+        }
     }
+    let any_completed = sheet.count(&table, Ending::Completed) > 0;
     tell(arguments, &folder, &summary(&name, &plan, &sheet, &table, &spent), is_whole);
-    Ok(if is_whole { ExitCode::SUCCESS } else { ExitCode::from(STOPPED) })
+    // Whatever was asked not to be said, a status of failure has its reason.
+    if !arguments.to.quiet || !any_completed {
+        tell_failures(&sheet.failures(&table), any_completed);
+    }
+    Ok(if is_whole && any_completed { ExitCode::SUCCESS } else { ExitCode::from(STOPPED) })
 }
 
 /// What two sweeps must have in common for one to go on with the other's runs.
 fn identity(arguments: &SweepArguments, set: &[String], text: &str) -> Value {
     json!({
         "version": env!("CARGO_PKG_VERSION"), "vary": arguments.vary, "samples": arguments.samples,
-        "seed": arguments.samples.map(|_| arguments.seed), "set": set, "method": arguments.method.name, "columns": arguments.columns,
+        "seed": arguments.samples.map(|_| arguments.seed), "set": set, "method": arguments.method.name,
+        "columns": arguments.columns.iter().flat_map(|given| items(given)).collect::<Vec<_>>(),
         "model": text,
     })
 }
@@ -126,6 +136,20 @@ fn tell(arguments: &SweepArguments, folder: &Folder, summary: &Value, is_whole: 
         println!("{}", serde_json::to_string_pretty(summary).expect("a summary is plain data"));
     } else if !arguments.to.quiet {
         println!("{}\n\nresults in {}", describe(summary), folder.path.display());
+    }
+}
+
+/// Runs that did not complete of which the reasons are told.
+const TOLD: usize = 5;
+
+/// Says on standard error why runs did not complete.
+fn tell_failures(failures: &[String], any_completed: bool) {
+    failures.iter().take(TOLD).for_each(|failure| eprintln!("{failure}"));
+    if failures.len() > TOLD {
+        eprintln!("and {} more runs did not complete: the column `reason` of the table has why", failures.len() - TOLD);
+    }
+    if !any_completed && !failures.is_empty() {
+        eprintln!("no run completed");
     }
 }
 

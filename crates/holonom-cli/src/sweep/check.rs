@@ -1,48 +1,89 @@
 //! What is looked at before a sweep runs: keys that can be varied, a model that is sound, columns that there are.
 
-use holonom::model::{Fault, Faults, Model, Value, nearest};
-use holonom::record::{COLUMNS, Recorder};
+use holonom::model::{Fault, Faults, Model, Value};
+use holonom::record::{COLUMNS, Constraints, Recorder};
 use holonom_io::Source;
 
+use super::column::Asked;
 use super::plan::Plan;
-use super::run::{Task, constraints};
+use super::reduction::Function;
+use super::run::Task;
 use super::vary::Vary;
+use super::watch::{Columns, recorder};
+use crate::columns::unknown;
 use crate::failure::Failure;
+use crate::items::items;
 use crate::load::{self, OF_METHOD, Overrides};
 use crate::options::SweepArguments;
 use crate::output;
 
-/// Refuses keys that nothing can be made of and a model that is not sound; names the columns whose last values are kept.
-pub fn check(arguments: &SweepArguments, overrides: &Overrides, source: &Source, plan: &Plan) -> Result<Vec<String>, Failure> {
+/// Refuses keys that nothing can be made of, a model that is not sound and columns that there are not; finds out what the columns take.
+pub fn check(arguments: &SweepArguments, overrides: &Overrides, source: &Source, plan: &Plan) -> Result<Columns, Failure> {
+    let asked = asked(arguments)?;
     plan.varied.iter().try_for_each(|vary| check_key(vary, arguments, overrides, source))?;
     let mut with_first = overrides.clone();
     plan.varied.iter().zip(plan.settings(1)).for_each(|(vary, setting)| with_first.number(&vary.path, Some(&setting.text)));
     let (first, _) = load::open(&arguments.model.model, &with_first)?;
     let method = arguments.method.name.as_deref();
     // A value may be missing in the file and given by each run, or the values of the first run may not be possible.
-    let model = match first.model_with(&[]) {
+    let model = match compile(&first, &asked) {
         Err(faults) => {
             let of_keys: Vec<Fault> = faults.0.iter().filter(|fault| is_of_key(fault, plan, source)).cloned().collect();
             if !of_keys.is_empty() {
                 return Err(Failure::Model(first.render(&Faults(of_keys))));
             }
-            sound(source, method).map_err(|_| Failure::Model(first.render(&faults)))?
+            sound(source, &asked, method).map_err(|_| Failure::Model(first.render(&faults)))?
         }
         Ok(model) => match Task::new(&model, method) {
             Ok(_) => model,
-            Err(failure) => sound(source, method).map_err(|_| failure)?,
+            Err(failure) => sound(source, &asked, method).map_err(|_| failure)?,
         },
     };
-    columns(&model, &arguments.columns)
+    refuse_late(&asked, source, plan)?;
+    if asked.is_empty() { Ok(usual(&model)) } else { columns(&model, asked) }
 }
 
 /// The model as it is, if it could run.
-fn sound(source: &Source, method: Option<&str>) -> Result<Model, Failure> {
-    let model = source.model().map_err(Failure::Model)?;
+fn sound(source: &Source, asked: &[Asked], method: Option<&str>) -> Result<Model, Failure> {
+    let model = compile(source, asked).map_err(|faults| Failure::Model(source.render(&faults)))?;
     Task::new(&model, method)?;
     Ok(model)
 }
 
+/// Refuses times after the end of all runs, where these have one end.
+fn refuse_late(asked: &[Asked], source: &Source, plan: &Plan) -> Result<(), Failure> {
+    let (Some(&Value::Number(end)), false) = (source.get("simulation.end"), plan.varied.iter().any(|vary| vary.path == "simulation.end"))
+    else {
+        return Ok(());
+    };
+    match asked.iter().find(|asked| matches!(asked.function, Function::At(t) if t > end)) {
+        None => Ok(()),
+        Some(late) => {
+            let message = format!("`{}` asks for a time after the end of the runs, {end} s", late.text);
+            Err(Failure::usage(message, "ask for an earlier time, or give a later --end"))
+        }
+    }
+}
+
+/// The columns asked for.
+fn asked(arguments: &SweepArguments) -> Result<Vec<Asked>, Failure> {
+    let mut found: Vec<Asked> = Vec::new();
+    for text in arguments.columns.iter().flat_map(|given| items(given)) {
+        let asked = Asked::parse(text)?;
+        if found.iter().any(|other| other.text == asked.text) {
+            return Err(Failure::usage(format!("the column `{text}` is asked for twice"), "leave out one of them"));
+        }
+        found.push(asked);
+    }
+    Ok(found)
+}
+
+/// The model of a source, with what tells the forces of joints where columns may ask for them.
+fn compile(source: &Source, asked: &[Asked]) -> Result<Model, Faults> {
+    if asked.is_empty() { source.model_with(&[]) } else { source.model_with_forces_and(&[]) }
+}
+
+/// Refuses a key that cannot be varied.
 fn check_key(vary: &Vary, arguments: &SweepArguments, overrides: &Overrides, source: &Source) -> Result<(), Failure> {
     let path = vary.path.as_str();
     if overrides.has(path) {
@@ -56,7 +97,7 @@ fn check_key(vary: &Vary, arguments: &SweepArguments, overrides: &Overrides, sou
         return Err(Failure::usage(format!("`{path}` is a table and has no values"), format!("name a key in it, such as {path}.{key}")));
     }
     // A parameter that nothing names would make runs that are all alike.
-    load::require_key("--vary", path, source)
+    load::require_key(path, source)
 }
 
 /// Whether a fault says that a varied key is none of the model file, or belongs to nothing that is there.
@@ -68,23 +109,95 @@ fn is_of_key(fault: &Fault, plan: &Plan, source: &Source) -> bool {
     })
 }
 
-/// The columns asked for, or the energy and all of the motion.
-fn columns(model: &Model, asked: &[String]) -> Result<Vec<String>, Failure> {
-    let recorder = Recorder::new(&model.channels, &model.system, 1, constraints(model));
-    let all: Vec<&str> = recorder.recording().columns().iter().map(|column| column.heading.name.as_str()).collect();
-    if let Some(unknown) = asked.iter().find(|name| !all.contains(&name.as_str())) {
-        let cure = match nearest(unknown, all.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("take some of: {}", all.join(", ")),
-        };
-        return Err(Failure::usage(format!("there is no column `{unknown}`"), cure));
+/// Where no column is asked for: the last values of the energy and of all that is recorded without the forces of constraints. Of many runs
+/// nothing is found that was not asked for, but by measures.
+fn usual(model: &Model) -> Columns {
+    let recorders = LEVELS.map(|level| recorder(model, level));
+    let mut takes = Takes { level: if model.output.reactions == Some(true) { 2 } else { 0 }, ..Takes::default() };
+    let mut forces = false;
+    for measure in &model.channels.measures {
+        let own = Takes::of(&measure.name, model, &recorders).unwrap_or_default();
+        forces |= own.needs_forces_of_steps(Function::Last);
+        takes = takes.and(own);
     }
-    if !asked.is_empty() {
-        return Ok(asked.to_vec());
-    }
+    let all = recorders[takes.level].recording();
     let written = match &model.output.points {
-        Some(points) => output::columns(recorder.recording(), points, model),
-        None => all.iter().map(|name| name.to_string()).collect(),
+        Some(points) => output::columns(all, points, model),
+        None => all.columns().iter().map(|column| column.heading.name.clone()).collect(),
     };
-    Ok(written.into_iter().filter(|name| name == "energy" || !COLUMNS.contains(&name.as_str())).collect())
+    let asks_forces = model.output.reactions == Some(true);
+    let is_usual = |name: &String| asks_forces || recorders[0].recording().find(name).is_some();
+    let shown = written.iter().filter(|name| is_usual(name) && (*name == "energy" || !COLUMNS.contains(&name.as_str())));
+    let asked: Vec<Asked> = shown.map(|name| Asked::last(name)).collect();
+    let steps = takes.steps || asked.iter().any(|asked| is_orientation(&asked.of, model));
+    Columns { units: units(&asked, &recorders[takes.level]), asked, constraints: LEVELS[takes.level], steps, forces }
+}
+
+/// What may be recorded of the forces of constraints, the least first.
+const LEVELS: [Constraints; 3] = [Constraints::Nothing, Constraints::Joints, Constraints::Rows];
+
+/// What a column takes of a run, and the columns that it follows from.
+#[derive(Clone, Copy, Debug, Default)]
+struct Takes {
+    /// The least of [`LEVELS`] that has it.
+    level: usize,
+    /// Whether it shows what drives exert.
+    efforts: bool,
+    /// Whether its value at a step follows from the steps before.
+    steps: bool,
+}
+
+impl Takes {
+    /// What the column of a name takes; `None` where there is none.
+    fn of(name: &str, model: &Model, recorders: &[Recorder<'_>; 3]) -> Option<Self> {
+        let level = recorders.iter().position(|recorder| recorder.recording().find(name).is_some())?;
+        let owner = name.strip_suffix(".effort").or(name.strip_suffix(".power"));
+        let efforts = owner.is_some_and(|owner| model.channels.efforts.iter().any(|effort| effort.name == owner));
+        let own = Self { level, efforts, steps: is_orientation(name, model) };
+        let Some(measure) = model.channels.measures.iter().find(|measure| measure.name == name) else { return Some(own) };
+        // What a run does not record is no number in it, and so it is here.
+        let read = measure.columns().filter_map(|column| Self::of(column, model, recorders)).filter(|read| read.level <= recorded(model));
+        Some(read.fold(Self { steps: measure.is_running(), ..own }, Self::and))
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self { level: self.level.max(other.level), efforts: self.efforts || other.efforts, steps: self.steps || other.steps }
+    }
+
+    /// Whether a function of the column needs forces of constraints after every step.
+    fn needs_forces_of_steps(self, function: Function) -> bool {
+        (self.steps || function != Function::Last) && (self.level > 0 || self.efforts)
+    }
+}
+
+/// Which of [`LEVELS`] a run records.
+fn recorded(model: &Model) -> usize {
+    LEVELS.iter().position(|level| *level == output::constraints(model)).expect("every level is listed")
+}
+
+/// Whether a column is part of an orientation in space: of its two quaternions, rows have the one near that of the row before.
+fn is_orientation(name: &str, model: &Model) -> bool {
+    model.axes.len() == 3 && [".qw", ".qx", ".qy", ".qz"].iter().any(|end| name.ends_with(end))
+}
+
+/// The columns asked for, if a run records them, with no more of the forces of constraints than they need.
+fn columns(model: &Model, asked: Vec<Asked>) -> Result<Columns, Failure> {
+    let recorders = LEVELS.map(|level| recorder(model, level));
+    let (mut all, mut steps, mut forces) = (Takes::default(), false, false);
+    for Asked { of, function, .. } in &asked {
+        let Some(takes) = Takes::of(of, model, &recorders) else { return Err(unknown(of, recorders[recorded(model)].recording())) };
+        if takes.level > recorded(model) {
+            return Err(Failure::usage(format!("runs of this model do not record `{of}`"), "give --set output.reactions=true"));
+        }
+        all = all.and(takes);
+        steps |= takes.steps || *function != Function::Last;
+        forces |= takes.needs_forces_of_steps(*function);
+    }
+    Ok(Columns { units: units(&asked, &recorders[all.level]), asked, constraints: LEVELS[all.level], steps, forces })
+}
+
+/// Units of columns, which functions of them keep.
+fn units(asked: &[Asked], recorder: &Recorder<'_>) -> Vec<String> {
+    let unit = |asked: &Asked| recorder.recording().find(&asked.of).map_or("1".into(), |column| column.heading.unit.to_string());
+    asked.iter().map(unit).collect()
 }

@@ -44,6 +44,11 @@ impl Plan {
         Ok(Self { varied, runs, seed })
     }
 
+    /// Whether every value of a key is run with every value of the others.
+    pub fn is_grid(&self) -> bool {
+        self.seed.is_none()
+    }
+
     /// The values of a run, one for each key that is varied: a function of its number alone.
     pub fn settings(&self, run: u64) -> Vec<Setting> {
         match self.seed {

@@ -5,12 +5,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use holonom::linalg::Plans;
 use holonom::model::{Model, Value};
-use holonom::record::{Constraints, Recorder, Recording};
+use holonom::record::Constraints;
 use holonom::simulation::{Method, Observer, Simulation, Status, Verdict};
 use holonom_io::Source;
 
 use super::plan::Plan;
 use super::vary::Setting;
+use super::watch::{Columns, Watch};
 use crate::failure::Failure;
 use crate::load;
 
@@ -62,8 +63,8 @@ pub struct Figures {
     pub velocity: f64,
     pub iterations_per_step: f64,
     pub rejected_steps: u64,
-    /// Last values of the columns asked for; `None` for those that this run's model does not have.
-    pub last: Vec<Option<f64>>,
+    /// The columns asked for; `None` for those that this run's model does not have, or that have no value in it.
+    pub columns: Vec<Option<f64>>,
 }
 
 /// Runs the runs of a plan.
@@ -72,8 +73,7 @@ pub struct Runner<'a> {
     pub plan: &'a Plan,
     /// Name of the method, where the command line gives one.
     pub method: Option<&'a str>,
-    /// Columns of the trajectory whose last values are kept.
-    pub columns: &'a [String],
+    pub columns: &'a Columns,
     /// The eliminations of the runs, planned once where runs differ in numbers only.
     pub eliminations: Arc<Plans>,
     pub interrupted: Arc<AtomicBool>,
@@ -87,7 +87,11 @@ impl Runner<'_> {
         }
         let changes: Vec<(&str, Value)> =
             self.plan.varied.iter().zip(settings).map(|(vary, setting)| (vary.path.as_str(), setting.value.clone())).collect();
-        let mut model = match self.source.model_with(&changes) {
+        let model = match self.columns.constraints != Constraints::Nothing {
+            true => self.source.model_with_forces_and(&changes),
+            false => self.source.model_with(&changes),
+        };
+        let mut model = match model {
             Ok(model) => model,
             Err(faults) => return Some(refused(faults.to_string())),
         };
@@ -102,39 +106,58 @@ impl Runner<'_> {
     fn simulate(&self, model: &Model) -> Result<Option<Outcome>, Failure> {
         let Task { method, step, end } = Task::new(model, self.method)?;
         let mut simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
-        let mut looks = 0_u64;
-        let status = simulation.run(end, &mut |_: &Simulation| {
-            looks += 1;
-            match looks.is_multiple_of(LOOK) && self.interrupted.load(Ordering::Relaxed) {
-                true => Verdict::Stop,
-                false => Verdict::GoOn,
-            }
-        });
+        if self.columns.forces {
+            model.find_reactions(&mut simulation);
+        }
+        let mut watched = Interruptible { watch: Watch::new(model, self.columns), looks: 0, interrupted: &self.interrupted };
+        let status = simulation.run(end, &mut watched);
         if self.interrupted.load(Ordering::Relaxed) {
             return Ok(None);
         }
-        if constraints(model) != Constraints::Nothing || !model.channels.efforts.is_empty() {
-            simulation.find_reactions();
+        if self.columns.constraints != Constraints::Nothing || !model.channels.efforts.is_empty() {
+            model.find_reactions(&mut simulation);
         }
-        let figures = Some(self.figures(model, &simulation));
+        let figures = Some(figures(&simulation, watched.watch.values(&simulation)));
         Ok(Some(match status {
             Status::Completed => Outcome { ending: Ending::Completed, stopped_at: None, reason: String::new(), figures },
             Status::Stopped { at, reason } => Outcome { ending: Ending::Stopped, stopped_at: Some(at), reason, figures },
         }))
     }
+}
 
-    fn figures(&self, model: &Model, simulation: &Simulation) -> Figures {
-        let (audit, last) = (simulation.audit(), present(model, simulation));
-        let (violation, work) = (audit.violation_summary(), audit.work_summary(simulation.steps()));
-        Figures {
-            steps: simulation.steps(),
-            drift: audit.energy_summary().max_drift,
-            position: violation.position,
-            velocity: violation.velocity,
-            iterations_per_step: work.iterations_per_step,
-            rejected_steps: work.rejected_steps,
-            last: self.columns.iter().map(|name| last.column(name).and_then(|values| values.first().copied())).collect(),
+fn figures(simulation: &Simulation, columns: Vec<Option<f64>>) -> Figures {
+    let audit = simulation.audit();
+    let (violation, work) = (audit.violation_summary(), audit.work_summary(simulation.steps()));
+    Figures {
+        steps: simulation.steps(),
+        drift: audit.energy_summary().max_drift,
+        position: violation.position,
+        velocity: violation.velocity,
+        iterations_per_step: work.iterations_per_step,
+        rejected_steps: work.rejected_steps,
+        columns,
+    }
+}
+
+/// A watch that ends the run on an interrupt.
+struct Interruptible<'a> {
+    watch: Watch<'a>,
+    looks: u64,
+    interrupted: &'a AtomicBool,
+}
+
+impl Observer for Interruptible<'_> {
+    fn after_step(&mut self, simulation: &Simulation) -> Verdict {
+        self.watch.after_step(simulation);
+        self.looks += 1;
+        match self.looks.is_multiple_of(LOOK) && self.interrupted.load(Ordering::Relaxed) {
+            true => Verdict::Stop,
+            false => Verdict::GoOn,
         }
+    }
+
+    fn wants_forces(&self) -> bool {
+        self.watch.wants_forces()
     }
 }
 
@@ -142,7 +165,8 @@ impl Runner<'_> {
 pub struct Task {
     method: Method,
     step: f64,
-    end: f64,
+    /// s
+    pub end: f64,
 }
 
 impl Task {
@@ -150,18 +174,6 @@ impl Task {
     pub fn new(model: &Model, method: Option<&str>) -> Result<Self, Failure> {
         Ok(Self { method: load::method(model, method)?, step: load::step(model)?, end: load::end(model)? })
     }
-}
-
-/// What is recorded of the forces of constraints: of many runs nothing that was not asked for.
-pub fn constraints(model: &Model) -> Constraints {
-    if model.output.reactions == Some(true) { Constraints::Rows } else { Constraints::Nothing }
-}
-
-/// One row of the trajectory: the present state.
-fn present(model: &Model, simulation: &Simulation) -> Recording {
-    let mut recorder = Recorder::new(&model.channels, &model.system, 1, constraints(model));
-    recorder.after_step(simulation);
-    recorder.finish()
 }
 
 fn refused(reason: String) -> Outcome {

@@ -1,43 +1,45 @@
 //! The table of a sweep: which columns it has, and a line for each run.
 
-use holonom_io::{Cells, Table, csv_cells, csv_line};
+use holonom_io::{Cells, Table, csv_cells, csv_line, csv_number};
 
 use super::plan::Plan;
 use super::run::{Ending, Outcome};
 use super::vary::Setting;
+use super::watch::Columns;
 
-/// Columns between the varied keys and the last values of the motion.
+/// Columns between the varied keys and those of the motion.
 const FIGURES: [&str; 6] = ["steps", "energy_drift", "position_violation", "velocity_violation", "iterations_per_step", "rejected_steps"];
 
 /// What the columns of a sweep are called.
 pub struct Sheet {
     /// Varied keys, and whether all their values are numbers.
     varied: Vec<(String, bool)>,
-    /// Columns of the trajectory whose last values are kept.
+    /// Columns of the motion.
     shown: Vec<String>,
 }
 
 impl Sheet {
-    /// The table of a plan with the last values of some columns of the trajectory.
-    pub fn new(plan: &Plan, shown: &[String]) -> Self {
-        Self { varied: plan.varied.iter().map(|vary| (vary.path.clone(), vary.is_numeric())).collect(), shown: shown.to_vec() }
+    /// The table of a plan with some columns of the motion.
+    pub fn new(plan: &Plan, columns: &Columns) -> Self {
+        Self {
+            varied: plan.varied.iter().map(|vary| (vary.path.clone(), vary.is_numeric())).collect(),
+            shown: columns.asked.iter().map(|asked| asked.text.clone()).collect(),
+        }
     }
 
     /// A run as a line of CSV.
     pub fn line(&self, run: u64, settings: &[Setting], outcome: &Outcome) -> String {
         let mut cells = vec![run.to_string()];
         cells.extend(settings.iter().map(|setting| one_line(&setting.text)));
-        let optional = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+        let optional = |value: Option<f64>| value.map_or(String::new(), csv_number);
         cells.extend([outcome.ending.word().into(), optional(outcome.stopped_at), one_line(&outcome.reason)]);
         match &outcome.figures {
             None => cells.resize(self.width(), String::new()),
             Some(figures) => {
                 cells.push(figures.steps.to_string());
-                cells.extend(
-                    [figures.drift, figures.position, figures.velocity, figures.iterations_per_step].map(|value| value.to_string()),
-                );
+                cells.extend([figures.drift, figures.position, figures.velocity, figures.iterations_per_step].map(csv_number));
                 cells.push(figures.rejected_steps.to_string());
-                cells.extend(figures.last.iter().map(|value| optional(*value)));
+                cells.extend(figures.columns.iter().map(|value| optional(*value)));
             }
         }
         csv_line(&cells)
@@ -67,6 +69,22 @@ impl Sheet {
             Cells::Words(cells) => cells.iter().filter(|cell| cell.as_deref() == Some(ending.word())).count(),
             _ => unreachable!("a status is a word"),
         }
+    }
+
+    /// What became of the runs of a table that did not complete, in words.
+    pub fn failures(&self, table: &Table) -> Vec<String> {
+        let cell = |column: usize, row: usize| table.columns[column].1.text(row);
+        let status = 1 + self.varied.len();
+        let failed = (0..table.rows()).filter(|&row| cell(status, row) != Ending::Completed.word());
+        let words = |row: usize| {
+            let settings: Vec<String> = (1..status).map(|k| format!("{}={}", table.columns[k].0, cell(k, row))).collect();
+            let at = match cell(status + 1, row) {
+                at if at.is_empty() => String::new(),
+                at => format!(" at {at} s"),
+            };
+            format!("run {} ({}) {}{at}: {}", cell(0, row), settings.join(", "), cell(status, row), cell(status + 2, row))
+        };
+        failed.map(words).collect()
     }
 
     fn width(&self) -> usize {

@@ -1,9 +1,10 @@
 //! What a key of the model is varied over, as it is typed: `lo..hi:20`, `lo..hi:20log`, or `a,b,c`.
 
 use holonom::model::Value;
-use holonom_io::read_value;
+use holonom_io::{csv_number, read_value};
 
 use crate::failure::Failure;
+use crate::items::items;
 
 /// A key of the model file and the values that it takes.
 #[derive(Debug, PartialEq)]
@@ -26,7 +27,7 @@ pub struct Range {
     /// How many values there are in a grid.
     pub count: Option<u64>,
     /// Whether ratios are equal, not differences.
-    geometric: bool,
+    pub geometric: bool,
 }
 
 /// A value for a key of the model, and how tables show it.
@@ -38,7 +39,7 @@ pub struct Setting {
 
 impl Setting {
     fn number(number: f64) -> Self {
-        Self { text: number.to_string(), value: Value::Number(number) }
+        Self { text: csv_number(number), value: Value::Number(number) }
     }
 
     fn typed(text: &str) -> Self {
@@ -92,48 +93,56 @@ fn range(text: &str) -> Option<Result<Range, String>> {
     let (low, rest) = text.split_once("..")?;
     let low = low.trim().parse::<f64>().ok()?;
     let (high, count) = rest.split_once(':').map_or((rest, ""), |(high, count)| (high, count.trim()));
-    let Ok(high) = high.trim().parse::<f64>() else {
-        return Some(Err(format!("ends its range with `{}`, which is no number", high.trim())));
+    let high = high.trim();
+    let Ok(high) = high.parse::<f64>() else {
+        let what = if high.is_empty() { "nothing".into() } else { format!("`{high}`, which is no number") };
+        return Some(Err(format!("ends its range with {what}")));
     };
     let digits = count.strip_suffix("log");
     let count = match digits.unwrap_or(count) {
         "" => None,
         digits => match digits.parse() {
             Ok(count) if count >= 2 => Some(count),
-            _ => return Some(Err(format!("wants a whole number of at least 2 values, and this is `{digits}`"))),
+            _ => return Some(Err(format!("asks for `{digits}` values, and a range has a whole number of at least 2"))),
         },
     };
     let range = Range { low, high, count, geometric: digits.is_some() };
     Some(match range {
-        _ if !(low.is_finite() && high.is_finite()) => Err("has a range without an end".into()),
+        _ if !(low.is_finite() && high.is_finite()) => Err("has a range whose ends are not both finite numbers".into()),
         _ if low == high => Err("has a range from a number to itself".into()),
+        _ if low > high => Err(format!("has a range that runs backwards: write {}..{}", csv_number(high), csv_number(low))),
         Range { geometric: true, .. } if low * high <= 0.0 => Err("has even ratios, for which both ends must be above 0, or below".into()),
         range => Ok(range),
     })
 }
 
-/// Items between commas that stand outside brackets and quotes.
+/// Values between commas.
 fn list(text: &str) -> Result<Vec<Setting>, String> {
-    let (mut items, mut depth, mut quote, mut start) = (Vec::new(), 0, None, 0);
-    for (at, c) in text.char_indices() {
-        match (quote, c) {
-            (Some(open), c) if c == open => quote = None,
-            (Some(_), _) => (),
-            (None, '"' | '\'') => quote = Some(c),
-            (None, '[' | '{' | '(') => depth += 1,
-            (None, ']' | '}' | ')') => depth -= 1,
-            (None, ',') if depth == 0 => {
-                items.push(&text[start..at]);
-                start = at + 1;
-            }
-            _ => (),
-        }
+    let items = items(text);
+    if items.contains(&"") {
+        return Err("has an empty place in its list".into());
     }
-    items.push(&text[start..]);
-    match items.iter().any(|item| item.trim().is_empty()) {
-        true => Err("has an empty place in its list".into()),
-        false => Ok(items.into_iter().map(|item| Setting::typed(item.trim())).collect()),
+    if let Some(mistyped) = items.iter().find(|item| is_like_range(item)) {
+        return Err(format!("has `{mistyped}` in a list, which looks like a range"));
     }
+    let settings: Vec<Setting> = items.into_iter().map(Setting::typed).collect();
+    match settings.iter().find(|setting| matches!(setting.value, Value::Number(number) if !number.is_finite())) {
+        Some(setting) => Err(format!("has `{}` in its list, which is no finite number", setting.text)),
+        None => Ok(settings),
+    }
+}
+
+/// Whether a value was probably meant as a range: it ends with a number of values, as `20-30:5` does, or has numbers beside two dots.
+fn is_like_range(item: &str) -> bool {
+    let is_number = |text: &str| text.trim().parse::<f64>().is_ok();
+    let is_count = |text: &str| {
+        let count = text.trim();
+        count == "log" || is_number(count.strip_suffix("log").unwrap_or(count))
+    };
+    let begins_text = item.starts_with(['"', '\'', '[', '{']);
+    let has_count = item.rsplit_once(':').is_some_and(|(_, count)| is_count(count));
+    let has_ends = item.split_once("..").is_some_and(|(low, high)| is_number(low) || is_number(high));
+    !begins_text && (has_count || has_ends)
 }
 
 #[cfg(test)]
@@ -153,7 +162,7 @@ mod tests {
         let ratios = numbers("k=1e3..1e5:5log", 5);
         assert_eq!((ratios[0], ratios[2], ratios[4]), (1e3, 1e4, 1e5));
         assert!(ratios.windows(2).all(|pair| (pair[1] / pair[0] - 10f64.sqrt()).abs() < 1e-14), "{ratios:?}");
-        let Values::Range(drawn) = Vary::parse("k=-1..-1e4:log").unwrap().values else { panic!("it is a range") };
+        let Values::Range(drawn) = Vary::parse("k=-1e4..-1:log").unwrap().values else { panic!("it is a range") };
         assert_eq!((drawn.count, drawn.at(0.5).text.as_str()), (None, "-100"));
     }
 
@@ -169,9 +178,42 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_is_refused() {
-        for given in ["k", "=1,2", "k=", "k=1,,2", "k=1..x:3", "k=1..2:1", "k=1..2:2.5", "k=1..1:3", "k=0..2:3log", "k=0..inf:3"] {
-            assert!(Vary::parse(given).is_err(), "{given}");
+    fn what_cannot_be_read_is_refused_with_a_cure() {
+        for (given, told) in [
+            ("k", "no `=`"),
+            ("=1,2", "what takes which"),
+            ("k=", "what takes which"),
+            ("k=1,,2", "empty place"),
+            ("k=1..x:3", "`x`, which is no number"),
+            ("k=1..", "ends its range with nothing"),
+            ("k=1..:3", "ends its range with nothing"),
+            ("k=..2:3", "looks like a range"),
+            ("k=..2", "looks like a range"),
+            ("k=20-30:5", "`20-30:5` in a list, which looks like a range"),
+            ("k=20:30:5", "looks like a range"),
+            ("k=20..30,40..50", "which is no number"),
+            ("k=10,20..30:5", "looks like a range"),
+            ("k=a..b:5", "looks like a range"),
+            ("k=1-2:5log", "looks like a range"),
+            ("k=1-2:log", "looks like a range"),
+            ("k=1..2:1", "at least 2"),
+            ("k=1..2:0", "at least 2"),
+            ("k=1..2:-3", "at least 2"),
+            ("k=1..2:2.5", "at least 2"),
+            ("k=1..2:NaN", "at least 2"),
+            ("k=1..1:3", "to itself"),
+            ("k=3..2:3", "backwards: write 2..3"),
+            ("k=0..2:3log", "even ratios"),
+            ("k=0..inf:3", "finite"),
+            ("k=NaN..3:4", "finite"),
+            ("k=1,nan", "no finite number"),
+            ("k=-inf,1", "no finite number"),
+        ] {
+            let message = Vary::parse(given).unwrap_err().to_string();
+            assert!(message.contains(told) && message.contains("1..5:20"), "{given}\n{message}");
+        }
+        for given in ["mesh.file=../a.stl,C:\\b.stl", "f=sin(t),2*t", "title='1..2:3'", "p=[1,0],[2,0]"] {
+            assert!(Vary::parse(given).is_ok(), "{given}");
         }
     }
 }

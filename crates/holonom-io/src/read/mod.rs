@@ -3,6 +3,7 @@
 mod mesh;
 mod numbers;
 mod places;
+mod recording;
 mod render;
 mod rows;
 mod toml;
@@ -17,6 +18,7 @@ use sha2::{Digest, Sha256};
 pub use mesh::{LARGEST_MESH, MOST_TRIANGLES, MeshError, read_mesh};
 pub use numbers::{LARGEST_NUMBERS, NumbersError, read_numbers};
 use places::Places;
+pub use recording::{TableError, read_recording};
 pub use rows::read_csv;
 
 /// Largest model file that is read, bytes: some 40 000 entries, while parsing takes up to fifty times as much memory.
@@ -124,10 +126,18 @@ impl Source {
     /// # Errors
     /// Every fault of it, ready to be shown.
     pub fn model_with_forces(&self) -> Result<Model, String> {
-        let mut model = self.model()?;
+        self.model_with_forces_and(&[]).map_err(|faults| self.render(&faults))
+    }
+
+    /// The same with some keys set to other values.
+    ///
+    /// # Errors
+    /// Every fault of it.
+    pub fn model_with_forces_and(&self, changes: &[(&str, Value)]) -> Result<Model, Faults> {
+        let mut model = self.model_with(changes)?;
         if model.shares_nodes() && model.output.reactions != Some(false) {
-            let apart = self.model_with(&[("output.reactions", Value::Bool(true))]);
-            model.tell_forces(apart.map_err(|faults| self.render(&faults))?);
+            let apart = [changes, &[("output.reactions", Value::Bool(true))]].concat();
+            model.tell_forces(self.model_with(&apart)?);
         }
         Ok(model)
     }
@@ -245,10 +255,14 @@ impl FilesBeside {
             return Err(format!("{} is larger than {} MB", path.display(), largest / 1_000_000));
         }
         let bytes = std::fs::read(&path).map_err(|error| format!("{} cannot be read: {error}", path.display()))?;
-        let sum = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-        self.sums.lock().expect("no reader panics").insert(name.into(), sum);
+        self.sums.lock().expect("no reader panics").insert(name.into(), sha256(&bytes));
         Ok(bytes)
     }
+}
+
+/// The SHA-256 of bytes, in hexadecimal digits.
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The text of a file, if it is one and could be a model.

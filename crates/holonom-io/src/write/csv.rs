@@ -20,12 +20,22 @@ pub fn append_csv(recording: &Recording, first: usize, out: &mut dyn Write) -> i
     let mut number = zmij::Buffer::new();
     for row in first..recording.rows() {
         for column in recording.columns() {
-            let digits = number.format(column.values[row]);
-            table.write_field(digits.strip_suffix(".0").unwrap_or(digits))?;
+            table.write_field(shortest(column.values[row], &mut number))?;
         }
         table.write_record(None::<&[u8]>)?;
     }
     table.flush()
+}
+
+/// The shortest text of a number that reads back to the same bits.
+fn shortest(value: f64, buffer: &mut zmij::Buffer) -> &str {
+    let digits = buffer.format(value);
+    digits.strip_suffix(".0").unwrap_or(digits)
+}
+
+/// A number as it stands in a cell: the shortest text that reads back to the same bits.
+pub fn csv_number(value: f64) -> String {
+    shortest(value, &mut zmij::Buffer::new()).to_string()
 }
 
 /// Writes a header and one line a row of a table with words; empty cells where there is nothing.

@@ -11,7 +11,7 @@ use std::io::{self, Write};
 
 use holonom::record::Recording;
 
-pub use csv::{append_csv, csv_cells, csv_line};
+pub use csv::{append_csv, csv_cells, csv_line, csv_number};
 pub use json::{headings, write_json};
 pub use table::{Cells, Table};
 

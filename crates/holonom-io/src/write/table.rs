@@ -1,5 +1,7 @@
 //! A table of results with words among the numbers.
 
+use super::csv_number;
+
 /// Columns of equal length, by name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
@@ -37,7 +39,7 @@ impl Cells {
     pub fn text(&self, row: usize) -> String {
         match self {
             Self::Whole(cells) => cells[row].map_or(String::new(), |cell| cell.to_string()),
-            Self::Numbers(cells) => cells[row].map_or(String::new(), |cell| cell.to_string()),
+            Self::Numbers(cells) => cells[row].map_or(String::new(), csv_number),
             Self::Words(cells) => cells[row].clone().unwrap_or_default(),
         }
     }

@@ -22,14 +22,16 @@ const MOST_CURVES = 8;
 /** Plots of single channels where several runs are compared. */
 const MOST_COMPARED = 4;
 
-/** Plots of the machine, and a search over all columns. */
-export function buildMachine(container: HTMLElement, runs: Run[], clock: Clock, visibility: Visibility): void {
+/** Plots of the machine, of `columns` where these are asked for, and a search over all columns. */
+export function buildMachine(container: HTMLElement, runs: Run[], columns: string[], clock: Clock, visibility: Visibility): void {
   const channels = runs[0].channels;
   if (channels.length === 0) return;
   const plots = element("div", { class: "plots" });
   const compared = runs.length > 1;
   const build = compared ? buildComparedPlot : buildPlot;
-  const groups = first(channels);
+  const asked = columns.flatMap((name) => channels.filter((channel) => channel.name === name));
+  for (const channel of asked) build(plots, chartOf(titleOf(channel), [channel.name], runs), clock, visibility);
+  const groups = asked.length > 0 ? [] : first(channels);
   if (compared) {
     const single = groups.flatMap(([, group]) => group).slice(0, MOST_COMPARED);
     for (const channel of single) build(plots, chartOf(titleOf(channel), [channel.name], runs), clock, visibility);

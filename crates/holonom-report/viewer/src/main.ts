@@ -38,7 +38,8 @@ declare global {
 }
 
 function main(): void {
-  const motions = readPayload().map((run) => new Motion(run));
+  const payload = readPayload();
+  const motions = payload.runs.map((run) => new Motion(run));
   const start = Math.min(...motions.map((motion) => motion.run.times[0] ?? 0));
   const clock = new Clock(start, Math.max(start, ...motions.map((motion) => motion.end)));
   const visibility = new Visibility();
@@ -49,11 +50,11 @@ function main(): void {
     pointsAt: () => placesOf(motions[0]?.run.scene.points, (name) => motions[0]?.at(name, clock.time)),
     bodiesAt: () => placesOf(motions[0]?.run.scene.bodies, (name) => motions[0]?.poseAt(name, clock.time)?.place.toArray()),
   };
-  if (motions.length > 0) build(motions, clock, visibility);
+  if (motions.length > 0) build(motions, payload.columns, clock, visibility);
   window.holonom.ready = true;
 }
 
-function build(motions: Motion[], clock: Clock, visibility: Visibility): void {
+function build(motions: Motion[], columns: string[], clock: Clock, visibility: Visibility): void {
   const runs = motions.map((motion) => motion.run);
   buildLegend(place("legend"), runs.map((run) => run.label), visibility);
 
@@ -61,7 +62,7 @@ function build(motions: Motion[], clock: Clock, visibility: Visibility): void {
   place("motion").append(stage, buildTransport(clock));
   buildStage(stage, motions, clock, visibility);
 
-  buildMachine(place("machine"), runs, clock, visibility);
+  buildMachine(place("machine"), runs, columns, clock, visibility);
 
   const plots = element("div", { class: "plots" });
   place("plots").append(plots);

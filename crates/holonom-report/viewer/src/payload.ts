@@ -78,9 +78,20 @@ interface RawRun {
   channels: (Omit<Channel, "values"> & { values: string })[];
 }
 
-export function readPayload(): Run[] {
-  const text = document.getElementById("holonom-data")?.textContent ?? '{"runs":[]}';
-  const { runs } = JSON.parse(text) as { runs: RawRun[] };
+/** What the page holds. */
+export interface Payload {
+  runs: Run[];
+  /** Columns that are plotted first, in place of those that are shown otherwise. */
+  columns: string[];
+}
+
+export function readPayload(): Payload {
+  const text = document.getElementById("holonom-data")?.textContent ?? '{"runs":[],"columns":[]}';
+  const { runs, columns } = JSON.parse(text) as { runs: RawRun[]; columns: string[] };
+  return { runs: decodeRuns(runs), columns };
+}
+
+function decodeRuns(runs: RawRun[]): Run[] {
   return runs.flatMap((raw) => {
     const scene = raw.scene ?? runs[0].scene;
     if (!scene) return [];

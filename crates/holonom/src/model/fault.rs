@@ -146,12 +146,21 @@ const LONGEST: usize = 64;
 
 /// The known name nearest to a misspelt one, unless all are far.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    nearest_few(name, known, 1).first().copied()
+}
+
+/// The known names nearest to a misspelt one, the nearest first, at most `most` of them.
+pub fn nearest_few<'a>(name: &str, known: impl IntoIterator<Item = &'a str>, most: usize) -> Vec<&'a str> {
     let plain = |name: &str| name.chars().take(LONGEST).flat_map(char::to_lowercase).collect::<String>();
     let wanted = plain(name);
+    let is_near = |&(distance, candidate): &(usize, &str)| {
+        let limit = (NEAR * wanted.chars().count().max(candidate.chars().count()) as f64) as usize;
+        distance <= limit.max(1)
+    };
     let distances = known.into_iter().map(|candidate| (strsim::osa_distance(&wanted, &plain(candidate)), candidate));
-    let best = distances.min_by_key(|&(distance, _)| distance)?;
-    let limit = (NEAR * wanted.chars().count().max(best.1.chars().count()) as f64) as usize;
-    (best.0 <= limit.max(1)).then_some(best.1)
+    let mut sorted: Vec<(usize, &str)> = distances.collect();
+    sorted.sort_by_key(|&(distance, _)| distance);
+    sorted.into_iter().take_while(is_near).map(|(_, candidate)| candidate).take(most).collect()
 }
 
 /// A cure from the nearest known name, or from the list of all when none is near and they are few.
@@ -179,6 +188,7 @@ mod tests {
         assert_eq!(nearest("m3", ["m1", "other"]), Some("m1"));
         assert_eq!(nearest("stiffness", ["x", "damping"]), None);
         assert_eq!(nearest("anything", []), None);
+        assert_eq!(nearest_few("car.azz", ["t", "car.ax", "car.az", "car.vx", "wheel.az"], 3), ["car.az", "car.ax", "car.vx"]);
     }
 
     #[test]

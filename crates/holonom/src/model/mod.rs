@@ -53,7 +53,7 @@ pub use ends::{End, from_to};
 pub use entries::{Entries, Named};
 pub use entry::{Entry, Spot, Written};
 pub use event::Event;
-pub use fault::{Fault, Faults, Read, Refused, nearest};
+pub use fault::{Fault, Faults, Read, Refused, nearest, nearest_few};
 pub use fields::{Described, Field, Keys, List, Map, Number, Place, Rows, Site, Turn};
 pub use input::Input;
 pub use key::{Key, Kind, Kinds, REPEAT, Shape};

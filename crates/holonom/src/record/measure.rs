@@ -66,8 +66,13 @@ pub(crate) struct Series {
 }
 
 impl RecordedMeasure {
+    /// Whether it has running values, so that every step counts.
+    pub fn is_running(&self) -> bool {
+        !self.series.is_empty()
+    }
+
     /// Names of the columns that it reads.
-    pub(crate) fn columns(&self) -> impl Iterator<Item = &str> {
+    pub fn columns(&self) -> impl Iterator<Item = &str> {
         self.reads.iter().filter_map(|read| match read {
             MeasureReads::Column(name) => Some(name.as_str()),
             MeasureReads::Series(_) => None,

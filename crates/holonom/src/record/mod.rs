@@ -66,8 +66,13 @@ impl Recording {
 
     /// One column, if there is one of that name.
     pub fn find(&self, name: &str) -> Option<&Column> {
+        self.place(name).map(|k| &self.columns[k])
+    }
+
+    /// Where the column of a name stands among all, counted from 0.
+    pub fn place(&self, name: &str) -> Option<usize> {
         let at = self.by_name.binary_search_by_key(&name, |&k| &self.columns[k as usize].heading.name).ok()?;
-        Some(&self.columns[self.by_name[at] as usize])
+        Some(self.by_name[at] as usize)
     }
 
     /// Number of rows.

@@ -127,8 +127,16 @@ impl<'a> Recorder<'a> {
         self.recording
     }
 
+    /// The row of the present state, which is not kept. It counts as the row after the step before it; running values of measures follow from
+    /// the rows that were looked at.
+    pub fn look(&mut self, simulation: &Simulation) -> &[f64] {
+        self.last = [simulation.audit().integrator, simulation.audit().projection];
+        self.fill(simulation);
+        &self.row
+    }
+
     /// Puts together what is to be recorded of the present state.
-    fn look(&mut self, simulation: &Simulation) {
+    fn fill(&mut self, simulation: &Simulation) {
         let (audit, state) = (simulation.audit(), simulation.state());
         self.row.clear();
         let lift = audit.lift;
@@ -162,7 +170,7 @@ impl Observer for Recorder<'_> {
         if std::mem::take(&mut self.resumed) {
             // Where the run was left, that row is the first once more, unless it is there.
             if self.recording.rows() == 0 && (self.seen.max(1) - 1).is_multiple_of(self.every) {
-                self.look(simulation);
+                self.fill(simulation);
                 self.recording.push(&self.row);
             }
             return Verdict::GoOn;
@@ -174,7 +182,7 @@ impl Observer for Recorder<'_> {
             self.last = std::mem::take(&mut self.since);
         }
         if is_kept || self.measures.are_running() {
-            self.look(simulation);
+            self.fill(simulation);
         }
         if is_kept {
             self.recording.push(&self.row);

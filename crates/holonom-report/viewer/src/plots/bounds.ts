@@ -47,11 +47,10 @@ export function departures(chart: Chart, shown: Curve[]): Departure[] {
 
 /** How much energy goes back and forth in the mechanism, J: the least of what sound runs say, as errors only add to it. */
 export function energyMoved(runs: Run[]): number {
-  const sound = runs.filter((run) => run.sound);
-  const most = (sound.length > 0 ? sound : runs).map((run) => {
-    const kinetic = (run.columns.get("kinetic") ?? new Float64Array()).filter(Number.isFinite);
-    return kinetic.reduce((most, e) => Math.max(most, e), 0);
-  });
+  // What was measured need not have energies.
+  const known = runs.flatMap(({ sound, columns }) => (columns.has("kinetic") ? [{ sound, kinetic: columns.get("kinetic")! }] : []));
+  const sound = known.filter((run) => run.sound);
+  const most = (sound.length > 0 ? sound : known).map(({ kinetic }) => kinetic.filter(Number.isFinite).reduce((most, e) => Math.max(most, e), 0));
   return most.length > 0 ? Math.min(...most) : 0;
 }
 
