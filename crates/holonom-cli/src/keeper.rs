@@ -13,6 +13,7 @@ use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::load::Loaded;
 use crate::message::note;
+use crate::output::has_all;
 use crate::provenance::Provenance;
 
 /// Least time between two savings.
@@ -39,7 +40,7 @@ pub struct Keeper<'a> {
 
 /// The file that has the rows of all columns: the trajectory, where that is CSV and not of some points only.
 fn table(loaded: &Loaded, writers: &[&Writer]) -> &'static str {
-    let is_whole = loaded.model.output.points.is_none() && writers.iter().any(|writer| writer.extension == "csv");
+    let is_whole = has_all(&loaded.model) && writers.iter().any(|writer| writer.extension == "csv");
     if is_whole { "trajectory.csv" } else { "recording.csv" }
 }
 

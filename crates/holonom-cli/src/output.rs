@@ -25,6 +25,9 @@ use crate::progress::Watched;
 use crate::provenance::Provenance;
 use crate::table::short;
 
+/// Name of the column of time.
+const TIME: &str = COLUMNS[0];
+
 /// A finished run.
 pub struct Finished {
     pub method: String,
@@ -57,7 +60,7 @@ impl Order {
 
 /// The recorder of a model's runs.
 pub fn recorder(model: &Model, every: u64) -> Recorder<'_> {
-    Recorder::new(&model.channels, &model.system, every, constraints(model))
+    Recorder::new(&model.channels, &model.system, every, model.output.constraints())
 }
 
 /// Simulates a model by a method, and saves it meanwhile where there is a keeper.
@@ -81,7 +84,7 @@ pub fn simulate(
         announce_corrections(model, &simulation);
     }
     let rank = analysis::rank_of(&simulation);
-    if constraints(model) != Constraints::Nothing || !model.channels.efforts.is_empty() {
+    if model.output.constraints() != Constraints::Nothing || !model.channels.efforts.is_empty() {
         model.find_reactions(&mut simulation);
     }
     let recorder = recorder(model, every);
@@ -116,15 +119,6 @@ pub fn simulate(
     let recording = watched.finish();
     value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording)).expect("peaks are plain data");
     Ok(Finished { method: name, recording, summary: value, completed: status == Status::Completed, last, before_end })
-}
-
-/// What a run of a model records of the forces of its constraints.
-pub fn constraints(model: &Model) -> Constraints {
-    match model.output.reactions {
-        Some(false) => Constraints::Nothing,
-        None => Constraints::Joints,
-        Some(true) => Constraints::Rows,
-    }
 }
 
 /// Says on standard error what looks like a slip, and what was put right before the start.
@@ -174,9 +168,14 @@ pub fn table_writers(formats: &[String]) -> Result<Vec<(&'static Writer, WriteTa
     Ok(with_words().enumerate().filter(|(k, (writer, _))| is_asked(*k, writer)).map(|(_, writer)| writer).collect())
 }
 
-/// A recording without the points and bodies that are not among `points`, which come in this order.
-fn only(recording: &Recording, points: &[String], model: &Model) -> Recording {
-    let names = columns(recording, points, model);
+/// Whether `[output]` asks for all columns.
+pub fn has_all(model: &Model) -> bool {
+    model.output.points.is_none() && model.output.columns.is_none()
+}
+
+/// The columns of a recording that `[output]` asks for.
+fn only(recording: &Recording, model: &Model) -> Recording {
+    let names = columns(recording, model);
     let columns: Vec<&Column> = names.iter().filter_map(|name| recording.find(name)).collect();
     let mut kept = Recording::new(columns.iter().map(|column| column.heading.clone()));
     let mut row = Vec::new();
@@ -188,8 +187,17 @@ fn only(recording: &Recording, points: &[String], model: &Model) -> Recording {
     kept
 }
 
+/// Names of the columns that `[output]` asks for, the points of its list in that order; always the time.
+pub fn columns(recording: &Recording, model: &Model) -> Vec<String> {
+    let names = match &model.output.points {
+        Some(points) => of_points(recording, points, model),
+        None => recording.columns().iter().map(|column| column.heading.name.clone()).collect(),
+    };
+    names.into_iter().filter(|name| name == TIME || model.output.has_column(name)).collect()
+}
+
 /// Names of the columns without the points and bodies that are not among `points`, which come in this order.
-pub fn columns(recording: &Recording, points: &[String], model: &Model) -> Vec<String> {
+fn of_points(recording: &Recording, points: &[String], model: &Model) -> Vec<String> {
     let all = || recording.columns().iter().map(|column| column.heading.name.as_str());
     let owners = model.points.iter().map(|point| &point.name).chain(model.bodies.iter().map(|body| &body.name));
     let owners = owners.chain(model.channels.points.iter().map(|point| &point.name));
@@ -212,7 +220,7 @@ fn owner_and_suffix(column: &str) -> Option<(&str, &str)> {
 impl Folder {
     /// Writes the table of a run with each writer: the points that `[output]` asks for, in its order.
     pub fn write_trajectory(&self, prefix: &str, writers: &[&Writer], loaded: &Loaded, recording: &Recording) -> Result<(), Failure> {
-        let asked = loaded.model.output.points.as_ref().map(|points| only(recording, points, &loaded.model));
+        let asked = (!has_all(&loaded.model)).then(|| only(recording, &loaded.model));
         let recording = asked.as_ref().unwrap_or(recording);
         for writer in writers {
             self.write(&format!("{prefix}.{}", writer.extension), |out| (writer.write)(recording, out))?;

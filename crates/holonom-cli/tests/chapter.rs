@@ -227,3 +227,43 @@ fn commands_on_sweeps_and_comparisons_run() {
         }
     }
 }
+
+/// The README's crank: what it prints is what a run prints, and the torque of the motor follows from the kinetic energy E over the angle:
+/// T = dE/dθ, as the speed is constant.
+#[test]
+fn the_crank_of_the_readme_answers_its_question() {
+    let readme = fs::read_to_string(root().join("README.md")).unwrap();
+    let (_, crank) = readme.split_once("\n## A machine and its question\n").unwrap();
+    let block = |fence: &str| crank.split_once(&format!("\n{fence}\n")).unwrap().1.split("```").next().unwrap();
+    let folder = folder();
+    fs::write(folder.path().join("crank.toml"), block("```toml")).unwrap();
+    let out = prints(&folder, "run crank.toml --no-report", 0);
+    let told = block("`holonom run crank.toml` answers before it says anything of itself:\n```");
+    assert!(told.lines().count() > 5 && out.starts_with(told), "{told}\n{out}");
+
+    let (r, l, omega) = (0.1_f64, 0.4_f64, 1500.0 * std::f64::consts::TAU / 60.0);
+    // Σ m (dr/dθ)² + I (dφ/dθ)², with sin φ = r/l sin θ.
+    let reduced = |theta: f64| {
+        let (sine, cosine) = theta.sin_cos();
+        let tilt = (r / l * sine).asin();
+        let turn = r * cosine / (l * tilt.cos());
+        let rod = [-r * sine - 0.5 * l * tilt.sin() * turn, r * cosine - 0.5 * l * tilt.cos() * turn];
+        let piston = -r * sine - l * tilt.sin() * turn;
+        let inertia = |mass: f64, length: f64| mass * length * length / 12.0;
+        inertia(1.2, r)
+            + 1.2 * r * r / 4.0
+            + 0.8 * (rod[0] * rod[0] + rod[1] * rod[1])
+            + inertia(0.8, l) * turn * turn
+            + 2.0 * piston * piston
+    };
+    let (header, rows) = csv(folder.path().join("results/crank-conserving-ggl/trajectory.csv"));
+    let effort = header.split(',').position(|name| name == "motor.effort").unwrap();
+    let largest = rows.iter().map(|row| row[effort].abs()).fold(0.0, f64::max);
+    for row in &rows {
+        let (theta, d) = (omega * row[0], 1e-4);
+        let torque = 0.5 * omega * omega * (reduced(theta + d) - reduced(theta - d)) / (2.0 * d);
+        // The difference is off by d²/6 of a third derivative, some 1e-8 of the torque.
+        assert!((row[effort] - torque).abs() < 1e-7 * largest, "{} s: {} and not {torque}", row[0], row[effort]);
+    }
+    assert!((largest - 389.08).abs() < 5e-3, "{largest}");
+}

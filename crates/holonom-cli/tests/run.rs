@@ -227,3 +227,34 @@ fn what_looks_like_a_slip_is_noted_by_run_and_check() {
     }
     assert_eq!(json(&folder, "check door.toml --json --set simulation.step=5")["notes"].as_array().unwrap().len(), 2);
 }
+
+/// Patterns choose columns of the tables, whatever the order of the patterns; a run that was ended goes on to the same bytes.
+#[test]
+fn output_chooses_columns_by_patterns() {
+    let folder = folder();
+    let model = "[point.a]\nmass = 1\nposition = [1, 0, 0]\n[point.b]\nmass = 1\nposition = [2, 0, 0]\n\
+                 [force.s-1]\ntype = \"spring\"\nbetween = [\"ground\", \"a\"]\nstiffness = 100\n\
+                 [force.s-2]\ntype = \"spring\"\nbetween = [\"a\", \"b\"]\nstiffness = 100\n\
+                 [measure.far]\nvalue = \"max(b.x)\"\n[simulation]\nend = 1\nstep = 0.01\n";
+    for (output, header) in [
+        ("columns = [\"*.force\", \"energy\", \"b.?\"]", "t,energy,b.x,b.y,b.z,s-1.force,s-2.force"),
+        ("columns = [\"far\"]", "t,far"),
+        ("columns = []", "t"),
+        (
+            "columns = [\"*\", \"t\"]\npoints = [\"b\"]\nreactions = false",
+            &format!(
+                "{COMMON},b.x,b.y,b.z,b.vx,b.vy,b.vz,s-1.length,s-1.length_rate,s-1.force,s-1.power,s-2.length,s-2.length_rate,s-2.force,s-2.power,far"
+            ),
+        ),
+    ] {
+        fs::write(folder.path().join("m.toml"), format!("{model}[output]\n{output}\n")).unwrap();
+        prints(&folder, "run m.toml --quiet --no-report --out whole --force", 0);
+        assert_eq!(csv(folder.path().join("whole/trajectory.csv")).0, header, "{output}");
+        let peaks = read_json(folder.path().join("whole/summary.json"))["peaks"].clone();
+        assert!(peaks["forces"].as_array().unwrap().len() == 2 && peaks["measures"][0]["name"] == "far", "{peaks}");
+        prints(&folder, "run m.toml --quiet --no-report --end 0.5 --out parts --force", 0);
+        prints(&folder, "run m.toml --quiet --no-report --resume parts", 0);
+        let table = |name: &str| fs::read(folder.path().join(name).join("trajectory.csv")).unwrap();
+        assert!(table("whole") == table("parts"), "{output}");
+    }
+}

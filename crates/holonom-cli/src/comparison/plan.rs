@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::items::items;
 use crate::load::{self, Loaded};
 use crate::options::CompareArguments;
-use crate::output::{self, Order};
+use crate::output::Order;
 use crate::table::short;
 
 /// Everything that is compared; the first is what the others differ from.
@@ -146,7 +146,7 @@ fn texts(shown: &[&Loaded]) -> String {
 
 /// The columns of a run of a model, without rows.
 fn headings(model: &Model) -> Recording {
-    Recorder::new(&model.channels, &model.system, 1, output::constraints(model)).finish()
+    Recorder::new(&model.channels, &model.system, 1, model.output.constraints()).finish()
 }
 
 /// Refuses what is said of models where there is none.

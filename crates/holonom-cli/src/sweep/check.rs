@@ -121,10 +121,7 @@ fn usual(model: &Model) -> Columns {
         takes = takes.and(own);
     }
     let all = recorders[takes.level].recording();
-    let written = match &model.output.points {
-        Some(points) => output::columns(all, points, model),
-        None => all.columns().iter().map(|column| column.heading.name.clone()).collect(),
-    };
+    let written = output::columns(all, model);
     let asks_forces = model.output.reactions == Some(true);
     let is_usual = |name: &String| asks_forces || recorders[0].recording().find(name).is_some();
     let shown = written.iter().filter(|name| is_usual(name) && (*name == "energy" || !COLUMNS.contains(&name.as_str())));
@@ -172,7 +169,7 @@ impl Takes {
 
 /// Which of [`LEVELS`] a run records.
 fn recorded(model: &Model) -> usize {
-    LEVELS.iter().position(|level| *level == output::constraints(model)).expect("every level is listed")
+    LEVELS.iter().position(|level| *level == model.output.constraints()).expect("every level is listed")
 }
 
 /// Whether a column is part of an orientation in space: of its two quaternions, rows have the one near that of the row before.

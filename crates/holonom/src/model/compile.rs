@@ -69,6 +69,7 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
         let title = description.model.title.clone().unwrap_or_default();
         let mut model = finish::finish(assembly, title, settings, output, bars);
         compiler.measures(description, &mut model);
+        compiler.columns(description, &model);
         if sink.count() == 0 {
             return Ok(model);
         }
@@ -141,11 +142,7 @@ impl Compiler<'_> {
         let reactions = model.output.reactions;
         let of = |constraints| model.channels.headings(&model.system, constraints).into_iter().map(|heading| heading.name);
         let all: HashSet<String> = of(Constraints::Rows).collect();
-        let mut known: HashSet<String> = match reactions {
-            Some(false) => of(Constraints::Nothing).collect(),
-            None => of(Constraints::Joints).collect(),
-            Some(true) => all.clone(),
-        };
+        let mut known: HashSet<String> = of(model.output.constraints()).collect();
         let _ = self.each("measure", &description.measures, |entry, _| {
             known.insert(entry.name.to_string());
             Ok(())
@@ -167,6 +164,15 @@ impl Compiler<'_> {
             Ok(())
         });
         model.channels.measures = measure::sorted(measures, self.sink);
+    }
+
+    /// Looks whether there are the columns that `[output]` names.
+    fn columns(&self, description: &Description, model: &Model) {
+        let Some(keys) = description.output.as_ref().filter(|keys| keys.columns.is_some()) else { return };
+        let constraints = model.output.constraints();
+        let headings = model.channels.headings(&model.system, constraints).into_iter().map(|heading| heading.name);
+        let names: Vec<String> = headings.chain(model.channels.measures.iter().map(|measure| measure.name.clone())).collect();
+        keys.require_columns(&self.entry("", "output", keys), &names);
     }
 
     /// Axes and gravity of the model, which is in space where that is not known.

@@ -1,11 +1,14 @@
 //! `[simulation]` and `[output]`: how a model is run and what is recorded.
 
+use wildmatch::WildMatch;
+
 use super::assembly::Assembly;
 use super::bodies::short;
 use super::entry::{Entry, Spot, all};
 use super::fault::{Read, suggest};
 use super::fields::{Keys, List, Map, Number};
 use super::key::Shape;
+use crate::record::Constraints;
 use crate::simulation::{Choice, ProjectionChoice};
 use crate::system::Place;
 
@@ -118,6 +121,9 @@ pub struct OutputKeys {
     /// points to record, in this order
     #[key(default = "all")]
     pub points: Option<List<String>>,
+    /// columns of the tables by their names, in which `*` stands for any letters and `?` for one; the time is always there
+    #[key(default = "all")]
+    pub columns: Option<List<String>>,
     /// of the constraints: true records the multiplier of each row and the force on each point, too; false neither forces of joints nor
     /// accelerations
     #[key(default = "forces of joints and accelerations")]
@@ -142,6 +148,8 @@ pub struct Output {
     pub every: Option<u32>,
     /// Points to record, in this order; all where nothing is said.
     pub points: Option<Vec<String>>,
+    /// Patterns of the names of columns in tables; all where nothing is said.
+    pub columns: Option<Vec<String>>,
     /// Record the forces of the constraints.
     pub reactions: Option<bool>,
 }
@@ -241,7 +249,39 @@ impl OutputKeys {
         Output {
             every: entry.optional("every", &self.every, |every, entry, key| every.whole(entry, key, 1)).unwrap_or(None),
             points: self.points.as_ref().and_then(|points| all(points.iter().enumerate().map(point)).ok()),
+            columns: self.columns.as_ref().map(|columns| columns.to_vec()),
             reactions: self.reactions,
         }
     }
+
+    /// Refuses patterns that no column has.
+    pub(super) fn require_columns(&self, entry: &Entry<'_>, names: &[String]) {
+        for (k, pattern) in self.columns.iter().flat_map(|columns| columns.iter().enumerate()) {
+            if !names.iter().any(|name| matches(pattern, name)) {
+                let cure = suggest(pattern, names.iter().map(String::as_str));
+                entry.refuse(Spot { key: "columns", item: Some(k) }, format!("no column is called `{pattern}`"), cure);
+            }
+        }
+    }
+}
+
+impl Output {
+    /// What a run records of the forces of its constraints.
+    pub fn constraints(&self) -> Constraints {
+        match self.reactions {
+            Some(false) => Constraints::Nothing,
+            None => Constraints::Joints,
+            Some(true) => Constraints::Rows,
+        }
+    }
+
+    /// Whether tables have a column.
+    pub fn has_column(&self, name: &str) -> bool {
+        self.columns.as_ref().is_none_or(|patterns| patterns.iter().any(|pattern| matches(pattern, name)))
+    }
+}
+
+/// Whether a name is as a pattern says.
+fn matches(pattern: &str, name: &str) -> bool {
+    WildMatch::new(pattern).matches(name)
 }

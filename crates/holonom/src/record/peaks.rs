@@ -58,8 +58,11 @@ pub struct Peaks {
 /// Peaks of a sort that are kept.
 const MOST: usize = 10;
 
-/// Share of the largest that is round-off.
+/// Share of the largest of its sort that is round-off.
 const ROUND_OFF: f64 = 1e-9;
+
+/// The same of the largest of all sorts, moments and forces together.
+const ROUND_OFF_OF_OTHERS: f64 = 1e-12;
 
 impl Peaks {
     /// Looks at all recorded rows. What was not recorded, or is not known, has no peak.
@@ -91,13 +94,37 @@ impl Peaks {
                 }
             }
         });
+        let drives: Vec<Peak> = drives.collect();
+        let forces: Vec<Peak> = forces.flatten().collect();
+        let joints: Vec<Peak> = told.joints.iter().flat_map(joint).flatten().collect();
+        let span = span(&channels.axes, recording);
+        let all = || drives.iter().chain(&forces).chain(&joints);
+        // A force that acts across the whole mechanism is compared with moments.
+        let scale = |unit: &str, lever: f64| {
+            let sizes = all().map(|peak| peak.value.abs() * if peak.unit == unit { 1.0 } else { lever });
+            ROUND_OFF_OF_OTHERS * sizes.fold(0.0, f64::max)
+        };
+        let floors = if span > 0.0 { [scale("N", 1.0 / span), scale("N·m", span)] } else { [0.0; 2] };
+        let is_something = |peak: &Peak| peak.value.abs() > floors[usize::from(peak.unit != "N")];
         Self {
-            drives: largest(drives.collect()),
-            forces: largest(forces.flatten().collect()),
-            joints: largest(told.joints.iter().flat_map(joint).flatten().collect()),
+            drives: largest(drives.into_iter().filter(is_something).collect()),
+            forces: largest(forces.into_iter().filter(is_something).collect()),
+            joints: largest(joints.into_iter().filter(is_something).collect()),
             measures: channels.measures.iter().filter_map(|measure| extremes(&measure.name, times, recording)).collect(),
         }
     }
+}
+
+/// How far positions are apart along any axis over the whole recording, m.
+fn span(axes: &str, recording: &Recording) -> f64 {
+    let along = |axis: char| {
+        let ending = format!(".{axis}");
+        let columns = recording.columns().iter().filter(|column| column.heading.unit == "m" && column.heading.name.ends_with(&ending));
+        let values = columns.flat_map(|column| &column.values).copied();
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (value.min(low), value.max(high)));
+        high - low
+    };
+    axes.chars().map(along).fold(0.0, f64::max)
 }
 
 /// How far a column goes; none where it has no numbers.
