@@ -58,8 +58,7 @@ impl Element for Distance {
             }
             (None, Some(stroke)) => {
                 let (added, at_start) = (started(entry, &ends, start)?, TimeProgram(stroke.clone()).at(0.0)[0]);
-                // Written so that a NaN is refused too.
-                if !(at_start.abs() <= CONTRADICTION * start) {
+                if at_start.is_nan() || at_start.abs() > CONTRADICTION * start {
                     let cure = "a stroke counts from the start: subtract its value at t = 0, or give the length itself";
                     return Err(entry.refuse("stroke", format!("the stroke is {at_start} m at t = 0"), cure));
                 }

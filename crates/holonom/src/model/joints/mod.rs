@@ -98,7 +98,8 @@ impl Layout {
     /// Whether it holds or follows how a side is turned, and not one place of it alone.
     pub fn turns(&self, side: usize) -> bool {
         let holds_places = self.directions[0] == 0 && (self.at == Seat::Two || self.shares[0] == [Feature::Point]);
-        !holds_places && !(side == 1 && self.takes_point)
+        let is_point = side == 1 && self.takes_point;
+        !holds_places && !is_point
     }
 }
 
