@@ -1,5 +1,6 @@
 //! What forces and drives do is recorded: against formulas of the motion that is recorded beside it, and by what their power adds up to.
 
+use holonom::model::joints::COUPLERS;
 use holonom::model::{Kind, Model, drives, forces};
 use holonom::record::{Constraints, Recorder, Recording};
 use holonom::simulation::{Choice, Method, Simulation, Status};
@@ -295,5 +296,43 @@ fn strokes_count_from_the_length_of_the_start() {
         let [[length], [stroke]] = [&lengths, &strokes].map(|recording| columns(recording, [name]));
         assert!(length.iter().any(|value| *value != length[0]), "{name} changes");
         length.iter().zip(stroke).for_each(|(length, stroke)| close(name, *stroke, *length));
+    }
+}
+
+/// What a coupler exerts on a wheel is what turns it, beside the motor; both sides together have no power.
+#[test]
+fn couplers_show_what_they_transmit() {
+    // Kind; joint, body, component of its acceleration and inertia of both sides; factors of the row.
+    let wheels = [("axle1", "wheel1.alphaz", 0.5 * 0.1 * 0.1), ("axle2", "wheel2.alphaz", 0.5 * 4.0 * 0.2 * 0.2)];
+    let rack = [("axle", "pinion.alphaz", 0.5 * 0.1 * 0.1), ("rail", "rack.ax", 2.0)];
+    for (kind, coupler, sides, factors) in [
+        ("gear", "mesh", wheels, [1.0, 2.0]),
+        ("pulley", "belt", wheels, [0.1, -0.2]),
+        ("linear", "sum", wheels, [1.0, 2.0]),
+        ("rack-and-pinion", "teeth", rack, [-0.1, 1.0]),
+    ] {
+        let text = COUPLERS.iter().find(|known| known.name == kind).unwrap().example;
+        let motor = format!("[force.motor]\ntype = \"effort\"\njoint = \"{}\"\neffort = \"3 + t\"\n", sides[0].0);
+        for output in ["", "[output]\nreactions = true\n"] {
+            let source = Source::read("model.toml", format!("{text}\n{motor}{output}").as_bytes()).unwrap();
+            let model = source.model_with_forces().unwrap();
+            let method = Method::resolve(&Choice { method: Some("radau".into()), ..Choice::default() }).unwrap();
+            let mut simulation = Simulation::new(model.system.clone(), method, 0.01).unwrap();
+            model.find_reactions(&mut simulation);
+            let mut recorder = Recorder::new(&model.channels, &model.system, 1, model.output.constraints());
+            assert_eq!(simulation.run(0.2, &mut recorder), Status::Completed);
+            let recording = recorder.finish();
+            let coordinate = |joint: &str| if joint == "rail" { "displacement" } else { "angle" };
+            let column = |name: &str| recording.find(name).unwrap_or_else(|| panic!("{kind}: {name}"));
+            let efforts = sides.map(|(joint, _, _)| column(&format!("{coupler}.{joint}.{}.effort", coordinate(joint))));
+            assert_eq!(efforts.map(|effort| &*effort.heading.unit), ["N·m", if kind == "rack-and-pinion" { "N" } else { "N·m" }]);
+            for (k, t) in recording.column("t").unwrap().iter().enumerate() {
+                for (side, motor) in [(0, 3.0 + t), (1, 0.0)] {
+                    let (_, acceleration, inertia) = sides[side];
+                    close(kind, efforts[side].values[k] + motor, inertia * column(acceleration).values[k]);
+                }
+                close(kind, efforts[0].values[k] * factors[1], efforts[1].values[k] * factors[0]);
+            }
+        }
     }
 }

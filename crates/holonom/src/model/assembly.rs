@@ -13,7 +13,7 @@ use super::fault::{Read, Sink};
 use super::geometry::Vec3;
 use super::joints::{Geometry, JointInfo};
 use super::signals::Signals;
-use crate::record::{Anchor, Line, LineKind, RecordedForce, SceneJoint, Shows};
+use crate::record::{Anchor, Line, LineKind, RecordedCoupling, RecordedForce, SceneJoint, Shows};
 use crate::system::{Signal, SystemBuilder};
 
 /// The name of the origin.
@@ -105,6 +105,8 @@ pub struct Assembly<'a> {
     pub(in crate::model) scene_joints: Vec<SceneJoint>,
     /// Efforts of the drives.
     pub(in crate::model) efforts: Vec<Effort>,
+    /// What couplers exert along the coordinates that they couple.
+    pub(in crate::model) couplings: Vec<RecordedCoupling>,
     /// What forces do, and what is to be shown of that which is built.
     pub(in crate::model) forces: Vec<RecordedForce>,
     shows: Shows,
@@ -145,6 +147,7 @@ impl<'a> Assembly<'a> {
             faulty_joints: HashSet::new(),
             scene_joints: Vec::new(),
             efforts: Vec::new(),
+            couplings: Vec::new(),
             forces: Vec::new(),
             shows: Shows::Power,
             signals: Signals::default(),

@@ -108,6 +108,19 @@ pub struct RecordedEffort {
     pub is_moment: bool,
 }
 
+/// What a coupler exerts along a coordinate that it couples, on the second body of its joint: −λ of its row times the factor of the coordinate there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedCoupling {
+    /// `COUPLER.JOINT.COORDINATE`
+    pub name: String,
+    /// The row among those of the system.
+    pub row: usize,
+    /// Of the coordinate in the row.
+    pub factor: f64,
+    /// Whether the coordinate is an angle.
+    pub is_moment: bool,
+}
+
 /// All that is recorded of a model, in the order of the columns.
 #[derive(Clone, Default)]
 pub struct Channels {
@@ -123,6 +136,8 @@ pub struct Channels {
     pub forces: Vec<RecordedForce>,
     /// Force (N) or moment (N·m) of drives.
     pub efforts: Vec<RecordedEffort>,
+    /// Force (N) or moment (N·m) of couplers.
+    pub couplings: Vec<RecordedCoupling>,
     /// The coordinates of joints and bodies, as `hinge.angle`, that are angles (rad) and not displacements (m).
     pub angles: HashSet<String>,
     /// Formulas of the columns, each behind those that it reads.
@@ -265,9 +280,13 @@ impl Channels {
         }
     }
 
-    /// Force and moment of each joint on its second body, about its place there.
+    /// Force and moment of each joint on its second body, about its place there, and what couplers exert.
     pub(super) fn joint_headings(&self) -> impl Iterator<Item = Heading> + '_ {
-        self.told().joints.iter().flat_map(|joint| joint.headings(&self.axes))
+        let couplings = self.told().couplings.iter().map(|RecordedCoupling { name, is_moment, .. }| {
+            let (unit, what) = if *is_moment { ("N·m", "moment") } else { ("N", "force") };
+            Heading::new(format!("{name}.effort"), unit, format!("{what} of the coupler along the coordinate"))
+        });
+        self.told().joints.iter().flat_map(|joint| joint.headings(&self.axes)).chain(couplings)
     }
 
     /// The multiplier of each row of the system, and the force of the constraints on each point that is a free node.
@@ -306,7 +325,7 @@ impl Channels {
         }
     }
 
-    /// Appends the columns of the joints' forces; no numbers where bodies share nodes at the joint.
+    /// Appends the columns of the joints' and couplers' forces; no numbers where bodies share nodes at the joint.
     pub(super) fn joint_forces(&self, simulation: &Simulation, row: &mut Vec<f64>) {
         let (dim, x) = (self.axes.len(), simulation.reacting_positions());
         for joint in &self.told().joints {
@@ -314,6 +333,10 @@ impl Channels {
             let components = [force[0], force[1], force[2], moment[0], moment[1], moment[2]];
             row.extend(RecordedJoint::components(dim).iter().map(|&k| components[k]));
         }
+        let effort = |coupling: &RecordedCoupling| {
+            simulation.reactions().map_or(f64::NAN, |reactions| -coupling.factor * reactions.lambda[coupling.row])
+        };
+        row.extend(self.told().couplings.iter().map(effort));
     }
 
     /// Appends the columns of the multipliers, and of what the constraints exert on points.

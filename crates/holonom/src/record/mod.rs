@@ -8,7 +8,7 @@ mod peaks;
 mod recorder;
 mod scene;
 
-pub use channels::{Channels, RecordedBody, RecordedEffort, RecordedJoint, RecordedPoint};
+pub use channels::{Channels, RecordedBody, RecordedCoupling, RecordedEffort, RecordedJoint, RecordedPoint};
 pub use force::{Along, Exerts, Lengths, RecordedForce, Shows};
 pub use heading::Heading;
 pub use measure::{Formula, RecordedInput, RecordedMeasure, Running};

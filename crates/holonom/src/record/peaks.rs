@@ -49,7 +49,7 @@ pub struct Peaks {
     pub drives: Vec<Peak>,
     /// Of what springs and other forces exert.
     pub forces: Vec<Peak>,
-    /// Of what joints transmit.
+    /// Of what joints and couplers transmit.
     pub joints: Vec<Peak>,
     /// Of all measures, in the order of their columns.
     pub measures: Vec<Extremes>,
@@ -96,7 +96,8 @@ impl Peaks {
         });
         let drives: Vec<Peak> = drives.collect();
         let forces: Vec<Peak> = forces.flatten().collect();
-        let joints: Vec<Peak> = told.joints.iter().flat_map(joint).flatten().collect();
+        let couplings = told.couplings.iter().filter_map(|coupling| peak(&coupling.name, &[format!("{}.effort", coupling.name)]));
+        let joints: Vec<Peak> = told.joints.iter().flat_map(joint).flatten().chain(couplings).collect();
         let span = span(&channels.axes, recording);
         let all = || drives.iter().chain(&forces).chain(&joints);
         // A force that acts across the whole mechanism is compared with moments.

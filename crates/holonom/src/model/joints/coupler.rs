@@ -4,6 +4,7 @@ use crate::model::assembly::Assembly;
 use crate::model::entry::{Entry, Spot};
 use crate::model::fault::{Read, suggest};
 use crate::model::references::split_place;
+use crate::record::RecordedCoupling;
 
 use super::pair::Coordinate;
 
@@ -64,6 +65,20 @@ pub(super) fn two(assembly: &Assembly<'_>, entry: &Entry<'_>, texts: &[String], 
 pub(super) fn couple(assembly: &mut Assembly<'_>, entry: &Entry<'_>, terms: &[(Coordinate, f64)]) -> Read<()> {
     let parts: Vec<_> = terms.iter().map(|(coordinate, factor)| (assembly.builder.part(&coordinate.form), *factor)).collect();
     let sum = assembly.builder.sum(&parts);
+    let mut factors: Vec<(&Coordinate, f64)> = Vec::new();
+    for (coordinate, factor) in terms {
+        match factors.iter_mut().find(|(known, _)| known.joint == coordinate.joint && known.name == coordinate.name) {
+            Some((_, sum)) => *sum += factor,
+            None => factors.push((coordinate, *factor)),
+        }
+    }
+    let row = assembly.builder.rows();
+    assembly.couplings.extend(factors.into_iter().map(|(coordinate, factor)| RecordedCoupling {
+        name: format!("{}.{}.{}", entry.name, coordinate.joint, coordinate.name),
+        row,
+        factor,
+        is_moment: coordinate.is_angle,
+    }));
     assembly.builder.constant_row(entry.name, sum, 0.0);
     Ok(())
 }
