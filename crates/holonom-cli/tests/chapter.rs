@@ -171,6 +171,30 @@ fn the_models_of_the_chapters_are_sound() {
     assert!(count >= 40, "{count}");
 }
 
+/// Each machine of its chapter is run by the command below it, and answers with the lines below that.
+#[test]
+fn the_machines_of_the_chapter_answer_what_it_says() {
+    let folder = folder();
+    let chapter = chapter("machines.md");
+    let mut count = 0;
+    for rest in chapter.split("```toml\n").skip(1) {
+        let mut fences = rest.split("```");
+        let model = fences.next().unwrap();
+        let command = fences.nth(1).unwrap().trim();
+        let answer =
+            fences.nth(1).and_then(|fence| fence.strip_prefix("text\n")).expect("a model is followed by its command and its answer");
+        let words = command.strip_prefix("holonom ").unwrap();
+        let file = words.split_whitespace().find(|word| word.ends_with(".toml")).unwrap();
+        fs::write(folder.path().join(file), model).unwrap();
+        let out = prints(&folder, &format!("{words} --no-report"), 0);
+        for line in answer.lines() {
+            assert!(out.lines().any(|printed| printed == line), "{command} does not print\n{line}\nbut\n{out}");
+        }
+        count += 1;
+    }
+    assert!(count >= 1, "{count}");
+}
+
 /// The gallery page shows and names every model of the gallery.
 #[test]
 fn the_gallery_page_is_complete() {
