@@ -26,17 +26,18 @@ const STILL: f64 = 1e-12;
 type Pair = [[Vector3<f64>; 2]; 2];
 
 impl Model {
-    /// The bodies and points whose velocities at the start of a simulation, which is at `x` (m) with `v` (m/s), are not those that
+    /// The bodies and points whose velocities at the start of a simulation, whose state is `x` (m) with `v` (m/s), are not those that
     /// were written, in file order, bodies first.
     pub fn start_changes(&self, x: &[f64], v: &[f64]) -> Vec<StartChange> {
         let dim = self.dimension;
+        let world = self.system.in_world(x);
         let bodies = self.bodies.iter().map(|body| {
             let mut spin = Vector3::from(body.angular_velocity);
             if let ([(local, _)], 3) = (&body.recorded.directions[..], dim) {
                 let axis = body.recorded.start * Vector3::from(*local);
                 spin -= axis * axis.dot(&spin);
             }
-            (&body.name, [[body.velocity.into(), spin], body.recorded.velocity(x, v, dim)])
+            (&body.name, [[body.velocity.into(), spin], body.recorded.velocity(&world, v, dim)])
         });
         let points = self.points.iter().filter_map(|point| {
             let (Place::Node(_), Some(written)) = (point.place, point.velocity) else { return None };
