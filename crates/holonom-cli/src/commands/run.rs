@@ -106,15 +106,20 @@ fn write(folder: &Folder, loaded: &Loaded, finished: &Finished, writers: &[&Writ
     folder.write("summary.json", |out| holonom_io::write_json(&finished.summary, out))
 }
 
-/// Rounded to five figures.
-fn figures(value: f64) -> f64 {
-    format!("{value:.4e}").parse().unwrap_or(value)
+/// A number with five figures.
+fn figures(value: f64) -> String {
+    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
+    match rounded.abs() {
+        size if (1e5..1e7).contains(&size) => format!("{rounded}"),
+        size if size >= 1e7 => format!("{rounded:.4e}"),
+        _ => short(rounded),
+    }
 }
 
 /// The largest of what acts, one after the other.
 fn peaks(of_sort: &Value) -> String {
     let peak = |peak: &Value| {
-        let [value, at] = ["value", "at"].map(|key| short(figures(peak[key].as_f64().unwrap_or(f64::NAN))));
+        let [value, at] = ["value", "at"].map(|key| figures(peak[key].as_f64().unwrap_or(f64::NAN)));
         [peak["name"].as_str().unwrap_or("").to_string(), value, format!("{} at {at} s", peak["unit"].as_str().unwrap_or(""))]
     };
     let peaks: Vec<[String; 3]> = of_sort.as_array().into_iter().flatten().map(peak).collect();
@@ -126,8 +131,7 @@ fn peaks(of_sort: &Value) -> String {
 /// How far each measure goes.
 fn measures(of: &Value) -> String {
     let line = |measure: &Value| {
-        let [min, min_at, max, max_at] =
-            ["min", "min_at", "max", "max_at"].map(|key| short(figures(measure[key].as_f64().unwrap_or(f64::NAN))));
+        let [min, min_at, max, max_at] = ["min", "min_at", "max", "max_at"].map(|key| figures(measure[key].as_f64().unwrap_or(f64::NAN)));
         let unit = measure["unit"].as_str().filter(|unit| *unit != "1").map_or(String::new(), |unit| format!(" {unit}"));
         format!("{}  {min} at {min_at} s … {max}{unit} at {max_at} s", measure["name"].as_str().unwrap_or(""))
     };
