@@ -171,6 +171,26 @@ fn the_models_of_the_chapters_are_sound() {
     assert!(count >= 40, "{count}");
 }
 
+/// The rows of a table in a chapter are those of a run with the same value in the first column, to five figures.
+fn assert_shows(shown: &str, head: &str, rows: &[Vec<f64>]) {
+    let mut lines = shown.lines();
+    let place = |name: &str| head.split(',').position(|known| known == name).unwrap_or_else(|| panic!("there is no column {name}"));
+    let places: Vec<usize> = lines.next().unwrap().split(',').map(place).collect();
+    for line in lines {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let row = rows.iter().find(|row| (row[places[0]] - cells[0]).abs() < 1e-9).unwrap_or_else(|| panic!("no row is that of {line}"));
+        for (&place, cell) in places.iter().zip(cells) {
+            assert!((row[place] - cell).abs() <= 1e-4 * cell.abs() + 1e-9, "{line}: {} and not {cell}", row[place]);
+        }
+    }
+}
+
+/// Folder of the results that a run names.
+fn results(out: &str, folder: &tempfile::TempDir) -> PathBuf {
+    let named = out.lines().find_map(|line| line.strip_prefix("results in ")).expect("a run says where its results are");
+    folder.path().join(named)
+}
+
 /// Each machine of its chapter is run by the command below it, and answers with the lines below that.
 #[test]
 fn the_machines_of_the_chapter_answer_what_it_says() {
@@ -189,6 +209,10 @@ fn the_machines_of_the_chapter_answer_what_it_says() {
         let out = prints(&folder, &format!("{words} --no-report"), 0);
         for line in answer.lines() {
             assert!(out.lines().any(|printed| printed == line), "{command} does not print\n{line}\nbut\n{out}");
+        }
+        if let Some(shown) = rest.split("```csv\n").nth(1) {
+            let (head, rows) = csv(results(&out, &folder).join("trajectory.csv"));
+            assert_shows(shown.split("```").next().unwrap(), &head, &rows);
         }
         count += 1;
     }

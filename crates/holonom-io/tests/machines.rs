@@ -1,12 +1,15 @@
 //! The machines of the book's chapter: what they answer against calculations made by hand.
 
 mod machines {
+    pub mod crane;
+    pub mod gimbal;
     pub mod jet;
+    pub mod scissor;
     pub mod wiper;
 }
 
 use holonom::record::{Constraints, Recorder, Recording};
-use holonom::simulation::Status;
+use holonom::simulation::{Status, Summary};
 use holonom_io::{Source, read_value};
 
 /// The model file that the chapter shows under this name.
@@ -21,6 +24,7 @@ fn text(name: &str) -> String {
 /// A run of a machine.
 struct Run {
     recording: Recording,
+    summary: Summary,
 }
 
 impl Run {
@@ -35,7 +39,9 @@ impl Run {
         let end = model.end().unwrap();
         let status = simulation.run(end, &mut recorder);
         assert_eq!(status, Status::Completed, "{name}");
-        Run { recording: recorder.finish() }
+        let size = holonom::analysis::rank(&model.system, &simulation.state().x, end).size(&model.system);
+        let summary = simulation.summary(name, end, &status, size);
+        Run { recording: recorder.finish(), summary }
     }
 
     fn column(&self, name: &str) -> &[f64] {
@@ -56,4 +62,42 @@ fn assert_follows(run: &Run, name: &str, share: f64, formula: impl Fn(f64) -> f6
         worst = worst.max(off);
     }
     println!("{name}: {worst:.1e} of its greatest, {greatest}");
+}
+
+/// Solution of a few linear equations with a positive definite matrix: elimination without exchange of rows.
+fn solve<const N: usize>(mut matrix: [[f64; N]; N], mut right: [f64; N]) -> [f64; N] {
+    for k in 0..N {
+        let (row, of_row) = (matrix[k], right[k]);
+        for i in (0..N).filter(|i| *i != k) {
+            let factor = matrix[i][k] / row[k];
+            (0..N).for_each(|j| matrix[i][j] -= factor * row[j]);
+            right[i] -= factor * of_row;
+        }
+    }
+    std::array::from_fn(|k| right[k] / matrix[k][k])
+}
+
+/// Solution of ẏ = f(t, y) at every interval (s) up to the end (s), by `parts` steps of the classical Runge–Kutta method in each.
+fn runge_kutta<const N: usize>(
+    f: impl Fn(f64, [f64; N]) -> [f64; N],
+    start: [f64; N],
+    interval: f64,
+    parts: usize,
+    end: f64,
+) -> Vec<[f64; N]> {
+    let step = interval / parts as f64;
+    let moved = |y: [f64; N], rate: [f64; N], h: f64| -> [f64; N] { std::array::from_fn(|k| y[k] + h * rate[k]) };
+    let (mut y, mut states) = (start, vec![start]);
+    for n in 0..(end / interval).round() as usize {
+        for part in 0..parts {
+            let t = n as f64 * interval + part as f64 * step;
+            let a = f(t, y);
+            let b = f(t + 0.5 * step, moved(y, a, 0.5 * step));
+            let c = f(t + 0.5 * step, moved(y, b, 0.5 * step));
+            let d = f(t + step, moved(y, c, step));
+            y = std::array::from_fn(|k| y[k] + step / 6.0 * (a[k] + 2.0 * (b[k] + c[k]) + d[k]));
+        }
+        states.push(y);
+    }
+    states
 }

@@ -105,7 +105,12 @@ pub struct Plate {
 impl Plate {
     /// What it takes to move it so in this gravity, W: d'Alembert.
     pub fn power(&self, gravity: [f64; 2]) -> f64 {
-        let [x, y] = self.place;
-        self.mass * ((x.2 - gravity[0]) * x.1 + (y.2 - gravity[1]) * y.1) + self.inertia * self.angle.2 * self.angle.1
+        self.work(self, gravity)
+    }
+
+    /// Virtual work, J/unit, of what it takes to move it so, along the way that it goes at the rates of `way`.
+    pub fn work(&self, way: &Plate, gravity: [f64; 2]) -> f64 {
+        let along = |k: usize| (self.place[k].2 - gravity[k]) * way.place[k].1;
+        self.mass * (along(0) + along(1)) + self.inertia * self.angle.2 * way.angle.1
     }
 }
