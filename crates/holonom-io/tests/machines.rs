@@ -2,10 +2,12 @@
 
 mod machines {
     pub mod crane;
+    pub mod excavator;
     pub mod gimbal;
     pub mod jet;
     pub mod scissor;
     pub mod wiper;
+    pub mod wishbone;
 }
 
 use holonom::record::{Constraints, Recorder, Recording};
