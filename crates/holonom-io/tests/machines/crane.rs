@@ -27,6 +27,14 @@ fn motors(t: f64, [x, _, drum, x_rate, _, drum_rate, integral]: State) -> [f64; 
     [trolley, 2e4 * (-10.0 * way - drum) + 3e3 * (-10.0 * rate - drum_rate) - LOAD * GRAVITY * DRUM]
 }
 
+/// What the load takes of the rope.
+fn rope_force(t: f64, state: State) -> f64 {
+    let [_, sway, drum, _, sway_rate, ..] = state;
+    let [_, _, _, x_second, _, drum_second, _] = rates(t, state);
+    let along = DRUM * drum_second + x_second * sway.sin() - (ROPE + DRUM * drum) * sway_rate * sway_rate;
+    LOAD * (GRAVITY * sway.cos() - along) + WIND * sway.sin()
+}
+
 fn rates(t: f64, state: State) -> State {
     let [x, sway, drum, x_rate, sway_rate, drum_rate, _] = state;
     let (sin, cos) = sway.sin_cos();
@@ -65,6 +73,7 @@ fn the_load_of_the_crane_swings_as_lagrange_has_it() {
     assert_follows(&run, "integrator.x", 1e-7, |t| at(&states, t)[6]);
     assert_follows(&run, "trolley-motor.effort", 1e-6, |t| motors(t, at(&states, t))[0]);
     assert_follows(&run, "drum-motor.effort", 1e-6, |t| motors(t, at(&states, t))[1]);
+    assert_follows(&run, "rope-force", 1e-6, |t| rope_force(t, at(&states, t)));
     // The integral part takes the wind: nothing else is left in the end.
     assert!((run.column("integrator.x").last().unwrap() + WIND / 300.0).abs() < 1e-3);
 }

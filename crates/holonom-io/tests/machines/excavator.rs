@@ -105,6 +105,20 @@ fn the_cylinders_of_the_excavator() {
     assert_follows(&run, "bucket-pressure", 1e-11, |t| force(t, 2, 1.0) / (PI * 0.06 * 0.06) / 1e5);
 }
 
+/// The chapter's way to the force at which a relief valve opens: pressures are linear in the force of the soil.
+#[test]
+fn the_digging_force_of_the_excavator_at_250_bar() {
+    let pressure = |soil: &str| {
+        let run = Run::of("excavator", &[("parameters.soil", soil)]);
+        run.column("bucket-pressure").iter().copied().fold(f64::MIN, f64::max)
+    };
+    let (empty, loaded) = (pressure("0"), pressure("40e3"));
+    assert!((empty - 8.7758).abs() < 1e-4 && (loaded - 171.4033).abs() < 1e-4, "{empty} bar, {loaded} bar");
+    let force = SOIL * (250.0 - empty) / (loaded - empty);
+    assert!((force - 59.3e3).abs() < 50.0, "{force} N");
+    assert!((pressure(&force.to_string()) - 250.0).abs() < 1e-9);
+}
+
 #[test]
 fn the_cylinders_of_a_light_excavator_by_another_method() {
     let changes = [

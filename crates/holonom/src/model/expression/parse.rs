@@ -360,7 +360,7 @@ impl Parser<'_> {
         };
         let wrong = |at: usize| Mistake::new(at, format!("`{name}` takes {count} names of places"), format!("write {example}"));
         self.at += 2;
-        let mut places = Vec::new();
+        let (mut places, mut begins) = (Vec::new(), Vec::new());
         for k in 0..count {
             if k > 0 {
                 match self.peek() {
@@ -372,12 +372,29 @@ impl Parser<'_> {
                 Token::Name(place) => places.push(place.clone()),
                 _ => return Err(wrong(self.tokens[self.at].0)),
             }
+            begins.push(self.tokens[self.at].0);
             self.at += 1;
         }
         self.close()?;
+        for (place, &begin) in places.iter().zip(&begins).filter(|(place, _)| *place != "ground") {
+            self.is_place(place, &axes[..1]).map_err(|mistake| Mistake { character: begin, ..mistake })?;
+        }
         let text = names::of_places(name, &places, axes);
         let inner = Program::parse_with(&text, &[], self.names, self.scope).map_err(|inner| Mistake { character: start, ..inner })?;
         self.inline(inner)
+    }
+
+    /// Refuses what has no coordinate of this name as no place, in words of what was written.
+    fn is_place(&mut self, place: &str, axis: &str) -> Result<(), Mistake> {
+        let Err(unknown) = Program::parse_with(&format!("'{place}.{axis}'"), &[], self.names, self.scope) else { return Ok(()) };
+        if !unknown.message.ends_with("is not known here") {
+            return Err(unknown);
+        }
+        let cure = match unknown.cure.strip_suffix(&format!(".{axis}`?")) {
+            Some(near) => format!("{near}`?"),
+            None => "name a point, a body, BODY.POINT or ground; a fixed place is a [point.NAME] with `fixed = true`".into(),
+        };
+        Err(Mistake::new(0, format!("there is no place `{place}`"), cure))
     }
 
     /// Appends the operations of a program of what names stand for, and of no other variables.
