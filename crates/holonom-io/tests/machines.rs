@@ -30,9 +30,13 @@ struct Run {
 }
 
 impl Run {
-    /// With some keys set otherwise, as `--set` does.
+    /// Of a machine of the chapter with some keys set otherwise, as `--set` does.
     fn of(name: &str, changes: &[(&str, &str)]) -> Run {
-        let source = Source::read(name, text(name).as_bytes()).unwrap_or_else(|faults| panic!("{faults}"));
+        Run::of_text(name, &text(name), changes)
+    }
+
+    fn of_text(name: &str, text: &str, changes: &[(&str, &str)]) -> Run {
+        let source = Source::read(name, text.as_bytes()).unwrap_or_else(|faults| panic!("{faults}"));
         let changes: Vec<_> = changes.iter().map(|(key, value)| (*key, read_value(value))).collect();
         let model = source.model_with(&changes).unwrap_or_else(|faults| panic!("{}", source.render(&faults)));
         let mut simulation = model.simulation().unwrap();

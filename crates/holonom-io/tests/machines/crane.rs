@@ -70,12 +70,12 @@ fn the_load_of_the_crane_swings_as_lagrange_has_it() {
     assert_follows(&run, "trolley.x", 1e-7, |t| at(&states, t)[0]);
     assert_follows(&run, "sway", 1e-7, |t| at(&states, t)[1].to_degrees());
     assert_follows(&run, "length", 1e-7, |t| ROPE + DRUM * at(&states, t)[2]);
-    assert_follows(&run, "integrator.x", 1e-7, |t| at(&states, t)[6]);
+    assert_follows(&run, "accumulated", 1e-7, |t| at(&states, t)[6]);
     assert_follows(&run, "trolley-motor.effort", 1e-6, |t| motors(t, at(&states, t))[0]);
     assert_follows(&run, "drum-motor.effort", 1e-6, |t| motors(t, at(&states, t))[1]);
     assert_follows(&run, "rope-force", 1e-6, |t| rope_force(t, at(&states, t)));
     // The integral part takes the wind: nothing else is left in the end.
-    assert!((run.column("integrator.x").last().unwrap() + WIND / 300.0).abs() < 1e-3);
+    assert!((run.column("accumulated").last().unwrap() + WIND / 300.0).abs() < 1e-3);
 }
 
 /// The work of the motors and of the wind is all that changes the energy, and errors fall with the square of the step.
@@ -92,7 +92,7 @@ fn the_balance_of_the_crane_closes_and_its_order_is_two() {
         );
         assert!(share < 1e-12 && energy.integrator_total.abs() < 1e-12 * energy.work_total.abs());
         let last = at(&states, 10.0);
-        let expected = [("trolley.x", last[0]), ("sway", last[1].to_degrees()), ("integrator.x", last[6])];
+        let expected = [("trolley.x", last[0]), ("sway", last[1].to_degrees()), ("accumulated", last[6])];
         expected.map(|(name, expected)| run.column(name).last().unwrap() - expected)
     };
     let errors = ["0.01", "0.005", "0.0025"].map(error);
@@ -103,4 +103,38 @@ fn the_balance_of_the_crane_closes_and_its_order_is_two() {
             assert!((order - 2.0).abs() < 0.1, "order {order}: {errors:?}");
         }
     }
+}
+
+/// The chapter's integrator, of what jumps at an event: sin t, and from 1 s on three times as steep.
+#[test]
+fn a_mass_on_a_damper_integrates_what_jumps() {
+    let text = r#"
+gravity = [0, 0, 0]
+
+[input.gain]
+default = 1
+
+[event.jump]
+when = "t - 1.003"
+set = { gain = 3 }
+
+[point.integrator]
+mass = 1
+position = [0, 0, 0]
+
+[force.integrand]
+type = "expression"
+point = "integrator"
+force = ["gain*cos(t) - vx", 0, 0]
+
+[measure.accumulated]
+value = "integrator.x + integrator.vx"
+
+[simulation]
+end = 5
+step = 0.01
+method = "radau"
+"#;
+    let run = Run::of_text("integrator", text, &[]);
+    assert_follows(&run, "accumulated", 1e-9, |t| if t < 1.003 { t.sin() } else { 3.0 * t.sin() - 2.0 * 1.003_f64.sin() });
 }
