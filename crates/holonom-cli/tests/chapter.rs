@@ -207,6 +207,7 @@ fn the_machines_of_the_chapter_answer_what_it_says() {
         let file = words.split_whitespace().find(|word| word.ends_with(".toml")).unwrap();
         fs::write(folder.path().join(file), model).unwrap();
         let out = prints(&folder, &format!("{words} --no-report"), 0);
+        assert!(!answer.is_empty(), "{command} is told to print nothing");
         for line in answer.lines() {
             assert!(out.lines().any(|printed| printed == line), "{command} does not print\n{line}\nbut\n{out}");
         }

@@ -143,5 +143,6 @@ pub(super) fn require_free_name(entry: &Entry<'_>) -> Read<()> {
 
 /// The name of a column that is like a name, for a cure.
 pub(super) fn like<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    nearest(name, known).map_or("`holonom check` lists what there is".into(), |near| format!("did you mean `{near}`?"))
+    nearest(name, known)
+        .map_or("name one of these, such as BODY.x, BODY.vx or JOINT.angle".into(), |near| format!("did you mean `{near}`?"))
 }

@@ -356,7 +356,10 @@ impl Parser<'_> {
         let start = self.tokens[self.at].0;
         let &(_, count, example) = OF_PLACES.iter().find(|known| known.0 == name).expect("it is one of these");
         let Some(axes) = self.names.axes() else {
-            return Err(self.mistake(format!("`{name}` is of places, and nothing moves here"), "use it in measures, efforts and events"));
+            return Err(self.mistake(
+                format!("`{name}` is of places, and nothing moves here"),
+                "use it in measures, events, and forces of type effort, force, torque and expression",
+            ));
         };
         let wrong = |at: usize| Mistake::new(at, format!("`{name}` takes {count} names of places"), format!("write {example}"));
         self.at += 2;
@@ -456,7 +459,10 @@ impl Parser<'_> {
         let of_mechanism = self.names.known();
         let message = format!("the name `{name}` is not known here");
         if name.contains('.') && of_mechanism.is_empty() {
-            return self.mistake(message, "names with dots are of what moves: use them in measures, efforts, forces and events");
+            return self.mistake(
+                message,
+                "names with dots are of what moves: use them in measures, events, and forces of type effort, force, torque and expression",
+            );
         }
         let cure = match nearest(name, known.iter().copied().chain(of_mechanism.iter().map(String::as_str))) {
             Some(near) => format!("did you mean `{near}`?"),
