@@ -16,7 +16,7 @@ const FIGURES: [(&str, &str, &str); 7] = [
     ("/redundant", "redundant rows", ""),
 ];
 
-/// Method, status and key figures: a line and tiles for one run, a table for several.
+/// Method, status and what was asked: a line and tables for one run, a table with the key figures of the solver for several.
 pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
     match runs {
         [run] => one(run, out),
@@ -27,7 +27,11 @@ pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
 fn one(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
     writeln!(out, r#"<p class="method">{} {}{}</p>"#, badge(run.summary), method(run.summary), reason(run.summary))?;
     measures(run.summary, out)?;
-    peaks(run.summary, out)?;
+    peaks(run.summary, out)
+}
+
+/// Key figures of the solver for one run, which a table has for several.
+pub fn solver(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
     writeln!(out, r#"<dl class="figures">"#)?;
     for (pointer, name, unit) in FIGURES.into_iter().filter(|(pointer, ..)| known(run.summary, pointer)) {
         let value = figure(run.summary, pointer);
@@ -43,6 +47,9 @@ const PEAKS: [(&str, &str); 3] = [("drives", "Drives"), ("forces", "Forces"), ("
 /// Peaks of a sort and a unit that are shown.
 const ROWS: usize = 5;
 
+/// A peak that is a smaller share of the largest of its sort is round-off.
+const ROUND_OFF: f64 = 1e-12;
+
 /// The largest of what acts in the mechanism.
 fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
     let of = |sort: &str| summary.pointer(&format!("/peaks/{sort}")).and_then(Value::as_array).filter(|peaks| !peaks.is_empty());
@@ -54,7 +61,10 @@ fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
         let Some(peaks) = of(sort) else { continue };
         writeln!(out, "<table><caption>{name}: the largest</caption><tbody>")?;
         let is_among_first = |k: usize| peaks[..k].iter().filter(|peak| peak.get("unit") == peaks[k].get("unit")).count() < ROWS;
-        for peak in (0..peaks.len()).filter(|&k| is_among_first(k)).map(|k| &peaks[k]) {
+        let size = |peak: &Value| peak.get("value").and_then(Value::as_f64).map_or(f64::INFINITY, f64::abs);
+        let most = peaks.iter().map(size).fold(0.0, f64::max);
+        let is_shown = |&k: &usize| is_among_first(k) && (most.is_infinite() || size(&peaks[k]) >= ROUND_OFF * most);
+        for peak in (0..peaks.len()).filter(is_shown).map(|k| &peaks[k]) {
             let text = |key: &str| peak.get(key).map_or(String::new(), |value| html(&format::value(value)));
             let number = |key: &str| format::figure(peak.get(key).and_then(Value::as_f64).unwrap_or(f64::NAN));
             let (value, at) = (number("value"), number("at"));

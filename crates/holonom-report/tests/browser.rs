@@ -30,16 +30,24 @@ fn one_run() {
 #[test]
 fn what_the_machine_does_comes_first() {
     let seen = open("machine", &[sample::motor()]);
-    // Efforts and angles; the solver's health is folded away, and a column is plotted when it is asked for.
+    // The measure, efforts and angles; the solver's health is folded away, and a column is plotted when it is asked for.
     let health = 3;
-    loads(&seen, 2 + health);
+    loads(&seen, 3 + health);
     let machine = &seen["machine"];
     assert_eq!(
         (&machine["first"], &machine["healthIsOpen"]),
-        (&Value::from(vec!["crank.effort (N·m)", "hinge.angle (rad)"]), &Value::from(false))
+        (&Value::from(vec!["lift", "crank.effort (N·m)", "hinge.angle (rad)"]), &Value::from(false))
     );
-    assert_eq!((&machine["asked"], &machine["left"]), (&Value::from("crank.power (W)"), &Value::from(2)), "{seen:#}");
-    assert_eq!(machine["options"], 3, "{seen:#}");
+    assert_eq!((&machine["asked"], &machine["left"]), (&Value::from("crank.power (W)"), &Value::from(3)), "{seen:#}");
+    assert_eq!(machine["options"], 4, "{seen:#}");
+    // Another x axis makes a path of it, whose nearest row is told with its time.
+    assert_eq!(machine["over"], serde_json::json!(["crank.power (W) over hinge.angle (rad)", true]), "{seen:#}");
+    let pointed = machine["pointed"].as_str().unwrap();
+    assert!(pointed.starts_with("t = ") && pointed.contains(" W at hinge.angle = "), "{pointed}");
+    // The parabola t (3 − t)/2 is highest at 1.5 s, where the table leads to.
+    let extremes: Vec<&str> = machine["extremes"].as_array().unwrap().iter().map(|row| row.as_str().unwrap()).collect();
+    assert!(extremes.contains(&"lift 0 0 s 1.125 1.500 s"), "{extremes:?}");
+    assert_eq!((extremes.len(), &machine["wentTo"]), (4, &Value::from(1.5)), "{seen:#}");
 }
 
 #[test]

@@ -70,6 +70,19 @@
       field.value = "crank.power";
       field.dispatchEvent(new Event("input"));
       seen.machine.asked = titles()[0];
+      const plain = plots()[0];
+      const over = document.querySelector(".asked .meaning input");
+      over.value = "hinge.angle";
+      over.dispatchEvent(new Event("input"));
+      await frames(3);
+      seen.machine.over = [titles()[0], plots()[0] !== plain && plots()[0].length > 2000];
+      const drawing = document.querySelector(".asked .u-over");
+      const { left, bottom, width } = drawing.getBoundingClientRect();
+      drawing.dispatchEvent(new PointerEvent("pointermove", { clientX: left + width / 2, clientY: bottom - 20 }));
+      seen.machine.pointed = document.querySelector(".asked .readout").innerText;
+      seen.machine.extremes = [...document.querySelectorAll(".extremes tbody tr")].map((row) => row.innerText.split(/\s+/).join(" "));
+      document.querySelectorAll(".extremes tbody tr").forEach((row) => row.innerText.startsWith("lift") && row.querySelectorAll("button")[1].click());
+      seen.machine.wentTo = holonom.time();
       document.querySelector(".asked .remove").click();
       seen.machine.left = titles().length;
     }

@@ -1,6 +1,10 @@
 // The time that everything on the page shows.
 
-type Listener = (t: number) => void;
+interface Listener {
+  act: (t: number) => void;
+  /** Where it shows something: a listener goes with what leaves the page. */
+  place: Node;
+}
 
 export class Clock {
   /** Simulated seconds per second of playing. */
@@ -8,7 +12,7 @@ export class Clock {
   private now: number;
   private running = false;
   private lastFrame = 0;
-  private readonly listeners: Listener[] = [];
+  private listeners: Listener[] = [];
   private readonly stateListeners: ((playing: boolean) => void)[] = [];
 
   constructor(readonly start: number, readonly end: number) {
@@ -24,8 +28,8 @@ export class Clock {
     return this.running;
   }
 
-  onTime(listener: Listener): void {
-    this.listeners.push(listener);
+  onTime(act: (t: number) => void, place: Node = document): void {
+    this.listeners.push({ act, place });
   }
 
   onPlaying(listener: (playing: boolean) => void): void {
@@ -34,7 +38,8 @@ export class Clock {
 
   setTime(t: number): void {
     this.now = Math.min(Math.max(t, this.start), this.end);
-    for (const listener of this.listeners) listener(this.now);
+    this.listeners = this.listeners.filter(({ place }) => place.isConnected);
+    for (const { act } of this.listeners) act(this.now);
   }
 
   play(): void {

@@ -12,7 +12,7 @@ export function reading(value: number | null | undefined): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  if (size >= 1e-2 && size < 1e5) return minus(Number.isInteger(value) ? String(value) : value.toPrecision(4));
+  if (size >= 1e-2 && size < 1e5) return minus(Number.isInteger(value) ? String(value) : value.toFixed(Math.max(3 - Math.floor(Math.log10(size)), 0)));
   const [mantissa, exponent] = value.toExponential(2).split("e");
   return `${minus(mantissa)}·${power(Number(exponent))}`;
 }

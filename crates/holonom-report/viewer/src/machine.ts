@@ -1,13 +1,15 @@
-// What the machine does: efforts, forces and joint coordinates, and every other recorded column on demand.
+// What the machine does: measures, efforts, forces and joint coordinates, and every other recorded column on demand.
 
 import type { Clock } from "./clock";
 import { element } from "./dom";
 import type { Channel, Run } from "./payload";
 import type { Chart } from "./plots/charts";
+import { Extremes } from "./plots/extremes";
+import { buildPhasePlot } from "./plots/phase";
 import { buildComparedPlot, buildPlot } from "./plots/plot";
 import type { Visibility } from "./visibility";
 
-/** Title, unit and ending of the channels that are shown from the start. */
+/** Title, unit and ending of the channels that are shown from the start, behind the measures. */
 const FIRST: [title: string, unit: string, ending: RegExp][] = [
   ["Efforts", "N·m", /\.effort$/],
   ["Efforts", "N", /\.effort$/],
@@ -18,80 +20,159 @@ const FIRST: [title: string, unit: string, ending: RegExp][] = [
 
 /** Curves that a plot has room for. */
 const MOST_CURVES = 8;
-
+/** Plots of measures; the others are found by the field. */
+const MOST_MEASURES = 12;
 /** Plots of single channels where several runs are compared. */
 const MOST_COMPARED = 4;
+/** Measures share a plot where none is so many times as large as another: the small one would be a flat line. */
+const COMPARABLE = 20;
+
+/** Channels in one plot. */
+interface Group {
+  title: string;
+  channels: Channel[];
+}
 
 /** Plots of the machine, and a search over all columns. */
 export function buildMachine(container: HTMLElement, runs: Run[], clock: Clock, visibility: Visibility): void {
-  const channels = runs[0].channels;
-  if (channels.length === 0) return;
-  const plots = element("div", { class: "plots" });
-  const compared = runs.length > 1;
-  const build = compared ? buildComparedPlot : buildPlot;
-  const groups = first(channels);
-  if (compared) {
-    const single = groups.flatMap(([, group]) => group).slice(0, MOST_COMPARED);
-    for (const channel of single) build(plots, chartOf(titleOf(channel), [channel.name], runs), clock, visibility);
-  } else {
-    for (const [title, group] of groups) {
-      const named = group.length > 1 ? title : titleOf(group[0]);
-      build(plots, chartOf(named, group.map((channel) => channel.name), runs), clock, visibility);
-    }
-  }
-  const add = (channel: Channel): void => {
-    const place = element("div", { class: "asked" });
-    const remove = element("button", { type: "button", class: "remove", title: "take this plot away" }, "×");
-    remove.addEventListener("click", () => place.remove());
-    plots.prepend(place);
-    build(place, chartOf(titleOf(channel), [channel.name], runs), clock, visibility);
-    place.append(remove, element("p", { class: "meaning" }, channel.meaning));
-  };
-  container.append(picker(channels, add), plots);
+  if (runs[0].channels.length > 0) new Machine(container, runs, clock, visibility);
 }
 
-function titleOf(channel: Channel): string {
-  return `${channel.name} (${channel.unit})`;
+class Machine {
+  private readonly channels: Channel[];
+  private readonly plots = element("div", { class: "plots" });
+  private readonly extremes: Extremes;
+  /** What is plotted, in the order of the page. */
+  private readonly shown = new Map<HTMLElement, string[]>();
+
+  constructor(container: HTMLElement, private readonly runs: Run[], private readonly clock: Clock, private readonly visibility: Visibility) {
+    this.channels = runs[0].channels;
+    this.extremes = new Extremes(runs, clock);
+    for (const group of this.first()) {
+      const place = element("div", { class: "shown" });
+      this.plots.append(place);
+      this.plot(place, group);
+    }
+    container.append(this.picker(), this.plots, this.extremes.node);
+    this.count();
+  }
+
+  /** Plots that are shown from the start; a plot of several runs holds one channel. */
+  private first(): Group[] {
+    const groups = first(this.channels);
+    if (this.runs.length < 2) return groups;
+    return groups.flatMap(({ channels }) => channels.map((channel) => alone(channel))).slice(0, MOST_COMPARED);
+  }
+
+  private plot(place: HTMLElement, group: Group, over?: Channel): void {
+    const build = over ? buildPhasePlot : this.runs.length > 1 ? buildComparedPlot : buildPlot;
+    build(place, chartOf(group, this.runs, over), this.clock, this.visibility);
+    this.shown.set(place, [...group.channels, ...(over ? [over] : [])].map((channel) => channel.name));
+  }
+
+  /** The table of extremes follows what is plotted. */
+  private count(): void {
+    const places = [...this.plots.children] as HTMLElement[];
+    this.extremes.show([...new Set(places.flatMap((place) => this.shown.get(place) ?? []))]);
+  }
+
+  /** A plot of its own in front of the others, whose x axis is chosen. */
+  private ask(channel: Channel): void {
+    const place = element("div", { class: "asked" });
+    const remove = element("button", { type: "button", class: "remove", title: "take this plot away" }, "×");
+    remove.addEventListener("click", () => {
+      place.remove();
+      this.count();
+    });
+    const field = element("input", { type: "search", list: "channels", placeholder: "t", "aria-label": "Column of the x axis" });
+    const foot = element("p", { class: "meaning" }, element("label", {}, "over ", field), ` ${channel.meaning}`);
+    const draw = (over?: Channel): void => {
+      place.querySelector(".plot")?.remove();
+      this.plot(place, alone(channel), over);
+      place.append(remove, foot);
+      this.count();
+    };
+    onColumn(field, this.channels, draw);
+    field.addEventListener("input", () => ["", "t"].includes(field.value.trim()) && draw());
+    this.plots.prepend(place);
+    draw();
+  }
+
+  /** A field that finds a column by its name. */
+  private picker(): HTMLElement {
+    const list = element("datalist", { id: "channels" });
+    for (const { name, unit, meaning } of this.channels) list.append(element("option", { value: name, label: `${unit}: ${meaning}` }));
+    const placeholder = `a column, such as ${this.channels[0].name}`;
+    const field = element("input", { type: "search", list: "channels", placeholder, "aria-label": "Plot a column" });
+    onColumn(field, this.channels, (channel) => {
+      this.ask(channel);
+      field.value = "";
+    });
+    return element("p", { class: "picker" }, element("label", {}, `Plot one of ${this.channels.length} columns: `, field), list);
+  }
+}
+
+function onColumn(field: HTMLInputElement, channels: Channel[], take: (channel: Channel) => void): void {
+  let last = "";
+  const look = (): void => {
+    const name = field.value.trim();
+    const channel = channels.find((channel) => channel.name === name);
+    // Both events of one choice count once.
+    if (channel && name !== last) take(channel);
+    last = field.value.trim();
+  };
+  field.addEventListener("input", look);
+  field.addEventListener("change", look);
+}
+
+function alone(channel: Channel): Group {
+  return { title: channel.name, channels: [channel] };
 }
 
 /** The groups of channels that are shown from the start; of a model without any of them the first coordinates. */
-function first(channels: Channel[]): [string, Channel[]][] {
-  const groups = FIRST.map(([title, unit, ending]): [string, Channel[]] => [
-    `${title} (${unit})`,
-    channels.filter((channel) => channel.unit === unit && ending.test(channel.name)).slice(0, MOST_CURVES),
-  ]);
-  const found = groups.filter(([, group]) => group.length > 0);
-  if (found.length > 0) return found;
+function first(channels: Channel[]): Group[] {
+  const others = FIRST.map(([title, unit, ending]): Group => {
+    const group = channels.filter((channel) => !channel.is_measure && channel.unit === unit && ending.test(channel.name));
+    return { title, channels: group.slice(0, MOST_CURVES) };
+  });
+  const found = [...measures(channels), ...others].filter((group) => group.channels.length > 0);
+  if (found.length > 0) return found.map((group) => (group.channels.length > 1 ? group : alone(group.channels[0])));
   const places = channels.filter((channel) => channel.unit === "m").slice(0, 3);
-  return places.length > 0 ? [["Positions (m)", places]] : [];
+  return places.length > 0 ? [{ title: "Positions", channels: places }] : [];
 }
 
-/** A chart of some channels: a curve each, or one of each run. */
-function chartOf(title: string, names: string[], runs: Run[]): Chart {
+/** Measures of one unit and of like size share a plot. */
+function measures(channels: Channel[]): Group[] {
+  const groups: Group[] = [];
+  const size = ({ extremes }: Channel): number => Math.max(Math.abs(extremes?.[0] ?? 0), Math.abs(extremes?.[2] ?? 0));
+  for (const channel of channels.filter((channel) => channel.is_measure)) {
+    const fits = (other: Channel): boolean => {
+      const [small, large] = [size(channel), size(other)].sort((a, b) => a - b);
+      return other.unit === channel.unit && large <= COMPARABLE * small;
+    };
+    const group = groups.find((group) => group.channels.length < MOST_CURVES && group.channels.every(fits));
+    if (group) group.channels.push(channel);
+    else groups.push({ title: "Measures", channels: [channel] });
+  }
+  return groups.slice(0, MOST_MEASURES);
+}
+
+/** A chart of some channels: a curve each, or one of each run; over time, or over another channel. */
+function chartOf({ title, channels }: Group, runs: Run[], over: Channel | undefined): Chart {
+  const compared = runs.length > 1;
+  const shortened = channels.map(({ name }) => name.replace(/\.[a-z]+\d*$/, ""));
+  const ambiguous = new Set(shortened).size < shortened.length;
   const curves = runs.flatMap((run, index) =>
-    names.flatMap((name, k) => {
-      const channel = run.channels.find((channel) => channel.name === name);
-      if (!channel) return [];
-      const compared = runs.length > 1;
-      const label = compared ? run.label : name.replace(/\.[a-z]+\d*$/, "");
-      return [{ label, colour: compared ? index : k, run: index, sound: run.sound, x: run.times, y: channel.values, shown: true }];
+    channels.flatMap(({ name }, k) => {
+      const find = (name: string): Float64Array | undefined => run.channels.find((channel) => channel.name === name)?.values;
+      const [y, across] = [find(name), over && find(over.name)];
+      if (!y || (over && !across)) return [];
+      const label = compared ? run.label : ambiguous ? name : shortened[k];
+      const curve = { column: name, label, colour: compared ? index : k, run: index, sound: run.sound, x: run.times, y, shown: true };
+      return [across ? { ...curve, across } : curve];
     }),
   );
-  return { title, scale: "linear", curves, leastSpan: 0, allowed: Infinity };
-}
-
-/** A field that finds a column by its name. */
-function picker(channels: Channel[], add: (channel: Channel) => void): HTMLElement {
-  const list = element("datalist", { id: "channels" });
-  for (const channel of channels) list.append(element("option", { value: channel.name, label: `${channel.unit}: ${channel.meaning}` }));
-  const field = element("input", { type: "search", list: "channels", placeholder: "a column, such as " + channels[0].name, "aria-label": "Plot a column" });
-  const take = (): void => {
-    const channel = channels.find((channel) => channel.name === field.value.trim());
-    if (!channel) return;
-    add(channel);
-    field.value = "";
-  };
-  field.addEventListener("input", take);
-  field.addEventListener("change", take);
-  return element("p", { class: "picker" }, element("label", {}, `Plot one of ${channels.length} columns: `, field), list);
+  const unit = channels[0].unit === "1" ? "" : channels[0].unit;
+  const chart: Chart = { title, unit, scale: "linear", curves, leastSpan: 0, allowed: Infinity };
+  return over ? { ...chart, over: { column: over.name, unit: over.unit === "1" ? "" : over.unit } } : chart;
 }

@@ -55,7 +55,7 @@ export interface Run {
   bodies: Map<string, Float32Array>;
   /** Times of the rows, s. */
   times: Float64Array;
-  /** What acts and joint coordinates, then motion. */
+  /** Measures, what acts and joint coordinates, then motion. */
   channels: Channel[];
 }
 
@@ -64,7 +64,10 @@ export interface Channel {
   name: string;
   unit: string;
   meaning: string;
+  is_measure: boolean;
   values: Float64Array;
+  /** Least value, its time, largest value, its time, of all recorded rows. */
+  extremes: [number, number, number, number] | null;
 }
 
 interface RawRun {
@@ -75,7 +78,7 @@ interface RawRun {
   columns: Record<string, string>;
   points: Record<string, string>;
   bodies: Record<string, string>;
-  channels: (Omit<Channel, "values"> & { values: string })[];
+  channels: (Omit<Channel, "values"> & { values: string; middle: number })[];
 }
 
 export function readPayload(): Run[] {
@@ -87,7 +90,10 @@ export function readPayload(): Run[] {
     const columns = decodeAll(raw.columns, (bytes) => new Float64Array(bytes));
     const points = decodeAll(raw.points, (bytes) => new Float32Array(bytes));
     const bodies = decodeAll(raw.bodies, (bytes) => new Float32Array(bytes));
-    const channels = raw.channels.map((channel) => ({ ...channel, values: Float64Array.from(new Float32Array(bytesOf(channel.values))) }));
+    const channels = raw.channels.map(({ middle, ...channel }) => {
+      const values = Float64Array.from(new Float32Array(bytesOf(channel.values)), (value) => middle + value);
+      return { ...channel, values };
+    });
     return [{ label: raw.label, sound: raw.sound, scene, columns, points, bodies, times: columns.get("t") ?? new Float64Array(), channels }];
   });
 }
