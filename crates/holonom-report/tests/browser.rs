@@ -22,6 +22,9 @@ fn one_run() {
     let seen = open("single", &[sample::pendulum("conserving-ggl", 0.025, 800, 1.0)]);
     loads(&seen, 8);
     moves(&seen, 20.0);
+    // The space bar plays and pauses, but not in a field, and arrows step from row to row.
+    assert_eq!(seen["keys"], serde_json::json!([false, "Pause", "Pause", false, "Play"]), "{seen:#}");
+    assert_eq!(seen["stepped"], 0.025, "{seen:#}");
     // A legend entry belongs to one plot here.
     assert_eq!((&seen["legend"]["pressed"], &seen["legend"]["changed"]), (&Value::from("false"), &Value::from(1)), "{seen:#}");
     assert_eq!(seen["legendBack"], 0, "{seen:#}");

@@ -42,6 +42,18 @@
     seen.playing = holonom.time();
     document.querySelector(".play").click();
 
+    const press = (key, target = document.body) => target.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }));
+    const label = () => document.querySelector(".play").getAttribute("aria-label");
+    const typed = document.querySelector(".picker input, .transport select");
+    holonom.setTime(0);
+    seen.keys = [press(" "), label()];
+    press(" ", typed);
+    seen.keys.push(label(), press(" "), label());
+    holonom.setTime(0);
+    for (const key of ["ArrowRight", "ArrowRight", "ArrowLeft"]) press(key, slider);
+    press("ArrowRight", typed);
+    seen.stepped = holonom.time();
+
     seen.beyond = [...document.querySelectorAll(".beyond")].map((node) => node.textContent);
     seen.samples = document.querySelectorAll("table .swatch svg line").length;
     const choice = document.querySelector(".choice select");

@@ -54,6 +54,11 @@ export class Clock {
     if (this.running) this.setRunning(false);
   }
 
+  toggle(): void {
+    if (this.running) this.pause();
+    else this.play();
+  }
+
   private setRunning(running: boolean): void {
     this.running = running;
     for (const listener of this.stateListeners) listener(running);

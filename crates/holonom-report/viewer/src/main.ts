@@ -5,6 +5,7 @@ import "./licences";
 import "./viewer.css";
 import { Clock } from "./clock";
 import { element, place } from "./dom";
+import { listenToKeys } from "./keyboard";
 import { buildMachine } from "./machine";
 import { Motion } from "./motion";
 import { readPayload, type Vec3 } from "./payload";
@@ -61,6 +62,7 @@ function build(motions: Motion[], clock: Clock, visibility: Visibility): void {
   place("motion").append(stage, buildTransport(clock));
   buildStage(stage, motions, clock, visibility);
 
+  listenToKeys(clock, runs[0].times);
   buildMachine(place("machine"), runs, clock, visibility);
 
   const plots = element("div", { class: "plots" });

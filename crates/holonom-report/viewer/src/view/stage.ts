@@ -32,7 +32,7 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
   const mechanisms = motions.map((motion, i) => new Mechanism(motion, diagonal(box), i, motions.length));
   const grid = buildGrid(view, box);
   scene.add(camera, grid.object, ...mechanisms.map((mechanism) => mechanism.group));
-  container.append(element("p", { class: "hint" }, `grid ${Number(grid.cell.toPrecision(2))} m · drag to turn, scroll to zoom`));
+  container.append(element("p", { class: "hint" }, `grid ${Number(grid.cell.toPrecision(2))} m · drag to turn, scroll to zoom · space bar plays, arrow keys step`));
   addLight(scene, camera);
 
   const controls = new OrbitControls(camera, canvas);
