@@ -31,6 +31,7 @@ fn scene() -> Scene {
             kind: LineKind::Rod,
             from: Anchor::Fixed([0.0; 3]),
             to: Anchor::Point("tip".to_owned()),
+            along: None,
         }],
         ..Scene::default()
     }

@@ -8,7 +8,7 @@ mod sample;
 
 use holonom_report::{Report, Run};
 use sample::Sample;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -23,7 +23,7 @@ fn one_run() {
     loads(&seen, 8);
     moves(&seen, 20.0);
     // The space bar plays and pauses, but not in a field, and arrows step from row to row.
-    assert_eq!(seen["keys"], serde_json::json!([false, "Pause", "Pause", false, "Play"]), "{seen:#}");
+    assert_eq!(seen["keys"], json!([false, "Pause", "Pause", false, "Play"]), "{seen:#}");
     assert_eq!(seen["stepped"], 0.025, "{seen:#}");
     // A legend entry belongs to one plot here.
     assert_eq!((&seen["legend"]["pressed"], &seen["legend"]["changed"]), (&Value::from("false"), &Value::from(1)), "{seen:#}");
@@ -44,7 +44,7 @@ fn what_the_machine_does_comes_first() {
     assert_eq!((&machine["asked"], &machine["left"]), (&Value::from("crank.power (W)"), &Value::from(3)), "{seen:#}");
     assert_eq!(machine["options"], 4, "{seen:#}");
     // Another x axis makes a path of it, whose nearest row is told with its time.
-    assert_eq!(machine["over"], serde_json::json!(["crank.power (W) over hinge.angle (rad)", true]), "{seen:#}");
+    assert_eq!(machine["over"], json!(["crank.power (W) over hinge.angle (rad)", true]), "{seen:#}");
     let pointed = machine["pointed"].as_str().unwrap();
     assert!(pointed.starts_with("t = ") && pointed.contains(" W at hinge.angle = "), "{pointed}");
     // The parabola t (3 − t)/2 is highest at 1.5 s, where the table leads to.
@@ -119,6 +119,44 @@ fn bodies_in_a_plane() {
     loads(&seen, 3);
     bodies_move(&seen, "coupler", 6);
     assert_eq!(seen["middle"]["bodies"]["coupler"][1], 0, "the missing coordinate is 0: {seen:#}");
+}
+
+#[test]
+fn names_selection_and_forces() {
+    let seen = open("driven", &[sample::bodies::driven()]);
+    assert_eq!(seen["faults"], Value::Array(Vec::new()), "{seen:#}");
+    let picked = &seen["picked"];
+    assert_eq!(picked["names"], json!(["coupler body", "strut cylinder", "tie bar"]), "{seen:#}");
+    let around = picked["aroundHinge"].as_array().unwrap();
+    assert!(around.contains(&json!("a revolute joint")) && around.contains(&json!("motor drive of a")), "{around:?}");
+    // On the coupler act its joint, spring, load and weight; its columns are plotted before all others.
+    assert_eq!(picked["selected"], "Selected: coupler body ×", "{seen:#}");
+    assert_eq!(picked["plots"], json!(["coupler (m/s)", "motor.effort (N·m)", "strut.effort (N)"]), "{seen:#}");
+    assert_eq!(picked["forces"], json!(["b 5 N", "spring 2.000 N", "load 6 N", "weight 9.810 N"]), "{seen:#}");
+    // What the joint does to the coupler points to the right and up, and what it does to the crank the other way.
+    let [on_coupler, on_crank] = ["towards", "towardsCrank"].map(|which| {
+        let towards: Vec<f64> = picked[which].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+        (towards[0] > 0.0, towards[1] < 0.0)
+    });
+    assert_eq!((on_coupler, on_crank), ((true, true), (false, false)), "{seen:#}");
+    assert_eq!(picked["crankForces"], json!(["motor 7 N·m", "b 5 N", "weight 9.810 N"]), "{seen:#}");
+    assert_eq!(picked["strut"], json!(["strut 30 N", "strut 30 N"]), "{seen:#}");
+    // Escape leaves nothing of it, and a joint of which nothing is recorded says so.
+    assert_eq!(picked["cleared"], json!([true, [], picked["first"]]), "{seen:#}");
+    assert_eq!(picked["joint"], "Selected: c revolute joint, of which no column is recorded ×", "{seen:#}");
+}
+
+#[test]
+fn bodies_are_seen_through_and_hidden() {
+    let seen = open("looks", &[sample::bodies::driven()]);
+    assert_eq!(seen["faults"], Value::Array(Vec::new()), "{seen:#}");
+    let looks = &seen["looks"];
+    assert_eq!(looks["words"], json!(["shown", "transparent", "hidden", "shown"]), "{seen:#}");
+    let pictures = looks["pictures"].as_array().unwrap();
+    assert!(pictures[0] != pictures[1] && pictures[1] != pictures[2] && pictures[0] != pictures[2], "{seen:#}");
+    assert_eq!(pictures[0], pictures[3], "shown again it looks as before");
+    // What is hidden is not under the pointer, and one switch hides all.
+    assert_eq!((&looks["under"], &looks["all"]), (&json!(["coupler body", "coupler body", "", "coupler body"]), &json!(6)), "{seen:#}");
 }
 
 #[test]

@@ -78,7 +78,7 @@ pub fn slider() -> Sample {
         let x = 1.0 + 0.4 * (5.0 * t).sin();
         recording.push(&[t, 1.0, 0.0, x, 0.0, 2.0 * (5.0 * t).cos(), 0.0]);
     }
-    let line = |name: &str, kind, from| Line { name: name.to_owned(), kind, from: Anchor::Fixed(from), to: point("block") };
+    let line = |name: &str, kind, from| Line { name: name.to_owned(), kind, from: Anchor::Fixed(from), to: point("block"), along: None };
     let scene = Scene {
         axes: "xz".to_owned(),
         gravity: [0.0, 0.0, -GRAVITY],
@@ -99,7 +99,7 @@ fn point(name: &str) -> Anchor {
 
 fn scene() -> Scene {
     let mass = |name: &str| ScenePoint { name: name.to_owned(), kind: PointKind::Free, mass: 1.0 };
-    let line = |name: &str, kind, from, to| Line { name: name.to_owned(), kind, from, to };
+    let line = |name: &str, kind, from, to| Line { name: name.to_owned(), kind, from, to, along: None };
     Scene {
         axes: "xyz".to_owned(),
         gravity: [0.0, 0.0, -GRAVITY],

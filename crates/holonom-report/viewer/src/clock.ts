@@ -1,10 +1,6 @@
 // The time that everything on the page shows.
 
-interface Listener {
-  act: (t: number) => void;
-  /** Where it shows something: a listener goes with what leaves the page. */
-  place: Node;
-}
+import { Listeners } from "./listeners";
 
 export class Clock {
   /** Simulated seconds per second of playing. */
@@ -12,8 +8,8 @@ export class Clock {
   private now: number;
   private running = false;
   private lastFrame = 0;
-  private listeners: Listener[] = [];
-  private readonly stateListeners: ((playing: boolean) => void)[] = [];
+  private readonly timeListeners = new Listeners<[t: number]>();
+  private readonly stateListeners = new Listeners<[playing: boolean]>();
 
   constructor(readonly start: number, readonly end: number) {
     this.now = start;
@@ -28,18 +24,17 @@ export class Clock {
     return this.running;
   }
 
-  onTime(act: (t: number) => void, place: Node = document): void {
-    this.listeners.push({ act, place });
+  onTime(act: (t: number) => void, place?: Node): void {
+    this.timeListeners.add(act, place);
   }
 
   onPlaying(listener: (playing: boolean) => void): void {
-    this.stateListeners.push(listener);
+    this.stateListeners.add(listener);
   }
 
   setTime(t: number): void {
     this.now = Math.min(Math.max(t, this.start), this.end);
-    this.listeners = this.listeners.filter(({ place }) => place.isConnected);
-    for (const { act } of this.listeners) act(this.now);
+    this.timeListeners.call(this.now);
   }
 
   play(): void {
@@ -61,7 +56,7 @@ export class Clock {
 
   private setRunning(running: boolean): void {
     this.running = running;
-    for (const listener of this.stateListeners) listener(running);
+    this.stateListeners.call(running);
   }
 
   private readonly frame = (moment: number): void => {

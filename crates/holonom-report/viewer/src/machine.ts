@@ -1,5 +1,6 @@
 // What the machine does: measures, efforts, forces and joint coordinates, and every other recorded column on demand.
 
+import type uPlot from "uplot";
 import type { Clock } from "./clock";
 import { element } from "./dom";
 import type { Channel, Run } from "./payload";
@@ -7,6 +8,7 @@ import type { Chart } from "./plots/charts";
 import { Extremes } from "./plots/extremes";
 import { buildPhasePlot } from "./plots/phase";
 import { buildComparedPlot, buildPlot } from "./plots/plot";
+import { ownersOf, type Selection } from "./selection";
 import type { Visibility } from "./visibility";
 
 /** Title, unit and ending of the channels that are shown from the start, behind the measures. */
@@ -24,6 +26,8 @@ const MOST_CURVES = 8;
 const MOST_MEASURES = 12;
 /** Plots of single channels where several runs are compared. */
 const MOST_COMPARED = 4;
+/** Units of what is selected: what acts comes before motion. */
+const ORDER = ["N", "N·m", "W", "rad", "m", "rad/s", "m/s", "rad/s²", "m/s²"];
 /** Measures share a plot where none is so many times as large as another: the small one would be a flat line. */
 const COMPARABLE = 20;
 
@@ -34,18 +38,26 @@ interface Group {
 }
 
 /** Plots of the machine, and a search over all columns. */
-export function buildMachine(container: HTMLElement, runs: Run[], clock: Clock, visibility: Visibility): void {
-  if (runs[0].channels.length > 0) new Machine(container, runs, clock, visibility);
+export function buildMachine(container: HTMLElement, runs: Run[], clock: Clock, visibility: Visibility, selection: Selection): void {
+  if (runs[0].channels.length > 0) new Machine(container, runs, clock, visibility, selection);
 }
 
 class Machine {
   private readonly channels: Channel[];
   private readonly plots = element("div", { class: "plots" });
   private readonly extremes: Extremes;
-  /** What is plotted, in the order of the page. */
-  private readonly shown = new Map<HTMLElement, string[]>();
+  /** Which item is selected in the picture, in words. */
+  private readonly selected = element("p", { class: "selected", hidden: "" });
+  /** What is plotted where. */
+  private readonly shown = new Map<Element, { columns: string[]; plot: uPlot }>();
 
-  constructor(container: HTMLElement, private readonly runs: Run[], private readonly clock: Clock, private readonly visibility: Visibility) {
+  constructor(
+    container: HTMLElement,
+    private readonly runs: Run[],
+    private readonly clock: Clock,
+    private readonly visibility: Visibility,
+    private readonly selection: Selection,
+  ) {
     this.channels = runs[0].channels;
     this.extremes = new Extremes(runs, clock);
     for (const group of this.first()) {
@@ -53,27 +65,53 @@ class Machine {
       this.plots.append(place);
       this.plot(place, group);
     }
-    container.append(this.picker(), this.plots, this.extremes.node);
+    container.append(this.picker(), this.selected, this.plots, this.extremes.node);
     this.count();
+    selection.onChange(() => this.select());
   }
 
   /** Plots that are shown from the start; a plot of several runs holds one channel. */
   private first(): Group[] {
     const groups = first(this.channels);
     if (this.runs.length < 2) return groups;
-    return groups.flatMap(({ channels }) => channels.map((channel) => alone(channel))).slice(0, MOST_COMPARED);
+    return apart(groups).slice(0, MOST_COMPARED);
+  }
+
+  /** Plots of what is selected in the picture come before all others. */
+  private select(): void {
+    for (const place of this.plots.querySelectorAll(".of-selected")) this.remove(place);
+    const { item } = this.selection;
+    this.selected.hidden = item === undefined;
+    if (item) {
+      const groups = ofOwners(this.channels, ownersOf(item, this.runs[0].scene));
+      const clear = element("button", { type: "button", title: "select nothing (Escape)" }, "×");
+      clear.addEventListener("click", () => this.selection.select(undefined));
+      const words = groups.length > 0 ? "" : ", of which no column is recorded";
+      this.selected.replaceChildren("Selected: ", element("b", {}, item.name), ` ${item.kind}${words} `, clear);
+      for (const group of (this.runs.length > 1 ? apart(groups).slice(0, 2 * MOST_COMPARED) : groups).reverse()) {
+        const place = element("div", { class: "shown of-selected" });
+        this.plots.prepend(place);
+        this.plot(place, group);
+      }
+    }
+    this.count();
+  }
+
+  private remove(place: Element): void {
+    place.remove();
+    this.shown.get(place)?.plot.destroy();
+    this.shown.delete(place);
   }
 
   private plot(place: HTMLElement, group: Group, over?: Channel): void {
     const build = over ? buildPhasePlot : this.runs.length > 1 ? buildComparedPlot : buildPlot;
-    build(place, chartOf(group, this.runs, over), this.clock, this.visibility);
-    this.shown.set(place, [...group.channels, ...(over ? [over] : [])].map((channel) => channel.name));
+    const columns = [...group.channels, ...(over ? [over] : [])].map((channel) => channel.name);
+    this.shown.set(place, { columns, plot: build(place, chartOf(group, this.runs, over), this.clock, this.visibility) });
   }
 
   /** The table of extremes follows what is plotted. */
   private count(): void {
-    const places = [...this.plots.children] as HTMLElement[];
-    this.extremes.show([...new Set(places.flatMap((place) => this.shown.get(place) ?? []))]);
+    this.extremes.show([...new Set([...this.plots.children].flatMap((place) => this.shown.get(place)?.columns ?? []))]);
   }
 
   /** A plot of its own in front of the others, whose x axis is chosen. */
@@ -81,12 +119,13 @@ class Machine {
     const place = element("div", { class: "asked" });
     const remove = element("button", { type: "button", class: "remove", title: "take this plot away" }, "×");
     remove.addEventListener("click", () => {
-      place.remove();
+      this.remove(place);
       this.count();
     });
     const field = element("input", { type: "search", list: "channels", placeholder: "t", "aria-label": "Column of the x axis" });
     const foot = element("p", { class: "meaning" }, element("label", {}, "over ", field), ` ${channel.meaning}`);
     const draw = (over?: Channel): void => {
+      this.shown.get(place)?.plot.destroy();
       place.querySelector(".plot")?.remove();
       this.plot(place, alone(channel), over);
       place.append(remove, foot);
@@ -127,6 +166,22 @@ function onColumn(field: HTMLInputElement, channels: Channel[], take: (channel: 
 
 function alone(channel: Channel): Group {
   return { title: channel.name, channels: [channel] };
+}
+
+function apart(groups: Group[]): Group[] {
+  return groups.flatMap(({ channels }) => channels.map((channel) => alone(channel)));
+}
+
+/** The channels that are called NAME.SOMETHING or NAME after one of the owners, by unit. */
+function ofOwners(channels: Channel[], owners: string[]): Group[] {
+  const isOf = ({ name }: Channel, owner: string): boolean => name === owner || (name.startsWith(`${owner}.`) && !name.slice(owner.length + 1).includes("."));
+  const own = channels.filter((channel) => owners.some((owner) => isOf(channel, owner)));
+  const rank = (unit: string): number => (ORDER.indexOf(unit) + 1 || ORDER.length + 1);
+  const units = [...new Set(own.map(({ unit }) => unit))].sort((a, b) => rank(a) - rank(b));
+  return units.map((unit) => {
+    const group = own.filter((channel) => channel.unit === unit).slice(0, MOST_CURVES);
+    return group.length > 1 ? { title: owners[0], channels: group } : alone(group[0]);
+  });
 }
 
 /** The groups of channels that are shown from the start; of a model without any of them the first coordinates. */

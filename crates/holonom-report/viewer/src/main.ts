@@ -12,8 +12,9 @@ import { readPayload, type Vec3 } from "./payload";
 import { charts } from "./plots/charts";
 import { buildComparedPlot, buildPlot } from "./plots/plot";
 import { WINDOWS } from "./plots/smooth";
+import { Selection } from "./selection";
 import { buildTransport } from "./transport";
-import { buildStage } from "./view/stage";
+import { buildStage, type OnScreen } from "./view/stage";
 import { buildLegend, Visibility } from "./visibility";
 
 /** What a page offers to scripts and tests. */
@@ -25,6 +26,8 @@ interface Handle {
   pointsAt(): Record<string, Vec3>;
   /** The same of the centres of mass of its bodies. */
   bodiesAt(): Record<string, Vec3>;
+  /** Where a place in the world is seen in the window, px. */
+  onScreen: OnScreen;
 }
 
 const HOW_TO_READ = `Axes fit the runs that completed with their energy in bounds; a run that leaves one is named above it and drawn up \
@@ -49,6 +52,7 @@ function main(): void {
     setTime: (t) => clock.setTime(t),
     pointsAt: () => placesOf(motions[0]?.run.scene.points, (name) => motions[0]?.at(name, clock.time)),
     bodiesAt: () => placesOf(motions[0]?.run.scene.bodies, (name) => motions[0]?.poseAt(name, clock.time)?.place.toArray()),
+    onScreen: () => undefined,
   };
   if (motions.length > 0) build(motions, clock, visibility);
   window.holonom.ready = true;
@@ -60,10 +64,11 @@ function build(motions: Motion[], clock: Clock, visibility: Visibility): void {
 
   const stage = element("div", { class: "stage" });
   place("motion").append(stage, buildTransport(clock));
-  buildStage(stage, motions, clock, visibility);
+  const selection = new Selection();
+  window.holonom.onScreen = buildStage(stage, motions, clock, visibility, selection);
 
   listenToKeys(clock, runs[0].times);
-  buildMachine(place("machine"), runs, clock, visibility);
+  buildMachine(place("machine"), runs, clock, visibility, selection);
 
   const plots = element("div", { class: "plots" });
   place("plots").append(plots);

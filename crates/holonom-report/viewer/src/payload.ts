@@ -1,7 +1,7 @@
 // The numbers of the report, as `src/data.rs` writes them.
 
 export type PointKind = "free" | "driven" | "fixed";
-export type LineKind = "bar" | "rod" | "spring" | "rope" | "guide";
+export type LineKind = "bar" | "rod" | "spring" | "cylinder" | "rope" | "guide";
 export type Vec3 = [number, number, number];
 export type Anchor = { point: string } | { fixed: Vec3 } | { body: { body: string; at: Vec3 } };
 
@@ -30,6 +30,19 @@ export interface Joint {
   other: string | null;
   at: Vec3;
   axis: Vec3 | null;
+  /** Whether the columns of its force are on `other` and not on `body`. */
+  acts_on_other: boolean;
+  /** Drives and efforts along its coordinates. */
+  drives: string[];
+}
+
+export interface Line {
+  name: string;
+  kind: LineKind;
+  from: Anchor;
+  to: Anchor;
+  /** What a spring acts along where that is not the line itself, in the axes of a body or of the world. */
+  along?: { body: string | null; axis: Vec3 };
 }
 
 export interface Scene {
@@ -37,9 +50,11 @@ export interface Scene {
   axes: string;
   gravity: Vec3;
   points: { name: string; kind: PointKind; mass: number }[];
-  lines: { name: string; kind: LineKind; from: Anchor; to: Anchor }[];
+  lines: Line[];
   bodies: Body[];
   joints: Joint[];
+  /** Forces and moments of which columns are recorded. */
+  loads: { name: string; at: Anchor }[];
 }
 
 export interface Run {

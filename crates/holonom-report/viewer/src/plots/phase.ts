@@ -12,7 +12,7 @@ import { FONT, HEIGHT, LABEL_WIDTH, onClick, UNIT_WIDTH } from "./plot";
 import { linearAxis, linearLabels } from "./scales";
 import { rowNear } from "./values";
 
-export function buildPhasePlot(container: HTMLElement, chart: Chart, clock: Clock, visibility: Visibility): void {
+export function buildPhasePlot(container: HTMLElement, chart: Chart, clock: Clock, visibility: Visibility): uPlot {
   const place = element("div", { class: "drawing" });
   const title = `${withUnit(chart.title, chart.unit)} over ${withUnit(chart.over!.column, chart.over!.unit)}`;
   container.append(element("figure", { class: "plot" }, element("figcaption", {}, element("h3", {}, title)), place));
@@ -35,11 +35,11 @@ export function buildPhasePlot(container: HTMLElement, chart: Chart, clock: Cloc
   onThemeChange(() => {
     plot.redraw(false);
     mark();
-  });
+  }, place);
   visibility.onChange(() => {
     chart.curves.forEach((curve, i) => plot.setSeries(i + 1, { show: visibility.shows(curve.run) }));
     mark();
-  });
+  }, place);
   new ResizeObserver(() => place.clientWidth > 0 && plot.setSize({ width: place.clientWidth, height: HEIGHT })).observe(place);
 
   const near = (left: number, top: number): { curve: Curve; t: number } | undefined => nearest(plot, chart, visibility, left, top);
@@ -54,6 +54,7 @@ export function buildPhasePlot(container: HTMLElement, chart: Chart, clock: Cloc
     if (found) clock.setTime(found.t);
   });
   mark();
+  return plot;
 }
 
 /** The row whose place in the drawing is nearest. */

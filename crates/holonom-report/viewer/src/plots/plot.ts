@@ -22,7 +22,7 @@ const CLICK = 3;
 const FADED = 0.12;
 
 /** A plot of one run, with the values of its curves in the heading. */
-export function buildPlot(container: HTMLElement, chart: Chart, clock: Clock, visibility: Visibility): void {
+export function buildPlot(container: HTMLElement, chart: Chart, clock: Clock, visibility: Visibility): uPlot {
   const heading = new Heading(chart);
   const drawing = new Drawing(container, heading.node, chart, clock, visibility);
   const read = (): void => heading.show(drawing.time());
@@ -33,26 +33,28 @@ export function buildPlot(container: HTMLElement, chart: Chart, clock: Clock, vi
     heading.refresh();
   };
   heading.onToggle = refresh;
-  onThemeChange(refresh);
+  onThemeChange(refresh, heading.node);
   refresh();
   read();
   drawing.showReadout(new Readout(chart, visibility));
+  return drawing.plot;
 }
 
 /** A plot of several runs, with the values of their curves beside the pointer. */
-export function buildComparedPlot(container: HTMLElement, chart: Chart, clock: Clock, visibility: Visibility): void {
+export function buildComparedPlot(container: HTMLElement, chart: Chart, clock: Clock, visibility: Visibility): uPlot {
   const heading = new ComparedHeading(chart);
   const drawing = new Drawing(container, heading.node, chart, clock, visibility);
   const { plot } = drawing;
   const refresh = (): void => heading.refresh(drawing.showCurves());
-  visibility.onChange(refresh);
+  visibility.onChange(refresh, heading.node);
   refresh();
 
   drawing.showReadout(new Readout(chart, visibility));
   visibility.onHighlight(() => {
     const series = 1 + chart.curves.findIndex((curve) => curve.run === visibility.highlighted && visibility.shows(curve.run));
     plot.setSeries(series === 0 ? null : series, { focus: series > 0 });
-  });
+  }, heading.node);
+  return plot;
 }
 
 /** The curves of a chart under a heading. */
@@ -79,7 +81,7 @@ class Drawing {
     this.on("setScale", mark);
     this.on("setSize", mark);
     clock.onTime(mark, place);
-    onThemeChange(() => this.plot.redraw(false));
+    onThemeChange(() => this.plot.redraw(false), place);
     // A drawing that is folded away has no width.
     new ResizeObserver(() => place.clientWidth > 0 && this.plot.setSize({ width: place.clientWidth, height: HEIGHT })).observe(place);
     mark();
