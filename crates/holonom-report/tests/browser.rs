@@ -51,6 +51,21 @@ fn what_the_machine_does_comes_first() {
     let extremes: Vec<&str> = machine["extremes"].as_array().unwrap().iter().map(|row| row.as_str().unwrap()).collect();
     assert!(extremes.contains(&"lift 0 0 s 1.125 1.500 s"), "{extremes:?}");
     assert_eq!((extremes.len(), &machine["wentTo"]), (4, &Value::from(1.5)), "{seen:#}");
+    // Numbers and pictures can be taken away.
+    let taken = &seen["taken"];
+    assert_eq!(
+        taken["names"],
+        json!(["Slider.csv", "Slider-picture.png", "Slider-lift.png", "Slider-crank.effort-N-m.png", "Slider-hinge.angle-rad.png"])
+    );
+    let lines: Vec<&str> = taken["numbers"].as_str().unwrap().lines().collect();
+    assert_eq!((lines.len(), lines[0], lines[1]), (301, "t,lift,crank.effort,hinge.angle", "0,0,0,0"));
+    let row: Vec<f64> = lines[151].split(',').map(|number| number.parse().unwrap()).collect();
+    assert_eq!(lines[151].split(',').take(2).collect::<Vec<_>>(), ["1.5", "1.125"]);
+    assert!((row[2] - 2.0 * 1.5_f64.sin()).abs() < 1e-7 && (row[3] - 0.45).abs() < 1e-8, "{row:?}");
+    for picture in taken["pictures"].as_array().unwrap() {
+        assert_eq!((&picture[0], &picture[1]), (&Value::from("image/png"), &Value::from(true)), "{seen:#}");
+        assert!(picture[2].as_u64().unwrap() > 300 && picture[3].as_u64().unwrap() > 200, "{seen:#}");
+    }
 }
 
 #[test]

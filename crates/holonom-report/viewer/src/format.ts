@@ -17,6 +17,16 @@ export function reading(value: number | null | undefined): string {
   return `${minus(mantissa)}·${power(Number(exponent))}`;
 }
 
+/** A number in full: with as few digits as tell it from its neighbours, of single precision if it is one of these. */
+export function shortest(value: number): string {
+  if (Math.fround(value) !== value) return String(value);
+  for (let digits = 6; digits < 9; digits++) {
+    const rounded = Number(value.toPrecision(digits));
+    if (Math.fround(rounded) === value) return String(rounded);
+  }
+  return String(Number(value.toPrecision(9)));
+}
+
 /** Labels of a linear axis: one common power of ten, decimals as the increment needs them. */
 export function ticks(values: number[], increment: number): string[] {
   const largest = Math.max(...values.map(Math.abs));

@@ -9,6 +9,7 @@ import { Extremes } from "./plots/extremes";
 import { buildPhasePlot } from "./plots/phase";
 import { buildComparedPlot, buildPlot } from "./plots/plot";
 import { ownersOf, type Selection } from "./selection";
+import { save, table } from "./take";
 import type { Visibility } from "./visibility";
 
 /** Title, unit and ending of the channels that are shown from the start, behind the measures. */
@@ -111,7 +112,12 @@ class Machine {
 
   /** The table of extremes follows what is plotted. */
   private count(): void {
-    this.extremes.show([...new Set([...this.plots.children].flatMap((place) => this.shown.get(place)?.columns ?? []))]);
+    this.extremes.show(this.plotted());
+  }
+
+  /** Columns, in the order of the page. */
+  private plotted(): string[] {
+    return [...new Set([...this.plots.children].flatMap((place) => this.shown.get(place)?.columns ?? []))];
   }
 
   /** A plot of its own in front of the others, whose x axis is chosen. */
@@ -147,7 +153,9 @@ class Machine {
       this.ask(channel);
       field.value = "";
     });
-    return element("p", { class: "picker" }, element("label", {}, `Plot one of ${this.channels.length} columns: `, field), list);
+    const take = element("button", { type: "button", class: "take", title: "save the columns that are plotted" }, "CSV of what is plotted");
+    take.addEventListener("click", () => save(table(this.runs, this.plotted()), "", "csv"));
+    return element("p", { class: "picker" }, element("label", {}, `Plot one of ${this.channels.length} columns: `, field), list, take);
   }
 }
 

@@ -9,14 +9,17 @@ import { drawable } from "./bounds";
 import { withUnit, type Chart, type Curve } from "./charts";
 import { Readout } from "./comparison";
 import { FONT, HEIGHT, LABEL_WIDTH, onClick, UNIT_WIDTH } from "./plot";
+import { pictureButton } from "./picture";
 import { linearAxis, linearLabels } from "./scales";
 import { rowNear } from "./values";
 
 export function buildPhasePlot(container: HTMLElement, chart: Chart, clock: Clock, visibility: Visibility): uPlot {
   const place = element("div", { class: "drawing" });
   const title = `${withUnit(chart.title, chart.unit)} over ${withUnit(chart.over!.column, chart.over!.unit)}`;
-  container.append(element("figure", { class: "plot" }, element("figcaption", {}, element("h3", {}, title)), place));
+  const figure = element("figure", { class: "plot" }, element("figcaption", {}, element("h3", {}, title)), place);
+  container.append(figure);
   const plot = new uPlot(phaseOptions(chart, place.clientWidth || 500), tableOf(chart), place);
+  figure.append(pictureButton(plot, title, chart.curves));
   const dots = chart.curves.map(() => element("div", { class: "dot" }));
   const readout = new Readout(chart, visibility);
   plot.over.append(...dots, readout.node);

@@ -6,9 +6,10 @@ import { element } from "../dom";
 import { curveColor, curveDash, onThemeChange, theme } from "../theme";
 import type { Visibility } from "../visibility";
 import { axisOf, departures, drawable, type Departure, type Extent } from "./bounds";
-import type { Chart, Curve } from "./charts";
+import { withUnit, type Chart, type Curve } from "./charts";
 import { ComparedHeading, Readout } from "./comparison";
 import { Heading } from "./heading";
+import { pictureButton } from "./picture";
 import { linearLabels, logFloor, logLabels, logSplits } from "./scales";
 
 export const HEIGHT = 215;
@@ -72,10 +73,12 @@ class Drawing {
     private readonly visibility: Visibility,
   ) {
     const place = element("div", { class: "drawing" });
-    container.append(element("figure", { class: "plot" }, heading, place));
+    const figure = element("figure", { class: "plot" }, heading, place);
+    container.append(figure);
     this.rows = lastRows(departures(chart, this.shown()));
     this.plot = new uPlot(plotOptions(chart, place.clientWidth || 500), tableOf(chart, this.rows), place);
     this.plot.over.append(this.marker);
+    figure.append(pictureButton(this.plot, withUnit(chart.title, chart.unit), chart.curves));
     onClick(this.plot.over, (x) => clock.setTime(this.plot.posToVal(x, "x")));
     const mark = (): void => this.mark();
     this.on("setScale", mark);

@@ -96,15 +96,33 @@ export class Arrows {
   /** Puts the labels beside the tips, below each other where they would meet. */
   place(camera: Camera, width: number, height: number): void {
     const taken: [number, number][] = [];
-    for (const { label, tip } of this.arrows) {
+    for (const { group, label, tip } of this.arrows) {
       if (!label || label.hidden) continue;
-      const seen = tip.clone().project(camera);
-      const x = Math.min(Math.max(((seen.x + 1) / 2) * width + 6, 4), width - label.offsetWidth - 4);
+      const [seen, tail] = [tip.clone().project(camera), group.position.clone().project(camera)];
+      const aside = seen.x < tail.x - 0.01 ? -6 - label.offsetWidth : 6;
+      const x = Math.min(Math.max(((seen.x + 1) / 2) * width + aside, 4), width - label.offsetWidth - 4);
       let y = Math.min(Math.max(((1 - seen.y) / 2) * height - 8, 4), height - 20);
       while (taken.some(([u, v]) => Math.abs(v - y) < APART && Math.abs(u - x) < 110)) y += APART;
       taken.push([x, y]);
       label.style.transform = `translate(${x}px, ${y}px)`;
     }
+  }
+
+  /** A copy of the picture with the labels in it. */
+  drawnOn(picture: HTMLCanvasElement): HTMLCanvasElement {
+    const canvas = element("canvas", { width: String(picture.width), height: String(picture.height) });
+    const pen = canvas.getContext("2d")!;
+    pen.drawImage(picture, 0, 0);
+    const bounds = picture.getBoundingClientRect();
+    pen.scale(picture.width / bounds.width, picture.height / bounds.height);
+    pen.font = "600 12px system-ui, sans-serif";
+    for (const { label, acting } of this.arrows) {
+      if (!label || label.hidden) continue;
+      const { left, bottom } = label.getBoundingClientRect();
+      pen.fillStyle = acting.unit === "N" ? theme().force : theme().moment;
+      pen.fillText(label.textContent ?? "", left - bounds.left + 5, bottom - bounds.top - 5);
+    }
+    return canvas;
   }
 
   private straight(): Group {

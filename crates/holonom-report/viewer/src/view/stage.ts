@@ -7,6 +7,7 @@ import { element } from "../dom";
 import type { Motion } from "../motion";
 import type { Vec3 } from "../payload";
 import type { Selection } from "../selection";
+import { savePicture } from "../take";
 import { onThemeChange, theme } from "../theme";
 import type { Visibility } from "../visibility";
 import { actingOn } from "./acting";
@@ -107,7 +108,11 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
     highlight.show(selection.item);
     show(clock.time);
   });
-  const tools = element("div", { class: "tools" }, ...(looks ? [looks] : []), homeButton(home));
+  const take = pictureButton(() => {
+    renderer.render(scene, camera);
+    return arrows.drawnOn(canvas);
+  });
+  const tools = element("div", { class: "tools" }, ...(looks ? [looks] : []), take, homeButton(home));
   container.append(choice.node, listenToPointer(canvas, camera, groups, selection), arrows.labels, tools);
   choice.onChange(choose);
   selection.onChange(select);
@@ -144,6 +149,12 @@ function drawOnDemand(draw: () => void): () => void {
 
 function shape(container: HTMLElement): number {
   return container.clientWidth / Math.max(container.clientHeight, 1);
+}
+
+function pictureButton(draw: () => HTMLCanvasElement): HTMLElement {
+  const button = element("button", { type: "button", class: "take", title: "save this picture" }, "PNG");
+  button.addEventListener("click", () => savePicture(draw(), "picture"));
+  return button;
 }
 
 function hint(cell: number): HTMLElement {
