@@ -74,6 +74,18 @@ fn status_and_figures_are_readable_without_a_script() {
     assert!(!page.contains("time per step"), "the summary has no time");
 }
 
+#[test]
+fn an_event_that_happens_often_takes_one_row() {
+    let event = |name: &str, t: f64, stopped: bool| json!({"event": name, "t": t, "stopped": stopped});
+    let mut events: Vec<Value> = (1..=60).map(|k| event("bounce", f64::from(k), false)).collect();
+    events.push(event("end <stop>", 61.0, true));
+    let page = page("t", "m", &recording(3, 0.0), &json!({"status": "completed", "events": events}));
+    let table = page.split_once("<caption>Events</caption>").unwrap().1.split_once("</table>").unwrap().0;
+    assert_eq!(table.matches("<tr>").count(), 2, "{table}");
+    assert!(table.contains(r#"bounce <small>60 times</small></th><td>1, 2, 3, 4, … <small>s</small>"#), "{table}");
+    assert!(table.contains(r#"end &lt;stop&gt; <small>end of the run</small></th><td>61 <small>s</small>"#), "{table}");
+}
+
 /// A page that compares runs of summaries, each with a recording of its kinetic energy.
 fn compared(cases: &[(&str, f64, Value)]) -> String {
     let recordings: Vec<Recording> = cases.iter().map(|(_, kinetic, _)| moving(*kinetic)).collect();

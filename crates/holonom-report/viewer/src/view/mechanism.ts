@@ -1,6 +1,6 @@
 // One run's mechanism: points, what connects them, bodies, and trails.
 
-import { BackSide, BoxGeometry, BufferGeometry, Color, FrontSide, Group, Line, LineBasicMaterial, Mesh, MeshStandardMaterial, SphereGeometry, Vector3, type Side } from "three";
+import { BackSide, BoxGeometry, BufferGeometry, Color, CylinderGeometry, FrontSide, Group, Line, LineBasicMaterial, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3, type Side } from "three";
 import type { Motion } from "../motion";
 import type { Anchor, Line as SceneLine, Scene, Vec3 } from "../payload";
 import { bodyColor, curveColor, theme, type Theme } from "../theme";
@@ -18,7 +18,7 @@ const MOST_TRAILS = 16;
 const SAMPLES = 400;
 
 /** Radii as shares of the size of the whole picture. */
-const RADIUS = { bar: 0.0095, pin: 0.0125, rod: 0.0038, spring: 0.016, wire: 0.0028, rope: 0.0025, point: 0.017, ground: 0.026 };
+const RADIUS = { bar: 0.0095, pin: 0.0135, rod: 0.0038, spring: 0.016, wire: 0.0028, rope: 0.0025, point: 0.017, ground: 0.026 };
 
 export class Mechanism {
   readonly group = new Group();
@@ -110,10 +110,20 @@ export class Mechanism {
     const places = new Map(ends.map((end) => [JSON.stringify(end.anchor), end]));
     for (const { name, anchor } of places.values()) {
       if ("point" in anchor && balls.has(anchor.point)) continue;
-      const mesh = this.solid(new SphereGeometry(RADIUS.pin * this.scale, 24, 16), (colours) => colours.joint);
-      mark(mesh, "point" in anchor ? { sort: "point", kind: "point", name: anchor.point } : { sort: "line", kind: "bar", name });
-      this.updates.push((t) => this.put(mesh, this.motion.anchorAt(anchor, t)));
+      for (const mesh of this.pin()) {
+        mark(mesh, "point" in anchor ? { sort: "point", kind: "point", name: anchor.point } : { sort: "line", kind: "bar", name });
+        this.updates.push((t) => this.put(mesh, this.motion.anchorAt(anchor, t)));
+      }
     }
+  }
+
+  /** In a plane a pin in an eye, in space a ball. */
+  private pin(): Mesh[] {
+    const radius = RADIUS.pin * this.scale;
+    if (!this.motion.planar) return [this.solid(new SphereGeometry(radius, 24, 16), (colours) => colours.joint)];
+    const across = new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), this.motion.across);
+    const disc = (share: number, length: number): BufferGeometry => new CylinderGeometry(share * radius, share * radius, length * radius, 28).applyQuaternion(across);
+    return [this.solid(disc(1, 2.6), (colours) => colours.joint, FrontSide), this.solid(disc(0.5, 2.8), (colours) => colours.pin, FrontSide)];
   }
 
   private addGuide(from: Anchor, to: Anchor): void {
