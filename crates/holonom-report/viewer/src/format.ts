@@ -30,7 +30,8 @@ export function shortest(value: number): string {
 /** Labels of a linear axis: one common power of ten, decimals as the increment needs them. */
 export function ticks(values: number[], increment: number): string[] {
   const largest = Math.max(...values.map(Math.abs));
-  if (largest === 0 || (largest >= 1e-2 && largest < 1e5)) {
+  if (largest === 0) return values.map(() => "0");
+  if (largest >= 1e-2 && largest < 1e5) {
     const digits = decimals(increment);
     return values.map((v) => minus(v.toFixed(digits)));
   }

@@ -29,6 +29,8 @@ const MOST_MEASURES = 12;
 const MOST_COMPARED = 4;
 /** Units of what is selected: what acts comes before motion. */
 const ORDER = ["N", "N·m", "W", "rad", "m", "rad/s", "m/s", "rad/s²", "m/s²"];
+/** Less is rounding of what is zero, and drawn as zero. */
+const LEAST_SPAN = 1e-15;
 /** Measures share a plot where none is so many times as large as another: the small one would be a flat line. */
 const COMPARABLE = 20;
 
@@ -227,7 +229,7 @@ function chartOf({ title, channels }: Group, runs: Run[], over: Channel | undefi
   const ambiguous = new Set(shortened).size < shortened.length;
   const curves = runs.flatMap((run, index) =>
     channels.flatMap(({ name }, k) => {
-      const find = (name: string): Float64Array | undefined => run.channels.find((channel) => channel.name === name)?.values;
+      const find = (name: string): Float64Array | undefined => run.channelOf.get(name)?.values;
       const [y, across] = [find(name), over && find(over.name)];
       if (!y || (over && !across)) return [];
       const label = compared ? run.label : ambiguous ? name : shortened[k];
@@ -236,6 +238,6 @@ function chartOf({ title, channels }: Group, runs: Run[], over: Channel | undefi
     }),
   );
   const unit = channels[0].unit === "1" ? "" : channels[0].unit;
-  const chart: Chart = { title, unit, scale: "linear", curves, leastSpan: 0, allowed: Infinity };
+  const chart: Chart = { title, unit, scale: "linear", curves, leastSpan: LEAST_SPAN, allowed: Infinity };
   return over ? { ...chart, over: { column: over.name, unit: over.unit === "1" ? "" : over.unit } } : chart;
 }

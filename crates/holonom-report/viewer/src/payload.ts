@@ -72,6 +72,7 @@ export interface Run {
   times: Float64Array;
   /** Measures, what acts and joint coordinates, then motion. */
   channels: Channel[];
+  channelOf: Map<string, Channel>;
 }
 
 /** A recorded column that may be plotted. */
@@ -109,7 +110,8 @@ export function readPayload(): Run[] {
       const values = Float64Array.from(new Float32Array(bytesOf(channel.values)), (value) => middle + value);
       return { ...channel, values };
     });
-    return [{ label: raw.label, sound: raw.sound, scene, columns, points, bodies, times: columns.get("t") ?? new Float64Array(), channels }];
+    const channelOf = new Map(channels.map((channel) => [channel.name, channel]));
+    return [{ label: raw.label, sound: raw.sound, scene, columns, points, bodies, times: columns.get("t") ?? new Float64Array(), channels, channelOf }];
   });
 }
 

@@ -23,8 +23,8 @@ export function savePicture(canvas: HTMLCanvasElement, name: string): void {
 export function table(runs: Run[], columns: string[]): Blob {
   const compared = runs.length > 1;
   const lines = [[...(compared ? ["run"] : []), "t", ...columns].map(quoted).join()];
-  for (const { label, times, channels } of runs) {
-    const values = columns.map((column) => channels.find((channel) => channel.name === column)?.values);
+  for (const { label, times, channelOf } of runs) {
+    const values = columns.map((column) => channelOf.get(column)?.values);
     times.forEach((t, row) => {
       const numbers = [t, ...values.map((column) => column?.[row])].map((value) => (value === undefined ? "" : shortest(value)));
       lines.push([...(compared ? [quoted(label)] : []), ...numbers].join());

@@ -22,7 +22,7 @@ export class Extremes {
   }
 
   private row(run: Run, column: string): HTMLElement[] {
-    const channel = run.channels.find((channel) => channel.name === column);
+    const channel = run.channelOf.get(column);
     if (!channel?.extremes) return [];
     const [least, leastAt, most, mostAt] = channel.extremes;
     const name = withUnit(column, channel.unit === "1" ? "" : channel.unit);

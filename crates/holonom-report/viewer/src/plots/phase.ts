@@ -9,6 +9,7 @@ import { drawable } from "./bounds";
 import { withUnit, type Chart, type Curve } from "./charts";
 import { Readout } from "./comparison";
 import { FONT, HEIGHT, LABEL_WIDTH, onClick, UNIT_WIDTH } from "./plot";
+import { straight } from "./path";
 import { pictureButton } from "./picture";
 import { linearAxis, linearLabels } from "./scales";
 import { rowNear } from "./values";
@@ -80,7 +81,7 @@ function tableOf(chart: Chart): uPlot.AlignedData {
 function phaseOptions(chart: Chart, width: number): uPlot.Options {
   const axis = { stroke: () => theme().soft, font: FONT, labelFont: FONT, grid: { stroke: () => theme().line, width: 1 }, ticks: { show: false } };
   const range = (_: uPlot, min: number | null, max: number | null): uPlot.Range.MinMax =>
-    linearAxis(Number.isFinite(min) && Number.isFinite(max) && min !== null && max !== null ? [min, max] : undefined, 0, false);
+    linearAxis(Number.isFinite(min) && Number.isFinite(max) && min !== null && max !== null ? [min, max] : undefined, chart.leastSpan, false);
   return {
     mode: 2,
     width,
@@ -101,27 +102,9 @@ function phaseOptions(chart: Chart, width: number): uPlot.Options {
         width: 1.5,
         points: { show: false },
         facets: [{ scale: "x", auto: true }, { scale: "y", auto: true }],
-        paths: path,
+        paths: straight,
         ...(curveDash(curve.colour) ? { dash: curveDash(curve.colour) } : {}),
       })),
     ],
   };
-}
-
-/** Row after row: what uPlot has for curves goes by ascending values of x. */
-function path(plot: uPlot, index: number): uPlot.Series.Paths {
-  const stroke = new Path2D();
-  uPlot.orient(plot, index, (_, across, y, scaleX, scaleY, toX, toY, left, top, width, height, moveTo, lineTo) => {
-    let drawn = false;
-    for (let row = 0; row < y.length; row++) {
-      const [u, v] = [across[row], y[row]];
-      if (u === null || u === undefined || v === null || v === undefined) {
-        drawn = false;
-        continue;
-      }
-      (drawn ? lineTo : moveTo)(stroke, toX(u, scaleX, width, left), toY(v, scaleY, height, top));
-      drawn = true;
-    }
-  });
-  return { stroke, fill: null as unknown as Path2D, clip: null as unknown as Path2D, flags: 0 } as uPlot.Series.Paths;
 }

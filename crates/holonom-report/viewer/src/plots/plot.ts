@@ -9,6 +9,7 @@ import { axisOf, departures, drawable, type Departure, type Extent } from "./bou
 import { withUnit, type Chart, type Curve } from "./charts";
 import { ComparedHeading, Readout } from "./comparison";
 import { Heading } from "./heading";
+import { straight } from "./path";
 import { pictureButton } from "./picture";
 import { linearLabels, logFloor, logLabels, logSplits } from "./scales";
 
@@ -161,7 +162,7 @@ function tableOf(chart: Chart, cutAfter: Map<Curve, number>): uPlot.AlignedData 
 
 function plotOptions(chart: Chart, width: number): uPlot.Options {
   const log = chart.scale === "log";
-  const paths = chart.scale === "steps" ? uPlot.paths.stepped?.({ align: -1 }) : undefined;
+  const stepped = chart.scale === "steps" ? uPlot.paths.stepped?.({ align: -1 }) : undefined;
   const axis = { stroke: () => theme().soft, font: FONT, labelFont: FONT, grid: { stroke: () => theme().line, width: 1 }, ticks: { show: false } };
   // A unit that is left out has its room, too.
   const labelled = { size: LABEL_WIDTH, label: chart.unit || " ", labelSize: UNIT_WIDTH, labelGap: 0 };
@@ -190,10 +191,8 @@ function plotOptions(chart: Chart, width: number): uPlot.Options {
           label: curve.label,
           stroke: () => curveColor(curve.colour),
           width: 1.5,
-          // Rounded to pixels, a curve that rises slowly has stairs.
-          ...(paths ? {} : { pxAlign: 0 }),
           points: { show: false },
-          ...(paths ? { paths } : {}),
+          paths: stepped ?? straight,
           ...(dash ? { dash } : {}),
         };
       }),

@@ -123,7 +123,7 @@ function recordedVectors(motion: Motion, name: string): Pick<Acting, "unit" | "v
 
 /** A column, between its rows on a straight line. */
 function column(run: Run, name: string): { unit: string; at: (t: number) => number } | undefined {
-  const channel = run.channels.find((channel) => channel.name === name);
+  const channel = run.channelOf.get(name);
   if (!channel) return undefined;
   const { times } = run;
   const at = (t: number): number => {

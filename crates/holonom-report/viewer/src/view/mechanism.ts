@@ -103,10 +103,14 @@ export class Mechanism {
     });
   }
 
-  /** Pins at the ends of bars, but where a point has a ball of its own. */
+  /** Pins at the ends of bars that have room for them, but where a point has a ball of its own. */
   private addPins(): void {
+    const hasRoom = ({ from, to }: SceneLine): boolean => {
+      const ends = this.ends(from, to, this.motion.run.times[0] ?? 0);
+      return ends !== undefined && ends[0].distanceTo(ends[1]) > 4 * RADIUS.pin * this.scale;
+    };
     const balls = new Set(this.scene.points.filter(({ kind, mass }) => kind === "driven" || (kind === "free" && mass > 0)).map(({ name }) => name));
-    const ends = this.scene.lines.filter(({ kind }) => kind === "bar").flatMap(({ name, from, to }) => [from, to].map((anchor) => ({ name, anchor })));
+    const ends = this.scene.lines.filter((line) => line.kind === "bar" && hasRoom(line)).flatMap(({ name, from, to }) => [from, to].map((anchor) => ({ name, anchor })));
     const places = new Map(ends.map((end) => [JSON.stringify(end.anchor), end]));
     for (const { name, anchor } of places.values()) {
       if ("point" in anchor && balls.has(anchor.point)) continue;
