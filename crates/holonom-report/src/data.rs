@@ -6,6 +6,7 @@ use crate::outcome::Outcome;
 use crate::thin::{Keep, Thinning};
 use holonom::record::{Column, Recording, Scene};
 use serde::Serialize;
+use serde_json::Value;
 use std::collections::{BTreeMap, HashSet};
 
 /// Columns that go into the page as they are, and how they are thinned.
@@ -43,7 +44,7 @@ pub struct RunData<'a> {
     /// Name of a body → coordinates of its centre of mass along `scene.axes` and its orientation (`qw`, `qx`, `qy`, `qz`; in a plane
     /// `angle`), row after row, base64 of 32-bit floats.
     bodies: BTreeMap<&'a str, String>,
-    /// What else was recorded: what acts and joint coordinates first, then motion.
+    /// What else was recorded: measures, then what acts and joint coordinates, then motion.
     channels: Vec<ChannelData<'a>>,
 }
 
@@ -53,9 +54,17 @@ struct ChannelData<'a> {
     name: &'a str,
     unit: &'a str,
     meaning: &'a str,
+    is_measure: bool,
+    /// What is added to `values`: 0, or the middle of a column that varies little around it, which single precision would turn into stairs.
+    middle: f64,
     /// Base64 of 32-bit floats.
     values: String,
+    /// Least value, its time, largest value, its time, of all recorded rows; none where no value is finite.
+    extremes: Option<[f64; 4]>,
 }
+
+/// A column whose middle is so many times as large as its variation counts from there.
+const FLAT: f64 = 100.0;
 
 /// Numbers that a page holds per run for these; what comes last is left out where there are more.
 const MAX_NUMBERS: usize = 600_000;
@@ -77,7 +86,7 @@ impl<'a> RunData<'a> {
             columns: columns(recording, &thinning),
             points: paths(recording, scene.points.iter().map(|point| point.name.as_str()), &place, &thinning),
             bodies: paths(recording, scene.bodies.iter().map(|body| body.name.as_str()), &pose, &thinning),
-            channels: channels(recording, scene, &thinning),
+            channels: channels(run, &thinning),
         }
     }
 }
@@ -98,25 +107,55 @@ fn columns(recording: &Recording, thinning: &Thinning) -> BTreeMap<&'static str,
     recorded.chain(derived).map(|(name, values, keep)| (name, base64::doubles(&thinning.apply(&values, keep)))).collect()
 }
 
-/// All columns with a unit but those of the run itself.
-fn channels<'a>(recording: &'a Recording, scene: &Scene, thinning: &Thinning) -> Vec<ChannelData<'a>> {
+/// All measures, and all columns with a unit but those of the run itself.
+fn channels<'a>(run: &Run<'a>, thinning: &Thinning) -> Vec<ChannelData<'a>> {
+    let (recording, scene) = (run.recording, run.scene);
+    let listed = run.summary.pointer("/peaks/measures").and_then(Value::as_array).into_iter().flatten();
+    let measured: HashSet<&str> = listed.filter_map(|measure| measure.get("name")?.as_str()).collect();
+    let is_measure = |column: &&Column| measured.contains(column.heading.name.as_str());
     let bodies = scene.bodies.iter().map(|body| body.name.as_str());
     let moving: HashSet<&str> = scene.points.iter().map(|point| point.name.as_str()).chain(bodies).collect();
     let is_motion = |column: &&Column| column.heading.name.rsplit_once('.').is_some_and(|(owner, _)| moving.contains(owner));
     let shown = recording.columns().iter().filter(|column| {
         let heading = &column.heading;
-        heading.unit != "1" && COLUMNS.iter().all(|(name, _)| *name != heading.name) && !column.values.iter().all(|value| value.is_nan())
+        let is_of_run = COLUMNS.iter().any(|(name, _)| *name == heading.name);
+        (heading.unit != "1" || is_measure(column)) && !is_of_run && !column.values.iter().all(|value| value.is_nan())
     });
-    let (motion, others): (Vec<&Column>, Vec<&Column>) = shown.partition(is_motion);
+    let (measures, others): (Vec<&Column>, Vec<&Column>) = shown.partition(is_measure);
+    let (motion, others): (Vec<&Column>, Vec<&Column>) = others.into_iter().partition(is_motion);
+    let times = recording.column("t").unwrap_or_default();
     let most = MAX_NUMBERS / thinning.kept().max(1);
     let channel = |column: &'a Column| {
         let heading = &column.heading;
-        // What acts is asked for its peaks.
-        let keep = if ["N", "N·m", "W"].contains(&&*heading.unit) { Keep::Extreme } else { Keep::Last };
-        let values: Vec<f32> = thinning.apply(&column.values, keep).into_iter().map(|value| value as f32).collect();
-        ChannelData { name: &heading.name, unit: &heading.unit, meaning: &heading.meaning, values: base64::singles(&values) }
+        // What acts and what is measured is asked for its peaks, to either side of the middle.
+        let keep = if is_measure(&column) || ["N", "N·m", "W"].contains(&&*heading.unit) { Keep::Extreme } else { Keep::Last };
+        let extremes = extremes(times, &column.values);
+        let (centre, span) = extremes.map_or((0.0, 0.0), |[least, _, most, _]| (0.5 * least + 0.5 * most, most - least));
+        let middle = if centre.abs() > FLAT * span { centre } else { 0.0 };
+        let around: Vec<f64> = column.values.iter().map(|value| value - centre).collect();
+        let values: Vec<f32> = thinning.apply(&around, keep).into_iter().map(|value| (value + (centre - middle)) as f32).collect();
+        ChannelData {
+            name: &heading.name,
+            unit: &heading.unit,
+            meaning: &heading.meaning,
+            is_measure: is_measure(&column),
+            middle,
+            values: base64::singles(&values),
+            extremes,
+        }
     };
-    others.into_iter().chain(motion).take(most).map(channel).collect()
+    measures.into_iter().chain(others).chain(motion).take(most).map(channel).collect()
+}
+
+/// The least finite value and the largest, each with the time when it is first reached.
+fn extremes(times: &[f64], values: &[f64]) -> Option<[f64; 4]> {
+    let finite = times.iter().zip(values).filter(|(_, value)| value.is_finite());
+    finite.fold(None, |found, (&t, &value)| {
+        let [least, least_at, most, most_at] = found.unwrap_or([value, t, value, t]);
+        let (least, least_at) = if value < least { (value, t) } else { (least, least_at) };
+        let (most, most_at) = if value > most { (value, t) } else { (most, most_at) };
+        Some([least, least_at, most, most_at])
+    })
 }
 
 /// E − E(0) − W, J; a recording without the column `work` has W = 0.

@@ -17,7 +17,7 @@ const FIGURES: [(&str, &str, &str); 7] = [
     ("/redundant", "redundant rows", ""),
 ];
 
-/// Method, status and key figures: a line and tiles for one run, a table for several.
+/// Method, status and what was asked: a line and tables for one run, a table with the key figures of the solver for several.
 pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
     match runs {
         [run] => one(run, out),
@@ -27,8 +27,20 @@ pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
 
 fn one(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
     writeln!(out, r#"<p class="method">{} {}{}</p>"#, badge(run.summary), method(run.summary), reason(run.summary))?;
-    measures(run.summary, out)?;
-    peaks(run.summary, out)?;
+    let mut tables = Vec::new();
+    measures(run.summary, &mut tables)?;
+    events(run.summary, &mut tables)?;
+    peaks(run.summary, &mut tables)?;
+    if tables.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, r#"<div class="peaks">"#)?;
+    out.write_all(&tables)?;
+    writeln!(out, "</div>")
+}
+
+/// Key figures of the solver for one run, which a table has for several.
+pub fn solver(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
     writeln!(out, r#"<dl class="figures">"#)?;
     for (pointer, name, unit) in FIGURES.into_iter().filter(|(pointer, ..)| known(run.summary, pointer)) {
         let value = figure(run.summary, pointer);
@@ -44,18 +56,20 @@ const PEAKS: [(&str, &str); 3] = [("drives", "Drives"), ("forces", "Forces"), ("
 /// Peaks of a sort and a unit that are shown.
 const ROWS: usize = 5;
 
+/// A peak that is a smaller share of the largest of its sort is round-off.
+const ROUND_OFF: f64 = 1e-12;
+
 /// The largest of what acts in the mechanism.
 fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
     let of = |sort: &str| summary.pointer(&format!("/peaks/{sort}")).and_then(Value::as_array).filter(|peaks| !peaks.is_empty());
-    if PEAKS.iter().all(|(sort, _)| of(sort).is_none()) {
-        return Ok(());
-    }
-    writeln!(out, r#"<div class="peaks">"#)?;
     for (sort, name) in PEAKS {
         let Some(peaks) = of(sort) else { continue };
         writeln!(out, "<table><caption>{name}: the largest</caption><tbody>")?;
         let is_among_first = |k: usize| peaks[..k].iter().filter(|peak| peak.get("unit") == peaks[k].get("unit")).count() < ROWS;
-        for peak in (0..peaks.len()).filter(|&k| is_among_first(k)).map(|k| &peaks[k]) {
+        let size = |peak: &Value| peak.get("value").and_then(Value::as_f64).map_or(f64::INFINITY, f64::abs);
+        let most = peaks.iter().map(size).fold(0.0, f64::max);
+        let is_shown = |&k: &usize| is_among_first(k) && (most.is_infinite() || size(&peaks[k]) >= ROUND_OFF * most);
+        for peak in (0..peaks.len()).filter(is_shown).map(|k| &peaks[k]) {
             let text = |key: &str| peak.get(key).map_or(String::new(), |value| html(&format::value(value)));
             let number = |key: &str| format::figure(peak.get(key).and_then(Value::as_f64).unwrap_or(f64::NAN));
             let (value, at) = (number("value"), number("at"));
@@ -68,56 +82,77 @@ fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
         }
         writeln!(out, "</tbody></table>")?;
     }
-    writeln!(out, "</div>")
+    Ok(())
+}
+
+/// How far measures go: what the model was asked.
+fn measures(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
+    let measures = list(summary, "/peaks/measures");
+    if measures.is_empty() {
+        return Ok(());
+    }
+    let heads = ["smallest", "largest", "last"].map(|head| format!(r#"<th scope="col" class="number">{head}</th>"#)).concat();
+    writeln!(out, r#"<table class="measures"><caption>Measures</caption><thead><tr><th></th>{heads}</tr></thead><tbody>"#)?;
+    for measure in measures {
+        let cell = |key: &str, at: &str| {
+            let at = if at.is_empty() { String::new() } else { format!(" <small>at {} s</small>", number(measure, at)) };
+            format!(r#"<td class="number">{}{at}</td>"#, number(measure, key))
+        };
+        let unit = match words(measure, "unit") {
+            unit if unit == "1" => String::new(),
+            unit => format!(" <small>{unit}</small>"),
+        };
+        let cells = [cell("min", "min_at"), cell("max", "max_at"), cell("last", "")].concat();
+        writeln!(out, r#"<tr><th scope="row">{}{unit}</th>{cells}</tr>"#, words(measure, "name"))?;
+    }
+    writeln!(out, "</tbody></table>")
 }
 
 /// Events that are listed.
 const EVENTS: usize = 10;
+/// Times that are listed of each.
+const TIMES: usize = 4;
 
-/// How far measures go, and when events happen: what the model was asked.
-fn measures(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
-    let list = |pointer: &str| summary.pointer(pointer).and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-    let (measures, events) = (list("/peaks/measures"), list("/events"));
-    if measures.is_empty() && events.is_empty() {
+/// When events happen: a row for each, with its first times.
+fn events(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
+    let all = list(summary, "/events");
+    if all.is_empty() {
         return Ok(());
     }
-    let number = |of: &Value, key: &str| format::figure(of.get(key).and_then(Value::as_f64).unwrap_or(f64::NAN));
-    let words = |of: &Value, key: &str| html(of.get(key).and_then(Value::as_str).unwrap_or(""));
-    writeln!(out, r#"<div class="peaks">"#)?;
-    if !measures.is_empty() {
-        let heads = ["smallest", "largest", "last"].map(|head| format!(r#"<th scope="col" class="number">{head}</th>"#)).concat();
-        writeln!(out, r#"<table class="measures"><caption>Measures</caption><thead><tr><th></th>{heads}</tr></thead><tbody>"#)?;
-        for measure in measures {
-            let cell = |key: &str, at: &str| {
-                let at = if at.is_empty() { String::new() } else { format!(" <small>at {} s</small>", number(measure, at)) };
-                format!(r#"<td class="number">{}{at}</td>"#, number(measure, key))
-            };
-            let unit = match words(measure, "unit") {
-                unit if unit == "1" => String::new(),
-                unit => format!(" <small>{unit}</small>"),
-            };
-            let cells = [cell("min", "min_at"), cell("max", "max_at"), cell("last", "")].concat();
-            writeln!(out, r#"<tr><th scope="row">{}{unit}</th>{cells}</tr>"#, words(measure, "name"))?;
+    let mut names: Vec<String> = Vec::new();
+    all.iter().map(|event| words(event, "event")).for_each(|name| {
+        if !names.contains(&name) {
+            names.push(name);
         }
-        writeln!(out, "</tbody></table>")?;
+    });
+    writeln!(out, "<table><caption>Events</caption><tbody>")?;
+    for name in names.iter().take(EVENTS) {
+        let own: Vec<&Value> = all.iter().filter(|event| words(event, "event") == *name).collect();
+        let mut times: Vec<String> = own.iter().take(TIMES).map(|event| number(event, "t")).collect();
+        if own.len() > TIMES {
+            times.push("…".to_owned());
+        }
+        let often = if own.len() > TIMES { format!(" <small>{} times</small>", own.len()) } else { String::new() };
+        let is_end = own.iter().any(|event| event.get("stopped") == Some(&Value::Bool(true)));
+        let end = if is_end { " <small>end of the run</small>" } else { "" };
+        writeln!(out, r#"<tr><th scope="row">{name}{often}{end}</th><td>{} <small>s</small></td></tr>"#, times.join(", "))?;
     }
-    if !events.is_empty() {
-        writeln!(out, "<table><caption>Events</caption><tbody>")?;
-        for event in events.iter().take(EVENTS) {
-            let end = if event.get("stopped") == Some(&Value::Bool(true)) { " <small>end of the run</small>" } else { "" };
-            writeln!(
-                out,
-                r#"<tr><th scope="row">{}{end}</th><td class="number">{} <small>s</small></td></tr>"#,
-                words(event, "event"),
-                number(event, "t")
-            )?;
-        }
-        if let more @ 1.. = events.len().saturating_sub(EVENTS) {
-            writeln!(out, r#"<tr><td colspan="2">and {more} more, in summary.json</td></tr>"#)?;
-        }
-        writeln!(out, "</tbody></table>")?;
+    if let more @ 1.. = names.len().saturating_sub(EVENTS) {
+        writeln!(out, r#"<tr><td colspan="2">and {more} more, in summary.json</td></tr>"#)?;
     }
-    writeln!(out, "</div>")
+    writeln!(out, "</tbody></table>")
+}
+
+fn list<'a>(summary: &'a Value, pointer: &str) -> &'a [Value] {
+    summary.pointer(pointer).and_then(Value::as_array).map_or(&[], Vec::as_slice)
+}
+
+fn number(of: &Value, key: &str) -> String {
+    format::figure(of.get(key).and_then(Value::as_f64).unwrap_or(f64::NAN))
+}
+
+fn words(of: &Value, key: &str) -> String {
+    html(of.get(key).and_then(Value::as_str).unwrap_or(""))
 }
 
 /// Whether a summary says anything there.

@@ -36,6 +36,7 @@ pub fn write(report: &Report, out: &mut dyn Write) -> io::Result<()> {
         Some(_) => stage(&data, out)?,
         None => writeln!(out, "{WITHOUT_VIEWER}")?,
     }
+    health(report.runs, &data, out)?;
     writeln!(out, "<section>\n<h2>Summary</h2>")?;
     summary::write(report.runs, out)?;
     writeln!(out, "</section>")?;
@@ -98,12 +99,6 @@ fn stage(runs: &[RunData], out: &mut dyn Write) -> io::Result<()> {
 <section id="motion" aria-label="Motion"></section>
 <section id="machine" aria-label="Machine"></section>"#
     )?;
-    // Of a single run that is sound nobody asks for the solver's health first.
-    let is_open = if runs.len() == 1 && runs[0].sound { "" } else { " open" };
-    writeln!(
-        out,
-        "<details id=\"health\"{is_open}><summary>Energy, violations and iterations</summary>\n<section id=\"plots\" aria-label=\"Plots\"></section></details>"
-    )?;
     for run in runs.iter().filter(|run| run.stride > 1) {
         let label = if runs.len() > 1 { format!("{}: ", html(run.label)) } else { String::new() };
         let (stride, recorded) = (run.stride, run.recorded);
@@ -114,6 +109,16 @@ fn stage(runs: &[RunData], out: &mut dyn Write) -> io::Result<()> {
         )?;
     }
     Ok(())
+}
+
+/// How the solver did: figures of a single run, and a place for plots. Of a single run that is sound nobody asks for it first.
+fn health(runs: &[Run], data: &[RunData], out: &mut dyn Write) -> io::Result<()> {
+    let is_open = if data.len() == 1 && data[0].sound { "" } else { " open" };
+    writeln!(out, "<details id=\"health\"{is_open}><summary>Energy, violations and iterations</summary>")?;
+    if let [run] = runs {
+        figures::solver(run, out)?;
+    }
+    writeln!(out, "<section id=\"plots\" aria-label=\"Plots\"></section></details>")
 }
 
 /// What the viewer reads.

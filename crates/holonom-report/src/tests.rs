@@ -31,6 +31,7 @@ fn scene() -> Scene {
             kind: LineKind::Rod,
             from: Anchor::Fixed([0.0; 3]),
             to: Anchor::Point("tip".to_owned()),
+            along: None,
         }],
         ..Scene::default()
     }
@@ -102,6 +103,18 @@ fn what_was_run_and_what_was_changed_stands_above_the_model() {
         let (_, row) = page.split_once(&format!("<th scope=\"row\">{key}</th>")).expect(key);
         assert!(row.split_once("</tr>").unwrap().0.ends_with(&format!("<td>{labels}</td>")), "{key}");
     }
+}
+
+#[test]
+fn an_event_that_happens_often_takes_one_row() {
+    let event = |name: &str, t: f64, stopped: bool| json!({"event": name, "t": t, "stopped": stopped});
+    let mut events: Vec<Value> = (1..=60).map(|k| event("bounce", f64::from(k), false)).collect();
+    events.push(event("end <stop>", 61.0, true));
+    let page = page("t", "m", &recording(3, 0.0), &json!({"status": "completed", "events": events}));
+    let table = page.split_once("<caption>Events</caption>").unwrap().1.split_once("</table>").unwrap().0;
+    assert_eq!(table.matches("<tr>").count(), 2, "{table}");
+    assert!(table.contains(r#"bounce <small>60 times</small></th><td>1, 2, 3, 4, … <small>s</small>"#), "{table}");
+    assert!(table.contains(r#"end &lt;stop&gt; <small>end of the run</small></th><td>61 <small>s</small>"#), "{table}");
 }
 
 /// A page that compares runs of summaries, each with a recording of its kinetic energy.

@@ -8,7 +8,7 @@ mod sample;
 
 use holonom_report::{Report, Run};
 use sample::Sample;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -22,6 +22,9 @@ fn one_run() {
     let seen = open("single", &[sample::pendulum("conserving-ggl", 0.025, 800, 1.0)]);
     loads(&seen, 8);
     moves(&seen, 20.0);
+    // The space bar plays and pauses, but not in a field, and arrows step from row to row.
+    assert_eq!(seen["keys"], json!([false, "Pause", "Pause", false, "Play"]), "{seen:#}");
+    assert_eq!(seen["stepped"], 0.025, "{seen:#}");
     // A legend entry belongs to one plot here.
     assert_eq!((&seen["legend"]["pressed"], &seen["legend"]["changed"]), (&Value::from("false"), &Value::from(1)), "{seen:#}");
     assert_eq!(seen["legendBack"], 0, "{seen:#}");
@@ -30,16 +33,39 @@ fn one_run() {
 #[test]
 fn what_the_machine_does_comes_first() {
     let seen = open("machine", &[sample::motor()]);
-    // Efforts and angles; the solver's health is folded away, and a column is plotted when it is asked for.
+    // The measure, efforts and angles; the solver's health is folded away, and a column is plotted when it is asked for.
     let health = 3;
-    loads(&seen, 2 + health);
+    loads(&seen, 3 + health);
     let machine = &seen["machine"];
     assert_eq!(
         (&machine["first"], &machine["healthIsOpen"]),
-        (&Value::from(vec!["crank.effort (N·m)", "hinge.angle (rad)"]), &Value::from(false))
+        (&Value::from(vec!["lift", "crank.effort (N·m)", "hinge.angle (rad)"]), &Value::from(false))
     );
-    assert_eq!((&machine["asked"], &machine["left"]), (&Value::from("crank.power (W)"), &Value::from(2)), "{seen:#}");
-    assert_eq!(machine["options"], 3, "{seen:#}");
+    assert_eq!((&machine["asked"], &machine["left"]), (&Value::from("crank.power (W)"), &Value::from(3)), "{seen:#}");
+    assert_eq!(machine["options"], 4, "{seen:#}");
+    // Another x axis makes a path of it, whose nearest row is told with its time.
+    assert_eq!(machine["over"], json!(["crank.power (W) over hinge.angle (rad)", true]), "{seen:#}");
+    let pointed = machine["pointed"].as_str().unwrap();
+    assert!(pointed.starts_with("t = ") && pointed.contains(" W at hinge.angle = "), "{pointed}");
+    // The parabola t (3 − t)/2 is highest at 1.5 s, where the table leads to.
+    let extremes: Vec<&str> = machine["extremes"].as_array().unwrap().iter().map(|row| row.as_str().unwrap()).collect();
+    assert!(extremes.contains(&"lift 0 0 s 1.125 1.500 s"), "{extremes:?}");
+    assert_eq!((extremes.len(), &machine["wentTo"]), (4, &Value::from(1.5)), "{seen:#}");
+    // Numbers and pictures can be taken away.
+    let taken = &seen["taken"];
+    assert_eq!(
+        taken["names"],
+        json!(["Slider.csv", "Slider-picture.png", "Slider-lift.png", "Slider-crank.effort-N-m.png", "Slider-hinge.angle-rad.png"])
+    );
+    let lines: Vec<&str> = taken["numbers"].as_str().unwrap().lines().collect();
+    assert_eq!((lines.len(), lines[0], lines[1]), (301, "t,lift,crank.effort,hinge.angle", "0,0,0,0"));
+    let row: Vec<f64> = lines[151].split(',').map(|number| number.parse().unwrap()).collect();
+    assert_eq!(lines[151].split(',').take(2).collect::<Vec<_>>(), ["1.5", "1.125"]);
+    assert!((row[2] - 2.0 * 1.5_f64.sin()).abs() < 1e-7 && (row[3] - 0.45).abs() < 1e-8, "{row:?}");
+    for picture in taken["pictures"].as_array().unwrap() {
+        assert_eq!((&picture[0], &picture[1]), (&Value::from("image/png"), &Value::from(true)), "{seen:#}");
+        assert!(picture[2].as_u64().unwrap() > 300 && picture[3].as_u64().unwrap() > 200, "{seen:#}");
+    }
 }
 
 #[test]
@@ -121,6 +147,44 @@ fn bodies_in_a_plane() {
     loads(&seen, 3);
     bodies_move(&seen, "coupler", 6);
     assert_eq!(seen["middle"]["bodies"]["coupler"][1], 0, "the missing coordinate is 0: {seen:#}");
+}
+
+#[test]
+fn names_selection_and_forces() {
+    let seen = open("driven", &[sample::bodies::driven()]);
+    assert_eq!(seen["faults"], Value::Array(Vec::new()), "{seen:#}");
+    let picked = &seen["picked"];
+    assert_eq!(picked["names"], json!(["coupler body", "strut cylinder", "tie bar"]), "{seen:#}");
+    let around = picked["aroundHinge"].as_array().unwrap();
+    assert!(around.contains(&json!("a revolute joint")) && around.contains(&json!("motor drive of a")), "{around:?}");
+    // On the coupler act its joint, spring, load and weight; its columns are plotted before all others.
+    assert_eq!(picked["selected"], "Selected: coupler body ×", "{seen:#}");
+    assert_eq!(picked["plots"], json!(["coupler (m/s)", "motor.effort (N·m)", "strut.effort (N)"]), "{seen:#}");
+    assert_eq!(picked["forces"], json!(["b 5 N", "spring 2.000 N", "load 6 N", "weight 9.810 N"]), "{seen:#}");
+    // What the joint does to the coupler points to the right and up, and what it does to the crank the other way.
+    let [on_coupler, on_crank] = ["towards", "towardsCrank"].map(|which| {
+        let towards: Vec<f64> = picked[which].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+        (towards[0] > 0.0, towards[1] < 0.0)
+    });
+    assert_eq!((on_coupler, on_crank), ((true, true), (false, false)), "{seen:#}");
+    assert_eq!(picked["crankForces"], json!(["motor 7 N·m", "b 5 N", "weight 9.810 N"]), "{seen:#}");
+    assert_eq!(picked["strut"], json!(["strut 30 N", "strut 30 N"]), "{seen:#}");
+    // Escape leaves nothing of it, and a joint of which nothing is recorded says so.
+    assert_eq!(picked["cleared"], json!([true, [], picked["first"]]), "{seen:#}");
+    assert_eq!(picked["joint"], "Selected: c revolute joint, of which no column is recorded ×", "{seen:#}");
+}
+
+#[test]
+fn bodies_are_seen_through_and_hidden() {
+    let seen = open("looks", &[sample::bodies::driven()]);
+    assert_eq!(seen["faults"], Value::Array(Vec::new()), "{seen:#}");
+    let looks = &seen["looks"];
+    assert_eq!(looks["words"], json!(["shown", "transparent", "hidden", "shown"]), "{seen:#}");
+    let pictures = looks["pictures"].as_array().unwrap();
+    assert!(pictures[0] != pictures[1] && pictures[1] != pictures[2] && pictures[0] != pictures[2], "{seen:#}");
+    assert_eq!(pictures[0], pictures[3], "shown again it looks as before");
+    // What is hidden is not under the pointer, and one switch hides all.
+    assert_eq!((&looks["under"], &looks["all"]), (&json!(["coupler body", "coupler body", "", "coupler body"]), &json!(6)), "{seen:#}");
 }
 
 #[test]

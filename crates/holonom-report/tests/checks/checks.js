@@ -42,6 +42,18 @@
     seen.playing = holonom.time();
     document.querySelector(".play").click();
 
+    const press = (key, target = document.body) => target.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }));
+    const label = () => document.querySelector(".play").getAttribute("aria-label");
+    const typed = document.querySelector(".picker input, .transport select");
+    holonom.setTime(0);
+    seen.keys = [press(" "), label()];
+    press(" ", typed);
+    seen.keys.push(label(), press(" "), label());
+    holonom.setTime(0);
+    for (const key of ["ArrowRight", "ArrowRight", "ArrowLeft"]) press(key, slider);
+    press("ArrowRight", typed);
+    seen.stepped = holonom.time();
+
     seen.beyond = [...document.querySelectorAll(".beyond")].map((node) => node.textContent);
     seen.samples = document.querySelectorAll("table .swatch svg line").length;
     const choice = document.querySelector(".choice select");
@@ -63,15 +75,119 @@
       if (readout) seen.readout.left = readout.hidden;
     }
 
+    const isColumn = (name) => document.querySelector(`#channels option[value="${name}"]`) !== null;
     const field = document.querySelector(".picker input");
-    if (field) {
+    if (isColumn("crank.power")) {
       const titles = () => [...document.querySelectorAll("#machine .plot h3")].map((node) => node.textContent);
       seen.machine = { first: titles(), healthIsOpen: document.querySelector("#health").open, options: document.querySelectorAll("#channels option").length };
       field.value = "crank.power";
       field.dispatchEvent(new Event("input"));
       seen.machine.asked = titles()[0];
+      const plain = plots()[0];
+      const over = document.querySelector(".asked .meaning input");
+      over.value = "hinge.angle";
+      over.dispatchEvent(new Event("input"));
+      await frames(3);
+      seen.machine.over = [titles()[0], plots()[0] !== plain && plots()[0].length > 2000];
+      const drawing = document.querySelector(".asked .u-over");
+      const { left, bottom, width } = drawing.getBoundingClientRect();
+      drawing.dispatchEvent(new PointerEvent("pointermove", { clientX: left + width / 2, clientY: bottom - 20 }));
+      seen.machine.pointed = document.querySelector(".asked .readout").innerText;
+      seen.machine.extremes = [...document.querySelectorAll(".extremes tbody tr")].map((row) => row.innerText.split(/\s+/).join(" "));
+      document.querySelectorAll(".extremes tbody tr").forEach((row) => row.innerText.startsWith("lift") && row.querySelectorAll("button")[1].click());
+      seen.machine.wentTo = holonom.time();
       document.querySelector(".asked .remove").click();
       seen.machine.left = titles().length;
+    }
+
+    if (isColumn("crank.power")) {
+      const taken = [];
+      const sizes = [];
+      const address = URL.createObjectURL;
+      const encode = HTMLCanvasElement.prototype.toBlob;
+      HTMLCanvasElement.prototype.toBlob = function (...rest) {
+        sizes.push([this.width, this.height]);
+        encode.apply(this, rest);
+      };
+      const read = (content) =>
+        new Promise((done) => {
+          const reader = new FileReader();
+          reader.onload = () => done(reader.result);
+          reader.readAsText(content);
+        });
+      URL.createObjectURL = (content) => (taken.push({ content }), address(content));
+      HTMLAnchorElement.prototype.click = function () {
+        Object.assign(taken.at(-1), { name: this.download });
+      };
+      for (const button of document.querySelectorAll(".picker .take, .stage .take, #machine .plot .take")) {
+        button.click();
+        await new Promise((done) => setTimeout(done, 300));
+      }
+      const numbers = taken.splice(1, 1)[0];
+      const pictures = taken.map(({ content }, i) => [content.type, content.size > 2000, ...sizes[i]]);
+      seen.taken = { names: [numbers, ...taken].map(({ name }) => name), numbers: await read(numbers.content), pictures };
+    }
+
+    if (isColumn("b.fx")) {
+      const canvas = document.querySelector(".stage canvas");
+      // Events made here belong to no pointer that could be captured.
+      canvas.setPointerCapture = canvas.releasePointerCapture = () => {};
+      const point = (type, [x, y]) => canvas.dispatchEvent(new PointerEvent(type, { clientX: x, clientY: y, bubbles: true }));
+      const name = async (place) => {
+        point("pointermove", place);
+        await frames(2);
+        return document.querySelector(".stage .name:not([hidden])")?.textContent ?? "";
+      };
+      const click = async (place) => {
+        for (const type of ["pointerdown", "pointerup"]) point(type, place);
+        await frames(3);
+      };
+      const text = (selector) => [...document.querySelectorAll(selector)].filter((node) => !node.hidden).map((node) => node.textContent);
+      const forces = () => text(".stage .forces div");
+      const titles = () => text("#machine .plot h3");
+      holonom.setTime(0);
+      const places = holonom.bodiesAt();
+      const middle = (from, to) => holonom.onScreen(from.map((x, i) => 0.5 * (x + to[i])));
+      const [hinge, held] = [holonom.onScreen([0, 0, 0]), [1.6, 0, -0.5]];
+      const pin = holonom.onScreen([0.35, 0, 0]);
+      seen.picked = { names: [await name(holonom.onScreen(places.coupler)), await name(middle(held, places.rocker)), await name(middle(held, [1.6, 0, 0.4]))] };
+      const around = new Set();
+      for (let x = -40; x <= 40; x += 4) around.add(await name([hinge[0] + x, hinge[1]]));
+      seen.picked.aroundHinge = [...around];
+      const towards = () => {
+        const { left, top } = [...document.querySelectorAll(".stage .forces div")].find((node) => node.textContent.startsWith("b ")).getBoundingClientRect();
+        return [left - pin[0], top - pin[1]];
+      };
+      seen.picked.first = titles();
+      await click(holonom.onScreen(places.coupler));
+      Object.assign(seen.picked, { selected: text(".selected")[0], plots: titles().slice(0, 3), forces: forces(), towards: towards() });
+      await click(middle([0, 0, 0], [0.35, 0, 0]));
+      Object.assign(seen.picked, { crankForces: forces(), towardsCrank: towards() });
+      await click(middle(held, places.rocker));
+      seen.picked.strut = forces();
+      press("Escape");
+      await frames(2);
+      seen.picked.cleared = [text(".selected").length === 0, forces(), titles()];
+      const joint = [2 * places.rocker[0] - 1, 0, 2 * places.rocker[2] - 0.1];
+      await click(holonom.onScreen(joint));
+      seen.picked.joint = text(".selected")[0];
+      press("Escape");
+
+      const switches = [...document.querySelectorAll(".looks [data-look]")];
+      const coupler = switches.find((button) => button.title.includes("coupler"));
+      seen.looks = { words: [], pictures: [], under: [] };
+      for (let k = 0; k < 4; k++) {
+        await frames(3);
+        seen.looks.words.push(coupler.textContent);
+        seen.looks.pictures.push(picture().hash);
+        const under = await name(holonom.onScreen(places.coupler));
+        seen.looks.under.push(under.startsWith("coupler") ? under : "");
+        if (k < 3) coupler.click();
+      }
+      switches[0].click();
+      switches[0].click();
+      seen.looks.all = text('.looks [data-look="hidden"]').length - 1;
+      switches[0].click();
     }
 
     const before = plots();

@@ -1,7 +1,7 @@
 //! Made-up motions of rigid bodies: solids of every shape, a crank that drives a slider in space, a four-bar linkage in a plane.
 
 use super::Sample;
-use holonom::record::{Anchor, Line, LineKind, Recording, Scene, SceneBody, SceneJoint, SceneShape};
+use holonom::record::{Anchor, Heading, Line, LineKind, Recording, Scene, SceneBody, SceneJoint, SceneLoad, SceneShape};
 use serde_json::json;
 
 type Vec3 = [f64; 3];
@@ -29,7 +29,7 @@ pub fn shapes() -> Sample {
     let spring = |i: usize, name: &str| {
         let [x, y, _] = place(i);
         let to = Anchor::Body { body: name.to_owned(), at: top };
-        Line { name: format!("{name}-spring"), kind: LineKind::Spring, from: Anchor::Fixed([x, y, 0.8]), to }
+        Line { name: format!("{name}-spring"), kind: LineKind::Spring, from: Anchor::Fixed([x, y, 0.8]), to, along: None }
     };
     let scene = Scene {
         axes: "xyz".to_owned(),
@@ -122,6 +122,7 @@ pub fn four_bar(rate: f64) -> Sample {
             kind: LineKind::Spring,
             from: Anchor::Fixed(flat(1.5, 1.3)),
             to: Anchor::Body { body: "coupler".to_owned(), at: flat(0.0, 0.4) },
+            along: None,
         }],
         bodies: vec![
             body("crank", None, &ends(crank)),
@@ -165,6 +166,40 @@ pub fn four_bar(rate: f64) -> Sample {
     sample("Four-bar linkage", scene, &poses)
 }
 
+/// The linkage with a motor, a cylinder, a bar and a load, and with made-up forces that never change: 5 N from the crank on the coupler, to
+/// the right and up, 2 N of tension in the spring, 7 N m of the motor, 30 N of the cylinder that pushes, and a load of 6 N on the coupler.
+pub fn driven() -> Sample {
+    let mut sample = four_bar(2.5);
+    sample.scene.joints[0].drives.push("motor".to_owned());
+    let at = |body: &str, at: Vec3| Anchor::Body { body: body.to_owned(), at };
+    let line = |name: &str, kind, to| Line { name: name.to_owned(), kind, from: Anchor::Fixed([1.6, 0.0, -0.5]), to, along: None };
+    sample.scene.lines.push(line("strut", LineKind::Cylinder, at("rocker", [0.0; 3])));
+    sample.scene.lines.push(line("tie", LineKind::Bar, Anchor::Fixed([1.6, 0.0, 0.4])));
+    sample.scene.loads.push(SceneLoad { name: "load".to_owned(), at: at("coupler", [0.0; 3]) });
+    let forces = [
+        ("b.fx", "N", 3.0),
+        ("b.fz", "N", 4.0),
+        ("b.t", "N·m", 0.0),
+        ("spring.force", "N", 2.0),
+        ("motor.effort", "N·m", 7.0),
+        ("strut.effort", "N", 30.0),
+        ("load.fx", "N", 6.0),
+        ("load.fz", "N", 0.0),
+        ("coupler.vx", "m/s", 0.5),
+        ("coupler.vz", "m/s", -0.5),
+    ];
+    let own = sample.recording.columns().iter().map(|column| column.heading.clone());
+    let others = forces.map(|(name, unit, _)| Heading { name: name.to_owned(), unit: unit.into(), meaning: "made up".to_owned() });
+    let mut recording = Recording::new(own.chain(others));
+    for row in 0..sample.recording.rows() {
+        let moved = sample.recording.columns().iter().map(|column| column.values[row]);
+        let values: Vec<f64> = moved.chain(forces.map(|(_, _, value)| value)).collect();
+        recording.push(&values);
+    }
+    sample.recording = recording;
+    sample
+}
+
 fn sample(title: &str, scene: Scene, poses: &dyn Fn(f64) -> Vec<Pose>) -> Sample {
     let place: Vec<String> = scene.axes.chars().map(String::from).collect();
     let turn: &[&str] = if scene.axes.len() == 3 { &["qw", "qx", "qy", "qz"] } else { &["angle"] };
@@ -193,7 +228,8 @@ fn body(name: &str, shape: Option<SceneShape>, places: &[Vec3]) -> SceneBody {
 }
 
 fn joint(name: &str, kind: &str, (body, other): (Option<&str>, Option<&str>), at: Vec3, axis: Option<Vec3>) -> SceneJoint {
-    SceneJoint { name: name.to_owned(), kind: kind.to_owned(), body: body.map(str::to_owned), other: other.map(str::to_owned), at, axis }
+    let (name, kind, drives) = (name.to_owned(), kind.to_owned(), Vec::new());
+    SceneJoint { name, kind, body: body.map(str::to_owned), other: other.map(str::to_owned), at, axis, acts_on_other: true, drives }
 }
 
 fn wedge() -> SceneShape {

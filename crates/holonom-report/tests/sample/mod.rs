@@ -52,7 +52,7 @@ pub fn measured(run: &Sample, column: &str) -> Sample {
     Sample { label: "measured".to_owned(), recording, scene, summary }
 }
 
-/// The slider with a motor, of which effort, power and angle are recorded; it completes.
+/// The slider with a motor, of which effort, power and angle are recorded, and a measure without a unit; it completes.
 pub fn motor() -> Sample {
     let mut sample = slider();
     let heading =
@@ -62,15 +62,18 @@ pub fn motor() -> Sample {
         heading("crank.effort", "N·m", "moment that the drive exerts along its motion"),
         heading("crank.power", "W", "power that the drive gives to the mechanism"),
         heading("hinge.angle", "rad", "angle, from the start"),
+        heading("lift", "1", "t*(3 - t)/2"),
     ];
     let mut recording = Recording::new(own.chain(others));
     for row in 0..sample.recording.rows() {
         let mut values: Vec<f64> = sample.recording.columns().iter().map(|column| column.values[row]).collect();
         let t = values[0];
-        values.extend([2.0 * t.sin(), 2.0 * t.sin() * 0.3, 0.3 * t]);
+        values.extend([2.0 * t.sin(), 2.0 * t.sin() * 0.3, 0.3 * t, 0.5 * t * (3.0 - t)]);
         recording.push(&values);
     }
     sample.recording = recording;
+    sample.summary["peaks"] =
+        json!({"measures": [{"name": "lift", "unit": "1", "min": 0.0, "min_at": 0.0, "max": 1.125, "max_at": 1.5, "last": 0.01495}]});
     sample.summary["status"] = json!("completed");
     sample.summary["stopped_at"] = json!(null);
     sample.summary["reason"] = json!(null);
@@ -86,7 +89,7 @@ pub fn slider() -> Sample {
         let x = 1.0 + 0.4 * (5.0 * t).sin();
         recording.push(&[t, 1.0, 0.0, x, 0.0, 2.0 * (5.0 * t).cos(), 0.0]);
     }
-    let line = |name: &str, kind, from| Line { name: name.to_owned(), kind, from: Anchor::Fixed(from), to: point("block") };
+    let line = |name: &str, kind, from| Line { name: name.to_owned(), kind, from: Anchor::Fixed(from), to: point("block"), along: None };
     let scene = Scene {
         axes: "xz".to_owned(),
         gravity: [0.0, 0.0, -GRAVITY],
@@ -107,7 +110,7 @@ fn point(name: &str) -> Anchor {
 
 fn scene() -> Scene {
     let mass = |name: &str| ScenePoint { name: name.to_owned(), kind: PointKind::Free, mass: 1.0 };
-    let line = |name: &str, kind, from, to| Line { name: name.to_owned(), kind, from, to };
+    let line = |name: &str, kind, from, to| Line { name: name.to_owned(), kind, from, to, along: None };
     Scene {
         axes: "xyz".to_owned(),
         gravity: [0.0, 0.0, -GRAVITY],

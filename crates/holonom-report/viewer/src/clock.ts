@@ -1,6 +1,6 @@
 // The time that everything on the page shows.
 
-type Listener = (t: number) => void;
+import { Listeners } from "./listeners";
 
 export class Clock {
   /** Simulated seconds per second of playing. */
@@ -8,8 +8,8 @@ export class Clock {
   private now: number;
   private running = false;
   private lastFrame = 0;
-  private readonly listeners: Listener[] = [];
-  private readonly stateListeners: ((playing: boolean) => void)[] = [];
+  private readonly timeListeners = new Listeners<[t: number]>();
+  private readonly stateListeners = new Listeners<[playing: boolean]>();
 
   constructor(readonly start: number, readonly end: number) {
     this.now = start;
@@ -24,17 +24,17 @@ export class Clock {
     return this.running;
   }
 
-  onTime(listener: Listener): void {
-    this.listeners.push(listener);
+  onTime(act: (t: number) => void, place?: Node): void {
+    this.timeListeners.add(act, place);
   }
 
   onPlaying(listener: (playing: boolean) => void): void {
-    this.stateListeners.push(listener);
+    this.stateListeners.add(listener);
   }
 
   setTime(t: number): void {
     this.now = Math.min(Math.max(t, this.start), this.end);
-    for (const listener of this.listeners) listener(this.now);
+    this.timeListeners.call(this.now);
   }
 
   play(): void {
@@ -49,9 +49,14 @@ export class Clock {
     if (this.running) this.setRunning(false);
   }
 
+  toggle(): void {
+    if (this.running) this.pause();
+    else this.play();
+  }
+
   private setRunning(running: boolean): void {
     this.running = running;
-    for (const listener of this.stateListeners) listener(running);
+    this.stateListeners.call(running);
   }
 
   private readonly frame = (moment: number): void => {

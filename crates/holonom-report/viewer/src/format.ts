@@ -12,15 +12,26 @@ export function reading(value: number | null | undefined): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  if (size >= 1e-2 && size < 1e5) return minus(Number.isInteger(value) ? String(value) : value.toPrecision(4));
+  if (size >= 1e-2 && size < 1e5) return minus(Number.isInteger(value) ? String(value) : value.toFixed(Math.max(3 - Math.floor(Math.log10(size)), 0)));
   const [mantissa, exponent] = value.toExponential(2).split("e");
   return `${minus(mantissa)}·${power(Number(exponent))}`;
+}
+
+/** A number in full: with as few digits as tell it from its neighbours, of single precision if it is one of these. */
+export function shortest(value: number): string {
+  if (Math.fround(value) !== value) return String(value);
+  for (let digits = 6; digits < 9; digits++) {
+    const rounded = Number(value.toPrecision(digits));
+    if (Math.fround(rounded) === value) return String(rounded);
+  }
+  return String(Number(value.toPrecision(9)));
 }
 
 /** Labels of a linear axis: one common power of ten, decimals as the increment needs them. */
 export function ticks(values: number[], increment: number): string[] {
   const largest = Math.max(...values.map(Math.abs));
-  if (largest === 0 || (largest >= 1e-2 && largest < 1e5)) {
+  if (largest === 0) return values.map(() => "0");
+  if (largest >= 1e-2 && largest < 1e5) {
     const digits = decimals(increment);
     return values.map((v) => minus(v.toFixed(digits)));
   }

@@ -1,13 +1,18 @@
-// What the machine does: efforts, forces and joint coordinates, and every other recorded column on demand.
+// What the machine does: measures, efforts, forces and joint coordinates, and every other recorded column on demand.
 
+import type uPlot from "uplot";
 import type { Clock } from "./clock";
 import { element } from "./dom";
 import type { Channel, Run } from "./payload";
 import type { Chart } from "./plots/charts";
+import { Extremes } from "./plots/extremes";
+import { buildPhasePlot } from "./plots/phase";
 import { buildComparedPlot, buildPlot } from "./plots/plot";
+import { ownersOf, type Selection } from "./selection";
+import { save, table } from "./take";
 import type { Visibility } from "./visibility";
 
-/** Title, unit and ending of the channels that are shown from the start. */
+/** Title, unit and ending of the channels that are shown from the start, behind the measures. */
 const FIRST: [title: string, unit: string, ending: RegExp][] = [
   ["Efforts", "N·m", /\.effort$/],
   ["Efforts", "N", /\.effort$/],
@@ -18,82 +23,231 @@ const FIRST: [title: string, unit: string, ending: RegExp][] = [
 
 /** Curves that a plot has room for. */
 const MOST_CURVES = 8;
-
+/** Plots of measures; the others are found by the field. */
+const MOST_MEASURES = 12;
 /** Plots of single channels where several runs are compared. */
 const MOST_COMPARED = 4;
+/** Units of what is selected: what acts comes before motion. */
+const ORDER = ["N", "N·m", "W", "rad", "m", "rad/s", "m/s", "rad/s²", "m/s²"];
+/** Less is rounding of what is zero, and drawn as zero. */
+const LEAST_SPAN = 1e-15;
+/** Measures share a plot where none is so many times as large as another: the small one would be a flat line. */
+const COMPARABLE = 20;
 
-/** Plots of the machine, of `columns` where these are asked for, and a search over all columns. */
-export function buildMachine(container: HTMLElement, runs: Run[], columns: string[], clock: Clock, visibility: Visibility): void {
-  const channels = runs[0].channels;
-  if (channels.length === 0) return;
-  const plots = element("div", { class: "plots" });
-  const compared = runs.length > 1;
-  const build = compared ? buildComparedPlot : buildPlot;
-  const asked = columns.flatMap((name) => channels.filter((channel) => channel.name === name));
-  for (const channel of asked) build(plots, chartOf(titleOf(channel), [channel.name], runs), clock, visibility);
-  const groups = asked.length > 0 ? [] : first(channels);
-  if (compared) {
-    const single = groups.flatMap(([, group]) => group).slice(0, MOST_COMPARED);
-    for (const channel of single) build(plots, chartOf(titleOf(channel), [channel.name], runs), clock, visibility);
-  } else {
-    for (const [title, group] of groups) {
-      const named = group.length > 1 ? title : titleOf(group[0]);
-      build(plots, chartOf(named, group.map((channel) => channel.name), runs), clock, visibility);
-    }
-  }
-  const add = (channel: Channel): void => {
-    const place = element("div", { class: "asked" });
-    const remove = element("button", { type: "button", class: "remove", title: "take this plot away" }, "×");
-    remove.addEventListener("click", () => place.remove());
-    plots.prepend(place);
-    build(place, chartOf(titleOf(channel), [channel.name], runs), clock, visibility);
-    place.append(remove, element("p", { class: "meaning" }, channel.meaning));
-  };
-  container.append(picker(channels, add), plots);
+/** Channels in one plot. */
+interface Group {
+  title: string;
+  channels: Channel[];
 }
 
-function titleOf(channel: Channel): string {
-  return `${channel.name} (${channel.unit})`;
+/** Plots of the machine, of `columns` where these are asked for, and a search over all columns. */
+export function buildMachine(
+  container: HTMLElement,
+  runs: Run[],
+  columns: string[],
+  clock: Clock,
+  visibility: Visibility,
+  selection: Selection,
+): void {
+  if (runs[0].channels.length > 0) new Machine(container, runs, columns, clock, visibility, selection);
+}
+
+class Machine {
+  private readonly channels: Channel[];
+  private readonly plots = element("div", { class: "plots" });
+  private readonly extremes: Extremes;
+  /** Which item is selected in the picture, in words. */
+  private readonly selected = element("p", { class: "selected", hidden: "" });
+  /** What is plotted where. */
+  private readonly shown = new Map<Element, { columns: string[]; plot: uPlot }>();
+
+  constructor(
+    container: HTMLElement,
+    private readonly runs: Run[],
+    private readonly asked: string[],
+    private readonly clock: Clock,
+    private readonly visibility: Visibility,
+    private readonly selection: Selection,
+  ) {
+    this.channels = runs[0].channels;
+    this.extremes = new Extremes(runs, clock);
+    for (const group of this.first()) {
+      const place = element("div", { class: "shown" });
+      this.plots.append(place);
+      this.plot(place, group);
+    }
+    container.append(this.picker(), this.selected, this.plots, this.extremes.node);
+    this.count();
+    selection.onChange(() => this.select());
+  }
+
+  /** Plots that are shown from the start; a plot of several runs holds one channel. */
+  private first(): Group[] {
+    const asked = this.asked.flatMap((name) => this.channels.filter((channel) => channel.name === name));
+    if (asked.length > 0) return asked.map(alone);
+    const groups = first(this.channels);
+    if (this.runs.length < 2) return groups;
+    return apart(groups).slice(0, MOST_COMPARED);
+  }
+
+  /** Plots of what is selected in the picture come before all others. */
+  private select(): void {
+    for (const place of this.plots.querySelectorAll(".of-selected")) this.remove(place);
+    const { item } = this.selection;
+    this.selected.hidden = item === undefined;
+    if (item) {
+      const groups = ofOwners(this.channels, ownersOf(item, this.runs[0].scene));
+      const clear = element("button", { type: "button", title: "select nothing (Escape)" }, "×");
+      clear.addEventListener("click", () => this.selection.select(undefined));
+      const words = groups.length > 0 ? "" : ", of which no column is recorded";
+      this.selected.replaceChildren("Selected: ", element("b", {}, item.name), ` ${item.kind}${words} `, clear);
+      for (const group of (this.runs.length > 1 ? apart(groups).slice(0, 2 * MOST_COMPARED) : groups).reverse()) {
+        const place = element("div", { class: "shown of-selected" });
+        this.plots.prepend(place);
+        this.plot(place, group);
+      }
+    }
+    this.count();
+  }
+
+  private remove(place: Element): void {
+    place.remove();
+    this.shown.get(place)?.plot.destroy();
+    this.shown.delete(place);
+  }
+
+  private plot(place: HTMLElement, group: Group, over?: Channel): void {
+    const build = over ? buildPhasePlot : this.runs.length > 1 ? buildComparedPlot : buildPlot;
+    const columns = [...group.channels, ...(over ? [over] : [])].map((channel) => channel.name);
+    this.shown.set(place, { columns, plot: build(place, chartOf(group, this.runs, over), this.clock, this.visibility) });
+  }
+
+  /** The table of extremes follows what is plotted. */
+  private count(): void {
+    this.extremes.show(this.plotted());
+  }
+
+  /** Columns, in the order of the page. */
+  private plotted(): string[] {
+    return [...new Set([...this.plots.children].flatMap((place) => this.shown.get(place)?.columns ?? []))];
+  }
+
+  /** A plot of its own in front of the others, whose x axis is chosen. */
+  private ask(channel: Channel): void {
+    const place = element("div", { class: "asked" });
+    const remove = element("button", { type: "button", class: "remove", title: "take this plot away" }, "×");
+    remove.addEventListener("click", () => {
+      this.remove(place);
+      this.count();
+    });
+    const field = element("input", { type: "search", list: "channels", placeholder: "t", "aria-label": "Column of the x axis" });
+    const foot = element("p", { class: "meaning" }, element("label", {}, "over ", field), ` ${channel.meaning}`);
+    const draw = (over?: Channel): void => {
+      this.shown.get(place)?.plot.destroy();
+      place.querySelector(".plot")?.remove();
+      this.plot(place, alone(channel), over);
+      place.append(remove, foot);
+      this.count();
+    };
+    onColumn(field, this.channels, draw);
+    field.addEventListener("input", () => ["", "t"].includes(field.value.trim()) && draw());
+    this.plots.prepend(place);
+    draw();
+  }
+
+  /** A field that finds a column by its name. */
+  private picker(): HTMLElement {
+    const list = element("datalist", { id: "channels" });
+    for (const { name, unit, meaning } of this.channels) list.append(element("option", { value: name, label: `${unit}: ${meaning}` }));
+    const placeholder = `a column, such as ${this.channels[0].name}`;
+    const field = element("input", { type: "search", list: "channels", placeholder, "aria-label": "Plot a column" });
+    onColumn(field, this.channels, (channel) => {
+      this.ask(channel);
+      field.value = "";
+    });
+    const take = element("button", { type: "button", class: "take", title: "save the columns that are plotted" }, "CSV of what is plotted");
+    take.addEventListener("click", () => save(table(this.runs, this.plotted()), "", "csv"));
+    return element("p", { class: "picker" }, element("label", {}, `Plot one of ${this.channels.length} columns: `, field), list, take);
+  }
+}
+
+function onColumn(field: HTMLInputElement, channels: Channel[], take: (channel: Channel) => void): void {
+  let last = "";
+  const look = (): void => {
+    const name = field.value.trim();
+    const channel = channels.find((channel) => channel.name === name);
+    // Both events of one choice count once.
+    if (channel && name !== last) take(channel);
+    last = field.value.trim();
+  };
+  field.addEventListener("input", look);
+  field.addEventListener("change", look);
+}
+
+function alone(channel: Channel): Group {
+  return { title: channel.name, channels: [channel] };
+}
+
+function apart(groups: Group[]): Group[] {
+  return groups.flatMap(({ channels }) => channels.map((channel) => alone(channel)));
+}
+
+/** The channels that are called NAME.SOMETHING or NAME after one of the owners, by unit. */
+function ofOwners(channels: Channel[], owners: string[]): Group[] {
+  const isOf = ({ name }: Channel, owner: string): boolean => name === owner || (name.startsWith(`${owner}.`) && !name.slice(owner.length + 1).includes("."));
+  const own = channels.filter((channel) => owners.some((owner) => isOf(channel, owner)));
+  const rank = (unit: string): number => (ORDER.indexOf(unit) + 1 || ORDER.length + 1);
+  const units = [...new Set(own.map(({ unit }) => unit))].sort((a, b) => rank(a) - rank(b));
+  return units.map((unit) => {
+    const group = own.filter((channel) => channel.unit === unit).slice(0, MOST_CURVES);
+    return group.length > 1 ? { title: owners[0], channels: group } : alone(group[0]);
+  });
 }
 
 /** The groups of channels that are shown from the start; of a model without any of them the first coordinates. */
-function first(channels: Channel[]): [string, Channel[]][] {
-  const groups = FIRST.map(([title, unit, ending]): [string, Channel[]] => [
-    `${title} (${unit})`,
-    channels.filter((channel) => channel.unit === unit && ending.test(channel.name)).slice(0, MOST_CURVES),
-  ]);
-  const found = groups.filter(([, group]) => group.length > 0);
-  if (found.length > 0) return found;
+function first(channels: Channel[]): Group[] {
+  const others = FIRST.map(([title, unit, ending]): Group => {
+    const group = channels.filter((channel) => !channel.is_measure && channel.unit === unit && ending.test(channel.name));
+    return { title, channels: group.slice(0, MOST_CURVES) };
+  });
+  const found = [...measures(channels), ...others].filter((group) => group.channels.length > 0);
+  if (found.length > 0) return found.map((group) => (group.channels.length > 1 ? group : alone(group.channels[0])));
   const places = channels.filter((channel) => channel.unit === "m").slice(0, 3);
-  return places.length > 0 ? [["Positions (m)", places]] : [];
+  return places.length > 0 ? [{ title: "Positions", channels: places }] : [];
 }
 
-/** A chart of some channels: a curve each, or one of each run. */
-function chartOf(title: string, names: string[], runs: Run[]): Chart {
+/** Measures of one unit and of like size share a plot. */
+function measures(channels: Channel[]): Group[] {
+  const groups: Group[] = [];
+  const size = ({ extremes }: Channel): number => Math.max(Math.abs(extremes?.[0] ?? 0), Math.abs(extremes?.[2] ?? 0));
+  for (const channel of channels.filter((channel) => channel.is_measure)) {
+    const fits = (other: Channel): boolean => {
+      const [small, large] = [size(channel), size(other)].sort((a, b) => a - b);
+      return other.unit === channel.unit && large <= COMPARABLE * small;
+    };
+    const group = groups.find((group) => group.channels.length < MOST_CURVES && group.channels.every(fits));
+    if (group) group.channels.push(channel);
+    else groups.push({ title: "Measures", channels: [channel] });
+  }
+  return groups.slice(0, MOST_MEASURES);
+}
+
+/** A chart of some channels: a curve each, or one of each run; over time, or over another channel. */
+function chartOf({ title, channels }: Group, runs: Run[], over: Channel | undefined): Chart {
+  const compared = runs.length > 1;
+  const shortened = channels.map(({ name }) => name.replace(/\.[a-z]+\d*$/, ""));
+  const ambiguous = new Set(shortened).size < shortened.length;
   const curves = runs.flatMap((run, index) =>
-    names.flatMap((name, k) => {
-      const channel = run.channels.find((channel) => channel.name === name);
-      if (!channel) return [];
-      const compared = runs.length > 1;
-      const label = compared ? run.label : name.replace(/\.[a-z]+\d*$/, "");
-      return [{ label, colour: compared ? index : k, run: index, sound: run.sound, x: run.times, y: channel.values, shown: true }];
+    channels.flatMap(({ name }, k) => {
+      const find = (name: string): Float64Array | undefined => run.channelOf.get(name)?.values;
+      const [y, across] = [find(name), over && find(over.name)];
+      if (!y || (over && !across)) return [];
+      const label = compared ? run.label : ambiguous ? name : shortened[k];
+      const curve = { column: name, label, colour: compared ? index : k, run: index, sound: run.sound, x: run.times, y, shown: true };
+      return [across ? { ...curve, across } : curve];
     }),
   );
-  return { title, scale: "linear", curves, leastSpan: 0, allowed: Infinity };
-}
-
-/** A field that finds a column by its name. */
-function picker(channels: Channel[], add: (channel: Channel) => void): HTMLElement {
-  const list = element("datalist", { id: "channels" });
-  for (const channel of channels) list.append(element("option", { value: channel.name, label: `${channel.unit}: ${channel.meaning}` }));
-  const field = element("input", { type: "search", list: "channels", placeholder: "a column, such as " + channels[0].name, "aria-label": "Plot a column" });
-  const take = (): void => {
-    const channel = channels.find((channel) => channel.name === field.value.trim());
-    if (!channel) return;
-    add(channel);
-    field.value = "";
-  };
-  field.addEventListener("input", take);
-  field.addEventListener("change", take);
-  return element("p", { class: "picker" }, element("label", {}, `Plot one of ${channels.length} columns: `, field), list);
+  const unit = channels[0].unit === "1" ? "" : channels[0].unit;
+  const chart: Chart = { title, unit, scale: "linear", curves, leastSpan: LEAST_SPAN, allowed: Infinity };
+  return over ? { ...chart, over: { column: over.name, unit: over.unit === "1" ? "" : over.unit } } : chart;
 }

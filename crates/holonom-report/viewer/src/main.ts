@@ -5,14 +5,16 @@ import "./licences";
 import "./viewer.css";
 import { Clock } from "./clock";
 import { element, place } from "./dom";
+import { listenToKeys } from "./keyboard";
 import { buildMachine } from "./machine";
 import { Motion } from "./motion";
 import { readPayload, type Vec3 } from "./payload";
 import { charts } from "./plots/charts";
 import { buildComparedPlot, buildPlot } from "./plots/plot";
 import { WINDOWS } from "./plots/smooth";
+import { Selection } from "./selection";
 import { buildTransport } from "./transport";
-import { buildStage } from "./view/stage";
+import { buildStage, type OnScreen } from "./view/stage";
 import { buildLegend, Visibility } from "./visibility";
 
 /** What a page offers to scripts and tests. */
@@ -24,6 +26,8 @@ interface Handle {
   pointsAt(): Record<string, Vec3>;
   /** The same of the centres of mass of its bodies. */
   bodiesAt(): Record<string, Vec3>;
+  /** Where a place in the world is seen in the window, px. */
+  onScreen: OnScreen;
 }
 
 const HOW_TO_READ = `Axes fit the runs that completed with their energy in bounds; a run that leaves one is named above it and drawn up \
@@ -49,6 +53,7 @@ function main(): void {
     setTime: (t) => clock.setTime(t),
     pointsAt: () => placesOf(motions[0]?.run.scene.points, (name) => motions[0]?.at(name, clock.time)),
     bodiesAt: () => placesOf(motions[0]?.run.scene.bodies, (name) => motions[0]?.poseAt(name, clock.time)?.place.toArray()),
+    onScreen: () => undefined,
   };
   if (motions.length > 0) build(motions, payload.columns, clock, visibility);
   window.holonom.ready = true;
@@ -60,9 +65,11 @@ function build(motions: Motion[], columns: string[], clock: Clock, visibility: V
 
   const stage = element("div", { class: "stage" });
   place("motion").append(stage, buildTransport(clock));
-  buildStage(stage, motions, clock, visibility);
+  const selection = new Selection();
+  window.holonom.onScreen = buildStage(stage, motions, clock, visibility, selection);
 
-  buildMachine(place("machine"), runs, columns, clock, visibility);
+  listenToKeys(clock, runs[0].times);
+  buildMachine(place("machine"), runs, columns, clock, visibility, selection);
 
   const plots = element("div", { class: "plots" });
   place("plots").append(plots);

@@ -1,7 +1,7 @@
 // The numbers of the report, as `src/data.rs` writes them.
 
 export type PointKind = "free" | "driven" | "fixed";
-export type LineKind = "bar" | "rod" | "spring" | "rope" | "guide";
+export type LineKind = "bar" | "rod" | "spring" | "cylinder" | "rope" | "guide";
 export type Vec3 = [number, number, number];
 export type Anchor = { point: string } | { fixed: Vec3 } | { body: { body: string; at: Vec3 } };
 
@@ -30,6 +30,19 @@ export interface Joint {
   other: string | null;
   at: Vec3;
   axis: Vec3 | null;
+  /** Whether the columns of its force are on `other` and not on `body`. */
+  acts_on_other: boolean;
+  /** Drives and efforts along its coordinates. */
+  drives: string[];
+}
+
+export interface Line {
+  name: string;
+  kind: LineKind;
+  from: Anchor;
+  to: Anchor;
+  /** What a spring acts along where that is not the line itself, in the axes of a body or of the world. */
+  along?: { body: string | null; axis: Vec3 };
 }
 
 export interface Scene {
@@ -37,9 +50,11 @@ export interface Scene {
   axes: string;
   gravity: Vec3;
   points: { name: string; kind: PointKind; mass: number }[];
-  lines: { name: string; kind: LineKind; from: Anchor; to: Anchor }[];
+  lines: Line[];
   bodies: Body[];
   joints: Joint[];
+  /** Forces and moments of which columns are recorded. */
+  loads: { name: string; at: Anchor }[];
 }
 
 export interface Run {
@@ -55,8 +70,9 @@ export interface Run {
   bodies: Map<string, Float32Array>;
   /** Times of the rows, s. */
   times: Float64Array;
-  /** What acts and joint coordinates, then motion. */
+  /** Measures, what acts and joint coordinates, then motion. */
   channels: Channel[];
+  channelOf: Map<string, Channel>;
 }
 
 /** A recorded column that may be plotted. */
@@ -64,7 +80,10 @@ export interface Channel {
   name: string;
   unit: string;
   meaning: string;
+  is_measure: boolean;
   values: Float64Array;
+  /** Least value, its time, largest value, its time, of all recorded rows. */
+  extremes: [number, number, number, number] | null;
 }
 
 interface RawRun {
@@ -75,7 +94,7 @@ interface RawRun {
   columns: Record<string, string>;
   points: Record<string, string>;
   bodies: Record<string, string>;
-  channels: (Omit<Channel, "values"> & { values: string })[];
+  channels: (Omit<Channel, "values"> & { values: string; middle: number })[];
 }
 
 /** What the page holds. */
@@ -98,8 +117,12 @@ function decodeRuns(runs: RawRun[]): Run[] {
     const columns = decodeAll(raw.columns, (bytes) => new Float64Array(bytes));
     const points = decodeAll(raw.points, (bytes) => new Float32Array(bytes));
     const bodies = decodeAll(raw.bodies, (bytes) => new Float32Array(bytes));
-    const channels = raw.channels.map((channel) => ({ ...channel, values: Float64Array.from(new Float32Array(bytesOf(channel.values))) }));
-    return [{ label: raw.label, sound: raw.sound, scene, columns, points, bodies, times: columns.get("t") ?? new Float64Array(), channels }];
+    const channels = raw.channels.map(({ middle, ...channel }) => {
+      const values = Float64Array.from(new Float32Array(bytesOf(channel.values)), (value) => middle + value);
+      return { ...channel, values };
+    });
+    const channelOf = new Map(channels.map((channel) => [channel.name, channel]));
+    return [{ label: raw.label, sound: raw.sound, scene, columns, points, bodies, times: columns.get("t") ?? new Float64Array(), channels, channelOf }];
   });
 }
 

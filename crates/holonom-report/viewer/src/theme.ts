@@ -1,6 +1,10 @@
 // Colours, light and dark.
 
+import { Listeners } from "./listeners";
+
 const dark = matchMedia("(prefers-color-scheme: dark)");
+const listeners = new Listeners();
+dark.addEventListener("change", () => listeners.call());
 
 /**
  * After Okabe and Ito, moved apart until the nearest two are 20 units of CIELAB apart to the eye and to every kind of colour-blindness
@@ -46,16 +50,21 @@ export interface Theme {
   joint: string;
   /** What turns or slides in them. */
   pin: string;
+  /** Arrows. */
+  force: string;
+  moment: string;
+  /** Glow of what is selected. */
+  lit: string;
 }
 
 export function theme(): Theme {
   return dark.matches
     ? { page: "#181c21", ink: "#e6e9ed", soft: "#98a2ae", line: "#313840", bar: "#8d9aa8", rod: "#a7b1bc", spring: "#2fc79a", rope: "#d8b16c", ground: "#7b8794",
-        driven: "#ff8a3d", joint: "#4a545f", pin: "#dfe5eb" }
+        driven: "#ff8a3d", joint: "#4a545f", pin: "#dfe5eb", force: "#ff6b8f", moment: "#c9a2ff", lit: "#5a4a10" }
     : { page: "#fafbfc", ink: "#1b1f24", soft: "#5c6672", line: "#d9dee4", bar: "#75828f", rod: "#8a96a3", spring: "#009e73", rope: "#8a6420", ground: "#4b5561",
-        driven: "#d55e00", joint: "#3d4650", pin: "#eef1f4" };
+        driven: "#d55e00", joint: "#3d4650", pin: "#eef1f4", force: "#c2185b", moment: "#6a35b0", lit: "#6b5200" };
 }
 
-export function onThemeChange(listener: () => void): void {
-  dark.addEventListener("change", listener);
+export function onThemeChange(listener: () => void, place?: Node): void {
+  listeners.add(listener, place);
 }

@@ -24,9 +24,10 @@ function playButton(clock: Clock): HTMLElement {
   const button = element("button", { type: "button", class: "play" });
   const refresh = (playing: boolean): void => {
     button.setAttribute("aria-label", playing ? "Pause" : "Play");
+    button.title = `${playing ? "pause" : "play"} (space bar); arrow keys step`;
     button.innerHTML = `<svg viewBox="0 0 16 16" aria-hidden="true"><path d="${playing ? PAUSE : PLAY}"/></svg>`;
   };
-  button.addEventListener("click", () => (clock.playing ? clock.pause() : clock.play()));
+  button.addEventListener("click", () => clock.toggle());
   clock.onPlaying(refresh);
   refresh(false);
   return button;

@@ -1,6 +1,7 @@
 // Which runs are shown in the plots, which one stands out, and the legend that switches both.
 
 import { element } from "./dom";
+import { Listeners } from "./listeners";
 import { fillSamples } from "./sample";
 import { onThemeChange } from "./theme";
 
@@ -8,8 +9,8 @@ export class Visibility {
   /** The run that the pointer is on in the legend. */
   highlighted: number | undefined;
   private readonly hidden = new Set<number>();
-  private readonly listeners: (() => void)[] = [];
-  private readonly highlightListeners: (() => void)[] = [];
+  private readonly listeners = new Listeners();
+  private readonly highlightListeners = new Listeners();
 
   shows(run: number): boolean {
     return !this.hidden.has(run);
@@ -38,19 +39,19 @@ export class Visibility {
 
   highlight(run: number | undefined): void {
     this.highlighted = run;
-    for (const listener of this.highlightListeners) listener();
+    this.highlightListeners.call();
   }
 
-  onChange(listener: () => void): void {
-    this.listeners.push(listener);
+  onChange(listener: () => void, place?: Node): void {
+    this.listeners.add(listener, place);
   }
 
-  onHighlight(listener: () => void): void {
-    this.highlightListeners.push(listener);
+  onHighlight(listener: () => void, place?: Node): void {
+    this.highlightListeners.add(listener, place);
   }
 
   private changed(): void {
-    for (const listener of this.listeners) listener();
+    this.listeners.call();
   }
 }
 

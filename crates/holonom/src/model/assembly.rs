@@ -13,7 +13,7 @@ use super::fault::{Read, Sink};
 use super::geometry::Vec3;
 use super::joints::{Geometry, JointInfo};
 use super::signals::Signals;
-use crate::record::{Anchor, Line, LineKind, RecordedCoupling, RecordedForce, SceneJoint, Shows};
+use crate::record::{Anchor, Line, LineKind, RecordedCoupling, RecordedForce, SceneAxis, SceneJoint, SceneLoad, Shows};
 use crate::system::{Signal, SystemBuilder};
 
 /// The name of the origin.
@@ -103,6 +103,7 @@ pub struct Assembly<'a> {
     /// Names of joints and couplers that could not be read.
     pub(in crate::model) faulty_joints: HashSet<String>,
     pub(in crate::model) scene_joints: Vec<SceneJoint>,
+    pub(in crate::model) loads: Vec<SceneLoad>,
     /// Efforts of the drives.
     pub(in crate::model) efforts: Vec<Effort>,
     /// What couplers exert along the coordinates that they couple.
@@ -146,6 +147,7 @@ impl<'a> Assembly<'a> {
             driven: HashMap::new(),
             faulty_joints: HashSet::new(),
             scene_joints: Vec::new(),
+            loads: Vec::new(),
             efforts: Vec::new(),
             couplings: Vec::new(),
             forces: Vec::new(),
@@ -195,17 +197,39 @@ impl Assembly<'_> {
 
     /// Draws a line between two ends.
     pub fn draw(&mut self, entry: &Entry<'_>, kind: LineKind, from: &End, to: &End) {
-        let anchor = |end: &End| match (end.point, end.body) {
-            (Some(k), _) => Anchor::Point(self.points[k].name.clone()),
-            (None, Some(k)) => Anchor::Body { body: self.bodies[k].name.clone(), at: self.axes.in_world(self.bodies[k].local(end.start)) },
-            (None, None) => Anchor::Fixed(self.axes.in_world(end.start)),
-        };
-        let line = Line { name: entry.name.to_string(), kind, from: anchor(from), to: anchor(to) };
+        self.draw_along(entry, kind, from, to, None);
+    }
+
+    /// Draws a line between two ends that acts along an axis.
+    pub fn draw_along(&mut self, entry: &Entry<'_>, kind: LineKind, from: &End, to: &End, along: Option<SceneAxis>) {
+        let line = Line { name: entry.name.to_string(), kind, from: self.anchor(from), to: self.anchor(to), along };
         self.lines.push(line);
         for end in [from, to] {
             if let Some(k) = end.body {
                 self.body_places[k].push(self.bodies[k].local(end.start));
             }
+        }
+    }
+
+    /// Draws a force or moment at an end, of which columns are recorded.
+    pub fn draw_load(&mut self, entry: &Entry<'_>, at: &End) {
+        let load = SceneLoad { name: entry.name.to_string(), at: self.anchor(at) };
+        self.loads.push(load);
+    }
+
+    /// Draws a drive or an effort along a coordinate of a joint.
+    pub fn draw_drive(&mut self, entry: &Entry<'_>, joint: &str) {
+        // A coupler has coordinates and no symbol.
+        if let Some(joint) = self.scene_joints.iter_mut().find(|drawn| drawn.name == joint) {
+            joint.drives.push(entry.name.to_string());
+        }
+    }
+
+    fn anchor(&self, end: &End) -> Anchor {
+        match (end.point, end.body) {
+            (Some(k), _) => Anchor::Point(self.points[k].name.clone()),
+            (None, Some(k)) => Anchor::Body { body: self.bodies[k].name.clone(), at: self.axes.in_world(self.bodies[k].local(end.start)) },
+            (None, None) => Anchor::Fixed(self.axes.in_world(end.start)),
         }
     }
 

@@ -21,6 +21,7 @@ pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, 
         body_places,
         joints,
         scene_joints,
+        loads,
         efforts,
         couplings,
         forces,
@@ -46,6 +47,7 @@ pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, 
         lines,
         bodies: scene_bodies.collect(),
         joints: scene_joints,
+        loads,
     };
     let channels = channels(axes, &points, &bodies, &frames, &joints);
     let bodies: Vec<BodyInfo> = bodies.iter().zip(&frames).map(|(body, frame)| BodyInfo::new(body, frame, axes, &mut builder)).collect();

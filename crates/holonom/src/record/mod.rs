@@ -15,7 +15,7 @@ pub use measure::{Formula, RecordedInput, RecordedMeasure, Running};
 pub(crate) use measure::{MeasureReads, Series};
 pub use peaks::{Extremes, Peak, Peaks};
 pub use recorder::{COLUMNS, Constraints, Recorder, RecorderMark};
-pub use scene::{Anchor, Line, LineKind, PointKind, Scene, SceneBody, SceneJoint, ScenePoint, SceneShape};
+pub use scene::{Anchor, Line, LineKind, PointKind, Scene, SceneAxis, SceneBody, SceneJoint, SceneLoad, ScenePoint, SceneShape};
 
 /// A table of columns of equal length; row 0 is the start.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -19,6 +19,8 @@ pub struct Scene {
     pub bodies: Vec<SceneBody>,
     /// Joints between bodies.
     pub joints: Vec<SceneJoint>,
+    /// Forces and moments on points and bodies.
+    pub loads: Vec<SceneLoad>,
 }
 
 /// A point of the model.
@@ -55,6 +57,18 @@ pub struct Line {
     pub from: Anchor,
     /// Where it ends.
     pub to: Anchor,
+    /// What a spring acts along where that is not the line itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub along: Option<SceneAxis>,
+}
+
+/// A direction of unit length.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SceneAxis {
+    /// The body that turns it; none: it stays.
+    pub body: Option<String>,
+    /// In the axes of the body, or of the world (3).
+    pub axis: [f64; 3],
 }
 
 /// What a line stands for.
@@ -65,8 +79,10 @@ pub enum LineKind {
     Bar,
     /// A massless rod: a distance that is kept.
     Rod,
-    /// A spring or damper.
+    /// A spring.
     Spring,
+    /// A distance that is driven, or a damper or a force between two places: a rod that slides in a barrel.
+    Cylinder,
     /// A stretch of a rope.
     Rope,
     /// A line along which something slides, or that keeps points straight.
@@ -162,6 +178,19 @@ pub struct SceneJoint {
     pub at: [f64; 3],
     /// Direction in the same axes, of any length.
     pub axis: Option<[f64; 3]>,
+    /// Whether the columns of its force are on `other` and not on `body`.
+    pub acts_on_other: bool,
+    /// Drives and efforts along its coordinates, by name.
+    pub drives: Vec<String>,
+}
+
+/// A force or moment of which columns are recorded.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SceneLoad {
+    /// As in its columns.
+    pub name: String,
+    /// Where it acts.
+    pub at: Anchor,
 }
 
 /// A picture needs no more digits, and a mesh has many numbers.

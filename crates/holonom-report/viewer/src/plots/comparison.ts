@@ -1,12 +1,12 @@
-// What a plot of several runs has besides its curves: which runs leave its axis, and the values under the pointer.
+// What plots have besides their curves: of several runs, which of them leave its axis; and the values under the pointer.
 
 import { element } from "../dom";
 import { reading } from "../format";
 import { curveSample } from "../sample";
 import type { Visibility } from "../visibility";
 import type { Departure } from "./bounds";
-import type { Chart } from "./charts";
-import { valueAt } from "./values";
+import { withUnit, type Chart, type Curve } from "./charts";
+import { rowNear } from "./values";
 
 /** Distance of the values from the pointer, px. */
 const DISTANCE = 16;
@@ -17,7 +17,7 @@ export class ComparedHeading {
   private readonly beyond = element("p", { class: "beyond" });
 
   constructor(chart: Chart) {
-    this.node = element("figcaption", {}, element("h3", {}, chart.title), this.beyond);
+    this.node = element("figcaption", {}, element("h3", {}, withUnit(chart.title, chart.unit)), this.beyond);
   }
 
   refresh(gone: Departure[]): void {
@@ -27,21 +27,21 @@ export class ComparedHeading {
   }
 }
 
-/** A list beside the pointer: every shown run with its value, the largest first. */
+/** A list beside the pointer: the time, and every shown curve with its value, the largest first. */
 export class Readout {
   readonly node = element("div", { class: "readout", hidden: "" });
 
   constructor(private readonly chart: Chart, private readonly visibility: Visibility) {}
 
-  /** At time t, for a pointer at `left` in a drawing of the given width. */
-  show(t: number, left: number, width: number): void {
-    const curves = this.chart.curves.filter((curve) => this.visibility.shows(curve.run) && t <= curve.x[curve.x.length - 1]);
-    const rows = curves.map((curve) => ({ curve, value: valueAt(curve, t) ?? NaN }));
+  /** At time t, for a pointer at `left` in a drawing of the given width; of one curve alone, if it is given. */
+  show(t: number, left: number, width: number, only?: Curve): void {
+    const shown = (curve: Curve): boolean => curve.shown && this.visibility.shows(curve.run) && t <= curve.x[curve.x.length - 1];
+    const rows = (only ? [only] : this.chart.curves.filter(shown)).map((curve) => ({ curve, value: curve.y[rowNear(curve, t)] }));
     rows.sort((a, b) => order(b.value) - order(a.value));
     const cells = rows.flatMap(({ curve, value }) => [
       curveSample(curve.colour),
       element("span", {}, curve.label),
-      element("span", { class: "value" }, reading(value)),
+      element("span", { class: "value" }, this.values(curve, value, t)),
     ]);
     this.node.replaceChildren(element("b", {}, `t = ${reading(t)} s`), ...cells);
     this.node.hidden = false;
@@ -52,6 +52,12 @@ export class Readout {
 
   hide(): void {
     this.node.hidden = true;
+  }
+
+  private values(curve: Curve, value: number, t: number): string {
+    const { unit, over } = this.chart;
+    const text = `${reading(value)} ${unit}`;
+    return over && curve.across ? `${text} at ${over.column} = ${reading(curve.across[rowNear(curve, t)])} ${over.unit}` : text;
   }
 }
 

@@ -3,7 +3,7 @@
 import { element } from "../dom";
 import { reading } from "../format";
 import { curveColor } from "../theme";
-import type { Chart, Curve } from "./charts";
+import { withUnit, type Chart, type Curve } from "./charts";
 import { valueAt } from "./values";
 
 export class Heading {
@@ -16,7 +16,7 @@ export class Heading {
     this.values = chart.curves.map(() => element("span", { class: "value" }));
     const several = chart.curves.length > 1;
     this.entries = chart.curves.map((curve, i) => (several ? this.entrySwitch(curve, i) : element("span", { class: "entry" }, this.values[i])));
-    this.node = element("figcaption", {}, element("h3", {}, chart.title), element("div", { class: "entries" }, ...this.entries));
+    this.node = element("figcaption", {}, element("h3", {}, withUnit(chart.title, chart.unit)), element("div", { class: "entries" }, ...this.entries));
   }
 
   show(t: number): void {

@@ -6,57 +6,57 @@ import { element } from "../dom";
 import { curveColor, curveDash, onThemeChange, theme } from "../theme";
 import type { Visibility } from "../visibility";
 import { axisOf, departures, drawable, type Departure, type Extent } from "./bounds";
-import type { Chart, Curve } from "./charts";
+import { withUnit, type Chart, type Curve } from "./charts";
 import { ComparedHeading, Readout } from "./comparison";
 import { Heading } from "./heading";
+import { straight } from "./path";
+import { pictureButton } from "./picture";
 import { linearLabels, logFloor, logLabels, logSplits } from "./scales";
 
-const HEIGHT = 215;
-const FONT = "11px system-ui, sans-serif";
+export const HEIGHT = 215;
+export const FONT = "11px system-ui, sans-serif";
 /** Wide enough for the longest label, equal in all plots so that their time axes are in line. */
-const LABEL_WIDTH = 66;
+export const LABEL_WIDTH = 58;
+export const UNIT_WIDTH = 16;
 /** A press that moves less is a click, not the choice of a range; px. */
 const CLICK = 3;
 /** How much is left of the curves beside the one that is pointed at in the legend. */
 const FADED = 0.12;
 
 /** A plot of one run, with the values of its curves in the heading. */
-export function buildPlot(container: HTMLElement, chart: Chart, clock: Clock, visibility: Visibility): void {
+export function buildPlot(container: HTMLElement, chart: Chart, clock: Clock, visibility: Visibility): uPlot {
   const heading = new Heading(chart);
   const drawing = new Drawing(container, heading.node, chart, clock, visibility);
   const read = (): void => heading.show(drawing.time());
   drawing.on("setCursor", read);
-  clock.onTime(read);
+  clock.onTime(read, heading.node);
   const refresh = (): void => {
     drawing.showCurves();
     heading.refresh();
   };
   heading.onToggle = refresh;
-  onThemeChange(refresh);
+  onThemeChange(refresh, heading.node);
   refresh();
   read();
+  drawing.showReadout(new Readout(chart, visibility));
+  return drawing.plot;
 }
 
 /** A plot of several runs, with the values of their curves beside the pointer. */
-export function buildComparedPlot(container: HTMLElement, chart: Chart, clock: Clock, visibility: Visibility): void {
+export function buildComparedPlot(container: HTMLElement, chart: Chart, clock: Clock, visibility: Visibility): uPlot {
   const heading = new ComparedHeading(chart);
   const drawing = new Drawing(container, heading.node, chart, clock, visibility);
   const { plot } = drawing;
   const refresh = (): void => heading.refresh(drawing.showCurves());
-  visibility.onChange(refresh);
+  visibility.onChange(refresh, heading.node);
   refresh();
 
-  const readout = new Readout(chart, visibility);
-  plot.over.append(readout.node);
-  plot.over.addEventListener("pointermove", (event) => {
-    const left = event.clientX - plot.over.getBoundingClientRect().left;
-    readout.show(plot.posToVal(left, "x"), left, plot.over.clientWidth);
-  });
-  plot.over.addEventListener("pointerleave", () => readout.hide());
+  drawing.showReadout(new Readout(chart, visibility));
   visibility.onHighlight(() => {
     const series = 1 + chart.curves.findIndex((curve) => curve.run === visibility.highlighted && visibility.shows(curve.run));
     plot.setSeries(series === 0 ? null : series, { focus: series > 0 });
-  });
+  }, heading.node);
+  return plot;
 }
 
 /** The curves of a chart under a heading. */
@@ -74,16 +74,18 @@ class Drawing {
     private readonly visibility: Visibility,
   ) {
     const place = element("div", { class: "drawing" });
-    container.append(element("figure", { class: "plot" }, heading, place));
+    const figure = element("figure", { class: "plot" }, heading, place);
+    container.append(figure);
     this.rows = lastRows(departures(chart, this.shown()));
     this.plot = new uPlot(plotOptions(chart, place.clientWidth || 500), tableOf(chart, this.rows), place);
     this.plot.over.append(this.marker);
+    figure.append(pictureButton(this.plot, withUnit(chart.title, chart.unit), chart.curves));
     onClick(this.plot.over, (x) => clock.setTime(this.plot.posToVal(x, "x")));
     const mark = (): void => this.mark();
     this.on("setScale", mark);
     this.on("setSize", mark);
-    clock.onTime(mark);
-    onThemeChange(() => this.plot.redraw(false));
+    clock.onTime(mark, place);
+    onThemeChange(() => this.plot.redraw(false), place);
     // A drawing that is folded away has no width.
     new ResizeObserver(() => place.clientWidth > 0 && this.plot.setSize({ width: place.clientWidth, height: HEIGHT })).observe(place);
     mark();
@@ -91,6 +93,17 @@ class Drawing {
 
   on(event: "setCursor" | "setScale" | "setSize", listener: () => void): void {
     (this.plot.hooks[event] ??= []).push(listener);
+  }
+
+  /** Time and values beside the pointer. */
+  showReadout(readout: Readout): void {
+    const { over } = this.plot;
+    over.append(readout.node);
+    over.addEventListener("pointermove", (event) => {
+      const left = event.clientX - over.getBoundingClientRect().left;
+      readout.show(this.plot.posToVal(left, "x"), left, over.clientWidth);
+    });
+    over.addEventListener("pointerleave", () => readout.hide());
   }
 
   /** The time under the pointer, else that of the page. */
@@ -149,8 +162,10 @@ function tableOf(chart: Chart, cutAfter: Map<Curve, number>): uPlot.AlignedData 
 
 function plotOptions(chart: Chart, width: number): uPlot.Options {
   const log = chart.scale === "log";
-  const paths = chart.scale === "steps" ? uPlot.paths.stepped?.({ align: -1 }) : undefined;
+  const stepped = chart.scale === "steps" ? uPlot.paths.stepped?.({ align: -1 }) : undefined;
   const axis = { stroke: () => theme().soft, font: FONT, labelFont: FONT, grid: { stroke: () => theme().line, width: 1 }, ticks: { show: false } };
+  // A unit that is left out has its room, too.
+  const labelled = { size: LABEL_WIDTH, label: chart.unit || " ", labelSize: UNIT_WIDTH, labelGap: 0 };
   return {
     width,
     height: HEIGHT,
@@ -165,8 +180,8 @@ function plotOptions(chart: Chart, width: number): uPlot.Options {
     axes: [
       { ...axis, label: "t (s)", labelSize: 16, labelGap: 0, size: 26, values: linearLabels },
       log
-        ? { ...axis, size: LABEL_WIDTH, splits: logSplits, values: logLabels, filter: (_, splits) => splits }
-        : { ...axis, size: LABEL_WIDTH, space: 32, values: linearLabels, ...(chart.scale === "steps" ? { incrs: [1, 2, 5, 10, 20, 50, 100] } : {}) },
+        ? { ...axis, ...labelled, splits: logSplits, values: logLabels, filter: (_, splits) => splits }
+        : { ...axis, ...labelled, space: 32, values: linearLabels, ...(chart.scale === "steps" ? { incrs: [1, 2, 5, 10, 20, 50, 100] } : {}) },
     ],
     series: [
       {},
@@ -177,7 +192,7 @@ function plotOptions(chart: Chart, width: number): uPlot.Options {
           stroke: () => curveColor(curve.colour),
           width: 1.5,
           points: { show: false },
-          ...(paths ? { paths } : {}),
+          paths: stepped ?? straight,
           ...(dash ? { dash } : {}),
         };
       }),
@@ -206,10 +221,10 @@ function nearestRow(plot: uPlot, series: number, row: number): number {
   return row;
 }
 
-function onClick(over: HTMLElement, act: (x: number) => void): void {
+export function onClick(over: HTMLElement, act: (x: number, y: number) => void): void {
   let pressed = NaN;
   over.addEventListener("mousedown", (event) => (pressed = event.clientX));
   over.addEventListener("mouseup", (event) => {
-    if (Math.abs(event.clientX - pressed) < CLICK) act(event.clientX - over.getBoundingClientRect().left);
+    if (Math.abs(event.clientX - pressed) < CLICK) act(event.clientX - over.getBoundingClientRect().left, event.clientY - over.getBoundingClientRect().top);
   });
 }

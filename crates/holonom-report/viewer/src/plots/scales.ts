@@ -3,6 +3,9 @@
 import uPlot from "uplot";
 import { power, ticks } from "../format";
 
+/** A range that is a smaller share of its values is one value: between its ends there are no numbers for ticks. */
+const ROUNDING = 1e-12;
+
 /** The lower and the upper end. */
 export type Range = [number, number];
 
@@ -31,9 +34,11 @@ export function linearAxis(range: Range | undefined, leastSpan: number, fromZero
   if (!range) return [0, 1];
   const [min, max] = range;
   if (fromZero) return [0, Math.max(1, max) * 1.1];
-  const missing = Math.max(leastSpan - (max - min), 0);
-  const span = max - min + missing || Math.abs(max) * 0.1 || 1;
-  const margin = 0.07 * span + (max === min && missing === 0 ? span / 2 : missing / 2);
+  const size = Math.max(Math.abs(min), Math.abs(max));
+  const wanted = Math.max(max - min, leastSpan);
+  const span = wanted > ROUNDING * size ? wanted : 0.1 * size || 1;
+  const missing = span - (max - min);
+  const margin = 0.07 * span + missing / 2;
   return [min - margin, max + margin];
 }
 

@@ -7,7 +7,9 @@ import type { Theme } from "../theme";
 import { addJoints } from "./joints";
 import { commonAxes, layers } from "./layers";
 import { Materials } from "./materials";
+import type { Look } from "./looks";
 import { extent, outline } from "./outline";
+import { mark } from "./pick";
 import { sketch, type Pen } from "./sketch";
 import { solidOf, type Solid } from "./solid";
 
@@ -23,6 +25,8 @@ export interface Frame {
   index: number;
   /** How far the body lies in front of its true place, m; planar models are drawn in layers. */
   depth: number;
+  surface: Mesh;
+  isHidden: boolean;
 }
 
 export class Bodies {
@@ -49,8 +53,8 @@ export class Bodies {
   }
 
   update(t: number): void {
-    for (const [name, { group, depth }] of this.frames) {
-      const pose = this.motion.poseAt(name, t);
+    for (const [name, { group, depth, isHidden }] of this.frames) {
+      const pose = isHidden ? undefined : this.motion.poseAt(name, t);
       group.visible = pose !== undefined;
       if (!pose) continue;
       group.position.copy(pose.place).addScaledVector(this.motion.across, depth);
@@ -60,6 +64,13 @@ export class Bodies {
 
   paint(colours: Theme): void {
     this.materials.paint(colours);
+  }
+
+  setLook(body: string, look: Look): void {
+    const frame = this.frames.get(body);
+    if (!frame) return;
+    frame.isHidden = look === "hidden";
+    frame.surface.material = look === "transparent" ? this.materials.glass(frame.index) : this.materials.surface(frame.index);
   }
 
   /** A run that is shown along with another one: transparent, and without symbols. */
@@ -73,15 +84,17 @@ export class Bodies {
     const layer = Math.min(this.layers.get(body.name) ?? 0, 3);
     const depth = this.motion.planar ? -(layer + 0.6) * 1.1 * this.pen.thickness : 0;
     const solid = body.shape ? this.solid(body.shape) : this.sketched(body, layer);
-    const parts = [new Mesh(solid.surface, this.materials.surface(index)), solid.edges && new LineSegments(solid.edges, this.materials.edge(index))];
+    const surface = new Mesh(solid.surface, this.materials.surface(index));
+    const parts = [surface, solid.edges && new LineSegments(solid.edges, this.materials.edge(index))];
     for (const part of parts) {
       if (!part) continue;
       if (body.shape) this.place(part, body.shape);
       group.add(part);
     }
     if (!body.shape && this.legible) group.add(this.centreMark(-depth));
+    mark(group, { sort: "body", kind: "body", name: body.name });
     this.group.add(group);
-    this.frames.set(body.name, { group, index, depth });
+    this.frames.set(body.name, { group, index, depth, surface, isHidden: false });
   }
 
   /** In a planar model a solid is as thick as a link. */

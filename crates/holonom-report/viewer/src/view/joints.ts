@@ -7,9 +7,10 @@ import type { Frame } from "./bodies";
 import { foot } from "./foot";
 import type { Materials } from "./materials";
 import { outline } from "./outline";
+import { mark } from "./pick";
 import { poseOf, sidesOf, travel, type Side } from "./side";
 import type { Pen } from "./sketch";
-import { RAIL, RAIL_END, railOf, REVERSIBLE, sliderOf, STANDS, symbolOf, type Piece } from "./symbols";
+import { driveOf, RAIL, RAIL_END, railOf, REVERSIBLE, sliderOf, STANDS, symbolOf, type Piece } from "./symbols";
 
 const Z = new Vector3(0, 0, 1);
 
@@ -37,6 +38,7 @@ class JointBuilder {
     if (!sides) return;
     if (REVERSIBLE.has(joint.kind) && joint.other === null) sides.reverse();
     const [here, other] = sides;
+    const before = this.groups.length;
     const hub = joint.kind === "revolute" ? this.hubLength(sides) : undefined;
     this.hang(symbolOf(joint.kind), here, hub === undefined ? undefined : new Vector3(1, 1, hub / this.pen.unit));
     const radius = railOf(joint.kind);
@@ -44,6 +46,17 @@ class JointBuilder {
     // In a plane, what is held by the slider comes in front of it.
     if (!this.isSolid(other.body)) this.hang(sliderOf(joint.kind), other, undefined, this.motion.planar ? -2 * this.pen.unit : 0);
     if (STANDS.has(joint.kind) && (joint.body === null || joint.other === null)) this.addFoot(here, joint.body ?? joint.other, hub);
+    for (const group of this.groups.slice(before)) mark(group, { sort: "joint", kind: `${joint.kind} joint`, name: joint.name });
+    if (joint.drives.length > 0) this.addDrive(joint, here, hub ?? 2 * this.pen.unit);
+  }
+
+  private addDrive({ kind, name, drives }: Joint, here: Side, hub: number): void {
+    const before = this.groups.length;
+    const { around, housing } = driveOf(kind);
+    this.hang(around, here, undefined, this.motion.planar ? 0.5 * hub : 0);
+    const end = { ...here, at: here.at.clone().addScaledVector(here.axis, 0.5 * hub) };
+    if (!this.motion.planar) this.hang(housing, end);
+    for (const group of this.groups.slice(before)) mark(group, { sort: "drive", kind: `drive of ${name}`, name: drives[0] });
   }
 
   /** Puts pieces at a side of a joint, z along its axis; `depth`: how far in front of the true place, m. */

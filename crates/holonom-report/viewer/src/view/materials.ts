@@ -12,12 +12,14 @@ const OFFSET = 4;
 export class Materials {
   readonly centre = new MeshStandardMaterial({ roughness: 0.5, vertexColors: true });
   private readonly surfaces = range(COLOURS, () => surface(0.5));
+  private readonly glasses = range(COLOURS, glass);
   private readonly edges = range(COLOURS, () => new LineBasicMaterial({ transparent: true, opacity: 0.85 }));
   private readonly parts: Record<Exclude<Part, "body">, MeshStandardMaterial> = {
     joint: surface(0.4),
     pin: surface(0.35),
     ground: surface(0.8),
     pane: surface(0.8),
+    drive: surface(0.45),
   };
 
   /** `runColour`: of all bodies, when several runs are compared. */
@@ -27,6 +29,11 @@ export class Materials {
 
   surface(body: number): Material {
     return this.surfaces[body % COLOURS];
+  }
+
+  /** The surface of a body that one sees through. */
+  glass(body: number): Material {
+    return this.glasses[body % COLOURS];
   }
 
   edge(body: number): Material {
@@ -43,11 +50,13 @@ export class Materials {
     for (let i = 0; i < COLOURS; i++) {
       const colour = new Color(this.runColour?.() ?? bodyColor(i));
       this.surfaces[i].color.copy(colour);
+      this.glasses[i].color.copy(colour);
       this.edges[i].color.copy(colour).multiplyScalar(0.42);
     }
     this.parts.joint.color.set(colours.joint);
     this.parts.pin.color.set(colours.pin);
     this.parts.ground.color.set(colours.ground);
+    this.parts.drive.color.set(colours.driven);
     this.parts.pane.color.set(colours.soft);
   }
 
@@ -61,6 +70,10 @@ export class Materials {
       material.needsUpdate = wasGhost !== ghost;
     }
   }
+}
+
+function glass(): MeshStandardMaterial {
+  return new MeshStandardMaterial({ roughness: 0.5, transparent: true, opacity: 0.22, depthWrite: false });
 }
 
 /** Pushed back a little, so that the lines on it are seen whole. */

@@ -1,18 +1,24 @@
 // One run's mechanism: points, what connects them, bodies, and trails.
 
-import { BackSide, BoxGeometry, BufferGeometry, Color, FrontSide, Group, Line, LineBasicMaterial, Mesh, MeshStandardMaterial, SphereGeometry, Vector3, type Side } from "three";
+import { BackSide, BoxGeometry, BufferGeometry, Color, CylinderGeometry, FrontSide, Group, Line, LineBasicMaterial, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3, type Side } from "three";
 import type { Motion } from "../motion";
-import type { Anchor, LineKind, Scene, Vec3 } from "../payload";
+import type { Anchor, Line as SceneLine, Scene, Vec3 } from "../payload";
 import { bodyColor, curveColor, theme, type Theme } from "../theme";
 import { Bodies } from "./bodies";
+import { Cylinder } from "./cylinder";
+import type { Look } from "./looks";
+import { mark } from "./pick";
 import { coil, stick, stretch } from "./shapes";
 import { Trail } from "./trail";
 
 /** More would be a tangle. */
 const MOST_TRAILS = 16;
 
+/** Rows that are looked at for the shortest length of a cylinder. */
+const SAMPLES = 400;
+
 /** Radii as shares of the size of the whole picture. */
-const RADIUS = { bar: 0.0095, rod: 0.0038, spring: 0.016, wire: 0.0028, rope: 0.0025, point: 0.017, ground: 0.026 };
+const RADIUS = { bar: 0.0095, pin: 0.0135, rod: 0.0038, spring: 0.016, wire: 0.0028, rope: 0.0025, point: 0.017, ground: 0.026 };
 
 export class Mechanism {
   readonly group = new Group();
@@ -28,13 +34,16 @@ export class Mechanism {
   private readonly scale: number;
   private readonly scene: Scene;
   private readonly bodies: Bodies;
+  /** Those of bodies, by name. */
+  private readonly trails = new Map<string, Trail>();
 
-  constructor(private readonly motion: Motion, private readonly size: number, index: number, runs: number) {
+  constructor(readonly motion: Motion, private readonly size: number, index: number, runs: number) {
     this.scene = motion.run.scene;
     this.runColour = runs > 1 ? () => curveColor(index) : undefined;
     this.scale = size * (1 + (0.8 * index) / runs);
     this.side = index === 0 ? FrontSide : BackSide;
-    for (const line of this.scene.lines) this.addLine(line.kind, line.from, line.to);
+    for (const line of this.scene.lines) this.addLine(line);
+    this.addPins();
     this.addPoints();
     this.addGround();
     this.bodies = this.addBodies();
@@ -55,16 +64,70 @@ export class Mechanism {
     this.bodies.setGhost(ghost);
   }
 
-  private addLine(kind: LineKind, from: Anchor, to: Anchor): void {
+  setLook(body: string, look: Look): void {
+    this.bodies.setLook(body, look);
+    const trail = this.trails.get(body);
+    if (trail) trail.isHidden = look === "hidden";
+  }
+
+  private addLine({ name, kind, from, to }: SceneLine): void {
     if (kind === "guide") return this.addGuide(from, to);
+    if (kind === "cylinder") return this.addCylinder(name, from, to);
     const start = this.ends(from, to, this.motion.run.times[0] ?? 0);
     const natural = kind === "spring" ? Math.max(start ? start[0].distanceTo(start[1]) : 0, this.scale * 0.05) : 1;
     const geometry = kind === "spring" ? coil(RADIUS.spring * this.scale, RADIUS.wire * this.scale, natural) : stick(RADIUS[kind] * this.scale);
     const mesh = this.solid(geometry, (colours) => this.runColour?.() ?? colours[kind]);
+    mark(mesh, { sort: "line", kind, name });
     this.updates.push((t) => {
       const ends = this.ends(from, to, t);
       mesh.visible = ends !== undefined && stretch(mesh, ends[0], ends[1], natural);
     });
+  }
+
+  private addCylinder(name: string, from: Anchor, to: Anchor): void {
+    const { times } = this.motion.run;
+    const step = Math.max(1, Math.floor(times.length / SAMPLES));
+    let shortest = Infinity;
+    for (let row = 0; row < times.length; row += step) {
+      const ends = this.ends(from, to, times[row]);
+      if (ends) shortest = Math.min(shortest, ends[0].distanceTo(ends[1]));
+    }
+    if (!Number.isFinite(shortest)) return;
+    const [barrel, rod] = [this.material((colours) => this.runColour?.() ?? colours.bar), this.material((colours) => colours.pin)];
+    const cylinder = new Cylinder(Math.max(shortest, 0.02 * this.scale), this.scale, barrel, rod);
+    mark(cylinder.group, { sort: "line", kind: "cylinder", name });
+    this.group.add(cylinder.group);
+    this.updates.push((t) => {
+      const ends = this.ends(from, to, t);
+      cylinder.group.visible = ends !== undefined && cylinder.put(...ends);
+    });
+  }
+
+  /** Pins at the ends of bars that have room for them, but where a point has a ball of its own. */
+  private addPins(): void {
+    const hasRoom = ({ from, to }: SceneLine): boolean => {
+      const ends = this.ends(from, to, this.motion.run.times[0] ?? 0);
+      return ends !== undefined && ends[0].distanceTo(ends[1]) > 4 * RADIUS.pin * this.scale;
+    };
+    const balls = new Set(this.scene.points.filter(({ kind, mass }) => kind === "driven" || (kind === "free" && mass > 0)).map(({ name }) => name));
+    const ends = this.scene.lines.filter((line) => line.kind === "bar" && hasRoom(line)).flatMap(({ name, from, to }) => [from, to].map((anchor) => ({ name, anchor })));
+    const places = new Map(ends.map((end) => [JSON.stringify(end.anchor), end]));
+    for (const { name, anchor } of places.values()) {
+      if ("point" in anchor && balls.has(anchor.point)) continue;
+      for (const mesh of this.pin()) {
+        mark(mesh, "point" in anchor ? { sort: "point", kind: "point", name: anchor.point } : { sort: "line", kind: "bar", name });
+        this.updates.push((t) => this.put(mesh, this.motion.anchorAt(anchor, t)));
+      }
+    }
+  }
+
+  /** In a plane a pin in an eye, in space a ball. */
+  private pin(): Mesh[] {
+    const radius = RADIUS.pin * this.scale;
+    if (!this.motion.planar) return [this.solid(new SphereGeometry(radius, 24, 16), (colours) => colours.joint)];
+    const across = new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), this.motion.across);
+    const disc = (share: number, length: number): BufferGeometry => new CylinderGeometry(share * radius, share * radius, length * radius, 28).applyQuaternion(across);
+    return [this.solid(disc(1, 2.6), (colours) => colours.joint, FrontSide), this.solid(disc(0.5, 2.8), (colours) => colours.pin, FrontSide)];
   }
 
   private addGuide(from: Anchor, to: Anchor): void {
@@ -90,6 +153,7 @@ export class Mechanism {
       const ball = new SphereGeometry(RADIUS.point * this.scale * share, 28, 20);
       const colour = kind === "driven" ? "driven" : undefined;
       const mesh = this.solid(ball, (colours) => this.runColour?.() ?? (colour ? colours[colour] : curveColor(0)));
+      mark(mesh, { sort: "point", kind: "point", name });
       this.updates.push((t) => this.put(mesh, this.motion.at(name, t)));
     }
   }
@@ -101,6 +165,7 @@ export class Mechanism {
     for (const { name, kind } of this.scene.points) {
       if (kind !== "fixed") continue;
       const mesh = cube();
+      mark(mesh, { sort: "point", kind: "fixed point", name });
       this.updates.push((t) => this.put(mesh, this.motion.at(name, t)));
     }
     const held = this.scene.lines.filter((line) => line.kind !== "guide").flatMap((line) => [line.from, line.to]);
@@ -121,24 +186,32 @@ export class Mechanism {
     const every = Math.ceil(free.length / MOST_TRAILS);
     for (const { name } of free.filter((_, i) => i % every === 0)) this.addTrail((t) => this.motion.at(name, t), () => curveColor(0));
     if (free.length + this.scene.bodies.length > MOST_TRAILS) return;
-    this.scene.bodies.forEach(({ name }, i) => this.addTrail((t) => this.motion.poseAt(name, t)?.place.toArray(), () => bodyColor(i)));
+    this.scene.bodies.forEach(({ name }, i) => {
+      const trail = this.addTrail((t) => this.motion.poseAt(name, t)?.place.toArray(), () => bodyColor(i));
+      this.trails.set(name, trail);
+    });
   }
 
-  private addTrail(at: (t: number) => Vec3 | undefined, colour: () => string): void {
+  private addTrail(at: (t: number) => Vec3 | undefined, colour: () => string): Trail {
     const { times } = this.motion.run;
     const first = times[0] ?? 0;
     const trail = new Trail(at, first, ((times.at(-1) ?? 0) - first) / 8);
     this.group.add(trail.object);
     this.updates.push((t) => trail.update(t));
     this.paints.push((colours) => trail.setColours(new Color(this.runColour?.() ?? colour()), new Color(colours.page)));
+    return trail;
   }
 
   private solid(geometry: BufferGeometry, colour: (colours: Theme) => string, side: Side = this.side): Mesh {
-    const material = new MeshStandardMaterial({ roughness: 0.55, metalness: 0.05, side });
-    const mesh = new Mesh(geometry, material);
+    const mesh = new Mesh(geometry, this.material(colour, side));
     this.group.add(mesh);
-    this.paints.push((colours) => material.color.set(colour(colours)));
     return mesh;
+  }
+
+  private material(colour: (colours: Theme) => string, side: Side = this.side): MeshStandardMaterial {
+    const material = new MeshStandardMaterial({ roughness: 0.55, metalness: 0.05, side });
+    this.paints.push((colours) => material.color.set(colour(colours)));
+    return material;
   }
 
   private put(mesh: Mesh, place: Vec3 | undefined): void {

@@ -1,26 +1,37 @@
 // The picture: renderer, camera, light, ground, and the mechanisms of all runs.
 
-import { AmbientLight, Color, DirectionalLight, HemisphereLight, Scene, WebGLRenderer } from "three";
+import { AmbientLight, Color, DirectionalLight, HemisphereLight, Scene, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Clock } from "../clock";
 import { element } from "../dom";
 import type { Motion } from "../motion";
+import type { Vec3 } from "../payload";
+import type { Selection } from "../selection";
+import { savePicture } from "../take";
 import { onThemeChange, theme } from "../theme";
 import type { Visibility } from "../visibility";
+import { actingOn } from "./acting";
+import { Arrows } from "./arrows";
 import { buildCamera, fitLens, frame, viewpoint } from "./camera";
 import { RunChoice } from "./choice";
 import { boundingBox, diagonal } from "./frame";
 import { buildGrid } from "./grid";
+import { Highlight } from "./highlight";
+import { buildLooks } from "./looks";
 import { Mechanism } from "./mechanism";
+import { listenToPointer } from "./pick";
 
 const WITHOUT_WEBGL = "The picture in 3D needs WebGL, which this browser does not offer here. The plots below do not.";
 
-export function buildStage(container: HTMLElement, motions: Motion[], clock: Clock, visibility: Visibility): void {
+/** From the world to the window, px; nothing without a picture. */
+export type OnScreen = (place: Vec3) => [number, number] | undefined;
+
+export function buildStage(container: HTMLElement, motions: Motion[], clock: Clock, visibility: Visibility, selection: Selection): OnScreen {
   const canvas = element("canvas", { "aria-label": "The mechanism in 3D" });
   const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
   if (!gl) {
     container.append(element("p", { class: "note" }, WITHOUT_WEBGL));
-    return;
+    return () => undefined;
   }
   container.append(canvas);
   // The buffer is preserved so that the picture can be saved from the browser's menu.
@@ -31,12 +42,18 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
   const camera = buildCamera(view);
   const mechanisms = motions.map((motion, i) => new Mechanism(motion, diagonal(box), i, motions.length));
   const grid = buildGrid(view, box);
-  scene.add(camera, grid.object, ...mechanisms.map((mechanism) => mechanism.group));
-  container.append(element("p", { class: "hint" }, `grid ${Number(grid.cell.toPrecision(2))} m · drag to turn, scroll to zoom`));
+  const arrows = new Arrows(diagonal(box));
+  const groups = mechanisms.map((mechanism) => mechanism.group);
+  const highlight = new Highlight(groups);
+  scene.add(camera, grid.object, ...groups, arrows.group);
+  container.append(hint(grid.cell));
   addLight(scene, camera);
 
   const controls = new OrbitControls(camera, canvas);
-  const render = drawOnDemand(() => renderer.render(scene, camera));
+  const render = drawOnDemand(() => {
+    renderer.render(scene, camera);
+    arrows.place(camera, container.clientWidth, container.clientHeight);
+  });
   const home = (): void => {
     frame(camera, view, box, shape(container));
     fitLens(camera, view, box, shape(container));
@@ -54,13 +71,15 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
     scene.background = new Color(theme().page);
     grid.object.material.color.set(theme().line);
     for (const mechanism of mechanisms) mechanism.paint();
+    arrows.paint();
+    highlight.show(selection.item);
     render();
   };
   const show = (t: number): void => {
     for (const mechanism of mechanisms) mechanism.update(t);
+    arrows.update(t);
     render();
   };
-  container.append(homeButton(home));
   controls.addEventListener("change", render);
   new ResizeObserver(resize).observe(container);
   onThemeChange(paint);
@@ -73,15 +92,40 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
       mechanism.setGhost(!alone);
       if (choice.shows(run)) alone = false;
     });
+    select();
+  };
+  /** Forces are those of the first run that is shown. */
+  const select = (): void => {
+    const first = mechanisms.find((mechanism) => mechanism.group.visible)?.motion;
+    highlight.show(selection.item);
+    arrows.show(first, first && selection.item ? actingOn(first, selection.item) : []);
+    arrows.update(clock.time);
     render();
   };
-  container.append(choice.node);
+  const looks = buildLooks([...new Set(motions.flatMap(({ run }) => run.scene.bodies.map(({ name }) => name)))], selection, (body, look) => {
+    highlight.clear();
+    for (const mechanism of mechanisms) mechanism.setLook(body, look);
+    highlight.show(selection.item);
+    show(clock.time);
+  });
+  const take = pictureButton(() => {
+    renderer.render(scene, camera);
+    return arrows.drawnOn(canvas);
+  });
+  const tools = element("div", { class: "tools" }, ...(looks ? [looks] : []), take, homeButton(home));
+  container.append(choice.node, listenToPointer(canvas, camera, groups, selection), arrows.labels, tools);
   choice.onChange(choose);
+  selection.onChange(select);
   choose();
   resize();
   home();
   paint();
   show(clock.time);
+  return (place) => {
+    const { left, top, width, height } = canvas.getBoundingClientRect();
+    const seen = new Vector3(...place).project(camera);
+    return [left + ((seen.x + 1) / 2) * width, top + ((1 - seen.y) / 2) * height];
+  };
 }
 
 /** The motions that the picture has to have room for: runs that blew up go wherever they like. */
@@ -105,6 +149,17 @@ function drawOnDemand(draw: () => void): () => void {
 
 function shape(container: HTMLElement): number {
   return container.clientWidth / Math.max(container.clientHeight, 1);
+}
+
+function pictureButton(draw: () => HTMLCanvasElement): HTMLElement {
+  const button = element("button", { type: "button", class: "take", title: "save this picture" }, "PNG");
+  button.addEventListener("click", () => savePicture(draw(), "picture"));
+  return button;
+}
+
+function hint(cell: number): HTMLElement {
+  const keys = element("span", { class: "keys" }, ", click to select · space bar plays, arrow keys step");
+  return element("p", { class: "hint" }, `grid ${Number(cell.toPrecision(2))} m · drag to turn, scroll to zoom`, keys);
 }
 
 function homeButton(home: () => void): HTMLElement {

@@ -1,10 +1,10 @@
 // What joints look like, in units of `Pen.unit`, around the origin and along z. Every geometry exists once.
 
-import { BoxGeometry, BufferGeometry, CylinderGeometry, OctahedronGeometry, SphereGeometry, TorusGeometry } from "three";
+import { BoxGeometry, BufferGeometry, ConeGeometry, CylinderGeometry, OctahedronGeometry, SphereGeometry, TorusGeometry } from "three";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 
 /** Which material a part has; `body`: that of the body it is on. */
-export type Part = "joint" | "pin" | "ground" | "pane" | "body";
+export type Part = "joint" | "pin" | "ground" | "pane" | "drive" | "body";
 
 export interface Piece {
   geometry: BufferGeometry;
@@ -29,6 +29,32 @@ const SLEEVE: Piece[] = [{ geometry: new BoxGeometry(2.9, 2.9, 5), part: "body" 
 const ROUND_SLEEVE: Piece[] = [{ geometry: rod(1.5, 5), part: "body" }];
 const PANE: Piece[] = [{ geometry: new BoxGeometry(11, 11, 0.25), part: "pane" }];
 const MARK: Piece[] = [{ geometry: new OctahedronGeometry(1.3), part: "joint" }];
+
+/** A bent arrow around the axis. */
+const BEND = 1.55 * Math.PI;
+const TURNS: Piece[] = [
+  {
+    geometry: mergeGeometries([
+      new TorusGeometry(2.5, 0.32, 10, 48, BEND),
+      new ConeGeometry(0.95, 1.9, 20).rotateZ(BEND).translate(2.5 * Math.cos(BEND), 2.5 * Math.sin(BEND), 0),
+    ]),
+    part: "drive",
+  },
+];
+/** The housing of a motor, on the end of an axis at the origin. */
+const MOTOR: Piece[] = [{ geometry: mergeGeometries([rod(1.7, 3.4).translate(0, 0, 1.9), rod(1.1, 0.8).translate(0, 0, 4)]), part: "drive" }];
+/** An arrow to either side along the axis, beside it. */
+const SLIDES: Piece[] = [
+  {
+    geometry: mergeGeometries([rod(0.32, 4.4), ...[1, -1].map((end) => new ConeGeometry(0.95, 1.9, 20).rotateX((end * Math.PI) / 2).translate(0, 0, 2.9 * end))]).translate(3, 0, 0),
+    part: "drive",
+  },
+];
+
+/** What shows that a joint of some kind is driven; `housing`: at the end of its axis, where that is seen. */
+export function driveOf(kind: string): { around: Piece[]; housing: Piece[] } {
+  return kind === "prismatic" ? { around: SLIDES, housing: [] } : { around: TURNS, housing: MOTOR };
+}
 
 /** Of the side that carries the joint. */
 export function symbolOf(kind: string): Piece[] {

@@ -10,6 +10,7 @@ const SEGMENTS = 180;
 
 export class Trail {
   readonly object: LineSegments2;
+  isHidden = false;
   private readonly geometry = new LineSegmentsGeometry();
   private readonly places = new Float32Array(6 * SEGMENTS);
 
@@ -48,6 +49,6 @@ export class Trail {
     }
     this.geometry.instanceCount = segments;
     this.geometry.getAttribute("instanceStart").needsUpdate = true;
-    this.object.visible = segments > 0;
+    this.object.visible = segments > 0 && !this.isHidden;
   }
 }

@@ -34,6 +34,7 @@ pub(super) fn drive(assembly: &mut Assembly<'_>, entry: &Entry<'_>, joint: &str,
     let sum = assembly.builder.sum(&[(part, 1.0)]);
     assembly.efforts.push(Effort { name: entry.name.to_string(), row: assembly.builder.rows(), length: None, is_moment: is_angle });
     assembly.builder.row(entry.name, sum, profile);
+    assembly.draw_drive(entry, &coordinate.joint);
     Ok(())
 }
 

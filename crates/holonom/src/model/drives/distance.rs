@@ -78,7 +78,7 @@ impl Element for Distance {
         let length = Some(Arc::clone(&profile));
         assembly.efforts.push(Effort { name: entry.name.to_string(), row: assembly.builder.rows(), length, is_moment: false });
         assembly.builder.row(entry.name, half_square, Arc::new(HalfSquare(profile)));
-        assembly.draw(entry, LineKind::Rod, &a, &b);
+        assembly.draw(entry, LineKind::Cylinder, &a, &b);
         Ok(())
     }
 }

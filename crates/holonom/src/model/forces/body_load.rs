@@ -172,6 +172,7 @@ pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, given: Given<'
     let reading = readings.reading.clone();
     let load = Arc::new(BodyLoad { dim, readings, point, axes: own, other, formulas, is_torque, in_body_axes });
     assembly.builder.load_reading(entry.name, reading, Arc::new(Differentiated(load.clone())));
+    assembly.draw_load(entry, &given.at);
     assembly.show(Shows::Load { is_moment: is_torque, exerts: load });
     Ok(())
 }

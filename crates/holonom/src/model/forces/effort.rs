@@ -83,6 +83,7 @@ impl Element for Effort {
                 Ok(())
             })?;
         }
+        assembly.draw_drive(entry, &coordinates[0].joint);
         let variables: Vec<&str> = names.iter().map(String::as_str).collect();
         let mut readings = Readings::new(assembly.dimension(), Reading::default());
         let effort = self.effort.formula_reading(entry, "effort", &variables, &mut Reader::new(assembly, entry, &mut readings))?;

@@ -32,6 +32,7 @@ pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, point: &End, m
     let reading = readings.reading.clone();
     let load = Arc::new(PointLoad { dim: assembly.dimension(), point: sum, readings, formulas });
     assembly.builder.load_reading(entry.name, reading, Arc::new(Differentiated(load.clone())));
+    assembly.draw_load(entry, point);
     assembly.show(Shows::Load { is_moment: false, exerts: load });
     Ok(())
 }

@@ -15,7 +15,7 @@ use crate::model::geometry::{Vec3, dot, norm, scale};
 use crate::model::key::Shape;
 use crate::model::references::split_place;
 use crate::model::value::Value;
-use crate::record::{Lengths, LineKind, Shows};
+use crate::record::{Lengths, LineKind, SceneAxis, Shows};
 use crate::system::{Law, Term};
 
 /// a spring, a damper, or both, between two points or along an axis; linear or as a formula
@@ -90,6 +90,7 @@ impl Element for Spring {
         }
         let ([a, b], axis, stiffness, rest_length) = (ends?, axis?, stiffness?, rest_length?);
         let (damping, energy, force) = (damping?, energy?, force?);
+        let drawn = if stiffness.is_none() && energy.is_none() { LineKind::Cylinder } else { LineKind::Spring };
         let (d, from_a_to_b) = (difference(&a, &b), from_to(&a, &b));
         let start = axis.as_ref().map_or(norm(d), |axis| dot(d, axis.start));
         let rest = rest_length.unwrap_or(start);
@@ -118,7 +119,7 @@ impl Element for Spring {
         laws.into_iter().flatten().for_each(|law| assembly.builder.law(entry.name, &[length], law));
         let lengths = if axis.is_some() { Lengths::Along } else { Lengths::Distances { factors: vec![1.0], fixed: 0.0 } };
         assembly.show(Shows::Tension(lengths));
-        assembly.draw(entry, LineKind::Spring, &a, &b);
+        assembly.draw_along(entry, drawn, &a, &b, axis.map(|axis| axis.drawn));
         Ok(())
     }
 }
@@ -132,6 +133,7 @@ struct Axis {
     /// Of length 1, in the axes of the model at the start.
     start: Vec3,
     terms: Vec<Term>,
+    drawn: SceneAxis,
 }
 
 fn axis(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &str, along: &Site) -> Read<Axis> {
@@ -145,7 +147,12 @@ fn axis(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &str, along: &Site) -> 
         Value::Text(name) => assembly.member(entry, key.into(), split_place(name).expect("an axis of a body").0)?,
         _ => Member::Ground,
     };
-    Ok(Axis { start, terms: assembly.frame(member).vector(start) })
+    let (body, local) = match member {
+        Member::Body(k) => (Some(assembly.bodies[k].name.clone()), assembly.bodies[k].local_direction(start)),
+        _ => (None, start),
+    };
+    let drawn = SceneAxis { body, axis: assembly.axes.in_world(local) };
+    Ok(Axis { start, terms: assembly.frame(member).vector(start), drawn })
 }
 
 /// The variables of a formula by name. A parameter or an index called `rest` or `extension` comes before the variable.

@@ -101,7 +101,9 @@ fn draw(assembly: &mut Assembly<'_>, entry: &Entry<'_>, kind: &str, geometry: &G
     (at, axis) = (assembly.axes.in_world(at), assembly.axes.in_world(axis));
     let [body, other] = [side, 1 - side].map(|side| name(geometry.members[side]));
     let axis = has_axis.then_some(axis);
-    assembly.scene_joints.push(SceneJoint { name: entry.name.to_string(), kind: kind.to_string(), body, other, at, axis });
+    // Its force is recorded on the second side, whichever that is here.
+    let (name, kind, acts_on_other) = (entry.name.to_string(), kind.to_string(), side == 0);
+    assembly.scene_joints.push(SceneJoint { name, kind, body, other, at, axis, acts_on_other, drives: Vec::new() });
     for side in 0..2 {
         if let Member::Body(k) = geometry.members[side] {
             let local = assembly.bodies[k].local(geometry.at[side]);
