@@ -128,7 +128,9 @@ fn announce_corrections(model: &Model, simulation: &Simulation) {
     if start.moved > 1e-12 {
         note(&format!("positions were moved by up to {:.2e} m onto their constraints", start.moved));
     }
-    let changes = model.start_changes(&simulation.state().x, simulation.velocities());
+    let mut changes = model.start_changes(&simulation.state().x, simulation.velocities());
+    // That parts start moving for which no velocity was written is what a drive is for.
+    changes.retain(|change| !change.was_at_rest);
     if !changes.is_empty() {
         note(&format!("to meet the constraints, start velocities were changed: {}", changes_in_words(&changes)));
     }

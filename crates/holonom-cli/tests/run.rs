@@ -228,6 +228,25 @@ fn what_looks_like_a_slip_is_noted_by_run_and_check() {
     assert_eq!(json(&folder, "check door.toml --json --set simulation.step=5")["notes"].as_array().unwrap().len(), 2);
 }
 
+/// What a drive moves needs no velocity of its own; one that was written and is another in the run is told.
+#[test]
+fn velocities_that_were_written_and_changed_are_told() {
+    let folder = folder();
+    let crank = |velocity: &str| {
+        format!(
+            "plane = \"xy\"\n[body.crank]\nmass = 1\ninertia = 1\nposition = [1, 0]\n{velocity}[joint.pin]\ntype = \"revolute\"\n\
+             between = [\"ground\", \"crank\"]\nat = [0, 0]\n[drive.motor]\ntype = \"angle\"\njoint = \"pin\"\nprofile = \"2*t\"\n"
+        )
+    };
+    for (velocity, told) in
+        [("", ""), ("angular_velocity = 2\nvelocity = [0, 2]\n", ""), ("angular_velocity = 1\n", "`crank` by 2 m/s and 1 rad/s")]
+    {
+        fs::write(folder.path().join("m.toml"), crank(velocity)).unwrap();
+        let notes = text(&holonom(&folder, "run m.toml --end 0.1 --step 0.01 --no-report --out a --force").stderr);
+        assert_eq!((notes.contains("start velocities were changed"), notes.contains(told)), (!told.is_empty(), true), "{velocity}{notes}");
+    }
+}
+
 /// Patterns choose columns of the tables, whatever the order of the patterns; a run that was ended goes on to the same bytes.
 #[test]
 fn output_chooses_columns_by_patterns() {

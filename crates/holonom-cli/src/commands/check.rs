@@ -53,6 +53,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
         let change = |change: &StartChange| {
             json!({
                 "name": change.name, "velocity": change.velocity, "angular_velocity": change.angular_velocity,
+                "was_at_rest": change.was_at_rest,
             })
         };
         let changed: Vec<_> = changes.iter().map(change).collect();

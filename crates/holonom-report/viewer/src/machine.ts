@@ -64,14 +64,14 @@ class Machine {
   constructor(
     container: HTMLElement,
     private readonly runs: Run[],
-    private readonly asked: string[],
+    columns: string[],
     private readonly clock: Clock,
     private readonly visibility: Visibility,
     private readonly selection: Selection,
   ) {
     this.channels = runs[0].channels;
     this.extremes = new Extremes(runs, clock);
-    for (const group of this.first()) {
+    for (const group of this.first(columns)) {
       const place = element("div", { class: "shown" });
       this.plots.append(place);
       this.plot(place, group);
@@ -82,9 +82,9 @@ class Machine {
   }
 
   /** Plots that are shown from the start; a plot of several runs holds one channel. */
-  private first(): Group[] {
-    const asked = this.asked.flatMap((name) => this.channels.filter((channel) => channel.name === name));
-    if (asked.length > 0) return asked.map(alone);
+  private first(columns: string[]): Group[] {
+    const asked = columns.flatMap((name) => this.channels.filter((channel) => channel.name === name));
+    if (asked.length > 0) return asked.map((channel) => alone(channel));
     const groups = first(this.channels);
     if (this.runs.length < 2) return groups;
     return apart(groups).slice(0, MOST_COMPARED);

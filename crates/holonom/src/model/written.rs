@@ -14,6 +14,8 @@ pub struct StartChange {
     pub velocity: f64,
     /// rad/s; 0 of a point. That of a rod about itself, which moves nothing, does not count.
     pub angular_velocity: f64,
+    /// Whether it was written at rest, or nothing was: what it has then follows from drives and from the parts around it.
+    pub was_at_rest: bool,
 }
 
 /// Change of a velocity, over the largest of the model, that is round-off.
@@ -52,7 +54,7 @@ impl Model {
         let least = [(ROUND_OFF * largest(0)).max(turn * size), (ROUND_OFF * largest(1)).max(turn)];
         let changes = all.iter().map(|&(name, [written, found])| {
             let [velocity, angular_velocity] = [0, 1].map(|k| (found[k] - written[k]).norm());
-            StartChange { name: name.clone(), velocity, angular_velocity }
+            StartChange { name: name.clone(), velocity, angular_velocity, was_at_rest: written.iter().all(|v| v.norm() == 0.0) }
         });
         changes.filter(|change| change.velocity > least[0] || change.angular_velocity > least[1]).collect()
     }
