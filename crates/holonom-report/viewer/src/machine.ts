@@ -49,7 +49,7 @@ export function buildMachine(
   visibility: Visibility,
   selection: Selection,
 ): void {
-  if (runs[0].channels.length > 0) new Machine(container, runs, columns, clock, visibility, selection);
+  if (runs.some((run) => run.channels.length > 0)) new Machine(container, runs, columns, clock, visibility, selection);
 }
 
 class Machine {
@@ -64,14 +64,14 @@ class Machine {
   constructor(
     container: HTMLElement,
     private readonly runs: Run[],
-    private readonly asked: string[],
+    columns: string[],
     private readonly clock: Clock,
     private readonly visibility: Visibility,
     private readonly selection: Selection,
   ) {
-    this.channels = runs[0].channels;
+    this.channels = ofAny(runs);
     this.extremes = new Extremes(runs, clock);
-    for (const group of this.first()) {
+    for (const group of this.first(columns)) {
       const place = element("div", { class: "shown" });
       this.plots.append(place);
       this.plot(place, group);
@@ -82,9 +82,9 @@ class Machine {
   }
 
   /** Plots that are shown from the start; a plot of several runs holds one channel. */
-  private first(): Group[] {
-    const asked = this.asked.flatMap((name) => this.channels.filter((channel) => channel.name === name));
-    if (asked.length > 0) return asked.map(alone);
+  private first(columns: string[]): Group[] {
+    const asked = columns.flatMap((name) => this.channels.filter((channel) => channel.name === name));
+    if (asked.length > 0) return asked.map((channel) => alone(channel));
     const groups = first(this.channels);
     if (this.runs.length < 2) return groups;
     return apart(groups).slice(0, MOST_COMPARED);
@@ -96,7 +96,7 @@ class Machine {
     const { item } = this.selection;
     this.selected.hidden = item === undefined;
     if (item) {
-      const groups = ofOwners(this.channels, ownersOf(item, this.runs[0].scene));
+      const groups = ofOwners(this.channels, ownersOf(item, this.runs.map((run) => run.scene)));
       const clear = element("button", { type: "button", title: "select nothing (Escape)" }, "×");
       clear.addEventListener("click", () => this.selection.select(undefined));
       const words = groups.length > 0 ? "" : ", of which no column is recorded";
@@ -186,6 +186,13 @@ function onColumn(field: HTMLInputElement, channels: Channel[], take: (channel: 
 
 function alone(channel: Channel): Group {
   return { title: channel.name, channels: [channel] };
+}
+
+/** The channels of all runs, each once: what was measured has few of them. */
+function ofAny(runs: Run[]): Channel[] {
+  const known = new Map<string, Channel>();
+  for (const channel of runs.flatMap((run) => run.channels)) if (!known.has(channel.name)) known.set(channel.name, channel);
+  return [...known.values()];
 }
 
 function apart(groups: Group[]): Group[] {
