@@ -49,7 +49,7 @@ export function buildMachine(
   visibility: Visibility,
   selection: Selection,
 ): void {
-  if (runs[0].channels.length > 0) new Machine(container, runs, columns, clock, visibility, selection);
+  if (runs.some((run) => run.channels.length > 0)) new Machine(container, runs, columns, clock, visibility, selection);
 }
 
 class Machine {
@@ -69,7 +69,7 @@ class Machine {
     private readonly visibility: Visibility,
     private readonly selection: Selection,
   ) {
-    this.channels = runs[0].channels;
+    this.channels = ofAny(runs);
     this.extremes = new Extremes(runs, clock);
     for (const group of this.first(columns)) {
       const place = element("div", { class: "shown" });
@@ -96,7 +96,7 @@ class Machine {
     const { item } = this.selection;
     this.selected.hidden = item === undefined;
     if (item) {
-      const groups = ofOwners(this.channels, ownersOf(item, this.runs[0].scene));
+      const groups = ofOwners(this.channels, ownersOf(item, this.runs.map((run) => run.scene)));
       const clear = element("button", { type: "button", title: "select nothing (Escape)" }, "×");
       clear.addEventListener("click", () => this.selection.select(undefined));
       const words = groups.length > 0 ? "" : ", of which no column is recorded";
@@ -186,6 +186,13 @@ function onColumn(field: HTMLInputElement, channels: Channel[], take: (channel: 
 
 function alone(channel: Channel): Group {
   return { title: channel.name, channels: [channel] };
+}
+
+/** The channels of all runs, each once: what was measured has few of them. */
+function ofAny(runs: Run[]): Channel[] {
+  const known = new Map<string, Channel>();
+  for (const channel of runs.flatMap((run) => run.channels)) if (!known.has(channel.name)) known.set(channel.name, channel);
+  return [...known.values()];
 }
 
 function apart(groups: Group[]): Group[] {

@@ -35,7 +35,8 @@ export function same(a: Item | undefined, b: Item | undefined): boolean {
 }
 
 /** Whose columns tell of an item: its own, and of a joint those of its drives. */
-export function ownersOf(item: Item, scene: Scene): string[] {
-  const joint = item.sort === "joint" ? scene.joints.find((joint) => joint.name === item.name) : undefined;
+export function ownersOf(item: Item, scenes: Scene[]): string[] {
+  const joints = item.sort === "joint" ? scenes.flatMap((scene) => scene.joints) : [];
+  const joint = joints.find((joint) => joint.name === item.name);
   return [item.name, ...(joint?.drives ?? [])];
 }

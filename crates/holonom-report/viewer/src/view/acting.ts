@@ -28,7 +28,7 @@ const PULLS = new Set(["spring", "rope", "cylinder"]);
 export function actingOn(motion: Motion, item: Item): Acting[] {
   const all = everything(motion);
   if (item.sort === "body" || item.sort === "point") return [...all.filter(({ on }) => on === item.name), ...weight(motion, item.name)];
-  const owners = ownersOf(item, motion.run.scene);
+  const owners = ownersOf(item, [motion.run.scene]);
   return all.filter(({ name, recorded }) => recorded && owners.includes(name));
 }
 
