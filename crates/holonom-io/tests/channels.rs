@@ -336,3 +336,24 @@ fn couplers_show_what_they_transmit() {
         }
     }
 }
+
+/// The cylinder of the drives' example is as long as its ends are apart.
+#[test]
+fn driven_distances_have_their_length() {
+    let text = "[body.boom]\nmass = 10\nshape = { box = [2, 0.1, 0.1] }\nposition = [1, 1, 0]\n\
+                [joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"boom\"]\nat = [0, 1, 0]\naxis = [0, 1, 0]\n\
+                [drive.cylinder]\ntype = \"distance\"\nbetween = [[1, 1, -1], \"boom\"]\n";
+    for drive in ["stroke = \"0.1*sin(t)\"", "profile = \"1 + 0.1*sin(t)\""] {
+        let recording = run(&model(&format!("{text}{drive}\n")), 0.01, 0.5).1;
+        each(
+            &recording,
+            ["boom.x", "boom.z", "boom.vx", "boom.vz", "cylinder.length", "cylinder.length_rate", "cylinder.effort", "cylinder.power"],
+            |[x, z, vx, vz, length, rate, effort, power]| {
+                let distance = (x - 1.0).hypot(z + 1.0);
+                close("length", length, distance);
+                close("rate", rate, ((x - 1.0) * vx + (z + 1.0) * vz) / distance);
+                close("power", power, effort * rate);
+            },
+        );
+    }
+}

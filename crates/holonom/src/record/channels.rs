@@ -255,12 +255,17 @@ impl Channels {
     /// The columns of what forces and drives do.
     pub(super) fn force_headings(&self) -> Vec<Heading> {
         let mut headings: Vec<Heading> = self.forces.iter().flat_map(|force| force.headings(&self.axes)).collect();
-        headings.extend(self.told().efforts.iter().flat_map(|RecordedEffort { name, is_moment, .. }| {
+        headings.extend(self.told().efforts.iter().flat_map(|RecordedEffort { name, length, is_moment, .. }| {
             let (unit, what) = if *is_moment { ("N·m", "moment") } else { ("N", "force") };
-            [
+            let lengths = [
+                Heading::new(format!("{name}.length"), "m", "driven distance of its ends"),
+                Heading::new(format!("{name}.length_rate"), "m/s", "rate of the distance"),
+            ];
+            let own = [
                 Heading::new(format!("{name}.effort"), unit, format!("{what} that the drive exerts along its motion")),
                 Heading::new(format!("{name}.power"), "W", "power that the drive gives to the mechanism"),
-            ]
+            ];
+            lengths.into_iter().filter(|_| length.is_some()).chain(own)
         }));
         headings
     }
@@ -273,7 +278,11 @@ impl Channels {
         let t = simulation.state().t;
         for effort in &self.told().efforts {
             let lambda = simulation.reactions().map_or(f64::NAN, |reactions| reactions.lambda[effort.row]);
-            let length = effort.length.as_ref().map_or(1.0, |length| length.at(t)[0]);
+            let length = effort.length.as_ref().map_or(1.0, |length| {
+                let [length, rate, _] = length.at(t);
+                row.extend([length, rate]);
+                length
+            });
             // The target of the row moves with the length times the rate.
             let (system, at) = simulation.reacting();
             row.extend([-lambda * length, lambda * system.explicit_rate(effort.row, at, t)]);
