@@ -85,6 +85,9 @@ fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
     Ok(())
 }
 
+/// Share of the largest value that is shown as zero.
+const ROUNDING: f64 = 1e-12;
+
 /// How far measures go: what the model was asked.
 fn measures(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
     let measures = list(summary, "/peaks/measures");
@@ -94,9 +97,12 @@ fn measures(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
     let heads = ["smallest", "largest", "last"].map(|head| format!(r#"<th scope="col" class="number">{head}</th>"#)).concat();
     writeln!(out, r#"<table class="measures"><caption>Measures</caption><thead><tr><th></th>{heads}</tr></thead><tbody>"#)?;
     for measure in measures {
+        let size = |key: &str| measure[key].as_f64().map_or(0.0, f64::abs);
+        let rounding = ROUNDING * size("min").max(size("max"));
         let cell = |key: &str, at: &str| {
             let at = if at.is_empty() { String::new() } else { format!(" <small>at {} s</small>", number(measure, at)) };
-            format!(r#"<td class="number">{}{at}</td>"#, number(measure, key))
+            let value = if size(key) < rounding { "0".to_owned() } else { number(measure, key) };
+            format!(r#"<td class="number">{value}{at}</td>"#)
         };
         let unit = match words(measure, "unit") {
             unit if unit == "1" => String::new(),

@@ -106,6 +106,17 @@ fn what_was_run_and_what_was_changed_stands_above_the_model() {
 }
 
 #[test]
+fn a_measure_that_is_zero_but_for_rounding_shows_zero() {
+    let measure =
+        |last: f64| json!({"name": "travel", "unit": "mm", "min": -80.0, "min_at": 0.75, "max": 80.0, "max_at": 0.25, "last": last});
+    for (last, shown) in [(-2.08e-14, "0"), (0.25, "0.25"), (1e-9, "1.00")] {
+        let page = page("t", "m", &recording(3, 0.0), &json!({"status": "completed", "peaks": {"measures": [measure(last)]}}));
+        let row = page.split_once("travel").unwrap().1.split_once("</tr>").unwrap().0;
+        assert!(row.contains(&format!(r#"0.25 s</small></td><td class="number">{shown}"#)), "{row}");
+    }
+}
+
+#[test]
 fn an_event_that_happens_often_takes_one_row() {
     let event = |name: &str, t: f64, stopped: bool| json!({"event": name, "t": t, "stopped": stopped});
     let mut events: Vec<Value> = (1..=60).map(|k| event("bounce", f64::from(k), false)).collect();
