@@ -394,3 +394,24 @@ fn what_a_model_calls_like_a_unit_comes_before_it() {
     assert!((last(&recording, "low") - 1e3 * last(&recording, "bob.x")).abs() < 1e-9);
     assert_eq!(last(&recording, "pressure"), 6.0);
 }
+
+/// An event whose input turns the motion back, at the end of a step to round-off, is not seen again on the way back.
+#[test]
+fn what_turns_back_at_an_event_is_no_second_one() {
+    let text = "[input.u]\ndefault = 1\n[point.a]\nmass = 1\nposition = [0, 0, 0]\n\
+                [force.f]\ntype = \"expression\"\npoint = \"a\"\nforce = [\"u\", 0, 9.81]\n\
+                [event.still]\nwhen = \"a.vx\"\nset = { u = -1 }\n\
+                [event.right]\nwhen = \"a.vx - 0.05\"\ndirection = \"rising\"\nset = { u = -1 }\n\
+                [event.left]\nwhen = \"a.vx + 0.05\"\ndirection = \"falling\"\nset = { u = 1 }\n";
+    for (method, step) in [("conserving-ggl", 0.01), ("radau", 0.01), ("generalized-alpha", 0.05), ("conserving", 0.013)] {
+        let (simulation, _) = run(&model(text), method, step, 2.02, 1);
+        // Right at 0.05 s, then still and left in turns.
+        let expected: Vec<(&str, f64)> =
+            (1..=40).map(|k| (if k == 1 { "right" } else if k % 2 == 0 { "still" } else { "left" }, 0.05 * f64::from(k))).collect();
+        let found: Vec<&str> = simulation.events().iter().map(|event| event.event.as_str()).collect();
+        assert_eq!(found, expected.iter().map(|(name, _)| *name).collect::<Vec<_>>(), "{method}");
+        for (event, (_, t)) in simulation.events().iter().zip(&expected) {
+            assert!((event.t - t).abs() < 1e-10, "{method}: {event:?} and {t} s");
+        }
+    }
+}

@@ -68,8 +68,12 @@ impl Simulation {
         let system = self.system.clone();
         let shortest = SHORTEST * (target - self.state.t);
         let mut first_part = None;
-        // Indicators where the part begins; zero of events that happened there.
+        // Indicators where the part begins; zero of events that happened there, also at the end of the step before.
         let mut from = self.indicate();
+        for last in self.happenings.iter().rev().take_while(|last| (self.state.t - last.t).abs() <= shortest) {
+            let same = system.events.iter().zip(&mut from).filter(|(event, _)| event.name == last.event);
+            same.for_each(|(_, from)| *from = 0.0);
+        }
         loop {
             let before = self.checkpoint();
             self.advance(target, wants_forces)?;
