@@ -406,8 +406,20 @@ fn what_turns_back_at_an_event_is_no_second_one() {
     for (method, step) in [("conserving-ggl", 0.01), ("radau", 0.01), ("generalized-alpha", 0.05), ("conserving", 0.013)] {
         let (simulation, _) = run(&model(text), method, step, 2.02, 1);
         // Right at 0.05 s, then still and left in turns.
-        let expected: Vec<(&str, f64)> =
-            (1..=40).map(|k| (if k == 1 { "right" } else if k % 2 == 0 { "still" } else { "left" }, 0.05 * f64::from(k))).collect();
+        let expected: Vec<(&str, f64)> = (1..=40)
+            .map(|k| {
+                (
+                    if k == 1 {
+                        "right"
+                    } else if k % 2 == 0 {
+                        "still"
+                    } else {
+                        "left"
+                    },
+                    0.05 * f64::from(k),
+                )
+            })
+            .collect();
         let found: Vec<&str> = simulation.events().iter().map(|event| event.event.as_str()).collect();
         assert_eq!(found, expected.iter().map(|(name, _)| *name).collect::<Vec<_>>(), "{method}");
         for (event, (_, t)) in simulation.events().iter().zip(&expected) {

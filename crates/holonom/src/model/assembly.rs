@@ -13,6 +13,7 @@ use super::fault::{Read, Sink};
 use super::geometry::Vec3;
 use super::joints::{Geometry, JointInfo};
 use super::signals::Signals;
+use super::start::Target;
 use crate::record::{Anchor, Line, LineKind, RecordedCoupling, RecordedForce, SceneAxis, SceneJoint, SceneLoad, Shows};
 use crate::system::{Signal, SystemBuilder};
 
@@ -104,6 +105,8 @@ pub struct Assembly<'a> {
     pub(in crate::model) faulty_joints: HashSet<String>,
     pub(in crate::model) scene_joints: Vec<SceneJoint>,
     pub(in crate::model) loads: Vec<SceneLoad>,
+    /// Where joints are to be at the start.
+    pub(in crate::model) starts: Vec<Target>,
     /// Efforts of the drives.
     pub(in crate::model) efforts: Vec<Effort>,
     /// What couplers exert along the coordinates that they couple.
@@ -148,6 +151,7 @@ impl<'a> Assembly<'a> {
             faulty_joints: HashSet::new(),
             scene_joints: Vec::new(),
             loads: Vec::new(),
+            starts: Vec::new(),
             efforts: Vec::new(),
             couplings: Vec::new(),
             forces: Vec::new(),

@@ -13,7 +13,7 @@ use super::element::Boxed;
 use super::entries::{Entries, Named};
 use super::entry::{Entry, Written};
 use super::expression::{Mistake, Scope, TimeProgram, Value as Known};
-use super::fault::{Faults, Read, Sink};
+use super::fault::{Fault, Faults, Read, Refused, Sink};
 use super::geometry::{self, Vec3, unit};
 use super::joints::{self, Geometry, Survey};
 use super::jumps;
@@ -22,7 +22,7 @@ use super::settings::{Output, Settings};
 use super::signals::{Formula, Signals};
 use super::tables::Tables;
 use super::value::{Value, key_path};
-use super::{GRAVITY, Model, SCHEMA, finish, measure, parameters, points, tables};
+use super::{GRAVITY, Model, SCHEMA, finish, measure, parameters, points, start, tables};
 use crate::record::Constraints;
 use crate::system::{self, SystemBuilder};
 
@@ -49,6 +49,7 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
     });
     compiler.build("constraint", &description.constraints, &mut assembly);
     compiler.joints(&description.joints, geometries, &mut assembly);
+    compiler.each("start", &description.starts, |entry, start| start.build(&mut assembly, entry));
     compiler.build("drive", &description.drives, &mut assembly);
     compiler.build("force", &description.forces, &mut assembly);
     compiler.each("event", &description.events, |entry, event| event.build(&mut assembly, entry));
@@ -65,6 +66,12 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
         }
         for program in sink.switches.take() {
             assembly.builder.switch(Arc::new(TimeProgram(program)));
+        }
+        let starts = std::mem::take(&mut assembly.starts);
+        if let Err((message, cure)) = start::assemble(&mut assembly.builder, &starts) {
+            drop(assembly);
+            let _: Refused = sink.report(|| Fault::new("start", "start", message, cure));
+            return Err(sink.finish().expect_err("there is a fault"));
         }
         let title = description.model.title.clone().unwrap_or_default();
         let mut model = finish::finish(assembly, title, settings, output, bars);

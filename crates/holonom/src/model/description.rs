@@ -15,6 +15,7 @@ use super::measure::Measure;
 use super::points::Point;
 use super::reader::Reader;
 use super::settings::{OutputKeys, SimulationKeys};
+use super::start::Start;
 use super::tables::Curve;
 use super::value::{Table, Value, key_path};
 use super::{GROUND, Model, compile};
@@ -45,6 +46,8 @@ pub struct Description {
     pub drives: Entries<Boxed>,
     /// `[force.NAME]`: springs, dampers, loads and other forces.
     pub forces: Entries<Boxed>,
+    /// `[start.JOINT]`: where joints are at the start.
+    pub starts: Entries<Start>,
     /// `[measure.NAME]`: formulas of what the mechanism does, recorded and read by others.
     pub measures: Entries<Measure>,
     /// `[event.NAME]`: conditions whose times are found.
@@ -206,6 +209,7 @@ impl Description {
             ("constraint", self.constraints.write(boxed)),
             ("drive", self.drives.write(boxed)),
             ("force", self.forces.write(boxed)),
+            ("start", self.starts.write(Keys::write)),
             ("measure", self.measures.write(Keys::write)),
             ("event", self.events.write(Keys::write)),
             ("simulation", self.simulation.as_ref().map(Field::write)),
@@ -231,7 +235,7 @@ impl Description {
 }
 
 /// Names of the tables of a model.
-const TABLES: [&str; 14] = [
+const TABLES: [&str; 15] = [
     "parameters",
     "table",
     "input",
@@ -242,6 +246,7 @@ const TABLES: [&str; 14] = [
     "constraint",
     "drive",
     "force",
+    "start",
     "measure",
     "event",
     "simulation",
@@ -284,6 +289,9 @@ pub(super) fn read(value: &Value, kinds: &Kinds, sink: &Sink) -> Read<Partial> {
     let (joints, unread_joints) = elements(&mut names, "joint", &kinds.joints);
     let (drives, _) = elements(&mut names, "drive", &kinds.drives);
     let (forces, _) = elements(&mut names, "force", &kinds.forces);
+    // A start has the name of its joint.
+    let mut of_joints = Names { sink, known: HashSet::new() };
+    let (starts, _) = section(&root, "start", &mut of_joints, |reader| keys::<Start>("a start", reader));
     let (measures, unread_measures) = section(&root, "measure", &mut names, |reader| keys::<Measure>("a measure", reader));
     let (events, _) = section(&root, "event", &mut names, |reader| keys::<Event>("an event", reader));
     let (simulation, output) = (root.may_have("simulation").unwrap_or(None), root.may_have("output").unwrap_or(None));
@@ -300,6 +308,7 @@ pub(super) fn read(value: &Value, kinds: &Kinds, sink: &Sink) -> Read<Partial> {
             constraints,
             drives,
             forces,
+            starts,
             measures,
             events,
             simulation,

@@ -37,6 +37,7 @@ mod schema;
 mod settings;
 mod signals;
 mod spline;
+mod start;
 mod sum;
 mod tables;
 #[cfg(test)]
@@ -63,6 +64,7 @@ pub use points::Point;
 pub use reader::Reader;
 pub use schema::schema;
 pub use settings::{Output, OutputKeys, ProjectionKeys, Settings, SimulationKeys};
+pub use start::Start;
 pub use tables::Curve;
 pub use value::{Table, Value, item_path, key_path};
 pub use written::StartChange;

@@ -51,6 +51,7 @@ fn terms<T: Into<Term> + Copy>(terms: &[T]) -> Vec<Term> {
 }
 
 /// Collects a system piece by piece. Free nodes must be added before known ones.
+#[derive(Clone)]
 pub struct SystemBuilder {
     dim: usize,
     free: usize,
@@ -80,6 +81,7 @@ pub struct SystemBuilder {
 }
 
 /// A part of the mass matrix with the velocity of its second node as it is written for this part.
+#[derive(Clone)]
 struct Moving {
     a: u32,
     b: Place,
@@ -311,6 +313,11 @@ impl SystemBuilder {
         self.rows.push(Row::new(quantity.into(), target));
     }
 
+    /// Gives the k-th row another target c(t).
+    pub fn retarget(&mut self, row: usize, target: Arc<dyn Signal>) {
+        self.rows[row] = Row::new(self.rows[row].quantity, target);
+    }
+
     /// Adds the row Φ = π − c with a constant c.
     pub fn constant_row(&mut self, name: impl Into<String>, quantity: impl Into<Quantity>, target: f64) {
         self.row(name, quantity, Arc::new(Constant(target)));
@@ -404,6 +411,21 @@ impl SystemBuilder {
         let is_tied = longest > FAR * extent || !self.custom.is_empty();
         let is_far = middle.iter().any(|x| x.is_finite() && x.abs() > FAR * extent);
         if is_far && !is_tied { middle } else { [0.0; 3] }
+    }
+
+    /// Whether a part is written with a velocity.
+    pub fn is_moving(&self) -> bool {
+        self.velocity.iter().chain(self.moving.iter().flat_map(|part| &part.velocity)).any(|velocity| *velocity != 0.0)
+    }
+
+    /// Where the nodes are; D numbers each, m.
+    pub fn position(&self) -> &[f64] {
+        &self.position
+    }
+
+    /// Puts the nodes elsewhere; D numbers each, m.
+    pub fn move_to(&mut self, position: &[f64]) {
+        self.position.copy_from_slice(position);
     }
 
     /// The finished system.

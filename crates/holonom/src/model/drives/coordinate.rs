@@ -5,6 +5,7 @@ use crate::model::assembly::{Assembly, Effort};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::joints::coordinate;
+use crate::model::start;
 
 /// Adds the row that keeps a coordinate, which must be an angle or a displacement, as a profile has it.
 pub(super) fn drive(assembly: &mut Assembly<'_>, entry: &Entry<'_>, joint: &str, profile: &Profile, is_angle: bool) -> Read<()> {
@@ -30,6 +31,7 @@ pub(super) fn drive(assembly: &mut Assembly<'_>, entry: &Entry<'_>, joint: &str,
         let message = format!("`{}` is driven by `{other}` already", coordinate.joint);
         return Err(entry.refuse("joint", message, "remove one of the two drives"));
     }
+    let profile = start::profile(assembly, &coordinate, profile);
     let part = assembly.builder.part(&coordinate.form);
     let sum = assembly.builder.sum(&[(part, 1.0)]);
     assembly.efforts.push(Effort { name: entry.name.to_string(), row: assembly.builder.rows(), length: None, is_moment: is_angle });

@@ -1,0 +1,106 @@
+//! Starts at coordinates of joints, `[start.JOINT]`.
+
+use std::f64::consts::PI;
+
+use holonom::model::Model;
+use holonom::record::{Recorder, Recording};
+use holonom::simulation::{Choice, Method, Simulation, Status};
+use holonom_io::Source;
+
+fn model(text: &str) -> Model {
+    let source = Source::read("model.toml", text.as_bytes()).unwrap();
+    source.model_with_forces().unwrap_or_else(|message| panic!("{message}\n{text}"))
+}
+
+fn run(model: &Model, step: f64, end: f64) -> Recording {
+    let method = Method::resolve(&Choice { method: Some("radau".into()), ..Choice::default() }).unwrap();
+    let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
+    assert_eq!(simulation.start().moved, 0.0);
+    model.find_reactions(&mut simulation);
+    let mut recorder = Recorder::new(&model.channels, &model.system, 1, model.output.constraints());
+    assert_eq!(simulation.run(end, &mut recorder), Status::Completed);
+    recorder.finish()
+}
+
+/// A slider-crank that hangs, with its crank at an angle from the pose along x: written there by hand, or moved there by `start`.
+fn crank(written: f64, start: &str, output: &str) -> String {
+    let (r, l) = (0.1, 0.4);
+    let (sine, cosine) = written.sin_cos();
+    let tilt = -(r / l * sine).asin();
+    let (pin, wrist) = ([r * cosine, r * sine], r * cosine + l * tilt.cos());
+    format!(
+        "plane = \"xz\"\n[body]\ncrank = {{ mass = 1.2, inertia = 0.001, position = [{}, {}], orientation = {{ angle = {written} }} }}\n\
+         rod = {{ mass = 0.8, inertia = 0.01, position = [{}, {}], orientation = {{ angle = {tilt} }} }}\n\
+         piston = {{ mass = 2, inertia = 0.01, position = [{wrist}, 0] }}\n\
+         [joint]\nmain = {{ type = \"revolute\", between = [\"ground\", \"crank\"], at = [0, 0] }}\n\
+         pin = {{ type = \"revolute\", between = [\"crank\", \"rod\"], at = [{}, {}] }}\n\
+         wrist = {{ type = \"revolute\", between = [\"rod\", \"piston\"], at = [{wrist}, 0] }}\n\
+         guide = {{ type = \"prismatic\", between = [\"ground\", \"piston\"], axis = [1, 0] }}\n{start}{output}",
+        pin[0] / 2.0,
+        pin[1] / 2.0,
+        (pin[0] + wrist) / 2.0,
+        pin[1] / 2.0,
+        pin[0],
+        pin[1],
+    )
+}
+
+/// The moved mechanism moves as the one that is written there, from a dead centre too, and its coordinates count from the pose that is written.
+#[test]
+fn a_moved_mechanism_is_the_one_that_is_written_there() {
+    for output in ["", "[output]\nreactions = true\n"] {
+        for (written, angle) in [(0.0, 2.1), (0.4, 1.7), (2.1, -1.3), (0.0, -3.1)] {
+            let moved = run(&model(&crank(written, &format!("[start]\nmain.angle = {angle}\n"), output)), 1e-3, 0.2);
+            let by_hand = run(&model(&crank(written + angle, "", output)), 1e-3, 0.2);
+            for column in ["crank.x", "rod.z", "piston.x", "piston.vx", "main.fx", "guide.fz", "energy", "kinetic"] {
+                let [a, b] = [&moved, &by_hand].map(|recording| recording.column(column).unwrap());
+                let size = b.iter().fold(1e-3, |size: f64, b| size.max(b.abs()));
+                for (a, b) in a.iter().zip(b) {
+                    assert!((a - b).abs() < 1e-9 * size, "{column}: {a} and {b} from {written} by {angle} rad");
+                }
+            }
+            assert!((moved.column("main.angle").unwrap()[0] - angle).abs() < 1e-14);
+        }
+    }
+}
+
+/// A drive counts from where the joint is at the start.
+#[test]
+fn a_driven_joint_begins_elsewhere() {
+    let drive = "[drive.motor]\ntype = \"angle\"\njoint = \"main\"\nprofile = \"20*t + 5*t^2\"\n";
+    for output in ["", "[output]\nreactions = true\n"] {
+        let moved = run(&model(&crank(0.3, &format!("[start]\nmain.angle = 1.1\n{drive}"), output)), 1e-3, 0.2);
+        let by_hand = run(&model(&crank(1.4, drive, output)), 1e-3, 0.2);
+        for column in ["crank.x", "piston.x", "piston.vx", "main.fx", "guide.fz", "motor.effort", "motor.power", "work"] {
+            let [a, b] = [&moved, &by_hand].map(|recording| recording.column(column).unwrap());
+            let size = b.iter().fold(1e-3, |size: f64, b| size.max(b.abs()));
+            assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9 * size), "{column}");
+        }
+        for (t, angle) in moved.column("t").unwrap().iter().zip(moved.column("main.angle").unwrap()) {
+            assert!((angle - (1.1 + 20.0 * t + 5.0 * t * t)).abs() < 1e-12, "{t}: {angle}");
+        }
+    }
+}
+
+/// What is not named moves as little as it can: a wheel on the moved arm of a tree keeps its place in the joint.
+#[test]
+fn coordinates_of_a_tree_in_space_are_all_reached() {
+    let text = "[body.column]\nmass = 10\nshape = { cylinder = [0.1, 1] }\nposition = [0, 0, 0.5]\n\
+                [body.arm]\nmass = 3\nshape = { box = [1, 0.1, 0.1] }\nposition = [0.5, 0, 1]\n\
+                [body.slide]\nmass = 1\nshape = { box = [0.2, 0.1, 0.1] }\nposition = [1, 0, 1]\n\
+                [joint.turn]\ntype = \"revolute\"\nbetween = [\"ground\", \"column\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n\
+                [joint.lift]\ntype = \"revolute\"\nbetween = [\"column\", \"arm\"]\nat = [0, 0, 1]\naxis = [0, -1, 0]\n\
+                [joint.out]\ntype = \"prismatic\"\nbetween = [\"arm\", \"slide\"]\naxis = [1, 0, 0]\n\
+                [start]\nturn.angle = \"100*deg\"\nlift.angle = 0.7\nout.displacement = 0.3\n";
+    for away in ["", "[output]\nreactions = true\n"] {
+        let recording = run(&model(&format!("{text}{away}")), 1e-3, 0.01);
+        let first = |name: &str| recording.column(name).unwrap()[0];
+        let (turn, lift, reach) = (100.0 * PI / 180.0, 0.7_f64, 1.3);
+        let expected = [reach * lift.cos() * turn.cos(), reach * lift.cos() * turn.sin(), 1.0 + reach * lift.sin()];
+        for (name, expected) in ["slide.x", "slide.y", "slide.z"].into_iter().zip(expected) {
+            assert!((first(name) - expected).abs() < 1e-12, "{name}: {} and {expected}", first(name));
+        }
+        let values = [("turn.angle", turn), ("lift.angle", lift), ("out.displacement", 0.3)];
+        values.into_iter().for_each(|(name, value)| assert!((first(name) - value).abs() < 1e-13, "{name}"));
+    }
+}
