@@ -11,7 +11,6 @@ mod interpolation;
 mod items;
 mod keeper;
 mod load;
-mod mean;
 mod message;
 mod options;
 mod output;

@@ -1,9 +1,8 @@
 //! How far one curve is from another.
 
-use holonom::record::Recording;
+use holonom::record::{Recording, Running, RunningValue};
 
 use crate::interpolation::between;
-use crate::mean::Mean;
 
 /// The difference of a column in two recordings over the time that both have.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,18 +24,17 @@ pub fn difference(reference: &Recording, other: &Recording, column: &str) -> Opt
     let common = mine.0.max(theirs.0)..=mine.1.min(theirs.1);
     let within = |rows: &[(f64, f64)]| rows.iter().filter(|(t, _)| common.contains(t)).count();
     let (few, many) = if within(&other) <= within(&reference) { (&other, &reference) } else { (&reference, &other) };
-    let (mut found, mut mean): (Option<Difference>, _) = (None, Mean::of_squares());
+    let (mut found, mut mean): (Option<Difference>, _) = (None, RunningValue::default());
     for &(t, value) in few.iter().filter(|(t, _)| common.contains(t)) {
         let distance = value - between(many, t);
         let size = distance.abs();
-        mean.see(t, distance);
-        if found.as_ref().is_none_or(|found| size > found.largest) {
-            found = Some(Difference { largest: size, at: t, rms: 0.0 });
-        }
+        let rms = mean.add(Running::Rms, t, distance);
+        found = match found {
+            Some(found) if size <= found.largest => Some(Difference { rms, ..found }),
+            _ => Some(Difference { largest: size, at: t, rms }),
+        };
     }
-    let mut found = found?;
-    found.rms = mean.value()?;
-    Some(found)
+    found
 }
 
 /// Times and values of a column, where it has a number.

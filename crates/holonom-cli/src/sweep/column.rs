@@ -76,6 +76,8 @@ fn call(text: &str) -> Result<Option<(&str, &str)>, &'static str> {
 
 #[cfg(test)]
 mod tests {
+    use holonom::record::Running;
+
     use super::*;
 
     #[test]
@@ -87,7 +89,7 @@ mod tests {
         assert_eq!(read("m2.x"), ("m2.x".into(), false, Function::Last));
         assert_eq!(read("last(m2.x)"), ("m2.x".into(), false, Function::Last));
         assert_eq!(read("abs(m2.x)"), ("m2.x".into(), true, Function::Last));
-        assert_eq!(read("max(abs(strut.force))"), ("strut.force".into(), true, Function::Max));
+        assert_eq!(read("max(abs(strut.force))"), ("strut.force".into(), true, Function::Running(Running::Max)));
         assert_eq!(read("at( abs( m2.x ) , 1e-1 )"), ("m2.x".into(), true, Function::At(0.1)));
         assert_eq!(Asked::parse("rms( m2.x )").unwrap().text, "rms( m2.x )");
     }

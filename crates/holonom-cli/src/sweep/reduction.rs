@@ -1,34 +1,35 @@
 //! Functions of a column over a run, from its values after each step: the largest, the mean, the value at a time, …
 
+use holonom::record::{Running, RunningValue};
+
 use crate::interpolation::Reading;
-use crate::mean::Mean;
 
 /// A function of the values of a column over a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Function {
     Last,
-    Max,
-    Min,
-    /// Over time.
-    Mean,
-    /// Root of the mean of the squares over time.
-    Rms,
+    /// Over all steps.
+    Running(Running),
     /// The value at a time, s.
     At(f64),
 }
 
 impl Function {
     /// Functions that need nothing but the column, by their names.
-    pub const NAMED: [(&str, Self); 5] =
-        [("last", Self::Last), ("max", Self::Max), ("min", Self::Min), ("mean", Self::Mean), ("rms", Self::Rms)];
+    pub const NAMED: [(&str, Self); 5] = [
+        ("last", Self::Last),
+        ("max", Self::Running(Running::Max)),
+        ("min", Self::Running(Running::Min)),
+        ("mean", Self::Running(Running::Mean)),
+        ("rms", Self::Running(Running::Rms)),
+    ];
 }
 
 /// What is gathered of a column over a run. Where the column has no number at a step, neither have the functions of all steps.
 #[derive(Clone, Debug)]
 pub enum Gathered {
-    Max(Option<f64>),
-    Min(Option<f64>),
-    Mean(Mean),
+    /// With the value so far.
+    Running(Running, RunningValue, Option<f64>),
     At(Reading),
 }
 
@@ -37,10 +38,7 @@ impl Gathered {
     pub fn new(function: Function) -> Option<Self> {
         match function {
             Function::Last => None,
-            Function::Max => Some(Self::Max(None)),
-            Function::Min => Some(Self::Min(None)),
-            Function::Mean => Some(Self::Mean(Mean::default())),
-            Function::Rms => Some(Self::Mean(Mean::of_squares())),
+            Function::Running(running) => Some(Self::Running(running, RunningValue::default(), None)),
             Function::At(t) => Some(Self::At(Reading::new(t))),
         }
     }
@@ -48,11 +46,7 @@ impl Gathered {
     /// Sees the value after a step, and the one at the start.
     pub fn see(&mut self, t: f64, value: f64) {
         match self {
-            // Written so that a value that is no number shows, and stays.
-            Self::Max(Some(most)) if value <= *most || most.is_nan() => (),
-            Self::Min(Some(least)) if value >= *least || least.is_nan() => (),
-            Self::Max(found) | Self::Min(found) => *found = Some(value),
-            Self::Mean(mean) => mean.see(t, value),
+            Self::Running(running, sum, so_far) => *so_far = Some(sum.add(*running, t, value)),
             Self::At(reading) => reading.see(t, value),
         }
     }
@@ -60,8 +54,7 @@ impl Gathered {
     /// What the function makes of what was seen; nothing where it has no value.
     pub fn value(&self) -> Option<f64> {
         match self {
-            Self::Max(found) | Self::Min(found) => *found,
-            Self::Mean(mean) => mean.value(),
+            Self::Running(_, _, so_far) => *so_far,
             Self::At(reading) => reading.value(),
         }
     }
@@ -81,17 +74,25 @@ mod tests {
     fn functions_of_a_few_rows_are_those_by_hand() {
         // Steps of unequal length weigh as long as they are.
         let rows = [(0.0, 1.0), (1.0, -3.0), (3.0, 5.0)];
-        assert_eq!([Function::Max, Function::Min].map(|function| of(function, &rows)), [Some(5.0), Some(-3.0)]);
+        assert_eq!(
+            [Function::Running(Running::Max), Function::Running(Running::Min)].map(|function| of(function, &rows)),
+            [Some(5.0), Some(-3.0)]
+        );
         assert!(Gathered::new(Function::Last).is_none());
-        assert_eq!(of(Function::Mean, &rows), Some((-1.0 + 2.0) / 3.0));
+        assert_eq!(of(Function::Running(Running::Mean), &rows), Some((-1.0 + 2.0) / 3.0));
         // Of 1 to −3 straight within 1 s and −3 to 5 within 2 s: (1 − 3 + 9)/3 + 2 (9 − 15 + 25)/3 = 15.
-        assert_eq!(of(Function::Rms, &rows), Some(5.0_f64.sqrt()));
+        assert_eq!(of(Function::Running(Running::Rms), &rows), Some(5.0_f64.sqrt()));
         assert_eq!(of(Function::At(1.0), &rows), Some(-3.0));
     }
 
     #[test]
     fn a_single_row_has_them_all_and_none_has_none() {
-        for (function, value) in [(Function::Max, -2.0), (Function::Min, -2.0), (Function::Mean, -2.0), (Function::Rms, 2.0)] {
+        for (function, value) in [
+            (Function::Running(Running::Max), -2.0),
+            (Function::Running(Running::Min), -2.0),
+            (Function::Running(Running::Mean), -2.0),
+            (Function::Running(Running::Rms), 2.0),
+        ] {
             assert_eq!(of(function, &[(0.0, -2.0)]), Some(value));
             assert_eq!(of(function, &[]), None);
         }
@@ -102,7 +103,12 @@ mod tests {
     fn a_step_without_a_number_shows() {
         for at in 0..3 {
             let rows: Vec<(f64, f64)> = (0..3).map(|k| (f64::from(k), if k == at { f64::NAN } else { f64::from(k) })).collect();
-            for function in [Function::Max, Function::Min, Function::Mean, Function::Rms] {
+            for function in [
+                Function::Running(Running::Max),
+                Function::Running(Running::Min),
+                Function::Running(Running::Mean),
+                Function::Running(Running::Rms),
+            ] {
                 assert!(of(function, &rows).is_some_and(f64::is_nan), "{function:?} {at}");
             }
         }

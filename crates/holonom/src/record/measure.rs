@@ -17,6 +17,8 @@ pub enum Running {
     Max,
     /// Smallest value.
     Min,
+    /// Mean over time.
+    Mean,
     /// Root of the mean square over time.
     Rms,
     /// Integral over time.
@@ -80,53 +82,38 @@ impl RecordedMeasure {
     }
 }
 
-/// What is known of a series so far.
+/// A running value while the run goes on. Between two times the number goes straight.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Sum {
-    /// Times of the first value and of the last, s.
+pub struct RunningValue {
+    /// Times of the first number and of the last, s.
     times: [f64; 2],
-    /// The last value, and the largest, the smallest or the integral; none before the first.
+    /// The last number, and the largest, the smallest or the integral; none before the first.
     values: Option<[f64; 2]>,
 }
 
-impl Sum {
-    /// Takes the value at a time in, and hands back the running value. Between two times the value goes straight.
-    fn add(&mut self, running: Running, t: f64, value: f64) -> f64 {
-        let Some([last, sum]) = self.values else {
-            let sum = match running {
-                Running::Max | Running::Min => value,
-                Running::Rms | Running::Integral => 0.0,
-            };
-            (self.times, self.values) = ([t, t], Some([value, sum]));
-            return if running == Running::Rms { value.abs() } else { sum };
+impl RunningValue {
+    /// Takes the number at a time in, and hands back the running value. What is no number shows, and stays.
+    pub fn add(&mut self, running: Running, t: f64, value: f64) -> f64 {
+        let [since, before] = if self.values.is_some() { self.times } else { [t, t] };
+        let step = t - before;
+        let sum = match (running, self.values) {
+            (Running::Max | Running::Min, None) => value,
+            (_, None) => 0.0,
+            (Running::Max, Some([_, sum])) if value <= sum || sum.is_nan() => sum,
+            (Running::Min, Some([_, sum])) if value >= sum || sum.is_nan() => sum,
+            (Running::Max | Running::Min, Some(_)) => value,
+            (Running::Integral | Running::Mean, Some([last, sum])) => sum + 0.5 * step * (last + value),
+            (Running::Rms, Some([last, sum])) => sum + step / 3.0 * (last * last + last * value + value * value),
         };
-        let step = t - self.times[1];
-        let sum = match running {
-            // Written so that a value that is no number shows.
-            Running::Max => {
-                if value <= sum {
-                    sum
-                } else {
-                    value
-                }
-            }
-            Running::Min => {
-                if value >= sum {
-                    sum
-                } else {
-                    value
-                }
-            }
-            Running::Integral => sum + 0.5 * step * (last + value),
-            Running::Rms => sum + step / 3.0 * (last * last + last * value + value * value),
-        };
-        self.times[1] = t;
-        self.values = Some([value, sum]);
-        let whole = t - self.times[0];
-        if running != Running::Rms {
-            return sum;
+        (self.times, self.values) = ([since, t], Some([value, sum]));
+        let whole = t - since;
+        match running {
+            Running::Max | Running::Min | Running::Integral => sum,
+            Running::Mean if whole > 0.0 => sum / whole,
+            Running::Mean => value,
+            Running::Rms if whole > 0.0 => (sum / whole).sqrt(),
+            Running::Rms => value.abs(),
         }
-        if whole > 0.0 { (sum / whole).sqrt() } else { value.abs() }
     }
 }
 
@@ -136,7 +123,7 @@ pub(super) struct Measures<'a> {
     /// Of each measure the places of its variables in the row, or which series they are; none of a column that is not recorded.
     places: Vec<Vec<Option<Place>>>,
     /// Of each measure the sums of its series.
-    pub sums: Vec<Vec<Sum>>,
+    pub sums: Vec<Vec<RunningValue>>,
     /// Room for variables.
     values: Vec<f64>,
 }
@@ -161,7 +148,7 @@ impl<'a> Measures<'a> {
         };
         Self {
             places: measures.iter().map(|measure| measure.reads.iter().map(place).collect()).collect(),
-            sums: measures.iter().map(|measure| vec![Sum::default(); measure.series.len()]).collect(),
+            sums: measures.iter().map(|measure| vec![RunningValue::default(); measure.series.len()]).collect(),
             values: Vec::new(),
             measures,
         }

@@ -11,7 +11,7 @@ mod scene;
 pub use channels::{Channels, RecordedBody, RecordedCoupling, RecordedEffort, RecordedJoint, RecordedPoint};
 pub use force::{Along, Exerts, Lengths, RecordedForce, Shows};
 pub use heading::Heading;
-pub use measure::{Formula, RecordedInput, RecordedMeasure, Running};
+pub use measure::{Formula, RecordedInput, RecordedMeasure, Running, RunningValue};
 pub(crate) use measure::{MeasureReads, Series};
 pub use peaks::{Extremes, Peak, Peaks};
 pub use recorder::{COLUMNS, Constraints, Recorder, RecorderMark};

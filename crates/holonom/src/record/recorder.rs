@@ -3,7 +3,7 @@
 use nalgebra::{Quaternion, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
-use super::measure::{Measures, Sum};
+use super::measure::{Measures, RunningValue};
 use super::{Channels, Heading, Recording};
 use crate::simulation::{Observer, Simulation, Verdict};
 use crate::system::System;
@@ -39,7 +39,7 @@ pub struct RecorderMark {
     orientations: Vec<[f64; 4]>,
     /// Of each measure its running values.
     #[serde(default)]
-    sums: Vec<Vec<Sum>>,
+    sums: Vec<Vec<RunningValue>>,
 }
 
 /// What is recorded of the forces of constraints, and of the accelerations, which are found with them.
