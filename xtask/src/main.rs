@@ -1,9 +1,11 @@
 //! Chores of the repository: `cargo xtask ci` runs every check, the same here and elsewhere; `cargo xtask book` draws the
-//! figures of the book, `cargo xtask gallery` takes its pictures, `cargo xtask performance` writes its chapter on time.
+//! figures of the book, `cargo xtask gallery` takes its pictures, `cargo xtask performance` writes its chapter on time, `cargo xtask python`
+//! tests the Python package.
 
 mod book;
 mod gallery;
 mod performance;
+mod python;
 
 use std::process::{Command, ExitCode};
 
@@ -18,6 +20,7 @@ const CHECKS: &[Check] = &[
     Check { name: "lints", command: &["cargo", "clippy", "--workspace", "--all-targets", "--", "-D", "warnings"] },
     Check { name: "documentation", command: &["cargo", "doc", "--workspace", "--no-deps", "--quiet"] },
     Check { name: "tests", command: &["cargo", "test", "--workspace", "--no-fail-fast"] },
+    Check { name: "python", command: &["cargo", "xtask", "python"] },
     Check { name: "book", command: &["cargo", "xtask", "book", "--check"] },
 ];
 
@@ -28,9 +31,10 @@ fn main() -> ExitCode {
         ["book"] => book::book(false),
         ["book", "--check"] => book::book(true),
         ["gallery", ..] => gallery::gallery(&arguments[1..]),
+        ["python"] => python::python(),
         ["performance", ..] => performance::performance(&arguments[1..]),
         _ => {
-            eprintln!("usage: cargo xtask ci | book | book --check | gallery [NAME ...] | performance [--peers FOLDER ...]");
+            eprintln!("usage: cargo xtask ci | book | book --check | gallery [NAME ...] | performance [--peers FOLDER ...] | python");
             ExitCode::from(2)
         }
     }
@@ -43,6 +47,10 @@ fn ci() -> ExitCode {
     }
     if !is_there("chromium") && !install_chromium() {
         eprintln!("the report is tested in Chromium: install the package `chromium` first");
+        return ExitCode::FAILURE;
+    }
+    if !is_there("python3") {
+        eprintln!("the Python package is tested with Python 3.10 or newer: install it first");
         return ExitCode::FAILURE;
     }
     for check in CHECKS {

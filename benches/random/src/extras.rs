@@ -20,9 +20,9 @@ pub fn add(making: &mut Making) {
 }
 
 /// A coordinate of a joint as it is named, and whether it is an angle.
-type Coordinate = (String, String, bool);
+pub type Coordinate = (String, String, bool);
 
-fn coordinates(joint: &Joint) -> impl Iterator<Item = Coordinate> {
+pub fn coordinates(joint: &Joint) -> impl Iterator<Item = Coordinate> {
     let name = |(coordinate, is_angle): &(&str, bool)| (joint.name.clone(), format!("{}.{coordinate}", joint.name), *is_angle);
     joint.coordinates.iter().map(name).collect::<Vec<_>>().into_iter()
 }

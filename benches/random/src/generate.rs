@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use crate::bodies::{Motion, orientation, substance};
 use crate::extras;
+use crate::further;
 use crate::joints::{Joint, kind};
 use crate::layout::{Layout, Pattern};
 use crate::mechanism::{Entry, Mechanism, number, text, vector};
@@ -55,6 +56,9 @@ pub fn mechanism(seed: u64) -> Mechanism {
         making.close();
     }
     extras::add(&mut making);
+    if seed >= further::FROM {
+        further::add(&mut making);
+    }
     let reactions = making.random.chance(0.5);
     let weight = making.bodies.iter().map(|body| body.mass * gravity.norm() * (body.centre.norm() + size)).sum();
     Mechanism { header: header(&mut making, seed, &gravity), entries: making.entries, reactions, size, rate, weight }

@@ -47,6 +47,11 @@ impl Mechanism {
         f64::from(STEPS) * self.step()
     }
 
+    /// Whether rows may depend on time.
+    pub fn depends_on_time(&self) -> bool {
+        self.entries.iter().any(|entry| ["drive", "constraint"].contains(&entry.section))
+    }
+
     /// The model file.
     pub fn toml(&self) -> String {
         let mut text = String::new();

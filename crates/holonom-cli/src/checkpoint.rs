@@ -87,7 +87,9 @@ impl Resumed {
             return Err(refuse(format!("is of another run: {}", listed(&differences)), cure));
         }
         let reached = kept.last.run.state.t;
-        if reached >= run.end {
+        // A run that was killed while its results were written has still to write them.
+        let is_written = folder.path.join("summary.json").exists();
+        if reached > run.end || (reached == run.end && is_written) {
             return Err(refuse(format!("is at {reached} s, and the run ends at {} s", run.end), "give a later --end"));
         }
         let point = kept.before_end.unwrap_or(kept.last);

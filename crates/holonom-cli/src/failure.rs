@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Exit status of a run that stopped before its end, and of a sweep that was interrupted or of which no run completed; everything up to
-/// there is written.
+/// Exit status of a run that stopped before its end, of a comparison that was interrupted, and of a sweep that was interrupted or of which no
+/// run completed; everything up to there is written.
 pub const STOPPED: u8 = 3;
 
 /// Why a command did not do what it was asked to.
@@ -14,9 +14,23 @@ pub enum Failure {
     #[error("{0}")]
     Model(String),
     #[error("error: {message}\n  cure: {cure}")]
-    Usage { message: String, cure: String },
+    /// Something that cannot be done as it was asked for.
+    Usage {
+        /// What is wrong.
+        message: String,
+        /// What to do about it.
+        cure: String,
+    },
     #[error("error: cannot {doing} {path}: {source}", path = .path.display())]
-    File { doing: &'static str, path: PathBuf, source: std::io::Error },
+    /// A file that cannot be read or written.
+    File {
+        /// `read`, `write`, …
+        doing: &'static str,
+        /// Which file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
 }
 
 impl Failure {

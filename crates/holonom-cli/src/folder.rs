@@ -4,6 +4,7 @@ use std::fs::{File, TryLockError};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use holonom_io::Writer;
 use serde_json::Value;
 
 use crate::checkpoint;
@@ -25,6 +26,9 @@ const RESULTS: [&str; 11] = [
     "columns.json",
     "report.html",
 ];
+
+/// The key of a compared run's summary that says what its tables are called, without their endings.
+pub const TABLE: &str = "table";
 
 /// A folder, into which files are written through a closure for each.
 pub struct Folder {
@@ -108,12 +112,9 @@ impl Folder {
 
     /// Removes all results but some, so that none of them is taken for those that come.
     pub fn remove_results(&self, but: &[&str]) -> Result<(), Failure> {
-        // Tables of compared runs have the names of their runs.
-        let compared = summary(&self.path);
-        let labels = compared.as_array().into_iter().flatten().filter_map(|run| run["label"].as_str());
-        let stems = file_stems(labels).into_iter();
-        let tables = stems.flat_map(|stem| holonom_io::WRITERS.iter().map(move |writer| format!("{stem}.{}", writer.extension)));
-        let names = RESULTS.iter().map(|name| name.to_string()).chain(tables);
+        let names = RESULTS.iter().map(|name| name.to_string()).chain(self.tables());
+        // Of both what a kill has left of writing them.
+        let names = names.flat_map(|name| [format!("{name}.new"), name]);
         for name in names.filter(|name| !but.contains(&name.as_str())) {
             let path = self.path.join(name);
             match std::fs::remove_file(&path) {
@@ -124,6 +125,26 @@ impl Folder {
             }
         }
         Ok(())
+    }
+
+    /// Files that tables of compared runs may be in, from what the results say of themselves.
+    fn tables(&self) -> Vec<String> {
+        let compared = summary(&self.path);
+        let stems = compared.as_array().into_iter().flatten().filter_map(|run| Some(file_stem(run[TABLE].as_str()?)));
+        stems.flat_map(|stem| holonom_io::WRITERS.iter().map(move |writer| table_name(&stem, writer))).collect()
+    }
+
+    /// Refuses to write tables over files that are no results, such as measured data that are called like a model.
+    pub fn refuse_foreign_tables<'a>(&self, stems: impl Iterator<Item = &'a String>, writers: &[&Writer]) -> Result<(), Failure> {
+        let own = self.tables();
+        let mut names = stems.flat_map(|stem| writers.iter().map(move |writer| table_name(stem, writer)));
+        match names.find(|name| !own.contains(name) && self.path.join(name).exists()) {
+            None => Ok(()),
+            Some(name) => Err(Failure::usage(
+                format!("a table would be written over {}, which is no result", self.path.join(name).display()),
+                "give another --out",
+            )),
+        }
     }
 
     /// Writes one file in full before it takes the place of an older one.
@@ -142,10 +163,19 @@ impl Folder {
     }
 }
 
+/// Most bytes of the name of a file without its ending: systems take some 250, and folders have the name of their model in front.
+const LONGEST_STEM: usize = 100;
+
+fn table_name(stem: &str, writer: &Writer) -> String {
+    format!("{stem}.{}", writer.extension)
+}
+
 /// The name of a run as the name of a file.
 pub fn file_stem(label: &str) -> String {
     let plain = label.replace(", ", "-").replace(' ', "");
-    plain.chars().map(|c| if c.is_alphanumeric() || "._-+=()".contains(c) { c } else { '-' }).collect()
+    let mut stem: String = plain.chars().map(|c| if c.is_alphanumeric() || "._-+=()".contains(c) { c } else { '-' }).collect();
+    stem.truncate(stem.floor_char_boundary(LONGEST_STEM));
+    stem
 }
 
 /// The same of several runs: all different.

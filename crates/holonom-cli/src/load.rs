@@ -40,9 +40,11 @@ pub const EXAMPLES: &[(&str, &str)] = &[
 
 /// A model that was read, with where it came from.
 pub struct Loaded {
+    /// What it compiles to.
     pub model: Model,
     /// Name of the file without its ending, or of the example.
     pub name: String,
+    /// What it was read from.
     pub source: Source,
 }
 
@@ -71,11 +73,6 @@ impl Overrides {
     /// The overrides as they are written, in their order.
     pub fn given(&self) -> &[String] {
         &self.0
-    }
-
-    /// Whether a key is set.
-    pub fn has(&self, key: &str) -> bool {
-        self.0.iter().any(|given| given.split('=').next().is_some_and(|set| set.trim() == key))
     }
 }
 
@@ -202,11 +199,17 @@ pub fn end(model: &Model) -> Result<f64, Failure> {
 
 impl Loaded {
     /// Nominal step, s: with an accuracy, the interval of the results.
+    ///
+    /// # Errors
+    /// A model without one.
     pub fn step(&self) -> Result<f64, Failure> {
         step(&self.model)
     }
 
     /// End of the run, s.
+    ///
+    /// # Errors
+    /// A model without one.
     pub fn end(&self) -> Result<f64, Failure> {
         end(&self.model)
     }
@@ -222,6 +225,9 @@ impl Loaded {
     }
 
     /// What a run by a method is. The command line may have named the method, and the share of the steps that is recorded.
+    ///
+    /// # Errors
+    /// A model without step or end.
     pub fn provenance(&self, method: &Method, named: Option<&str>, every: Option<u64>) -> Result<Provenance, Failure> {
         let json = |value: Option<&Value>| value.map_or(serde_json::Value::Null, holonom_io::to_json);
         let replaced = |(key, file): &(String, Option<Value>)| Override {
@@ -256,7 +262,7 @@ impl Loaded {
 }
 
 /// What a model lacks to run, with its cure.
-fn run_failure(error: RunError) -> Failure {
+pub fn run_failure(error: RunError) -> Failure {
     match error {
         RunError::Missing { key } => {
             let example = if key == "end" { 10.0 } else { 0.01 };

@@ -88,10 +88,10 @@ pub struct MethodArguments {
     #[arg(long = "method", value_name = "NAME")]
     pub name: Option<String>,
     /// Step, s
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub step: Option<String>,
     /// End of the run, s
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub end: Option<String>,
 }
 
@@ -126,10 +126,10 @@ pub struct CompareArguments {
     #[arg(long = "method", value_name = "NAME")]
     pub methods: Vec<String>,
     /// Step, s; give several
-    #[arg(long = "step", value_name = "S")]
+    #[arg(long = "step", value_name = "S", allow_negative_numbers = true)]
     pub steps: Vec<String>,
     /// End of the run, s
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub end: Option<String>,
     #[command(flatten)]
     pub output: OutputArguments,
@@ -143,10 +143,10 @@ pub struct StabilityArguments {
     #[arg(long = "method", value_name = "NAME")]
     pub methods: Vec<String>,
     /// End of the run, s
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub end: Option<String>,
     /// First step to try, s [default: the model's]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub step: Option<String>,
     #[command(flatten)]
     pub to: Destination,

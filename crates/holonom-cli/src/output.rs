@@ -1,6 +1,8 @@
 //! One run and what it leaves in its folder.
 
 use std::collections::HashSet;
+use std::io::Write;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -16,11 +18,11 @@ use serde_json::{Value, json};
 use crate::checkpoint::Point;
 use crate::clock::Clock;
 use crate::failure::Failure;
-use crate::folder::Folder;
+use crate::folder::{Folder, holds};
 use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
 use crate::message::{listed, note};
-use crate::options::OutputArguments;
+use crate::options::Destination;
 use crate::progress::Watched;
 use crate::provenance::Provenance;
 use crate::table::short;
@@ -30,31 +32,74 @@ const TIME: &str = COLUMNS[0];
 
 /// A finished run.
 pub struct Finished {
+    /// Name of the method.
     pub method: String,
+    /// All columns.
     pub recording: Recording,
     /// Content of `summary.json`.
     pub summary: Value,
+    /// Whether it reached its end.
     pub completed: bool,
-    /// Where the run is, and where it was before a last step that its end cut short.
+}
+
+/// What a finished run is resumed from: where it is, and where it was before a last step that its end cut short.
+pub(crate) struct Reached {
     pub last: Point,
     pub before_end: Option<Point>,
 }
 
+impl Finished {
+    /// Leaves the run in a folder as `holonom run` does, but for what a run is resumed from.
+    ///
+    /// # Errors
+    /// A format that there is not, a folder with the results of another run that is not to be overwritten, and what cannot be written.
+    pub fn write_to(&self, path: &Path, loaded: &Loaded, formats: &[String], with_report: bool, force: bool) -> Result<(), Failure> {
+        let writers = writers(formats)?;
+        let to = Destination { out: Some(path.into()), force, json: false, quiet: true };
+        let folder = Folder::claim(&to, "", |path| holds(path, &self.summary))?;
+        self.write(&folder, loaded, &writers, with_report)
+    }
+
+    /// Writes what follows from a finished run; the summary comes last, and says that it is finished.
+    pub(crate) fn write(&self, folder: &Folder, loaded: &Loaded, writers: &[&Writer], with_report: bool) -> Result<(), Failure> {
+        folder.write_trajectory("trajectory", writers, loaded, &self.recording)?;
+        if with_report {
+            folder.write("report.html", |out| self.report(loaded, out))?;
+        }
+        folder.write("summary.json", |out| holonom_io::write_json(&self.summary, out))
+    }
+
+    /// Writes the report of the run.
+    ///
+    /// # Errors
+    /// What cannot be written.
+    pub fn report(&self, loaded: &Loaded, out: &mut dyn Write) -> std::io::Result<()> {
+        let run = Run { label: &self.method, recording: &self.recording, scene: &loaded.model.scene, summary: &self.summary };
+        Report { title: loaded.title(), model_text: loaded.source.text(), runs: &[run], columns: &[] }.write(out)
+    }
+}
+
 /// What a run is asked to do.
 pub struct Order {
+    /// By which method.
     pub method: Method,
+    /// Everything that its numbers follow from.
     pub provenance: Provenance,
+    /// Whether nothing is said on standard error.
     pub quiet: bool,
     /// Where to go on, and the rows before.
-    pub resume: Option<(Point, Recording)>,
+    pub(crate) resume: Option<(Point, Recording)>,
 }
 
 impl Order {
-    /// A run of a model from its start, by its own method or a named one.
-    pub fn new(loaded: &Loaded, method: Option<&str>, output: &OutputArguments) -> Result<Self, Failure> {
+    /// A run of a model from its start, by its own method or a named one, of which its own or a given share of the steps is recorded.
+    ///
+    /// # Errors
+    /// A method that cannot be, or a model without step or end.
+    pub fn new(loaded: &Loaded, method: Option<&str>, every: Option<u64>, quiet: bool) -> Result<Self, Failure> {
         let named = load::method(&loaded.model, method)?;
-        let provenance = loaded.provenance(&named, method, output.every)?;
-        Ok(Self { method: named, provenance, quiet: output.to.quiet, resume: None })
+        let provenance = loaded.provenance(&named, method, every)?;
+        Ok(Self { method: named, provenance, quiet, resume: None })
     }
 }
 
@@ -63,13 +108,21 @@ pub fn recorder(model: &Model, every: u64) -> Recorder<'_> {
     Recorder::new(&model.channels, &model.system, every, model.output.constraints())
 }
 
+/// Simulates a model until its end, or until the flag is set.
+///
+/// # Errors
+/// Why it cannot start.
+pub fn simulate(loaded: &Loaded, order: Order, interrupted: &Arc<AtomicBool>) -> Result<Finished, Failure> {
+    simulate_kept(loaded, order, interrupted, None).map(|(finished, _)| finished)
+}
+
 /// Simulates a model by a method, and saves it meanwhile where there is a keeper.
-pub fn simulate(
+pub(crate) fn simulate_kept(
     loaded: &Loaded,
     order: Order,
     interrupted: &Arc<AtomicBool>,
     keeper: Option<&mut Keeper<'_>>,
-) -> Result<Finished, Failure> {
+) -> Result<(Finished, Reached), Failure> {
     let model = &loaded.model;
     let Order { method, provenance, quiet, resume } = order;
     let Provenance { step, end, every, .. } = provenance;
@@ -118,12 +171,13 @@ pub fn simulate(
     let before_end = watched.before_end.take().filter(|_| !last.run.goes_on_unbroken());
     let recording = watched.finish();
     value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording)).expect("peaks are plain data");
-    Ok(Finished { method: name, recording, summary: value, completed: status == Status::Completed, last, before_end })
+    let finished = Finished { method: name, recording, summary: value, completed: status == Status::Completed };
+    Ok((finished, Reached { last, before_end }))
 }
 
 /// Says on standard error what looks like a slip, and what was put right before the start.
 fn announce_corrections(model: &Model, simulation: &Simulation) {
-    model.notes.iter().for_each(|note| eprintln!("note: {note}"));
+    model.notes.iter().for_each(|text| note(&text.to_string()));
     let start = simulation.start();
     if start.moved > 1e-12 {
         note(&format!("positions were moved by up to {:.2e} m onto their constraints", start.moved));
@@ -228,11 +282,5 @@ impl Folder {
             self.write(&format!("{prefix}.{}", writer.extension), |out| (writer.write)(recording, out))?;
         }
         self.write("columns.json", |out| holonom_io::write_json(&holonom_io::headings(recording), out))
-    }
-
-    /// Writes the report of some runs.
-    pub fn write_report(&self, loaded: &Loaded, runs: &[Run<'_>]) -> Result<(), Failure> {
-        let report = Report { title: loaded.title(), model_text: loaded.source.text(), runs, columns: &[] };
-        self.write("report.html", |out| report.write(out))
     }
 }

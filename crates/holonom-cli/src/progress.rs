@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use crate::checkpoint::Point;
 use crate::keeper::Keeper;
 
-/// Steps between looks at the clocks and at the interrupt.
+/// Steps between looks at the clocks.
 const LOOK: u64 = 64;
 
 /// A recorder with a progress bar that saves the run from time to time and stops on an interrupt.
@@ -71,11 +71,8 @@ impl Observer for Watched<'_, '_> {
             if let Some(keeper) = &mut self.keeper {
                 keeper.look(simulation, &self.recorder);
             }
-            if self.interrupted.load(Ordering::Relaxed) {
-                return Verdict::Stop;
-            }
         }
-        Verdict::GoOn
+        if self.interrupted.load(Ordering::Relaxed) { Verdict::Stop } else { Verdict::GoOn }
     }
 
     fn wants_forces(&self) -> bool {

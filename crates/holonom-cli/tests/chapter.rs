@@ -25,7 +25,7 @@ fn the_schema_is_json_and_knows_every_section() {
     let schema = json(&folder(), "schema");
     assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
     let sections = ["title", "gravity", "plane", "parameters", "simulation", "output"];
-    let named = ["point", "body", "bar", "joint", "constraint", "drive", "force"];
+    let named = ["table", "input", "point", "body", "bar", "joint", "constraint", "drive", "force", "start", "measure", "event"];
     for section in sections.into_iter().chain(named) {
         assert!(schema["properties"][section].is_object(), "{section}");
     }
@@ -89,10 +89,11 @@ fn the_keys_of_bodies_drives_and_forces_are_as_the_reader_has_them() {
         assert!(part("## Drives: `[drive.NAME]`").contains(&format!("| `{}` |", kind.name)), "{}", kind.name);
         kind.keys.iter().for_each(|key| assert_tells(part("## Drives: `[drive.NAME]`"), kind.name, key));
     }
+    let about = &text[text.find("\n## Forces").expect("there is a part about forces")..];
     for kind in forces::KINDS {
         assert!(part("## Forces: `[force.NAME]`").contains(&format!("| `{}` |", kind.name)), "{}", kind.name);
-        let heading = text.lines().find(|line| line.starts_with("### ") && line.contains(&format!("`{}`", kind.name)));
-        let below = section(&text, heading.unwrap_or_else(|| panic!("there is no section about the force `{}`", kind.name)));
+        let heading = about.lines().find(|line| line.starts_with("### ") && line.contains(&format!("`{}`", kind.name)));
+        let below = section(about, heading.unwrap_or_else(|| panic!("there is no section about the force `{}`", kind.name)));
         // The key of the joint is told once for all that act along a coordinate.
         for key in kind.keys.iter().filter(|key| key.name != "joint") {
             assert!(below.contains(&format!("`{}`", key.name)), "the section about the force `{}` does not name `{}`", kind.name, key.name);

@@ -139,6 +139,31 @@ fn results_and_measured_data_are_enough_without_a_model() {
     assert_eq!((&all[1]["status"], &all[1]["label"], &all[1]["steps"]), (&"completed".into(), &"old".into(), &1000.into()));
 }
 
+/// What was measured is not a result, although a curve is called like its file; a table is one, whatever its run is called.
+#[test]
+fn measured_data_in_the_folder_of_the_results_stay() {
+    let folder = prepared();
+    fs::create_dir(folder.path().join("rig")).unwrap();
+    fs::rename(folder.path().join("measured.csv"), folder.path().join("rig/measured.csv")).unwrap();
+    let all = |more: &str| prints(&folder, &format!("compare a.toml rig/measured.csv b.toml {more} --quiet --no-report --out rig"), 0);
+    all("--end 0.2");
+    assert_eq!(files(folder.path().join("rig")), names(&["a.csv", "b.csv", "columns.json", "measured.csv", "summary.json"]));
+    prints(&folder, "compare a.toml rig/measured.csv --end 0.1 --quiet --no-report --out rig --force", 0);
+    assert_eq!(files(folder.path().join("rig")), names(&["a.csv", "columns.json", "measured.csv", "summary.json"]));
+
+    // Neither are tables written over other files.
+    fs::write(folder.path().join("a.csv"), "mine").unwrap();
+    let message = fails(&folder, "compare a.toml b.toml --end 0.1 --out . --force", 2);
+    assert!(message.contains("over ./a.csv, which is no result") && message.contains("--out"), "{message}");
+    assert_eq!(fs::read(folder.path().join("a.csv")).unwrap(), b"mine");
+
+    // A name of 640 letters.
+    let variant = (1..=40).map(|n| format!("parameters.k={n}")).collect::<Vec<_>>().join(",");
+    all(&format!("--end 0.1 --force --variant {variant}"));
+    let found = files(folder.path().join("rig"));
+    assert_eq!(found.iter().filter(|name| name.ends_with(".csv")).count(), 5, "{found:?}");
+}
+
 #[test]
 fn what_cannot_be_compared_is_refused_before_anything_runs() {
     let folder = prepared();
@@ -147,6 +172,8 @@ fn what_cannot_be_compared_is_refused_before_anything_runs() {
         ("words.csv", "t,m.x\n0,1\n1,one\n"),
         ("backwards.csv", "t,m.x\n1,1\n0,1\n"),
         ("german.csv", "t;m.x\n0,0;1,0\n"),
+        ("tabs.csv", "t\tm.x\n0\t1\n1\t2\n"),
+        ("windows.csv", "t,m.x\r\n\r\n0,1\r\n1,one\r\n"),
         ("uneven.csv", "t,m.x\n0,1\n1\n"),
         ("short.csv", "t,m.x\n0,1\n"),
     ] {
@@ -156,6 +183,8 @@ fn what_cannot_be_compared_is_refused_before_anything_runs() {
         ("a.toml words.csv", "line 3 has `one` in the column `m.x`"),
         ("a.toml backwards.csv", "line 3 is not after"),
         ("a.toml german.csv", "put commas between columns"),
+        ("a.toml tabs.csv", "put commas between columns"),
+        ("a.toml windows.csv", "line 4 has `one` in the column `m.x`"),
         ("a.toml uneven.csv", "line 3 has 1 cells"),
         ("a.toml short.csv", "1 rows"),
         ("a.toml empty", "not the folder of a run"),

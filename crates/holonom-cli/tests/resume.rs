@@ -237,18 +237,33 @@ fn running_measures_and_inputs_that_were_set_go_on() {
     fs::remove_file(file).unwrap();
 }
 
+/// What is no number, or infinite, is written in a checkpoint and read again.
+#[test]
+fn running_measures_of_what_is_no_number_go_on() {
+    let folder = folder();
+    let text = "[point.m]\nmass = 1\nposition = [1, 0, 0]\nvelocity = [1, 0, 0]\n\
+                [simulation]\nstep = 0.01\nend = 1\n\
+                [measure.lost]\nvalue = \"max(sqrt(1.05 - m.x))\"\n\
+                [measure.far]\nvalue = \"integral(1/max(0, m.x - 1.2))\"\n\
+                [measure.least]\nvalue = \"min(-1/max(0, 1.1 - m.x))\"\n";
+    let model = folder.path().join("m.toml");
+    fs::write(&model, text).unwrap();
+    in_parts(&model.display().to_string(), "--no-report", &["0.02", "0.3", "0.31"], "0.5");
+}
+
 /// An unbroken run to a later end does not pass it, either.
 #[test]
 fn an_event_that_ended_a_run_is_not_passed() {
     let folder = folder();
-    for (time, last) in [("0.5", "2"), ("0.512", "2"), ("0.512", "0.515")] {
+    // The third is a hair behind the end of a step, where the run ends.
+    for (time, at, last) in [("0.5", "0.5", "2"), ("0.512", "0.512", "2"), ("0.500000001", "0.5", "2"), ("0.512", "0.512", "0.515")] {
         fs::write(folder.path().join("m.toml"), format!("{CRANE}[event.end]\nwhen = \"t - {time}\"\nstop = true\n")).unwrap();
         prints(&folder, &format!("run m.toml --end {last} --quiet --no-report --out a --force"), 0);
         let trajectory = |name: &str| fs::read(folder.path().join(name).join("trajectory.csv")).unwrap();
         if last == "2" {
             let before = trajectory("a");
             let message = fails(&folder, "run m.toml --end 3 --resume a", 2);
-            assert!(message.contains(&format!("an event or a failed step ended at {time}")), "{message}");
+            assert!(message.contains(&format!("an event or a failed step ended at {at}")), "{message}");
             assert!(before == trajectory("a"), "{time} {last}");
         } else {
             // The last step was cut short before the event: it is taken again, and the event happens again.
@@ -307,6 +322,24 @@ fn reached(folder: &Path) -> Option<f64> {
 }
 
 /// As where a run is interrupted that was interrupted later before.
+/// A kill may come after the last step.
+#[test]
+fn a_run_that_was_killed_before_its_results_were_written_writes_them() {
+    let folder = folder();
+    for (words, without) in [("--end 2", "summary.json"), ("--end 0.33 --format npz", "trajectory.npz")] {
+        let run = |more: &str| prints(&folder, &format!("run {PAPER} {words} --quiet {more}"), 0);
+        let [parts, whole] = ["parts", "whole"].map(|name| format!("{name}-of-{without}"));
+        run(&format!("--out {parts}"));
+        run(&format!("--out {whole}"));
+        for name in ["summary.json", "report.html", without] {
+            let _ = fs::remove_file(folder.path().join(&parts).join(name));
+        }
+        fs::write(folder.path().join(&parts).join("report.html.new"), "<html").unwrap();
+        run(&format!("--resume {parts}"));
+        assert_same(&folder.path().join(&parts), &folder.path().join(&whole), words);
+    }
+}
+
 #[test]
 fn a_shorter_part_of_a_run_does_not_replace_a_longer_one() {
     let folder = folder();

@@ -2,15 +2,9 @@
 
 mod common;
 
-use common::example;
-use holonom::model::Model;
+use common::{example, model};
 use holonom::simulation::{Choice, Method, Simulation, Status, Summary, Verdict};
 use holonom::system::Place;
-use holonom_io::Source;
-
-fn model(text: &str) -> Model {
-    Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}"))
-}
 
 struct Reference {
     model: &'static str,

@@ -1,17 +1,16 @@
 //! What forces and drives do is recorded: against formulas of the motion that is recorded beside it, and by what their power adds up to.
 
+mod common;
+
+use common::model;
 use holonom::model::joints::COUPLERS;
 use holonom::model::{Kind, Model, drives, forces};
 use holonom::record::{Constraints, Recorder, Recording};
 use holonom::simulation::{Choice, Method, Simulation, Status};
 use holonom_io::Source;
 
-fn model(text: &str) -> Model {
-    Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}\n{text}"))
-}
-
 fn run(model: &Model, step: f64, end: f64) -> (Simulation, Recording) {
-    let method = Method::resolve(&Choice { method: Some("radau".into()), ..Choice::default() }).unwrap();
+    let method = Method::resolve(&Choice::default().named("radau")).unwrap();
     let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
     simulation.find_reactions();
     let mut recorder = Recorder::new(&model.channels, &model.system, 1, Constraints::Nothing);
@@ -316,7 +315,7 @@ fn couplers_show_what_they_transmit() {
         for output in ["", "[output]\nreactions = true\n"] {
             let source = Source::read("model.toml", format!("{text}\n{motor}{output}").as_bytes()).unwrap();
             let model = source.model_with_forces().unwrap();
-            let method = Method::resolve(&Choice { method: Some("radau".into()), ..Choice::default() }).unwrap();
+            let method = Method::resolve(&Choice::default().named("radau")).unwrap();
             let mut simulation = Simulation::new(model.system.clone(), method, 0.01).unwrap();
             model.find_reactions(&mut simulation);
             let mut recorder = Recorder::new(&model.channels, &model.system, 1, model.output.constraints());

@@ -1,7 +1,9 @@
 //! Dampers from weak to far stiffer than a step can follow: nothing rings, nothing is thrown, order two stays.
 
+mod common;
+
+use common::model;
 use holonom::simulation::{Choice, Method, Simulation, Status, Verdict};
-use holonom_io::Source;
 
 /// 1 kg at 10 m/s on a damper along its way, and a spring where `stiffness` is above zero.
 fn text(damping: f64, stiffness: f64) -> String {
@@ -14,8 +16,8 @@ fn text(damping: f64, stiffness: f64) -> String {
 
 /// Way, velocity and booked work after a second, and the largest velocity against the first on the way.
 fn run(text: &str, method: &str, step: f64) -> [f64; 4] {
-    let model = Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}"));
-    let method = Method::resolve(&Choice { method: Some(method.into()), ..Choice::default() }).unwrap();
+    let model = model(text);
+    let method = Method::resolve(&Choice::default().named(method)).unwrap();
     let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
     let mut back = 0.0_f64;
     let mut see = |simulation: &Simulation| {

@@ -1,11 +1,13 @@
 //! Derivatives are never trusted: the assembled tangent of every registered kind against differences of its residual.
 
+mod common;
+
+use common::model;
 use holonom::formulation::{
     ALL, Collocation, Iteration, Kkt, Level, Multipliers, Newton, RowsAt, Sampling, SolveSettings, Stabilized, Stage, Timing, Workspace,
 };
 use holonom::model::{Model, constraints, drives, forces, joints};
 use holonom::simulation::{Choice, Method};
-use holonom_io::Source;
 
 /// Step of the central differences, m.
 const NUDGE: f64 = 1e-6;
@@ -34,9 +36,20 @@ fn residual(model: &Model, stage: &Stage, work: &mut Workspace) -> Vec<f64> {
     unknowns.iter().map(|unknown| -unknown).collect()
 }
 
+/// Fails where an entry of a tangent is not the difference of the residual; `at` takes that with one unknown changed by so much.
+fn assert_tangent(what: &str, unknowns: usize, entry: impl Fn(usize, usize) -> f64, mut at: impl FnMut(usize, f64) -> Vec<f64>) {
+    for column in 0..unknowns {
+        let (after, before) = (at(column, NUDGE), at(column, -NUDGE));
+        for row in 0..after.len() {
+            let (found, difference) = (entry(row, column), (after[row] - before[row]) / (2.0 * NUDGE));
+            let is_near = (found - difference).abs() <= TOLERANCE * (1.0 + difference.abs());
+            assert!(is_near, "{what}: entry ({row}, {column}) is {found} and should be {difference}");
+        }
+    }
+}
+
 fn check(name: &str, text: &str) {
-    let source = Source::read(name, text.as_bytes()).unwrap_or_else(|message| panic!("{message}"));
-    let model = source.model().unwrap_or_else(|message| panic!("{message}"));
+    let model = model(text);
     let system = &model.system;
     let n = system.coordinates();
     let levels: &[Level] =
@@ -70,33 +83,21 @@ fn check(name: &str, text: &str) {
         residual(&model, &stage, &mut work);
         let mut kkt = Kkt::new(system, &work.scales, 1, ALL);
         work.tangent(system, &stage, 1.0, &mut kkt);
-        let size = n + system.constraints();
-        let assembled: Vec<f64> = (0..size * n).map(|k| kkt.solver.entry(k / n, k % n)).collect();
-        for column in 0..n {
+        let at = |column: usize, by: f64| {
             let kept = work.d[column];
-            work.d[column] = kept + NUDGE;
-            let after = residual(&model, &stage, &mut work);
-            work.d[column] = kept - NUDGE;
-            let before = residual(&model, &stage, &mut work);
+            work.d[column] = kept + by;
+            let residual = residual(&model, &stage, &mut work);
             work.d[column] = kept;
-            for row in 0..size {
-                let difference = (after[row] - before[row]) / (2.0 * NUDGE);
-                let error = (assembled[row * n + column] - difference).abs();
-                let scale = 1.0 + difference.abs();
-                assert!(
-                    error <= TOLERANCE * scale,
-                    "{name}, {level:?}, {sampling:?}, {rows:?}: entry ({row}, {column}) is {} and should be {difference}",
-                    assembled[row * n + column]
-                );
-            }
-        }
+            residual
+        };
+        let what = format!("{name}, {level:?}, {sampling:?}, {rows:?}");
+        assert_tangent(&what, n, |row, column| kkt.solver.entry(row, column), at);
     }
 }
 
 /// Two stages that are solved together, with nothing zero: increments, multipliers of both levels and the start.
 fn check_coupled(name: &str, text: &str) {
-    let source = Source::read(name, text.as_bytes()).unwrap_or_else(|message| panic!("{message}"));
-    let model = source.model().unwrap_or_else(|message| panic!("{message}"));
+    let model = model(text);
     let system = &model.system;
     let timing = Timing { start: 0.3, step: 0.1, nodes: &[1.0 / 3.0, 1.0] };
     for doubled in [false, true] {
@@ -118,7 +119,7 @@ fn check_coupled(name: &str, text: &str) {
         stages.add(system, &unknowns, &work);
         let _ = stages.linearise(system, timing, &mut work);
         let assembled: Vec<Vec<f64>> = (0..size).map(|i| (0..size).map(|j| stages.entry(i, j)).collect()).collect();
-        let mut at = |column: usize, by: f64| {
+        let at = |column: usize, by: f64| {
             let mut nudge = vec![0.0; size];
             nudge[column] = by;
             stages.add(system, &nudge, &work);
@@ -127,25 +128,13 @@ fn check_coupled(name: &str, text: &str) {
             stages.add(system, &nudge, &work);
             residual
         };
-        for column in 0..size {
-            let (after, before) = (at(column, NUDGE), at(column, -NUDGE));
-            for row in 0..size {
-                let difference = (after[row] - before[row]) / (2.0 * NUDGE);
-                let error = (assembled[row][column] - difference).abs();
-                assert!(
-                    error <= TOLERANCE * (1.0 + difference.abs()),
-                    "{name}, doubled: {doubled}: entry ({row}, {column}) is {} and should be {difference}",
-                    assembled[row][column]
-                );
-            }
-        }
+        assert_tangent(&format!("{name}, doubled: {doubled}"), size, |row, column| assembled[row][column], at);
     }
 }
 
 /// Rows at position and velocity level of the conserving scheme, with nothing zero.
 fn check_both_levels(name: &str, text: &str) {
-    let source = Source::read(name, text.as_bytes()).unwrap_or_else(|message| panic!("{message}"));
-    let model = source.model().unwrap_or_else(|message| panic!("{message}"));
+    let model = model(text);
     let system = &model.system;
     // The curvature of rows that are functions is left out beside γ.
     if !system.has_only_quadratic_rows() {
@@ -173,7 +162,7 @@ fn check_both_levels(name: &str, text: &str) {
     add(&(0..size).map(|k| 0.05 * noise(k)).collect::<Vec<_>>(), &mut both, &mut work);
     both.linearise(system, &stage, &mut newton, &mut work);
     let assembled: Vec<Vec<f64>> = (0..size).map(|i| (0..size).map(|j| both.entry(system, i, j)).collect()).collect();
-    let mut at = |column: usize, by: f64| {
+    let at = |column: usize, by: f64| {
         let mut nudge = vec![0.0; size];
         nudge[column] = by;
         add(&nudge, &mut both, &mut work);
@@ -182,18 +171,7 @@ fn check_both_levels(name: &str, text: &str) {
         add(&nudge, &mut both, &mut work);
         residual
     };
-    for column in 0..size {
-        let (after, before) = (at(column, NUDGE), at(column, -NUDGE));
-        for row in 0..size {
-            let difference = (after[row] - before[row]) / (2.0 * NUDGE);
-            let error = (assembled[row][column] - difference).abs();
-            assert!(
-                error <= TOLERANCE * (1.0 + difference.abs()),
-                "{name}, both levels: entry ({row}, {column}) is {} and should be {difference}",
-                assembled[row][column]
-            );
-        }
-    }
+    assert_tangent(&format!("{name}, both levels"), size, |row, column| assembled[row][column], at);
 }
 
 #[test]
@@ -243,18 +221,17 @@ fn every_example_has_the_tangent_of_its_residual() {
 /// them, in space and in the plane.
 #[test]
 fn what_reads_other_bodies_has_the_tangent_of_its_residual() {
-    for (name, text) in [("space", FEEDBACK_IN_SPACE), ("plane", FEEDBACK_IN_THE_PLANE)] {
-        check(name, text);
-        check_coupled(name, text);
-        check_both_levels(name, text);
+    let with_arm = |text: &str| format!("{ARM}{text}");
+    let in_the_plane = FEEDBACK_IN_THE_PLANE.to_string();
+    for (name, text) in [("space", with_arm(FEEDBACK_IN_SPACE)), ("plane", in_the_plane), ("springs and ropes", with_arm(FOLLOWING))] {
+        check(name, &text);
+        check_coupled(name, &text);
+        check_both_levels(name, &text);
     }
 }
 
-const FEEDBACK_IN_SPACE: &str = r#"
-[table.soft]
-points = [[-9, -3], [-1, -2], [0, 0], [1, 1], [9, 4]]
-interpolation = "cubic"
-
+/// A point and an arm, whose places and coordinate are read.
+const ARM: &str = r#"
 [point.bob]
 mass = 1
 position = [1, 0.3, 0.5]
@@ -269,16 +246,22 @@ angular_velocity = [0.1, 0.3, -0.2]
 [body.arm.points]
 tip = [0.4, 0.1, 0.1]
 
-[body.fin]
-mass = 1
-inertia = [0.1, 0.1, 0.2]
-position = [0.9, 0.4, 0.3]
-
 [joint.shoulder]
 type = "revolute"
 between = ["ground", "arm"]
 at = [0, 0, 0]
 axis = [0.2, 1, 0.1]
+"#;
+
+const FEEDBACK_IN_SPACE: &str = r#"
+[table.soft]
+points = [[-9, -3], [-1, -2], [0, 0], [1, 1], [9, 4]]
+interpolation = "cubic"
+
+[body.fin]
+mass = 1
+inertia = [0.1, 0.1, 0.2]
+position = [0.9, 0.4, 0.3]
 
 [joint.slot]
 type = "cylindrical"
@@ -346,4 +329,46 @@ effort = "3*pivot.angle - 0.2*load.angle_rate*q_rate + atan2(load.x - trolley.x,
 type = "torque"
 body = "load"
 torque = "rail.displacement*load.vx - rail.displacement_rate"
+"#;
+
+/// Springs and ropes whose numbers follow what moves; the ropes are taut.
+const FOLLOWING: &str = r#"
+[input.command]
+default = 0.2
+
+[measure.height]
+value = "bob.z + 0.5*arm.tip.x"
+
+[force.spring]
+type = "spring"
+between = ["arm.tip", "bob"]
+stiffness = "20 + 3*sin(t) + shoulder.angle"
+rest_length = "0.3 + 0.2*height + command"
+damping = "2 + bob.vx^2"
+force = "rate*length - height*extension + arm.wy"
+
+[force.guided]
+type = "spring"
+between = ["ground", "bob"]
+along = [1, 2, -1]
+stiffness = 5
+rest_length = "shoulder.angle*bob.x"
+damping = 1
+
+[force.rope]
+type = "rope"
+between = [[0, 0, 2], "bob"]
+through = ["arm.tip"]
+length = "0.5 + 0.2*shoulder.angle + 0.1*bob.x^2 + 0.01*sin(t)"
+stiffness = "30 + bob.vz"
+damping = "1 + 0.3*height^2"
+
+[force.winch]
+type = "rope"
+between = [[0, 1, 1], "bob"]
+length = "0.3 + 0.05*bob.y"
+stiffness = 40
+damping = 2
+drum = "shoulder"
+radius = 0.3
 "#;

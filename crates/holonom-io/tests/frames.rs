@@ -1,22 +1,10 @@
 //! Bodies whose axes do not begin at their centre of mass, and bars that end at bodies: against the same mechanisms written otherwise.
 
-use holonom::model::Model;
-use holonom::record::{Constraints, Recorder, Recording};
-use holonom::simulation::{Choice, Method, Simulation, Status};
-use holonom_io::Source;
+mod common;
 
-fn model(text: &str) -> Model {
-    Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}\n{text}"))
-}
-
-fn run(text: &str, method: &str, step: f64, end: f64) -> (Simulation, Recording) {
-    let model = model(text);
-    let method = Method::resolve(&Choice { method: Some(method.into()), ..Choice::default() }).unwrap();
-    let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
-    let mut recorder = Recorder::new(&model.channels, &model.system, 1, Constraints::Nothing);
-    assert_eq!(simulation.run(end, &mut recorder), Status::Completed);
-    (simulation, recorder.finish())
-}
+use common::{model, run};
+use holonom::record::Recording;
+use holonom::simulation::Choice;
 
 /// The largest difference of two recordings in columns that both have.
 fn difference(a: &Recording, b: &Recording, prefixes: &[&str]) -> f64 {
@@ -49,7 +37,7 @@ fn a_body_may_be_written_by_the_origin_of_its_axes() {
         -0.3 - 0.2,
         1.0 + 0.3 - 0.2
     );
-    let [(_, a), (_, b)] = [by_origin, by_centre].map(|text| run(&text, "radau", 0.01, 1.0));
+    let [(_, a), (_, b)] = [by_origin, by_centre].map(|text| run(&model(&text), Choice::default().named("radau"), 0.01, 1.0));
     let off = difference(&a, &b, &["box.", "spring.", "thrust."]);
     assert!(off < 1e-10, "{off}");
     let start = ["x", "y", "z", "vx", "vy", "vz"].map(|c| a.column(&format!("box.origin.{c}")).unwrap()[0]);
@@ -65,7 +53,7 @@ fn a_planar_body_may_be_written_by_the_origin_of_its_axes() {
     let by_centre = format!(
         "plane = \"xz\"\n[body.arm]\nposition = [1, 1.5]\nvelocity = [-1, 0]\npoints = {{ pin = [-0.5, 0], tip = [0.5, 0] }}\n{rest}"
     );
-    let [(_, a), (_, b)] = [by_origin, by_centre].map(|text| run(&text, "radau", 0.01, 1.0));
+    let [(_, a), (_, b)] = [by_origin, by_centre].map(|text| run(&model(&text), Choice::default().named("radau"), 0.01, 1.0));
     assert!(difference(&a, &b, &["arm.", "hinge."]) < 1e-12);
 }
 
@@ -100,8 +88,8 @@ fn bars_end_at_places_of_bodies() {
             joint("b", "right", 1.6)
         );
         for method in ["radau", "conserving-ggl"] {
-            let (one, a) = run(&bar, method, 2e-3, 1.0);
-            let (other, b) = run(&body, method, 2e-3, 1.0);
+            let (one, a) = run(&model(&bar), Choice::default().named(method), 2e-3, 1.0);
+            let (other, b) = run(&model(&body), Choice::default().named(method), 2e-3, 1.0);
             let off = difference(&a, &b, &["left", "right"]);
             let energies = [&one, &other].map(|simulation| simulation.audit().energy_summary());
             println!("{plane:?} {method}: {off:e} {energies:?}");
@@ -126,7 +114,7 @@ fn bars_between_free_bodies_keep_momenta() {
              [body.B]\nmass = 2\nshape = {{ box = [0.5, 0.5, 0.3] }}\nposition = {b}\npoints = {{ tip = {tip} }}\n\
              [bar.rod]\nbetween = [\"A.tip\", \"B\"]\nmass = 0.5\n"
         );
-        let (simulation, _) = run(&text, "conserving-ggl", 5e-3, 2.0);
+        let (simulation, _) = run(&model(&text), Choice::default().named("conserving-ggl"), 5e-3, 2.0);
         let (energy, momentum) = (simulation.audit().energy_summary(), simulation.audit().momentum_summary());
         assert!(energy.max_drift < 1e-12 && momentum.linear_drift < 1e-12 && momentum.angular_drift < 1e-12, "{energy:?} {momentum:?}");
     }

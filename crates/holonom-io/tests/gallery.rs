@@ -9,7 +9,7 @@ use holonom::system::Place;
 
 /// Runs a model; the place of a point at the end, and the summary.
 fn run(model: &Model, method: &str, step: f64, end: f64, point: &str) -> ([f64; 2], Summary) {
-    let method = Method::resolve(&Choice { method: Some(method.into()), ..Choice::default() }).unwrap();
+    let method = Method::resolve(&Choice::default().named(method)).unwrap();
     let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
     let status = simulation.run(end, &mut |_: &Simulation| Verdict::GoOn);
     assert_eq!(status, Status::Completed);
@@ -72,7 +72,7 @@ fn driven_and_damped_models_close_their_balance() {
         let model = example(name);
         let (step, end) = (model.settings.step.expect("a step"), model.settings.end.expect("an end").min(1.0));
         for method in ["conserving", "conserving-ggl"] {
-            let method = Method::resolve(&Choice { method: Some(method.into()), ..Choice::default() }).unwrap();
+            let method = Method::resolve(&Choice::default().named(method)).unwrap();
             let label = method.name.clone();
             let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
             // What has gone back and forth between kinetic and potential energy, and what was done from outside.

@@ -1,18 +1,15 @@
 //! Hard mechanisms, that runs once completed with wrong: light parts between heavy ones, redundant rows through a dead centre,
 //! many bodies and other units, thin rods. `benches/hard` runs more of them beside solutions of its own.
 
+mod common;
+
+use common::model;
 use holonom::analysis::rank;
 use holonom::model::Model;
 use holonom::simulation::{Choice, Method, Promise, Simulation, Status, Summary, Verdict};
-use holonom_io::Source;
-
-fn model(text: &str) -> Model {
-    let source = Source::read("model.toml", text.as_bytes()).unwrap_or_else(|message| panic!("{message}"));
-    source.model().unwrap_or_else(|message| panic!("{message}"))
-}
 
 fn method(name: &str) -> Method {
-    Method::resolve(&Choice { method: Some(name.into()), ..Choice::default() }).unwrap_or_else(|error| panic!("{error}"))
+    Method::resolve(&Choice::default().named(name)).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Runs a model to its end.
@@ -479,4 +476,25 @@ fn momenta_that_gravity_changes_by_a_short_lever_are_not_among_those_kept() {
     let summary = fall(thrown);
     assert!(summary.linear_drift > 0.0 || summary.angular_drift > 0.0, "round-off of what is kept is measured");
     assert!(summary.linear_drift <= 1e-15 && summary.angular_drift <= 1e-17, "{summary:?}");
+}
+
+/// Where hardly anything moves, energies are smaller than what a torque does along a rounded angle.
+#[test]
+fn arms_pass_through_rest_under_small_torques() {
+    let arm = |efforts: [&str; 2]| {
+        model(&format!(
+            "plane = \"xy\"\ngravity = [0, 0]\n\
+             [body.a]\nmass = 2\ninertia = 0.1\nposition = [0.25, 0]\n[body.b]\nmass = 1\ninertia = 0.05\nposition = [0.75, 0]\n\
+             [joint.p]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0]\n\
+             [joint.q]\ntype = \"revolute\"\nbetween = [\"a\", \"b\"]\nat = [0.5, 0]\n\
+             [force.m]\ntype = \"effort\"\njoint = \"p\"\neffort = \"{}\"\n[force.n]\ntype = \"effort\"\njoint = \"q\"\neffort = \"{}\"\n",
+            efforts[0], efforts[1]
+        ))
+    };
+    let cases = [["-1e-4*p.angle - 8e-7", "3e-4*cos(4*t)"], ["8e-7", "0"], ["40*(1e-6*sin(t) - p.angle) - 6*p.angle_rate", "-q.angle"]];
+    for efforts in cases {
+        for of in ["conserving-ggl", "conserving", "conserving-projected"] {
+            run(&format!("{efforts:?}"), &arm(efforts), of, 0.01, 5.0);
+        }
+    }
 }

@@ -17,7 +17,7 @@ fn model(text: &str) -> Result<Model, String> {
 fn examples_run_and_keep_their_balance_of_energy() {
     for kind in kinds() {
         let model = model(kind.example).unwrap_or_else(|message| panic!("{message}"));
-        let method = Method::resolve(&Choice { method: Some("conserving".into()), ..Choice::default() }).unwrap();
+        let method = Method::resolve(&Choice::default().named("conserving")).unwrap();
         let mut simulation = Simulation::new(model.system.clone(), method, 0.01).unwrap_or_else(|error| panic!("{}: {error}", kind.name));
         let status = simulation.run(1.0, &mut |_: &Simulation| Verdict::GoOn);
         assert_eq!(status, Status::Completed, "{}", kind.name);

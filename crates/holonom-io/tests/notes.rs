@@ -1,24 +1,14 @@
 //! What looks like a slip in a model and is taken all the same: it is noted, and the model moves as it is written.
 
+mod common;
+
+use common::{model, run};
 use holonom::model::Model;
-use holonom::record::{Constraints, Recorder, Recording};
-use holonom::simulation::{Choice, Method, Simulation, Status};
+use holonom::simulation::Choice;
 use holonom_io::Source;
 
 fn read(text: &str) -> Result<Model, String> {
     Source::read("model.toml", text.as_bytes()).and_then(|source| source.model())
-}
-
-fn model(text: &str) -> Model {
-    read(text).unwrap_or_else(|message| panic!("{message}\n{text}"))
-}
-
-fn run(model: &Model, choice: Choice, step: f64, end: f64) -> (Simulation, Recording) {
-    let method = Method::resolve(&choice).unwrap();
-    let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
-    let mut recorder = Recorder::new(&model.channels, &model.system, 1, Constraints::Nothing);
-    assert_eq!(simulation.run(end, &mut recorder), Status::Completed);
-    (simulation, recorder.finish())
 }
 
 /// A free body that no body has: the last moment exceeds the sum of the others.
@@ -69,7 +59,7 @@ fn an_inertia_that_no_body_has_moves_as_it_is_written() {
     assert_eq!(model.notes, ["body.top.inertia: the moments 0.5, 1, 2 cannot belong to a body: 2 exceeds 0.5 + 1 by 0.5"]);
     let expected = euler(3.0);
     for method in ["radau", "conserving-ggl", "conserving", "generalized-alpha"] {
-        let choice = Choice { method: Some(method.into()), ..Choice::default() };
+        let choice = Choice::default().named(method);
         let (simulation, recording) = run(&model, choice, 1e-3, 3.0);
         let found = ["top.wx", "top.wy", "top.wz"].map(|column| *recording.column(column).unwrap().last().unwrap());
         let off = found.iter().zip(expected).fold(0.0, |worst: f64, (found, expected)| worst.max((found - expected).abs()));

@@ -215,7 +215,7 @@ fn every_combination_has_its_order() {
 fn parameters_decide_on_the_order() {
     let problem = &PROBLEMS[0];
     let model = example(problem.model);
-    let choice = |method: &str| Choice { method: Some(method.into()), ..Choice::default() };
+    let choice = |method: &str| Choice::default().named(method);
     let rho = |rho: f64| Choice { rho: Some(rho), ..choice("lagrange-3/generalized-alpha") };
     let alpha = |alpha: f64| Choice { alpha: Some(alpha), ..choice("lagrange-3/hht") };
     let newmark = Choice { beta: Some(0.3025), gamma: Some(0.6), ..choice("lagrange-3/newmark") };
@@ -234,7 +234,7 @@ fn parameters_decide_on_the_order() {
 fn the_measure_agrees_with_the_references() {
     for problem in &PROBLEMS {
         let model = example(problem.model);
-        let choice = Choice { method: Some("ode/dop853/velocity".into()), ..Choice::default() };
+        let choice = Choice::default().named("ode/dop853/velocity");
         let found = run(&model, &choice, 512, problem.time).unwrap();
         let last = &found[0][found[0].len() / SAMPLES as usize..];
         for (found, place) in last.iter().zip(problem.place) {
@@ -247,7 +247,7 @@ fn the_measure_agrees_with_the_references() {
 #[test]
 fn penalties_come_to_the_constraint() {
     let model = example("spherical-compound-pendulum");
-    let exact = run(&model, &Choice { method: Some("ode/dop853/velocity".into()), ..Choice::default() }, 1024, 0.5).unwrap();
+    let exact = run(&model, &Choice::default().named("ode/dop853/velocity"), 1024, 0.5).unwrap();
     let error = |formulation: &str, penalty: f64| {
         let choice = Choice { method: Some(format!("{formulation}/radau")), penalty: Some(penalty), ..Choice::default() };
         let found = run(&model, &choice, 512, 0.5).unwrap();

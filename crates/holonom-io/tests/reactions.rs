@@ -1,6 +1,9 @@
 //! Forces and moments of joints against Newton and Euler: on the second body, about the joint's place there, whichever side the
 //! ground is.
 
+mod common;
+
+use common::model;
 use holonom::model::{BodyInfo, Model};
 use holonom::record::{Constraints, Recorder, Recording};
 use holonom::simulation::{Choice, Method, Simulation, Status};
@@ -50,12 +53,8 @@ fn text(kind: &str, keys: &str, between: [&str; 2], reactions: bool) -> String {
     )
 }
 
-fn model(text: &str) -> Model {
-    Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}\n{text}"))
-}
-
 fn run(model: &Model, method: &str) -> (Simulation, Recording) {
-    let method = Method::resolve(&Choice { method: Some(method.into()), ..Choice::default() }).unwrap();
+    let method = Method::resolve(&Choice::default().named(method)).unwrap();
     let mut simulation = Simulation::new(model.system.clone(), method, 0.005).unwrap();
     model.find_reactions(&mut simulation);
     let mut recorder = Recorder::new(&model.channels, &model.system, 1, Constraints::Rows);
@@ -154,5 +153,43 @@ fn forces_that_are_not_known_are_no_numbers() {
         let (_, recording) = run(&shared, "conserving-ggl");
         let shares = shared.system.constraints() < plain.system.constraints();
         assert_eq!(last(&recording, "f")[0].is_nan(), shares, "{kind}");
+    }
+}
+
+/// A motor between two bodies, and what is recorded of it and of its joint, against Newton and Euler of both bodies: the second feels the
+/// joint's force and moment and the effort, the first all of it the other way.
+#[test]
+fn a_motor_and_its_joint_tell_what_both_bodies_feel() {
+    let text = "plane = \"xz\"\n\
+                [body.a]\nmass = 2\ninertia = 0.3\nposition = [0.5, 0]\npoints = { root = [-0.5, 0], tip = [0.5, 0] }\n\
+                [body.b]\nmass = 1\ninertia = 0.1\nposition = [1.3, 0.2]\n\
+                [joint.base]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0]\n\
+                [joint.elbow]\ntype = \"revolute\"\nbetween = [\"a\", \"b\"]\nat = [1, 0]\n";
+    let imposed = "[drive.motor]\ntype = \"angle\"\njoint = \"elbow\"\nprofile = \"sin(3*t)\"\n";
+    let given = "[force.motor]\ntype = \"effort\"\njoint = \"elbow\"\neffort = \"5*sin(3*t) - q\"\n";
+    for motor in [imposed, given] {
+        let source = Source::read("motor.toml", format!("{text}{motor}").as_bytes()).unwrap();
+        let (_, recording) = run(&source.model_with_forces().unwrap(), "radau");
+        for k in 0..recording.rows() {
+            let of = |name: &str| recording.column(name).unwrap_or_else(|| panic!("no {name}"))[k];
+            let pair = |name: &str, ending: &str| [of(&format!("{name}.{ending}x")), of(&format!("{name}.{ending}z"))];
+            // Moment of a force at a place about a centre, from x to z.
+            let turns = |at: [f64; 2], about: [f64; 2], [fx, fz]: [f64; 2]| (at[0] - about[0]) * fz - (at[1] - about[1]) * fx;
+            let (base, elbow, effort) = (pair("base", "f"), pair("elbow", "f"), of("motor.effort"));
+            let (root, tip, a, b) = (pair("a.root", ""), pair("a.tip", ""), pair("a", ""), pair("b", ""));
+            let close = |what: &str, left: f64, right: f64| {
+                assert!((left - right).abs() < AGREES, "{motor}{what} at {}: {left} and not {right}", of("t"));
+            };
+            let weight = [0.0, -9.81];
+            for (c, axis) in ["ax", "az"].into_iter().enumerate() {
+                close("force on b", 1.0 * of(&format!("b.{axis}")), elbow[c] + 1.0 * weight[c]);
+                close("force on a", 2.0 * of(&format!("a.{axis}")), base[c] - elbow[c] + 2.0 * weight[c]);
+            }
+            close("moment on b", 0.1 * of("b.alpha"), of("elbow.t") + effort + turns(tip, b, elbow));
+            let on_a = turns(root, a, base) - turns(tip, a, elbow) + of("base.t") - of("elbow.t") - effort;
+            close("moment on a", 0.3 * of("a.alpha"), on_a);
+            close("moment of a hinge", of("elbow.t"), 0.0);
+            close("power", of("motor.power"), effort * of("elbow.angle_rate"));
+        }
     }
 }

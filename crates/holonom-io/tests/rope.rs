@@ -1,9 +1,11 @@
 //! Ropes that get slack and taut again: against arcs of vibrations and free flight, pieced together in closed form.
 
+mod common;
+
+use common::{model, run};
 use holonom::model::Model;
-use holonom::record::{Constraints, Recorder, Recording};
-use holonom::simulation::{Choice, Method, Simulation, Status};
-use holonom_io::Source;
+use holonom::record::Recording;
+use holonom::simulation::Choice;
 
 const G: f64 = 9.81;
 
@@ -13,18 +15,6 @@ const STRETCH: f64 = 0.1;
 
 /// Stiffness between that place and the bob of 1 kg, N/m.
 const STIFFNESS: f64 = 400.0;
-
-fn model(text: &str) -> Model {
-    Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}\n{text}"))
-}
-
-fn run(model: &Model, choice: Choice, step: f64, end: f64) -> (Simulation, Recording) {
-    let method = Method::resolve(&choice).unwrap();
-    let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
-    let mut recorder = Recorder::new(&model.channels, &model.system, 1, Constraints::Nothing);
-    assert_eq!(simulation.run(end, &mut recorder), Status::Completed);
-    (simulation, recorder.finish())
-}
 
 /// A bob below the origin on a rope with these keys.
 fn hanging(keys: &str, damping: f64) -> Model {
@@ -113,7 +103,7 @@ fn the_conserving_schemes_keep_the_balance_through_slack_and_taut() {
         for c in [0.0, 2.0] {
             for (name, model) in ropes(c) {
                 let errors = [4e-3, 1e-3].map(|step| {
-                    let choice = Choice { method: Some(method.into()), ..Choice::default() };
+                    let choice = Choice::default().named(method);
                     let (simulation, recording) = run(&model, choice, step, 2.0);
                     let energy = simulation.audit().energy_summary();
                     assert!(energy.max_drift < 1e-12, "{name}, {method}, c = {c}: {} J", energy.max_drift);
@@ -168,5 +158,48 @@ fn ropes_between_bodies_keep_energy_and_momenta() {
         let (energy, momentum) = (simulation.audit().energy_summary(), simulation.audit().momentum_summary());
         println!("{far}: {} {} {}", energy.max_drift, momentum.linear_drift, momentum.angular_drift);
         assert!(energy.max_drift < 1e-10 && momentum.linear_drift < 1e-10 && momentum.angular_drift < 1e-9 * (1.0 + far));
+    }
+}
+
+/// A weight on a drum that turns freely, in space and in the plane: the stretch p vibrates about that of its tension, with
+/// p̈ = g − k p (1/m + R²/I), and the drum turns with I θ̈ = R k p.
+#[test]
+fn a_drum_lets_out_what_the_weight_pulls() {
+    let (m, inertia, radius, k) = (2.0, 0.05, 0.2, 300.0);
+    let stiffness: f64 = k * (1.0 / m + radius * radius / inertia);
+    let (omega, rest) = (stiffness.sqrt(), G / stiffness);
+    let exact = |t: f64| {
+        let p = rest * (1.0 - (omega * t).cos());
+        let turned = radius * k * rest / inertia * (0.5 * t * t - (1.0 - (omega * t).cos()) / (omega * omega));
+        [p, turned]
+    };
+    let space = format!(
+        "[body.drum]\nmass = 5\ninertia = [{inertia}, {inertia}, {inertia}]\nposition = [0, 0, 0]\n\
+         [joint.shaft]\ntype = \"revolute\"\nbetween = [\"ground\", \"drum\"]\nat = [0, 0, 0]\naxis = [0, 1, 0]\n\
+         [point.weight]\nmass = {m}\nposition = [0, 0, -3]\n"
+    );
+    let plane = format!(
+        "plane = \"xy\"\ngravity = [0, -9.81]\n[body.drum]\nmass = 5\ninertia = {inertia}\nposition = [0, 0]\n\
+         [joint.shaft]\ntype = \"revolute\"\nbetween = [\"ground\", \"drum\"]\nat = [0, 0]\n[point.weight]\nmass = {m}\nposition = [0, -3]\n"
+    );
+    // The same drum the other way round, and rope that is tied to the axis as a place of the drum.
+    for (of, text, end, radius) in
+        [("space", &space, "[0, 0, 0]", radius), ("plane", &plane, "[0, 0]", radius), ("back", &space, "\"drum\"", -radius)]
+    {
+        let model = model(&format!(
+            "{text}[force.rope]\ntype = \"rope\"\nbetween = [{end}, \"weight\"]\ndrum = \"shaft\"\nradius = {radius}\nstiffness = {k}\n"
+        ));
+        for (method, step, tolerance) in [("conserving-ggl", 2e-4, 2e-5), ("conserving", 2e-4, 2e-5), ("radau", 1e-3, 1e-9)] {
+            let (simulation, recording) = run(&model, Choice::default().named(method), step, 1.0);
+            let last = |name: &str| *recording.column(name).unwrap_or_else(|| panic!("there is no column {name}")).last().unwrap();
+            let [p, turned] = exact(1.0);
+            let found = [last("rope.force") / k, last("shaft.angle") * radius.signum(), last("rope.length") - 3.0];
+            let known = [p, turned, p + radius.abs() * turned];
+            let errors: Vec<f64> = found.iter().zip(known).map(|(found, known)| (found - known).abs()).collect();
+            assert!(errors.iter().all(|error| *error < tolerance), "{of}, {method}: {errors:?}");
+            assert!((last("rope.effort") - radius * last("rope.force")).abs() < 1e-9, "{of}, {method}");
+            let drift = simulation.audit().energy_summary().max_drift;
+            assert!(method == "radau" || drift < 1e-11, "{of}, {method}: {drift} J");
+        }
     }
 }

@@ -1,14 +1,12 @@
 //! Velocities and energies at the start: those that were written, changed as little as the constraints ask for, whatever nodes
 //! bodies share and in whatever order they stand.
 
+mod common;
+
+use common::model;
 use holonom::model::Model;
 use holonom::simulation::{Choice, Method, Simulation};
-use holonom_io::Source;
 use nalgebra::Vector3;
-
-fn model(text: &str) -> Model {
-    Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}\n{text}"))
-}
 
 fn start(model: &Model) -> Simulation {
     Simulation::new(model.system.clone(), Method::resolve(&Choice::default()).unwrap(), 1e-3).unwrap()

@@ -1,19 +1,16 @@
 //! Starts at coordinates of joints, `[start.JOINT]`.
 
+mod common;
+
+use common::model_with_forces;
 use std::f64::consts::PI;
 
 use holonom::model::Model;
 use holonom::record::{Recorder, Recording};
 use holonom::simulation::{Choice, Method, Simulation, Status};
-use holonom_io::Source;
-
-fn model(text: &str) -> Model {
-    let source = Source::read("model.toml", text.as_bytes()).unwrap();
-    source.model_with_forces().unwrap_or_else(|message| panic!("{message}\n{text}"))
-}
 
 fn run(model: &Model, step: f64, end: f64) -> Recording {
-    let method = Method::resolve(&Choice { method: Some("radau".into()), ..Choice::default() }).unwrap();
+    let method = Method::resolve(&Choice::default().named("radau")).unwrap();
     let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
     assert_eq!(simulation.start().moved, 0.0);
     model.find_reactions(&mut simulation);
@@ -50,8 +47,8 @@ fn crank(written: f64, start: &str, output: &str) -> String {
 fn a_moved_mechanism_is_the_one_that_is_written_there() {
     for output in ["", "[output]\nreactions = true\n"] {
         for (written, angle) in [(0.0, 2.1), (0.4, 1.7), (2.1, -1.3), (0.0, -3.1)] {
-            let moved = run(&model(&crank(written, &format!("[start]\nmain.angle = {angle}\n"), output)), 1e-3, 0.2);
-            let by_hand = run(&model(&crank(written + angle, "", output)), 1e-3, 0.2);
+            let moved = run(&model_with_forces(&crank(written, &format!("[start]\nmain.angle = {angle}\n"), output)), 1e-3, 0.2);
+            let by_hand = run(&model_with_forces(&crank(written + angle, "", output)), 1e-3, 0.2);
             for column in ["crank.x", "rod.z", "piston.x", "piston.vx", "main.fx", "guide.fz", "energy", "kinetic"] {
                 let [a, b] = [&moved, &by_hand].map(|recording| recording.column(column).unwrap());
                 let size = b.iter().fold(1e-3, |size: f64, b| size.max(b.abs()));
@@ -69,8 +66,8 @@ fn a_moved_mechanism_is_the_one_that_is_written_there() {
 fn a_driven_joint_begins_elsewhere() {
     let drive = "[drive.motor]\ntype = \"angle\"\njoint = \"main\"\nprofile = \"20*t + 5*t^2\"\n";
     for output in ["", "[output]\nreactions = true\n"] {
-        let moved = run(&model(&crank(0.3, &format!("[start]\nmain.angle = 1.1\n{drive}"), output)), 1e-3, 0.2);
-        let by_hand = run(&model(&crank(1.4, drive, output)), 1e-3, 0.2);
+        let moved = run(&model_with_forces(&crank(0.3, &format!("[start]\nmain.angle = 1.1\n{drive}"), output)), 1e-3, 0.2);
+        let by_hand = run(&model_with_forces(&crank(1.4, drive, output)), 1e-3, 0.2);
         for column in ["crank.x", "piston.x", "piston.vx", "main.fx", "guide.fz", "motor.effort", "motor.power", "work"] {
             let [a, b] = [&moved, &by_hand].map(|recording| recording.column(column).unwrap());
             let size = b.iter().fold(1e-3, |size: f64, b| size.max(b.abs()));
@@ -93,7 +90,7 @@ fn coordinates_of_a_tree_in_space_are_all_reached() {
                 [joint.out]\ntype = \"prismatic\"\nbetween = [\"arm\", \"slide\"]\naxis = [1, 0, 0]\n\
                 [start]\nturn.angle = \"100*deg\"\nlift.angle = 0.7\nout.displacement = 0.3\n";
     for away in ["", "[output]\nreactions = true\n"] {
-        let recording = run(&model(&format!("{text}{away}")), 1e-3, 0.01);
+        let recording = run(&model_with_forces(&format!("{text}{away}")), 1e-3, 0.01);
         let first = |name: &str| recording.column(name).unwrap()[0];
         let (turn, lift, reach) = (100.0 * PI / 180.0, 0.7_f64, 1.3);
         let expected = [reach * lift.cos() * turn.cos(), reach * lift.cos() * turn.sin(), 1.0 + reach * lift.sin()];
@@ -103,4 +100,66 @@ fn coordinates_of_a_tree_in_space_are_all_reached() {
         let values = [("turn.angle", turn), ("lift.angle", lift), ("out.displacement", 0.3)];
         values.into_iter().for_each(|(name, value)| assert!((first(name) - value).abs() < 1e-13, "{name}"));
     }
+}
+
+/// A gear turns the other joint further than half a turn, on the way and at the start, and the joint counts that.
+#[test]
+fn a_gear_may_turn_another_joint_more_than_half_a_turn() {
+    for angle in [0.5, 1.0, -2.9, 3.1] {
+        let model = model_with_forces(&format!(
+            "gravity = [0, 0, 0]\n\
+             [body.a]\nmass = 1\ninertia = [1, 1, 1]\nposition = [0, 0, 0]\n[body.b]\nmass = 1\ninertia = [1, 1, 1]\nposition = [2, 0, 0]\n\
+             [joint.slow]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n\
+             [joint.fast]\ntype = \"revolute\"\nbetween = [\"ground\", \"b\"]\nat = [2, 0, 0]\naxis = [0, 0, 1]\n\
+             [joint.gear]\ntype = \"gear\"\njoints = [\"slow\", \"fast\"]\nratio = 0.25\n\
+             [force.motor]\ntype = \"effort\"\njoint = \"slow\"\neffort = 1\n[start.slow]\nangle = {angle}\n"
+        ));
+        let recording = run(&model, 0.01, 0.1);
+        let first = |name: &str| recording.column(name).unwrap()[0];
+        assert!((first("slow.angle") - angle).abs() < 1e-12 && (first("fast.angle") - 4.0 * angle).abs() < 1e-11, "{angle} rad");
+        // 1 + 4² kg m² along the slow one.
+        let end = *recording.column("slow.angle").unwrap().last().unwrap();
+        assert!((end - angle - 0.5 * 0.01 / 17.0).abs() < 1e-9, "{angle} rad: {end}");
+    }
+}
+
+/// A crank that turns at the start moves all else as its geometry says, from the pose that is written and from another one.
+#[test]
+fn a_mechanism_starts_at_the_rate_of_a_joint() {
+    let (r, l, rate) = (0.1_f64, 0.4_f64, 7.0);
+    for output in ["", "[output]\nreactions = true\n"] {
+        for (written, angle, start) in [(0.6, 0.0, "main.angle_rate = 7\n"), (0.4, 1.7, "main = { angle = 1.7, angle_rate = 7 }\n")] {
+            let recording = run(&model_with_forces(&crank(written, &format!("[start]\n{start}"), output)), 1e-3, 0.01);
+            let first = |name: &str| recording.column(name).unwrap()[0];
+            let (sine, cosine) = (written + angle).sin_cos();
+            let speed = -r * sine * rate - r * r * sine * cosine * rate / (l * l - r * r * sine * sine).sqrt();
+            assert!((first("main.angle_rate") - rate).abs() < 1e-12 && (first("main.angle") - angle).abs() < 1e-12);
+            assert!((first("piston.vx") - speed).abs() < 1e-12, "{start}: {} and not {speed}", first("piston.vx"));
+            assert!(first("phi_dot") < 1e-12);
+        }
+    }
+}
+
+/// All other velocities change as little as they can, in the metric of the mass.
+#[test]
+fn the_smallest_change_of_velocities_leaves_momenta() {
+    // Two parts that float, with a hinge between them: the rate is made by an impulse between the two, which leaves both momenta.
+    let text = "gravity = [0, 0, 0]\n[body.a]\nmass = 3\ninertia = [1, 2, 1.5]\nposition = [0, 0, 0]\nvelocity = [0.5, 0, 0.2]\n\
+                [body.b]\nmass = 1\ninertia = [0.3, 0.2, 0.1]\nposition = [1, 0, 0]\nvelocity = [0.5, 0, 0.2]\n\
+                [joint.hinge]\ntype = \"revolute\"\nbetween = [\"a\", \"b\"]\nat = [0.6, 0, 0]\naxis = [0, 0, 1]\n";
+    for output in ["", "[output]\nreactions = true\n"] {
+        let model = model_with_forces(&format!("{text}[start]\nhinge.angle_rate = 2\n{output}"));
+        let simulation = model_simulation(&model);
+        assert!((simulation.coordinate("hinge.angle").unwrap()[1] - 2.0).abs() < 1e-13);
+        let expected = [2.0, 0.0, 0.8];
+        let momenta = simulation.audit().momenta;
+        assert!((0..3).all(|k| (momenta[k] - expected[k]).abs() < 1e-12), "{momenta:?}");
+        // About the origin: m r × v of the part b, at x = 1 m.
+        let turning = [0.0, -0.2, 0.0];
+        assert!((0..3).all(|k| (momenta[3 + k] - turning[k]).abs() < 1e-12), "{momenta:?}");
+    }
+}
+
+fn model_simulation(model: &Model) -> Simulation {
+    Simulation::new(model.system.clone(), Method::resolve(&Choice::default()).unwrap(), 1e-3).unwrap()
 }

@@ -1,21 +1,18 @@
 //! Every kind of joint, constraint, drive and force in a step: nothing is allocated, and a second run has the same bits.
 
+mod common;
+
+use common::model;
 use holonom::model::{Kind, Model, constraints, drives, forces, joints};
 use holonom::simulation::{Choice, Method, NAMED, Simulation, Status, Verdict};
-use holonom_io::Source;
 
 fn kinds() -> impl Iterator<Item = &'static Kind> {
     constraints::KINDS.iter().chain(forces::KINDS).chain(joints::kinds()).chain(drives::KINDS)
 }
 
-fn model(text: &str) -> Model {
-    let source = Source::read("model.toml", text.as_bytes()).unwrap_or_else(|message| panic!("{message}"));
-    source.model().unwrap_or_else(|message| panic!("{message}"))
-}
-
 /// All bits of the state after some steps, and how many of the steps behind the first few allocated.
 fn run(model: &Model, name: &str) -> (Vec<u64>, u64) {
-    let method = Method::resolve(&Choice { method: Some(name.into()), ..Choice::default() }).unwrap_or_else(|error| panic!("{error}"));
+    let method = Method::resolve(&Choice::default().named(name)).unwrap_or_else(|error| panic!("{error}"));
     let mut simulation = Simulation::new(model.system.clone(), method, 0.01).unwrap_or_else(|error| panic!("{error}"));
     simulation.find_reactions();
     let mut status = Status::Completed;

@@ -1,22 +1,20 @@
 //! Many turns a second: counted right however long the step, and how far a scheme lags behind.
 
+mod common;
+
+use common::model;
 use holonom::simulation::{Choice, Method, Simulation, Status, Verdict};
-use holonom_io::Source;
 
 const ROTOR: &str = "gravity = [0, 0, 0]\n[body.rotor]\nmass = 1\ninertia = [1, 1, 2]\nposition = [0, 0, 0]\nangular_velocity = [0, 0, SPIN]\n\
                      velocity = [0, 0, CLIMB]\n[joint.j]\nbetween = [\"ground\", \"rotor\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n";
 
 /// Values of the joint's coordinates and their rates at the end, and what was drifted of the energy.
 fn run(text: &str, choice: Choice, step: f64, end: f64) -> (Vec<f64>, Vec<f64>, f64) {
-    let model = Source::read("model.toml", text.as_bytes()).and_then(|source| source.model()).unwrap_or_else(|message| panic!("{message}"));
+    let model = model(text);
     let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&choice).unwrap(), step).unwrap();
     assert_eq!(simulation.run(end, &mut |_: &Simulation| Verdict::GoOn), Status::Completed);
     let gauges = simulation.gauges();
     (gauges.value.clone(), gauges.rate.clone(), simulation.audit().energy_summary().max_drift)
-}
-
-fn named(method: &str) -> Choice {
-    Choice { method: Some(method.into()), ..Choice::default() }
 }
 
 /// The conserving schemes turn by 2 atan(ωh/2) a step; composed they lag far less.
@@ -27,7 +25,7 @@ fn rotors_lag_by_what_is_known() {
     for h in [0.1_f64, 0.5] {
         for method in ["conserving-ggl", "conserving"] {
             let expected = 1.0 - 2.0 * (0.5 * h).atan() / h;
-            assert!((lag(named(method), h) - expected).abs() < 1e-9, "{method} at ωh = {h}");
+            assert!((lag(Choice::default().named(method), h) - expected).abs() < 1e-9, "{method} at ωh = {h}");
         }
         let composed = |order: u8| Choice {
             formulation: Some("ggl".into()),
@@ -47,7 +45,7 @@ fn turns_are_counted_however_long_the_step() {
     let pitch = std::f64::consts::TAU * 0.1;
     let screw = ROTOR.replace("SPIN", "1500").replace("CLIMB", "150") + &format!("type = \"screw\"\npitch = {pitch}\n");
     for method in ["conserving-ggl", "conserving"] {
-        let (values, rates, drift) = run(&screw, named(method), 0.01, 1.0);
+        let (values, rates, drift) = run(&screw, Choice::default().named(method), 0.01, 1.0);
         assert!((values[0] / 1500.0 - 1.0).abs() < 0.08, "{method}: {values:?}");
         assert!((values[1] - 0.1 * values[0]).abs() < 1e-9 * values[1], "{method}: {values:?}");
         assert!(
@@ -58,7 +56,7 @@ fn turns_are_counted_however_long_the_step() {
     let driven = ROTOR.replace("SPIN", "400").replace("CLIMB", "0")
         + "type = \"revolute\"\n[drive.d]\ntype = \"angle\"\njoint = \"j\"\nprofile = \"400*t\"\n";
     for method in ["conserving-ggl", "conserving", "radau", "trapezoidal-projected"] {
-        let (values, ..) = run(&driven, named(method), 0.01, 1.0);
+        let (values, ..) = run(&driven, Choice::default().named(method), 0.01, 1.0);
         assert!((values[0] - 400.0).abs() < 1e-9, "{method}: {values:?}");
     }
 }

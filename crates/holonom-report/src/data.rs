@@ -2,7 +2,7 @@
 
 use crate::Run;
 use crate::base64;
-use crate::outcome::Outcome;
+use crate::outcome::{Outcome, is_measured};
 use crate::thin::{Keep, Thinning};
 use holonom::record::{Column, Recording, Scene};
 use serde::Serialize;
@@ -132,7 +132,8 @@ fn channels<'a>(run: &Run<'a>, thinning: &Thinning) -> Vec<ChannelData<'a>> {
         let extremes = extremes(times, &column.values);
         let (centre, span) = extremes.map_or((0.0, 0.0), |[least, _, most, _]| (0.5 * least + 0.5 * most, most - least));
         let middle = if centre.abs() > FLAT * span { centre } else { 0.0 };
-        let around: Vec<f64> = column.values.iter().map(|value| value - centre).collect();
+        let values = if is_measured(run.summary) { bridged(times, &column.values) } else { column.values.clone() };
+        let around: Vec<f64> = values.iter().map(|value| value - centre).collect();
         let values: Vec<f32> = thinning.apply(&around, keep).into_iter().map(|value| (value + (centre - middle)) as f32).collect();
         ChannelData {
             name: &heading.name,
@@ -145,6 +146,20 @@ fn channels<'a>(run: &Run<'a>, thinning: &Thinning) -> Vec<ChannelData<'a>> {
         }
     };
     measures.into_iter().chain(others).chain(motion).take(most).map(channel).collect()
+}
+
+/// A column whose rows without a number lie straight between those with one: sensors are not read at the same times, and curves show all of them.
+fn bridged(times: &[f64], values: &[f64]) -> Vec<f64> {
+    let mut bridged = values.to_vec();
+    let known: Vec<usize> = (0..values.len()).filter(|row| values[*row].is_finite()).collect();
+    for ends in known.windows(2) {
+        let [from, to] = [ends[0], ends[1]];
+        for row in from + 1..to {
+            let share = (times[row] - times[from]) / (times[to] - times[from]);
+            bridged[row] = (1.0 - share) * values[from] + share * values[to];
+        }
+    }
+    bridged
 }
 
 /// The least finite value and the largest, each with the time when it is first reached.

@@ -23,7 +23,7 @@ const UNITS: [(&str, &str); 13] = [
 ];
 
 /// Keys that say nothing beside the heading of a column.
-const HEADINGS: [&str; 1] = ["label"];
+const HEADINGS: [&str; 2] = ["label", "table"];
 
 /// Beginnings of the keys that stand elsewhere on the page: at the top, and above the model.
 const ELSEWHERE: [&str; 3] = ["peaks.", "events", "provenance."];

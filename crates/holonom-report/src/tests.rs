@@ -287,3 +287,21 @@ fn no_rows_and_no_runs_are_fine() {
     let mut out = Vec::new();
     Report { title: "t", model_text: "m", runs: &[], columns: &[] }.write(&mut out).unwrap();
 }
+
+/// Sensors are read at different times, and cells between are empty; before the first number and after the last there is nothing.
+#[cfg(feature = "viewer")]
+#[test]
+fn measured_curves_go_straight_across_empty_cells() {
+    let heading =
+        |name: &str, unit: &'static str| holonom::record::Heading { name: name.into(), unit: unit.into(), meaning: String::new() };
+    let mut recording = Recording::new([heading("t", "s"), heading("strut.force", "N")]);
+    let rows = [(0.0, f64::NAN), (1.0, 2.0), (2.0, f64::NAN), (3.0, f64::NAN), (5.0, 10.0), (6.0, f64::NAN)];
+    rows.iter().for_each(|(t, force)| recording.push(&[*t, *force]));
+    let values = |status: &str| {
+        let data = embedded(&page("t", "m", &recording, &json!({ "status": status })));
+        data["runs"][0]["channels"][0]["values"].as_str().unwrap().to_string()
+    };
+    const NONE: f32 = f32::NAN;
+    assert_eq!(values("measured"), crate::base64::singles(&[NONE, 2.0, 4.0, 6.0, 10.0, NONE]));
+    assert_eq!(values("completed"), crate::base64::singles(&[NONE, 2.0, NONE, NONE, 10.0, NONE]), "a run has nothing there");
+}

@@ -71,14 +71,19 @@ fn what_the_machine_does_comes_first() {
 #[test]
 fn a_run_beside_what_was_measured() {
     let run = sample::motor();
-    let measured = sample::measured(&run, "crank.power");
-    for samples in [[run, measured], [sample::measured(&sample::motor(), "crank.power"), sample::motor()]] {
+    let measured = sample::measured(&run, "crank.power", 0.0);
+    for samples in [[run, measured], [sample::measured(&sample::motor(), "crank.power", 0.0), sample::motor()]] {
         let seen = open_with("measured", &samples, &["crank.power".to_string()]);
         assert_eq!((&seen["faults"], &seen["ready"]), (&Value::Array(Vec::new()), &Value::Bool(true)), "{seen:#}");
         // What is asked for takes the place of what is shown otherwise, and has a curve for each.
         assert_eq!(seen["machine"]["first"], Value::from(vec!["crank.power (W)"]), "{seen:#}");
         assert_eq!((&seen["emptyPlots"], &seen["samples"]), (&Value::from(0), &Value::from(2)), "{seen:#}");
     }
+    // The pointer is at a quarter of the time, when nothing was measured yet.
+    let run = sample::motor();
+    let late = sample::measured(&run, "crank.power", 1.5);
+    let seen = open_with("late", &[run, late], &["crank.power".to_string()]);
+    assert_eq!(seen["readout"]["names"].as_array().map(Vec::len), Some(1), "{seen:#}");
 }
 
 #[test]

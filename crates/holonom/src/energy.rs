@@ -49,6 +49,18 @@ pub fn size(system: &System, work: &Workspace, x: &[f64]) -> f64 {
     size
 }
 
+/// The sizes of the forces that do work, of loads and of laws without a potential, as they were last sampled, N.
+pub fn size_of_working_forces(system: &System, work: &Workspace) -> f64 {
+    let mut size: f64 = work.forces.of_loads.iter().map(|force| force.abs()).sum();
+    for (law, response) in system.laws.iter().zip(&work.forces.responses).filter(|(law, _)| !law.law.conservative()) {
+        for (&id, force) in law.invariants.iter().zip(&response.force) {
+            let slots = system.invariants.slots_of(id);
+            size += (force * largest(&work.sampled.at.gradient[slots.start * system.dim..slots.end * system.dim])).abs();
+        }
+    }
+    size
+}
+
 /// Work in a step with forces between its ends: loads, dissipation, and known motion through inertia, forces and rows,
 /// J. The rows take part through their targets alone: work of a violated row is the integrator's (25)–(27).
 pub fn work_between(system: &System, stage: &Stage, work: &Workspace) -> f64 {

@@ -7,9 +7,11 @@ use holonom::model::{Model, StartChange};
 use holonom::projection::Solve;
 use holonom::record::RecordedJoint;
 use holonom::simulation::{Method, ModelSize, PENALTY, Simulation};
+use holonom_io::Source;
 use serde_json::json;
 
 use crate::failure::Failure;
+use crate::found::Found;
 use crate::load::{self, Loaded};
 use crate::message::unused_parameters;
 use crate::options::CheckArguments;
@@ -21,7 +23,24 @@ const NEAR_SINGULAR: f64 = 1e-4;
 
 /// Validates a model and says what it is made of.
 pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
-    let loaded = load::load(&arguments.model.model, load::overrides(&arguments.model.set))?;
+    let (source, name) = load::open(&arguments.model.model, &load::overrides(&arguments.model.set))?;
+    let Found { value, text } = checked(source, &name, arguments.projection)?;
+    match arguments.json {
+        true => println!("{}", serde_json::to_string_pretty(&value).expect("a result is plain data")),
+        false => println!("{text}"),
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Validates a model and says what it is made of; with the projection, what that of its method can do to the energy.
+///
+/// # Errors
+/// A model that is not sound, or that cannot start.
+pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Found, Failure> {
+    // Bodies that share nodes have no rows where they are joined: what holds what is asked of the model without sharing.
+    let mut plain = source.clone();
+    plain.put("output.reactions", holonom::model::Value::Bool(true)).map_err(Failure::Model)?;
+    let (loaded, plain) = (read(source, name)?, read(plain, name)?);
     let system = &loaded.model.system;
     let method = load::method(&loaded.model, None)?;
     let projection = method.projection.clone();
@@ -33,15 +52,11 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let (start, audit) = (simulation.start().clone(), simulation.audit().clone());
     // The room that it takes is for the next one.
     drop(simulation);
-    // Bodies that share nodes have no rows where they are joined: what holds what is asked of the model without sharing.
-    let mut plain = load::overrides(&arguments.model.set);
-    plain.set("output.reactions=true");
-    let plain = load::load(&arguments.model.model, plain)?;
     let mut held = Held::new(&plain, load::method(&plain.model, None)?, step)?;
     held.notes.extend(unused_parameters(&loaded.source));
     let found = &held.rank;
     let near = found.weakest.as_ref().filter(|(_, independence)| *independence < NEAR_SINGULAR);
-    let form = match arguments.projection {
+    let form = match with_projection {
         true => {
             let alpha = if let Solve::Penalty(alpha) = projection.solve { alpha } else { PENALTY };
             let form = projection_form(system, &projection, alpha, step);
@@ -49,30 +64,26 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
         }
         false => None,
     };
-    if arguments.json {
-        let change = |change: &StartChange| {
-            json!({
-                "name": change.name, "velocity": change.velocity, "angular_velocity": change.angular_velocity,
-                "was_at_rest": change.was_at_rest,
-            })
-        };
-        let changed: Vec<_> = changes.iter().map(change).collect();
-        let mut value = json!({
-            "model": loaded.name, "method": name, "coordinates": size.coordinates, "constraints": size.constraints,
-            "rank": size.rank, "redundant": size.redundant, "dof": size.dof, "redundant_rows": found.redundant,
-            "rows_in_redundancies": held.involved, "reactions_not_unique": held.not_unique, "notes": held.notes,
-            "near_singular": near, "moved": start.moved, "start_changes": changed,
-            "residual": { "position": audit.phi, "velocity": audit.phi_dot, "acceleration": audit.phi_ddot },
-            "energy": { "kinetic": audit.kinetic, "potential": audit.potential + audit.lift },
+    let change = |change: &StartChange| {
+        json!({
+            "name": change.name, "velocity": change.velocity, "angular_velocity": change.angular_velocity,
+            "was_at_rest": change.was_at_rest,
+        })
+    };
+    let changed: Vec<_> = changes.iter().map(change).collect();
+    let mut value = json!({
+        "model": loaded.name, "method": name, "coordinates": size.coordinates, "constraints": size.constraints,
+        "rank": size.rank, "redundant": size.redundant, "dof": size.dof, "redundant_rows": found.redundant,
+        "rows_in_redundancies": held.involved, "reactions_not_unique": held.not_unique, "notes": held.notes,
+        "near_singular": near, "moved": start.moved, "start_changes": changed,
+        "residual": { "position": audit.phi, "velocity": audit.phi_dot, "acceleration": audit.phi_ddot },
+        "energy": { "kinetic": audit.kinetic, "potential": audit.potential + audit.lift },
+    });
+    if let Some(form) = &form {
+        value["projection"] = json!({
+            "growth": form.growth, "dissipative": form.dissipative,
+            "condition": form.condition, "growth_bound": form.growth_bound,
         });
-        if let Some(form) = form {
-            value["projection"] = json!({
-                "growth": form.growth, "dissipative": form.dissipative,
-                "condition": form.condition, "growth_bound": form.growth_bound,
-            });
-        }
-        println!("{}", serde_json::to_string_pretty(&value).expect("a result is plain data"));
-        return Ok(ExitCode::SUCCESS);
     }
     let redundant = match found.redundant.is_empty() {
         true => "none".to_string(),
@@ -102,8 +113,8 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
         ("gravity", loaded.gravity()),
         ("method", name),
     ];
-    println!("{}\n{}", loaded.title(), list(&items));
-    held.notes.drain(..).for_each(|note| println!("note: {note}"));
+    let mut text = format!("{}\n{}", loaded.title(), list(&items));
+    held.notes.iter().for_each(|note| text.push_str(&format!("\nnote: {note}")));
     if let Some(form) = form {
         let verdict = if form.dissipative {
             "negative semidefinite: the projection never adds energy (30)"
@@ -116,9 +127,14 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
             ("κ", format!("cond(M⁻¹A) = {}", short(form.condition))),
             ("bound", format!("kinetic energy times {} at most, at any state: (κ+1)²/4κ", short(form.growth_bound))),
         ];
-        println!("\nvelocity projection at the start\n{}", list(&items));
+        text.push_str(&format!("\n\nvelocity projection at the start\n{}", list(&items)));
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(Found { value, text })
+}
+
+/// The model of a source.
+fn read(source: Source, name: &str) -> Result<Loaded, Failure> {
+    Ok(Loaded { model: source.model().map_err(Failure::Model)?, name: name.into(), source })
 }
 
 /// Coordinates and rows as they are solved, and where bodies share nodes those of every body and joint by itself, which redundancies

@@ -1,18 +1,21 @@
 //! `holonom compare`.
 
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 
 use holonom::record::Recording;
 use holonom_io::Writer;
 use holonom_report::{Report, Run};
 use serde_json::{Map, Value, json};
 
+use crate::columns::unknown;
 use crate::comparison::{Difference, Entry, Of, Plan, difference};
-use crate::failure::Failure;
-use crate::folder::{Folder, file_stems, holds};
+use crate::failure::{Failure, STOPPED};
+use crate::folder::{Folder, TABLE, file_stems, holds};
+use crate::found::Found;
 use crate::load::Loaded;
 use crate::options::CompareArguments;
-use crate::output::{simulate, writers};
+use crate::output::{Finished, simulate, writers};
 use crate::progress::interrupt_flag;
 use crate::table::{short, table};
 
@@ -33,13 +36,17 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
     let mut plan = Plan::new(arguments)?;
     let summaries: Value = plan.entries.iter().map(Entry::identity).collect();
     let folder = Folder::claim(&output.to, &format!("{}-compare", plan.name), |path| holds(path, &summaries))?;
+    let stems = file_stems(plan.entries.iter().map(|entry| entry.label.as_str()));
+    let of_runs = plan.entries.iter().zip(&stems).filter(|(entry, _)| matches!(entry.of, Of::Run(..)));
+    folder.refuse_foreign_tables(of_runs.map(|(_, stem)| stem), &writers)?;
     let interrupted = interrupt_flag();
     let mut compared: Vec<Compared> = Vec::new();
-    for Entry { label, of } in std::mem::take(&mut plan.entries) {
+    for (Entry { label, of }, stem) in std::mem::take(&mut plan.entries).into_iter().zip(stems) {
         let (model, recording, mut summary) = match of {
             Of::Read(recording, summary) => (None, recording, summary),
             Of::Run(model, order) => {
-                let run = simulate(&plan.models[model], *order, &interrupted, None)?;
+                let mut run = simulate(&plan.models[model], *order, &interrupted)?;
+                run.summary[TABLE] = json!(stem);
                 (Some(model), run.recording, run.summary)
             }
         };
@@ -55,7 +62,49 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
         let differences = describe_differences(&plan.columns, &compared);
         println!("{}\n{}{differences}\n\nresults in {}", plan.title, describe(&summaries), folder.path.display());
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(if interrupted.load(Ordering::Relaxed) { ExitCode::from(STOPPED) } else { ExitCode::SUCCESS })
+}
+
+/// Finished runs side by side, for a program: their summaries with the differences of columns to the first, and the table of the command.
+///
+/// # Errors
+/// Columns that the first run does not have.
+pub fn side_by_side(runs: &[(String, &Loaded, &Finished)], columns: &[String]) -> Result<Found, Failure> {
+    let mut compared: Vec<Compared> = Vec::new();
+    for (label, loaded, finished) in runs {
+        let (recording, mut summary) = (finished.recording.clone(), finished.summary.clone());
+        name(&mut summary, label, Some(loaded));
+        compared.push(Compared { label: label.clone(), model: None, recording, summary });
+    }
+    if let Some(first) = compared.first()
+        && let Some(column) = columns.iter().find(|column| first.recording.find(column).is_none())
+    {
+        return Err(unknown(column, &first.recording));
+    }
+    tell_differences(columns, &mut compared);
+    let summaries: Vec<&Value> = compared.iter().map(|one| &one.summary).collect();
+    let text = format!("{}{}", describe(&summaries), describe_differences(columns, &compared));
+    Ok(Found { value: json!(summaries), text })
+}
+
+/// Writes the report of finished runs with the summaries that they have side by side.
+///
+/// # Errors
+/// What cannot be written.
+pub fn write_side_by_side(
+    runs: &[(String, &Loaded, &Finished)],
+    columns: &[String],
+    summaries: &Value,
+    out: &mut dyn std::io::Write,
+) -> std::io::Result<()> {
+    let shown = runs.iter().enumerate().map(|(k, (label, loaded, finished))| Run {
+        label,
+        recording: &finished.recording,
+        scene: &loaded.model.scene,
+        summary: &summaries[k],
+    });
+    let (shown, first) = (shown.collect::<Vec<_>>(), runs.first().expect("there are runs to compare").1);
+    Report { title: first.title(), model_text: first.source.text(), runs: &shown, columns }.write(out)
 }
 
 /// Puts into a summary how the run is called, and the accuracy where its steps follow from one.
@@ -79,11 +128,13 @@ fn tell_differences(columns: &[String], compared: &mut [Compared]) {
     }
 }
 
+/// Writes the summary first, as it says which tables belong to it.
 fn write(folder: &Folder, plan: &Plan, compared: &[Compared], writers: &[&Writer], no_report: bool) -> Result<(), Failure> {
-    let stems = file_stems(compared.iter().map(|one| one.label.as_str()));
+    let summaries: Vec<&Value> = compared.iter().map(|one| &one.summary).collect();
+    folder.write("summary.json", |out| holonom_io::write_json(&json!(summaries), out))?;
     let mut headings = Map::new();
-    for (one, stem) in compared.iter().zip(&stems) {
-        let Some(model) = one.model else { continue };
+    for one in compared {
+        let (Some(model), Some(stem)) = (one.model, one.summary[TABLE].as_str()) else { continue };
         folder.write_trajectory(stem, writers, &plan.models[model], &one.recording)?;
         if let Value::Object(own) = holonom_io::headings(&one.recording) {
             headings.extend(own);
@@ -92,8 +143,6 @@ fn write(folder: &Folder, plan: &Plan, compared: &[Compared], writers: &[&Writer
     if plan.models.len() > 1 {
         folder.write("columns.json", |out| holonom_io::write_json(&Value::Object(headings), out))?;
     }
-    let summaries: Vec<&Value> = compared.iter().map(|one| &one.summary).collect();
-    folder.write("summary.json", |out| holonom_io::write_json(&json!(summaries), out))?;
     if no_report {
         return Ok(());
     }

@@ -2,8 +2,6 @@
 
 use std::process::ExitCode;
 
-use holonom_io::Writer;
-use holonom_report::Run;
 use serde_json::{Value, json};
 
 use crate::checkpoint::Resumed;
@@ -13,7 +11,7 @@ use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
 use crate::message::{note, unused_parameters};
 use crate::options::{OutputArguments, RunArguments};
-use crate::output::{Finished, Order, recorder, simulate, writers};
+use crate::output::{Order, recorder, simulate_kept, writers};
 use crate::progress::interrupt_flag;
 use crate::table::{list, measured, short};
 
@@ -32,19 +30,19 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         unused_parameters(&loaded.source).iter().for_each(|text| note(text));
     }
     let writers = writers(&output.formats)?;
-    let mut order = Order::new(&loaded, arguments.method.name.as_deref(), output)?;
+    let mut order = Order::new(&loaded, arguments.method.name.as_deref(), output.every, output.to.quiet)?;
     let (folder, on_disk) = place(arguments, &loaded, &mut order)?;
     let mut keeper = Keeper::new(&folder, &loaded, &writers, &order.provenance);
     if let Some(OnDisk { table, rows, bytes }) = on_disk {
         keeper.go_on(&table, rows, bytes);
     }
-    let finished = simulate(&loaded, order, &interrupt_flag(), Some(&mut keeper))?;
-    match keeper.is_behind(finished.last.run.state.t) {
+    let (finished, reached) = simulate_kept(&loaded, order, &interrupt_flag(), Some(&mut keeper))?;
+    match keeper.is_behind(reached.last.run.state.t) {
         Some(t) if !output.to.quiet => note(&format!("{} holds the same run up to {} s, which stays", folder.path.display(), short(t))),
         Some(_) => (),
         None => {
-            keeper.finish(&finished.recording, finished.last.clone(), finished.before_end.clone())?;
-            write(&folder, &loaded, &finished, &keeper.others(&writers), output)?;
+            keeper.finish(&finished.recording, reached.last, reached.before_end)?;
+            finished.write(&folder, &loaded, &keeper.others(&writers), !output.no_report)?;
         }
     }
     if output.to.json {
@@ -93,17 +91,6 @@ fn claim(loaded: &Loaded, order: &Order, output: &OutputArguments) -> Result<Fol
         note(&format!("{path} holds this run up to {} s, where it was killed; --resume {path} goes on from there", short(t)));
     }
     Ok(folder)
-}
-
-/// Writes what follows from a finished run; the summary comes last, and says that it is finished.
-fn write(folder: &Folder, loaded: &Loaded, finished: &Finished, writers: &[&Writer], output: &OutputArguments) -> Result<(), Failure> {
-    folder.write_trajectory("trajectory", writers, loaded, &finished.recording)?;
-    if !output.no_report {
-        let runs =
-            [Run { label: &finished.method, recording: &finished.recording, scene: &loaded.model.scene, summary: &finished.summary }];
-        folder.write_report(loaded, &runs)?;
-    }
-    folder.write("summary.json", |out| holonom_io::write_json(&finished.summary, out))
 }
 
 /// A number with five figures.

@@ -1,6 +1,7 @@
 //! `holonom stability`.
 
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use holonom::analysis::{LargestStep, largest_step};
 use holonom::simulation::{Choice, Method, NAMED, Simulation, Status, Verdict};
@@ -9,6 +10,7 @@ use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::folder::{Folder, holds};
+use crate::found::Found;
 use crate::load::{self, Loaded};
 use crate::options::StabilityArguments;
 use crate::provenance::Provenance;
@@ -30,19 +32,24 @@ struct Bounds {
     limit: f64,
 }
 
+impl Bounds {
+    fn of(loaded: &Loaded) -> Result<Self, Failure> {
+        let end = loaded.end()?;
+        Ok(Self { end, first: loaded.step()?, limit: LARGEST_SHARE * end })
+    }
+}
+
 /// Searches the largest step of each method. Steps are never subdivided here.
 pub fn stability(arguments: &StabilityArguments) -> Result<ExitCode, Failure> {
     let mut overrides = load::overrides(&arguments.model.set);
     overrides.number("simulation.step", arguments.step.as_deref());
     overrides.number("simulation.end", arguments.end.as_deref());
     let loaded = load::load(&arguments.model.model, overrides)?;
-    let end = loaded.end()?;
-    let bounds = Bounds { end, first: loaded.step()?, limit: LARGEST_SHARE * end };
-    let searches = searches(arguments, &loaded)?;
+    let bounds = Bounds::of(&loaded)?;
+    let searches = searches(&arguments.methods, &loaded)?;
     let planned: Value = searches.iter().map(|(.., provenance)| json!({ "provenance": provenance })).collect();
     let folder = Folder::claim(&arguments.to, &format!("{}-stability", loaded.name), |path| holds(path, &planned))?;
-    let (provenances, found): (Vec<Provenance>, Vec<(String, LargestStep)>) =
-        searches.into_iter().map(|(name, choice, provenance)| (provenance, (name, search(&loaded, &choice, &bounds)))).unzip();
+    let (provenances, found) = search_all(searches, &loaded, &bounds, &AtomicBool::new(false));
     let results = results(&loaded, &bounds, &found, &provenances);
     folder.write("stability.json", |out| holonom_io::write_json(&results, out))?;
     if !arguments.no_report {
@@ -57,10 +64,10 @@ pub fn stability(arguments: &StabilityArguments) -> Result<ExitCode, Failure> {
 }
 
 /// Names and choices of the methods, and what their runs are; what is wrong with one is said before anything runs.
-fn searches(arguments: &StabilityArguments, loaded: &Loaded) -> Result<Vec<(String, Choice, Provenance)>, Failure> {
-    let names: Vec<&str> = match arguments.methods.is_empty() {
+fn searches(methods: &[String], loaded: &Loaded) -> Result<Vec<(String, Choice, Provenance)>, Failure> {
+    let names: Vec<&str> = match methods.is_empty() {
         true => NAMED.iter().map(|named| named.name).collect(),
-        false => arguments.methods.iter().map(String::as_str).collect(),
+        false => methods.iter().map(String::as_str).collect(),
     };
     let search = |name: &str| {
         let mut choice = loaded.model.choice(Some(name));
@@ -71,18 +78,43 @@ fn searches(arguments: &StabilityArguments, loaded: &Loaded) -> Result<Vec<(Stri
     names.into_iter().map(search).collect()
 }
 
-fn search(loaded: &Loaded, choice: &Choice, bounds: &Bounds) -> LargestStep {
-    largest_step(bounds.first, bounds.limit, RATIO, |step| completes(loaded, choice, step, bounds.end))
+/// Searches the largest steps of some methods, or of all, for a program; the flag ends the search, of which nothing is left then.
+///
+/// # Errors
+/// A model without step or end, and a method that cannot be.
+pub fn largest_steps(loaded: &Loaded, methods: &[String], interrupted: &AtomicBool) -> Result<Option<Found>, Failure> {
+    let bounds = Bounds::of(loaded)?;
+    let (provenances, found) = search_all(searches(methods, loaded)?, loaded, &bounds, interrupted);
+    let found = Found { value: results(loaded, &bounds, &found, &provenances), text: describe(loaded, &bounds, &found) };
+    Ok((!interrupted.load(Ordering::Relaxed)).then_some(found))
+}
+
+/// What the runs of each method are, and its largest step.
+fn search_all(
+    searches: Vec<(String, Choice, Provenance)>,
+    loaded: &Loaded,
+    bounds: &Bounds,
+    interrupted: &AtomicBool,
+) -> (Vec<Provenance>, Vec<(String, LargestStep)>) {
+    let one = |(name, choice, provenance)| (provenance, (name, search(loaded, &choice, bounds, interrupted)));
+    searches.into_iter().map(one).unzip()
+}
+
+fn search(loaded: &Loaded, choice: &Choice, bounds: &Bounds, interrupted: &AtomicBool) -> LargestStep {
+    largest_step(bounds.first, bounds.limit, RATIO, |step| completes(loaded, choice, step, bounds.end, interrupted))
 }
 
 /// Whether a run reaches its end without its energy exploding on the way.
-fn completes(loaded: &Loaded, choice: &Choice, step: f64, end: f64) -> bool {
+fn completes(loaded: &Loaded, choice: &Choice, step: f64, end: f64, interrupted: &AtomicBool) -> bool {
+    if interrupted.load(Ordering::Relaxed) {
+        return false;
+    }
     let method = Method::resolve(choice).expect("the choice was resolved before");
     let Ok(mut simulation) = Simulation::new(loaded.model.system.clone(), method, step) else { return false };
     let status = simulation.run(end, &mut |simulation: &Simulation| {
         let energy = simulation.audit().energy_summary();
         let exploded = !energy.last.is_finite() || energy.max_drift > EXPLODED * (energy.initial.abs() + energy.work_total.abs() + 1.0);
-        if exploded { Verdict::Stop } else { Verdict::GoOn }
+        if exploded || interrupted.load(Ordering::Relaxed) { Verdict::Stop } else { Verdict::GoOn }
     });
     status == Status::Completed
 }

@@ -16,7 +16,8 @@ pub struct Difference {
 }
 
 /// The difference of a column in two recordings; `None` where either lacks it, or they have no time in common. It is taken at the times of
-/// the one with fewer rows there, and the other interpolated: so the fewer rows decide what is seen, and the more rows how well.
+/// the one with fewer rows there, and the other interpolated: so the fewer rows decide what is seen, and the more rows how well. Where the other
+/// has a gap, nothing is known of it.
 pub fn difference(reference: &Recording, other: &Recording, column: &str) -> Option<Difference> {
     let (reference, other) = (rows(reference, column)?, rows(other, column)?);
     let ends = |rows: &[(f64, f64)]| Some((rows.first()?.0, rows.last()?.0));
@@ -25,8 +26,8 @@ pub fn difference(reference: &Recording, other: &Recording, column: &str) -> Opt
     let within = |rows: &[(f64, f64)]| rows.iter().filter(|(t, _)| common.contains(t)).count();
     let (few, many) = if within(&other) <= within(&reference) { (&other, &reference) } else { (&reference, &other) };
     let (mut found, mut mean): (Option<Difference>, _) = (None, RunningValue::default());
-    for &(t, value) in few.iter().filter(|(t, _)| common.contains(t)) {
-        let distance = value - between(many, t);
+    let few: Vec<(f64, f64)> = few.iter().copied().filter(|(t, _)| common.contains(t)).collect();
+    for (t, distance) in distances(&few, many) {
         let size = distance.abs();
         let rms = mean.add(Running::Rms, t, distance);
         found = match found {
@@ -34,6 +35,31 @@ pub fn difference(reference: &Recording, other: &Recording, column: &str) -> Opt
             _ => Some(Difference { largest: size, at: t, rms }),
         };
     }
+    found
+}
+
+/// Two rows between which the other curve has more rows than these are a gap.
+const MOST_WITHIN: usize = 2;
+
+/// Times within both curves, s, and how far `few` is there from `many`: at the rows of `few`, and where these are in a gap of `many`, at the ends
+/// of the gap.
+fn distances(few: &[(f64, f64)], many: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut found: Vec<(f64, f64)> = Vec::new();
+    let mut rest = few;
+    while let Some(&(t, _)) = rest.first() {
+        let after = many.partition_point(|(at, _)| *at <= t);
+        let end = many.get(after).map_or(f64::INFINITY, |(at, _)| *at);
+        let (within, others) = rest.split_at(rest.partition_point(|(at, _)| *at < end));
+        match within.len() > MOST_WITHIN {
+            true => {
+                let ends = many[after - 1..].iter().take(2).filter(|(at, _)| (few[0].0..=few[few.len() - 1].0).contains(at));
+                found.extend(ends.map(|&(at, value)| (at, between(few, at) - value)));
+            }
+            false => found.extend(within.iter().map(|&(t, value)| (t, value - between(many, t)))),
+        }
+        rest = others;
+    }
+    found.dedup_by_key(|(t, _)| *t);
     found
 }
 
@@ -67,6 +93,33 @@ mod tests {
             assert!((found.largest - 4.0 / 27.0).abs() < 1e-12 && (found.at - 2.0 / 3.0).abs() < 1e-12, "{found:?}");
             assert!((found.rms - (1.0 / 105.0_f64).sqrt()).abs() < 1e-6, "{found:?}");
         }
+    }
+
+    #[test]
+    fn nothing_is_told_of_a_gap() {
+        let x = |t: f64| (20.0 * t).cos();
+        let steps = recording(even(20), x);
+        let gap = recording(even(100), |t| if (0.255..0.745).contains(&t) { f64::NAN } else { x(t) });
+        for (a, b) in [(&steps, &gap), (&gap, &steps)] {
+            let found = difference(a, b, "x").unwrap();
+            assert!(found.largest < 0.02 && found.rms < 0.01, "{found:?}");
+        }
+        // An offset shows beside the gap.
+        let off = recording(even(100), |t| {
+            if t < 0.255 {
+                x(t)
+            } else if t > 0.745 {
+                x(t) + 0.5
+            } else {
+                f64::NAN
+            }
+        });
+        let found = difference(&steps, &off, "x").unwrap();
+        assert!((found.largest - 0.5).abs() < 0.02 && found.at > 0.74, "{found:?}");
+        // Values at every tenth row are no gaps.
+        let seldom = recording(even(1000), |t| if (t * 100.0 - (t * 100.0).round()).abs() < 1e-9 { x(t) } else { f64::NAN });
+        let found = difference(&recording(even(40), |t| x(t) + 1.0), &seldom, "x").unwrap();
+        assert!((found.rms - 1.0).abs() < 1e-3 && found.largest < 1.001, "{found:?}");
     }
 
     #[test]

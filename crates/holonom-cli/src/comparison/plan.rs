@@ -238,7 +238,7 @@ fn runs(
         for &model in indices {
             let loaded = &models[model];
             for method in methods {
-                let order = Order::new(loaded, method.as_deref(), &arguments.output)?;
+                let order = Order::new(loaded, method.as_deref(), arguments.output.every, arguments.output.to.quiet)?;
                 let is_named = is_one_of_many || (variant.is_none() && !arguments.variants.is_empty());
                 let mut parts: Vec<String> = is_named.then(|| one.name.clone()).into_iter().chain(variant.clone()).collect();
                 if methods.len() > 1 || parts.is_empty() {

@@ -1,5 +1,7 @@
 //! What is looked at before a sweep runs: keys that can be varied, a model that is sound, columns that there are.
 
+use std::collections::BTreeMap;
+
 use holonom::model::{Fault, Faults, Model, Value};
 use holonom::record::{COLUMNS, Constraints, Recorder};
 use holonom_io::Source;
@@ -8,23 +10,21 @@ use super::column::Asked;
 use super::plan::Plan;
 use super::reduction::Function;
 use super::run::Task;
-use super::vary::Vary;
+use super::vary::{Setting, Vary};
 use super::watch::{Columns, recorder};
 use crate::columns::unknown;
 use crate::failure::Failure;
-use crate::items::items;
-use crate::load::{self, OF_METHOD, Overrides};
-use crate::options::SweepArguments;
+use crate::load::{self, OF_METHOD};
 use crate::output;
 
 /// Refuses keys that nothing can be made of, a model that is not sound and columns that there are not; finds out what the columns take.
-pub fn check(arguments: &SweepArguments, overrides: &Overrides, source: &Source, plan: &Plan) -> Result<Columns, Failure> {
-    let asked = asked(arguments)?;
-    plan.varied.iter().try_for_each(|vary| check_key(vary, arguments, overrides, source))?;
-    let mut with_first = overrides.clone();
-    plan.varied.iter().zip(plan.settings(1)).for_each(|(vary, setting)| with_first.number(&vary.path, Some(&setting.text)));
-    let (first, _) = load::open(&arguments.model.model, &with_first)?;
-    let method = arguments.method.name.as_deref();
+pub fn check(asked: &[String], source: &Source, method: Option<&str>, plan: &Plan) -> Result<Columns, Failure> {
+    let asked = read(asked)?;
+    plan.varied.iter().try_for_each(|vary| check_key(vary, source, method))?;
+    let mut first = source.clone();
+    for (vary, setting) in plan.varied.iter().zip(plan.settings(1)) {
+        first.put(&vary.path, setting.value).map_err(Failure::Model)?;
+    }
     // A value may be missing in the file and given by each run, or the values of the first run may not be possible.
     let model = match compile(&first, &asked) {
         Err(faults) => {
@@ -41,6 +41,23 @@ pub fn check(arguments: &SweepArguments, overrides: &Overrides, source: &Source,
     };
     refuse_late(&asked, source, plan)?;
     if asked.is_empty() { Ok(usual(&model)) } else { columns(&model, asked) }
+}
+
+/// SHA-256 of the files that runs of a plan read, by their names. Runs get them as they were read here.
+pub fn files(source: &Source, plan: &Plan) -> BTreeMap<String, String> {
+    let first = plan.settings(1);
+    let read = |key: usize, setting: &Setting| {
+        let of = |k: usize| if k == key { setting } else { &first[k] };
+        let changes: Vec<(&str, Value)> = (0..first.len()).map(|k| (plan.varied[k].path.as_str(), of(k).value.clone())).collect();
+        // What cannot run is refused in its own run.
+        drop(source.model_with(&changes));
+    };
+    read(0, &first[0]);
+    // Any of these may name a file.
+    for (key, vary) in plan.varied.iter().enumerate() {
+        vary.words().for_each(|setting| read(key, setting));
+    }
+    source.files()
 }
 
 /// The model as it is, if it could run.
@@ -66,9 +83,9 @@ fn refuse_late(asked: &[Asked], source: &Source, plan: &Plan) -> Result<(), Fail
 }
 
 /// The columns asked for.
-fn asked(arguments: &SweepArguments) -> Result<Vec<Asked>, Failure> {
+fn read(texts: &[String]) -> Result<Vec<Asked>, Failure> {
     let mut found: Vec<Asked> = Vec::new();
-    for text in arguments.columns.iter().flat_map(|given| items(given)) {
+    for text in texts {
         let asked = Asked::parse(text)?;
         if found.iter().any(|other| other.text == asked.text) {
             return Err(Failure::usage(format!("the column `{text}` is asked for twice"), "leave out one of them"));
@@ -84,12 +101,12 @@ fn compile(source: &Source, asked: &[Asked]) -> Result<Model, Faults> {
 }
 
 /// Refuses a key that cannot be varied.
-fn check_key(vary: &Vary, arguments: &SweepArguments, overrides: &Overrides, source: &Source) -> Result<(), Failure> {
+fn check_key(vary: &Vary, source: &Source, method: Option<&str>) -> Result<(), Failure> {
     let path = vary.path.as_str();
-    if overrides.has(path) {
+    if source.replaced().iter().any(|(set, _)| set == path) {
         return Err(Failure::usage(format!("`{path}` is set and varied"), "leave out one of them"));
     }
-    if arguments.method.name.is_some() && OF_METHOD.contains(&path) {
+    if method.is_some() && OF_METHOD.contains(&path) {
         return Err(Failure::usage(format!("`{path}` is varied, and --method replaces it"), "leave out --method"));
     }
     if let Some(Value::Table(table)) = source.get(path) {

@@ -14,13 +14,26 @@ use crate::failure::Failure;
 
 /// The journal of a sweep, open for more lines.
 pub struct Journal {
-    file: File,
-    path: PathBuf,
+    /// Nothing where lines are kept in memory alone.
+    written: Option<Written>,
     /// The line of each finished run.
     pub lines: Vec<Option<String>>,
 }
 
+/// The file of a journal.
+struct Written {
+    file: File,
+    path: PathBuf,
+    /// Bytes of whole lines.
+    length: u64,
+}
+
 impl Journal {
+    /// The journal of a sweep of some runs without a file.
+    pub fn in_memory(runs: u64) -> Self {
+        Self { written: None, lines: vec![None; runs as usize] }
+    }
+
     /// Opens the journal of a sweep of some runs, or begins it. `identity` is what two sweeps must have in common to be the
     /// same.
     pub fn open(path: &Path, identity: &Value, runs: u64, sheet: &Sheet) -> Result<Self, Failure> {
@@ -33,22 +46,23 @@ impl Journal {
         file.read_to_end(&mut bytes).map_err(fail("read"))?;
         let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1);
         let text = String::from_utf8_lossy(&bytes[..whole]);
-        let mut journal = Self { path: path.into(), lines: vec![None; runs as usize], file };
+        let mut found = vec![None; runs as usize];
         let mut lines = text.split_inclusive('\n');
         match lines.next() {
             Some(first) => check(first, identity, path)?,
             None => whole_file_is_torn(&bytes, path)?,
         }
-        journal.file.set_len(whole as u64).map_err(fail("write"))?;
+        file.set_len(whole as u64).map_err(fail("write"))?;
+        let mut written = Written { file, path: path.into(), length: whole as u64 };
         if whole == 0 {
-            journal.append(&format!("{identity}\n"))?;
+            written.append(&format!("{identity}\n"))?;
         }
         for line in lines {
             if let Some(run) = sheet.run(line).filter(|run| (1..=runs).contains(run)) {
-                journal.lines[run as usize - 1] = Some(line.into());
+                found[run as usize - 1] = Some(line.into());
             }
         }
-        Ok(journal)
+        Ok(Self { written: Some(written), lines: found })
     }
 
     /// Whether a journal is of this sweep; one that was torn before it said so has nothing of another.
@@ -62,18 +76,34 @@ impl Journal {
 
     /// Notes a finished run.
     pub fn add(&mut self, run: u64, line: String) -> Result<(), Failure> {
-        self.append(&line)?;
+        if let Some(written) = &mut self.written {
+            written.append(&line)?;
+        }
         self.lines[run as usize - 1] = Some(line);
         Ok(())
+    }
+
+    /// Closes the file; the lines stay.
+    pub fn release(&mut self) {
+        self.written = None;
     }
 
     /// Numbers of the runs that are still to be done.
     pub fn missing(&self) -> Vec<u64> {
         (1..).zip(&self.lines).filter(|(_, line)| line.is_none()).map(|(run, _)| run).collect()
     }
+}
 
+impl Written {
+    /// A line that cannot be written whole, as on a full disk, is taken back: others may come behind it.
     fn append(&mut self, line: &str) -> Result<(), Failure> {
-        self.file.write_all(line.as_bytes()).map_err(|source| Failure::File { doing: "write", path: self.path.clone(), source })
+        if let Err(source) = self.file.write_all(line.as_bytes()) {
+            // Where that fails, too, the torn line stays, and the message is the same.
+            let _ = self.file.set_len(self.length);
+            return Err(Failure::File { doing: "write", path: self.path.clone(), source });
+        }
+        self.length += line.len() as u64;
+        Ok(())
     }
 }
 

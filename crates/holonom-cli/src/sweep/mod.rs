@@ -8,12 +8,13 @@ mod reduction;
 mod report;
 mod run;
 mod sheet;
+mod store;
+mod study;
 mod vary;
 mod watch;
 
-pub use check::check;
-pub use journal::Journal;
 pub use plan::Plan;
-pub use report::write_report;
-pub use run::{Ending, Runner};
-pub use sheet::Sheet;
+pub use run::Ending;
+pub use store::{JOURNAL, Store};
+pub use study::{Complaint, Line, Study};
+pub use vary::Vary;

@@ -1,4 +1,4 @@
-//! Which runs there are: a full grid, or random samples.
+//! Which runs there are: a full grid, random samples, or the rows of a table.
 
 use std::collections::HashSet;
 
@@ -15,10 +15,22 @@ const MOST_RUNS: u64 = 1_000_000;
 /// What is varied, and how many runs that makes. Runs have the numbers 1, 2, …
 #[derive(Debug)]
 pub struct Plan {
+    /// Keys and their values.
     pub varied: Vec<Vary>,
+    /// Number of runs.
     pub runs: u64,
-    /// The seed of random samples; without one the runs are a grid.
-    seed: Option<u64>,
+    kind: Kind,
+}
+
+/// How values are put together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    /// Every value of a key with every value of the others.
+    Grid,
+    /// Random samples, with their seed.
+    Samples(u64),
+    /// The first values of all keys, the second of all keys, …
+    Rows,
 }
 
 impl Plan {
@@ -29,31 +41,49 @@ impl Plan {
         if let Some(twice) = varied.iter().find(|vary| !seen.insert(&vary.path)) {
             return Err(Failure::usage(format!("`{}` is varied twice", twice.path), "put all its values behind one --vary"));
         }
-        let (runs, seed) = match arguments.samples {
+        match arguments.samples {
             Some(samples) => {
                 varied.iter().try_for_each(refuse_count)?;
-                (Some(samples), Some(arguments.seed))
+                Self::of(varied, Some(samples), Kind::Samples(arguments.seed))
             }
-            None => {
-                (varied.iter().map(count).collect::<Result<Vec<_>, _>>()?.iter().try_fold(1, |runs: u64, n| runs.checked_mul(*n)), None)
+            None => Self::grid(varied),
+        }
+    }
+
+    /// Every value of a key with every value of the others.
+    pub fn grid(varied: Vec<Vary>) -> Result<Self, Failure> {
+        let counts = varied.iter().map(count).collect::<Result<Vec<_>, _>>()?;
+        Self::of(varied, counts.iter().try_fold(1, |runs: u64, n| runs.checked_mul(*n)), Kind::Grid)
+    }
+
+    /// The rows of a table, of which each key has a column; all are equally long.
+    pub fn rows(varied: Vec<Vary>) -> Result<Self, Failure> {
+        let runs = varied.first().map_or(Ok(0), count)?;
+        Self::of(varied, Some(runs), Kind::Rows)
+    }
+
+    fn of(varied: Vec<Vary>, runs: Option<u64>, kind: Kind) -> Result<Self, Failure> {
+        match runs {
+            Some(0) => Err(Failure::usage("there is nothing to run", "vary a key over one value at least")),
+            Some(runs) if runs <= MOST_RUNS => Ok(Self { varied, runs, kind }),
+            _ => {
+                let cure = "vary over fewer values, or take samples of them";
+                Err(Failure::usage(format!("that is more than {MOST_RUNS} runs"), cure))
             }
-        };
-        let runs = runs.filter(|&runs| runs <= MOST_RUNS).ok_or_else(|| {
-            Failure::usage(format!("that is more than {MOST_RUNS} runs"), "vary over fewer values, or take --samples of them")
-        })?;
-        Ok(Self { varied, runs, seed })
+        }
     }
 
     /// Whether every value of a key is run with every value of the others.
     pub fn is_grid(&self) -> bool {
-        self.seed.is_none()
+        self.kind == Kind::Grid
     }
 
     /// The values of a run, one for each key that is varied: a function of its number alone.
     pub fn settings(&self, run: u64) -> Vec<Setting> {
-        match self.seed {
-            Some(seed) => self.sample(seed, run),
-            None => self.cell(run - 1),
+        match self.kind {
+            Kind::Grid => self.cell(run - 1),
+            Kind::Samples(seed) => self.sample(seed, run),
+            Kind::Rows => self.row(run - 1),
         }
     }
 
@@ -71,6 +101,15 @@ impl Plan {
         }
         settings.reverse();
         settings
+    }
+
+    /// The values of a row of a table.
+    fn row(&self, row: u64) -> Vec<Setting> {
+        let value = |vary: &Vary| match &vary.values {
+            Values::List(items) => items[row as usize].clone(),
+            Values::Range(_) => unreachable!("a column has its values"),
+        };
+        self.varied.iter().map(value).collect()
     }
 
     /// Random values. Every run has a stream of its own, so that more samples only add to fewer.
@@ -122,8 +161,10 @@ mod tests {
 
     fn plan(vary: &[&str], seed: Option<u64>) -> Plan {
         let varied: Vec<Vary> = vary.iter().map(|given| Vary::parse(given).unwrap()).collect();
-        let runs = if seed.is_some() { 100 } else { varied.iter().map(|vary| count(vary).unwrap()).product() };
-        Plan { varied, runs, seed }
+        match seed {
+            Some(seed) => Plan::of(varied, Some(100), Kind::Samples(seed)).unwrap(),
+            None => Plan::grid(varied).unwrap(),
+        }
     }
 
     fn texts(plan: &Plan, run: u64) -> Vec<String> {
@@ -135,6 +176,15 @@ mod tests {
         let plan = plan(&["a=1..3:3", "b=x,y"], None);
         let runs: Vec<String> = (1..=plan.runs).map(|run| texts(&plan, run).join(" ")).collect();
         assert_eq!(runs, ["1 x", "1 y", "2 x", "2 y", "3 x", "3 y"]);
+    }
+
+    #[test]
+    fn the_runs_of_a_table_are_its_rows() {
+        let columns = ["a=1,2,3", "b=x,y,z"].map(|given| Vary::parse(given).unwrap());
+        let plan = Plan::rows(columns.into()).unwrap();
+        let runs: Vec<String> = (1..=plan.runs).map(|run| texts(&plan, run).join(" ")).collect();
+        assert_eq!(runs, ["1 x", "2 y", "3 z"]);
+        assert!(!plan.is_grid() && Plan::rows(Vec::new()).unwrap_err().to_string().contains("nothing to run"));
     }
 
     /// The figures are of ChaCha with eight rounds as another program has it, key 1, nonces 1 and 100.

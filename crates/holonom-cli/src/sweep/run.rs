@@ -15,12 +15,10 @@ use super::watch::{Columns, Watch};
 use crate::failure::Failure;
 use crate::load;
 
-/// Steps between looks at the interrupt.
-const LOOK: u64 = 64;
-
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
+    /// At its end.
     Completed,
     /// Before its end.
     Stopped,
@@ -29,6 +27,7 @@ pub enum Ending {
 }
 
 impl Ending {
+    /// All of them.
     pub const ALL: [Self; 3] = [Self::Completed, Self::Stopped, Self::Refused];
 
     /// The word for it in tables.
@@ -109,7 +108,7 @@ impl Runner<'_> {
         if self.columns.forces {
             model.find_reactions(&mut simulation);
         }
-        let mut watched = Interruptible { watch: Watch::new(model, self.columns), looks: 0, interrupted: &self.interrupted };
+        let mut watched = Interruptible { watch: Watch::new(model, self.columns), interrupted: &self.interrupted };
         let status = simulation.run(end, &mut watched);
         if self.interrupted.load(Ordering::Relaxed) {
             return Ok(None);
@@ -142,18 +141,13 @@ fn figures(simulation: &Simulation, columns: Vec<Option<f64>>) -> Figures {
 /// A watch that ends the run on an interrupt.
 struct Interruptible<'a> {
     watch: Watch<'a>,
-    looks: u64,
     interrupted: &'a AtomicBool,
 }
 
 impl Observer for Interruptible<'_> {
     fn after_step(&mut self, simulation: &Simulation) -> Verdict {
         self.watch.after_step(simulation);
-        self.looks += 1;
-        match self.looks.is_multiple_of(LOOK) && self.interrupted.load(Ordering::Relaxed) {
-            true => Verdict::Stop,
-            false => Verdict::GoOn,
-        }
+        if self.interrupted.load(Ordering::Relaxed) { Verdict::Stop } else { Verdict::GoOn }
     }
 
     fn wants_forces(&self) -> bool {

@@ -1,7 +1,7 @@
 //! What a key of the model is varied over, as it is typed: `lo..hi:20`, `lo..hi:20log`, or `a,b,c`.
 
 use holonom::model::Value;
-use holonom_io::{csv_number, read_value};
+use holonom_io::{csv_number, read_value, to_json};
 
 use crate::failure::Failure;
 use crate::items::items;
@@ -9,7 +9,9 @@ use crate::items::items;
 /// A key of the model file and the values that it takes.
 #[derive(Debug, PartialEq)]
 pub struct Vary {
+    /// Path of the key in the model file.
     pub path: String,
+    /// What it takes.
     pub values: Values,
 }
 
@@ -40,6 +42,15 @@ pub struct Setting {
 impl Setting {
     fn number(number: f64) -> Self {
         Self { text: csv_number(number), value: Value::Number(number) }
+    }
+
+    /// A value that a program gives; texts are as they are typed.
+    pub fn of(value: Value) -> Self {
+        match value {
+            Value::Number(number) => Self::number(number),
+            Value::Text(text) => Self { value: Value::Text(text.clone()), text },
+            value => Self { text: to_json(&value).to_string(), value },
+        }
     }
 
     fn typed(text: &str) -> Self {
@@ -77,6 +88,22 @@ impl Vary {
         Ok(Self { path: path.into(), values })
     }
 
+    /// A key and its values, as a program gives them.
+    pub fn of(path: &str, values: Vec<Value>) -> Self {
+        Self { path: path.into(), values: Values::List(values.into_iter().map(Setting::of).collect()) }
+    }
+
+    /// The values of a list.
+    pub fn each(&self) -> impl Iterator<Item = &Setting> {
+        let items = if let Values::List(items) = &self.values { items.as_slice() } else { &[] };
+        items.iter()
+    }
+
+    /// The values that are no numbers.
+    pub fn words(&self) -> impl Iterator<Item = &Setting> {
+        self.each().filter(|item| !matches!(item.value, Value::Number(_)))
+    }
+
     /// Whether all its values are numbers.
     pub fn is_numeric(&self) -> bool {
         match &self.values {
@@ -111,7 +138,9 @@ fn range(text: &str) -> Option<Result<Range, String>> {
         _ if !(low.is_finite() && high.is_finite()) => Err("has a range whose ends are not both finite numbers".into()),
         _ if low == high => Err("has a range from a number to itself".into()),
         _ if low > high => Err(format!("has a range that runs backwards: write {}..{}", csv_number(high), csv_number(low))),
-        Range { geometric: true, .. } if low * high <= 0.0 => Err("has even ratios, for which both ends must be above 0, or below".into()),
+        Range { geometric: true, .. } if low <= 0.0 && high >= 0.0 => {
+            Err("has even ratios, for which both ends must be above 0, or below".into())
+        }
         range => Ok(range),
     })
 }
@@ -162,6 +191,8 @@ mod tests {
         let ratios = numbers("k=1e3..1e5:5log", 5);
         assert_eq!((ratios[0], ratios[2], ratios[4]), (1e3, 1e4, 1e5));
         assert!(ratios.windows(2).all(|pair| (pair[1] / pair[0] - 10f64.sqrt()).abs() < 1e-14), "{ratios:?}");
+        // Ends whose product is zero.
+        assert!((numbers("k=1e-200..1e-180:3log", 3)[1] / 1e-190 - 1.0).abs() < 1e-14);
         let Values::Range(drawn) = Vary::parse("k=-1e4..-1:log").unwrap().values else { panic!("it is a range") };
         assert_eq!((drawn.count, drawn.at(0.5).text.as_str()), (None, "-100"));
     }

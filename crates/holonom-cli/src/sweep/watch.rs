@@ -21,6 +21,13 @@ pub struct Columns {
     pub forces: bool,
 }
 
+impl Columns {
+    /// The columns as they were asked for.
+    pub fn texts(&self) -> Vec<&str> {
+        self.asked.iter().map(|asked| asked.text.as_str()).collect()
+    }
+}
+
 /// Gathers columns of one run.
 pub struct Watch<'a> {
     model: &'a Model,

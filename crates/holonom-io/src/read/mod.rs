@@ -1,7 +1,7 @@
 //! Model files: TOML in, a description with the place of everything in it out.
 
+mod columns;
 mod mesh;
-mod numbers;
 mod places;
 mod recording;
 mod render;
@@ -15,19 +15,24 @@ use std::sync::{Arc, Mutex};
 use holonom::model::{Description, Fault, Faults, Files, Kinds, Mesh, Model, NoFiles, NumberFile, Table, Value, unused_parameters};
 use sha2::{Digest, Sha256};
 
+use columns::Columns;
+pub use columns::TableError;
 pub use mesh::{LARGEST_MESH, MOST_TRIANGLES, MeshError, read_mesh};
-pub use numbers::{LARGEST_NUMBERS, NumbersError, read_numbers};
 use places::Places;
-pub use recording::{TableError, read_recording};
+pub use recording::read_recording;
 pub use rows::read_csv;
 
 /// Largest model file that is read, bytes: some 40 000 entries, while parsing takes up to fifty times as much memory.
 pub const LARGEST_FILE: usize = 4 * 1024 * 1024;
 
+/// Largest CSV file that a model may name, bytes.
+pub const LARGEST_NUMBERS: usize = 256_000_000;
+
 /// Deepest nesting of lists and tables in a model file.
 pub const DEEPEST: usize = 64;
 
-/// A description and where everything in it stands in its file.
+/// A description and where everything in it stands in its file. A copy shares what was read of the files that the model names.
+#[derive(Clone)]
 pub struct Source {
     name: String,
     text: String,
@@ -37,7 +42,7 @@ pub struct Source {
     replaced: Vec<(String, Option<Value>)>,
     places: Places,
     /// The files that the model names, where they can be read.
-    files: Option<FilesBeside>,
+    files: Option<Arc<FilesBeside>>,
     kinds: Kinds,
 }
 
@@ -56,7 +61,7 @@ impl Source {
     /// Says in which folder the files are that the model names.
     pub fn beside(mut self, folder: &Path) -> Self {
         let (meshes, numbers, sums) = Default::default();
-        self.files = Some(FilesBeside { folder: folder.into(), meshes, numbers, sums });
+        self.files = Some(Arc::new(FilesBeside { folder: folder.into(), meshes, numbers, sums }));
         self
     }
 
@@ -72,8 +77,16 @@ impl Source {
     /// # Errors
     /// When a part of the key before the last is no table.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
+        self.put(key, read_value(value))
+    }
+
+    /// Sets a key to a value.
+    ///
+    /// # Errors
+    /// When a part of the key before the last is no table.
+    pub fn put(&mut self, key: &str, value: Value) -> Result<(), String> {
         let before = self.get(key).cloned();
-        put(&mut self.value, key, read_value(value)).map_err(|part| {
+        put(&mut self.value, key, value).map_err(|part| {
             format!(
                 "error: `{key}` cannot be set: `{part}` is not a table\n  = cure: name a key of the model file, such as simulation.step"
             )
@@ -157,7 +170,7 @@ impl Source {
 
     fn compile(&self, value: &Value) -> Result<Model, Faults> {
         match &self.files {
-            Some(files) => Model::from_value_with(value, &self.kinds, files),
+            Some(files) => Model::from_value_with(value, &self.kinds, &**files),
             None => Model::from_value_with(value, &self.kinds, &NoFiles),
         }
     }
@@ -181,6 +194,12 @@ impl Source {
             1 => shown.join("\n"),
             _ => format!("{}\n{count} faults", shown.join("\n")),
         }
+    }
+
+    /// Line and column, both from 1, at which a fault or the nearest thing around it stands in the file; none where nothing of it does.
+    pub fn place(&self, fault: &Fault) -> Option<[usize; 2]> {
+        let bytes = render::bytes(&self.text, &self.places, fault)?;
+        Some(render::position(&self.text, bytes.start))
     }
 
     /// The text of the file.
@@ -232,7 +251,11 @@ impl Files for FilesBeside {
     }
 
     fn numbers(&self, name: &str) -> Result<Arc<NumberFile>, String> {
-        once(&self.numbers, name, || read_numbers(name, &self.bytes(name, LARGEST_NUMBERS)?).map_err(|error| error.to_string()))
+        once(&self.numbers, name, || {
+            let bytes = self.bytes(name, LARGEST_NUMBERS)?;
+            let read = Columns::read(&bytes, |_, _, cell| cell.parse().ok()).map_err(|error| format!("`{name}`: {error}"))?;
+            Ok(NumberFile { names: read.names, columns: read.columns })
+        })
     }
 }
 

@@ -18,18 +18,29 @@ pub(super) fn syntax(name: &str, text: &str, error: &SyntaxError) -> String {
 
 /// A fault of a description.
 pub(super) fn fault(name: &str, text: &str, places: &Places, fault: &Fault) -> String {
-    match places.find(&fault.path, fault.on_key) {
-        Some(mut bytes) => {
-            if let Some(character) = fault.character {
-                bytes = inside(text, bytes, character);
-            }
-            at(name, text, bytes, &fault.path, &fault.message, &fault.cure)
-        }
+    match bytes(text, places, fault) {
+        Some(bytes) => at(name, text, bytes, &fault.path, &fault.message, &fault.cure),
         None => {
             let place = if fault.path.is_empty() { format!("{name}:1:1") } else { format!("{name} ({})", fault.path) };
             whole(&place, &format!("{}{}", fault.message, offending(fault)), &fault.cure)
         }
     }
+}
+
+/// The bytes of a file that a fault is about.
+pub(super) fn bytes(text: &str, places: &Places, fault: &Fault) -> Option<Range<usize>> {
+    let bytes = places.find(&fault.path, fault.on_key)?;
+    Some(match fault.character {
+        Some(character) => inside(text, bytes, character),
+        None => bytes,
+    })
+}
+
+/// Line and column of a byte, both from 1.
+pub(super) fn position(text: &str, byte: usize) -> [usize; 2] {
+    let before = &text[..floor(text, byte.min(text.len()))];
+    let line_start = before.rfind('\n').map_or(0, |at| at + 1);
+    [1 + before.matches('\n').count(), 1 + before[line_start..].chars().count()]
 }
 
 /// What was written, for faults of what does not stand in the file.
@@ -57,8 +68,7 @@ pub(super) fn at(name: &str, text: &str, bytes: Range<usize>, path: &str, messag
     let start = floor(text, bytes.start.min(text.len()));
     let line_start = text[..start].rfind('\n').map_or(0, |at| at + 1);
     let line_end = text[start..].find('\n').map_or(text.len(), |at| start + at);
-    let number = 1 + text[..start].matches('\n').count();
-    let column = 1 + text[line_start..start].chars().count();
+    let [number, column] = position(text, start);
     let end = floor(text, bytes.end.clamp(start, line_end));
     let marks = text[start..end].chars().count().max(1);
     let path = if path.is_empty() { String::new() } else { format!(" ({path})") };

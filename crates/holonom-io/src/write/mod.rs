@@ -2,6 +2,7 @@
 
 mod csv;
 mod json;
+mod model;
 mod npz;
 #[cfg(feature = "parquet")]
 mod parquet;
@@ -13,6 +14,7 @@ use holonom::record::Recording;
 
 pub use csv::{append_csv, csv_cells, csv_line, csv_number};
 pub use json::{headings, write_json};
+pub use model::model_text;
 pub use table::{Cells, Table};
 
 /// How a table with words is written.

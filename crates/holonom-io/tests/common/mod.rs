@@ -1,11 +1,64 @@
-//! The gallery, for tests that run it.
+//! Models of the gallery, and those that are written in a test; and their runs.
+#![allow(dead_code)] // each test uses its share
 
 use holonom::model::Model;
+use holonom::record::{Constraints, Recorder, Recording};
+use holonom::simulation::{Choice, Method, Simulation, Status};
 use holonom_io::Source;
 
 /// A model of the gallery.
 pub fn example(name: &str) -> Model {
     let path = format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let source = Source::read(name, &std::fs::read(path).unwrap()).unwrap_or_else(|message| panic!("{message}"));
-    source.model().unwrap_or_else(|message| panic!("{message}"))
+    model(&std::fs::read_to_string(path).unwrap())
+}
+
+/// A model from its text.
+#[track_caller]
+pub fn model(text: &str) -> Model {
+    source(text).model().unwrap_or_else(|message| panic!("{message}\n{text}"))
+}
+
+/// The same with what tells the forces of joints whose bodies share nodes.
+#[track_caller]
+pub fn model_with_forces(text: &str) -> Model {
+    source(text).model_with_forces().unwrap_or_else(|message| panic!("{message}\n{text}"))
+}
+
+/// The description of a model.
+#[track_caller]
+pub fn source(text: &str) -> Source {
+    Source::read("model.toml", text.as_bytes()).unwrap_or_else(|message| panic!("{message}\n{text}"))
+}
+
+/// A run that completes, with every step of it.
+#[track_caller]
+pub fn run(model: &Model, choice: Choice, step: f64, end: f64) -> (Simulation, Recording) {
+    let method = Method::resolve(&choice).unwrap_or_else(|error| panic!("{error}"));
+    let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
+    let mut recorder = Recorder::new(&model.channels, &model.system, 1, Constraints::Nothing);
+    assert_eq!(simulation.run(end, &mut recorder), Status::Completed);
+    (simulation, recorder.finish())
+}
+
+/// A simulation that finds the forces of joints.
+#[track_caller]
+pub fn simulation(model: &Model, method: &str, step: f64) -> Simulation {
+    let method = Method::resolve(&Choice::default().named(method)).unwrap();
+    let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
+    model.find_reactions(&mut simulation);
+    simulation
+}
+
+/// A run with the forces of joints that completes, with one row of so many.
+#[track_caller]
+pub fn run_every(model: &Model, method: &str, step: f64, end: f64, every: u64) -> (Simulation, Recording) {
+    let mut simulation = simulation(model, method, step);
+    let mut recorder = Recorder::new(&model.channels, &model.system, every, Constraints::Joints);
+    assert_eq!(simulation.run(end, &mut recorder), Status::Completed);
+    (simulation, recorder.finish())
+}
+
+/// ‖difference‖ of the final state, seen against the same run with another step.
+pub fn distance(a: &Simulation, b: &Simulation) -> f64 {
+    a.state().x.iter().zip(&b.state().x).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }

@@ -2,7 +2,7 @@
 
 use holonom::model::{Model, NoFiles, Table, Value};
 
-/// The text with every name for which `new` has something replaced by that.
+/// The text with every name, also one with dots, for which `new` has something replaced by that.
 pub fn replaced(text: &str, new: impl Fn(&str) -> Option<String>) -> String {
     let characters: Vec<char> = text.chars().collect();
     let (mut out, mut at) = (String::new(), 0);
@@ -10,7 +10,7 @@ pub fn replaced(text: &str, new: impl Fn(&str) -> Option<String>) -> String {
         let start = at;
         let is_name = characters[at].is_alphabetic() || characters[at] == '_';
         at += match is_name {
-            true => run(&characters[at..], |c| c.is_alphanumeric() || c == '_'),
+            true => run(&characters[at..], |c| c.is_alphanumeric() || c == '_' || c == '.'),
             false => digits(&characters[at..]).max(1),
         };
         let token: String = characters[start..at].iter().collect();

@@ -9,11 +9,14 @@ use super::expression::{replaced, written};
 use super::transform::{Coordinate, Coordinates};
 
 /// What stands for a variable where that is not itself.
-pub struct Names(HashMap<String, String>);
+pub struct Names {
+    of: HashMap<String, String>,
+    letters: Vec<char>,
+}
 
 impl Names {
     pub fn new(change: &Change, letters: &str, coordinate: Option<Coordinate>, entry: &Table, coordinates: &Coordinates) -> Self {
-        let mut names = Self(HashMap::new());
+        let mut names = Self { of: HashMap::new(), letters: letters.chars().collect() };
         names.scaled("t", 1.0 / change.time);
         ["length", "rest", "extension"].into_iter().for_each(|name| names.scaled(name, 1.0 / change.length));
         names.scaled("rate", change.time / change.length);
@@ -24,7 +27,7 @@ impl Names {
                 names.coordinate(name, coordinates[other], change);
             }
         }
-        let letters: Vec<char> = letters.chars().collect();
+        let letters = names.letters.clone();
         for k in 0..letters.len() {
             let speed = change.time / change.length;
             names.sum("", &letters, k, 1.0 / change.length, change, |c| {
@@ -39,12 +42,21 @@ impl Names {
 
     /// A formula of the old variables as one of the new ones.
     pub fn in_formula(&self, text: &str) -> String {
-        replaced(text, |name| self.0.get(name).cloned())
+        replaced(text, |name| match name.rsplit_once('.') {
+            Some((of, letter)) => self.of.get(letter).map(|new| self.with_prefix(of, new)),
+            None => self.of.get(name).cloned(),
+        })
+    }
+
+    /// A formula of a place's components, such as `x`, with the name of the place before them.
+    fn with_prefix(&self, of: &str, formula: &str) -> String {
+        let is_letter = |name: &str| self.letters.iter().any(|&letter| name.chars().eq([letter]));
+        replaced(formula, |name| is_letter(name).then(|| format!("{of}.{name}")))
     }
 
     fn scaled(&mut self, name: &str, factor: f64) {
         if factor != 1.0 {
-            self.0.insert(name.to_string(), format!("({}*{name})", written(factor)));
+            self.of.insert(name.to_string(), format!("({}*{name})", written(factor)));
         }
     }
 
@@ -65,6 +77,6 @@ impl Names {
             format!("{}*({prefix}{}{less})", written(change.turn[j][k] * factor), letters[j])
         };
         let parts: Vec<String> = (0..letters.len()).filter(|&j| change.turn[j][k] != 0.0).map(part).collect();
-        self.0.insert(format!("{prefix}{}", letters[k]), format!("({})", parts.join(" + ")));
+        self.of.insert(format!("{prefix}{}", letters[k]), format!("({})", parts.join(" + ")));
     }
 }

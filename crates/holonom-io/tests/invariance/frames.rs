@@ -81,6 +81,7 @@ const FREE: &[&str] = &[
     "joint:fixed",
     "joint:constant-velocity",
     "constraint:fixed",
+    "constraint:expression",
     "force:force",
     "force:torque",
     "force:constant",

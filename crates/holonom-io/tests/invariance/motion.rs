@@ -54,7 +54,7 @@ pub fn model(description: &Table) -> Result<Model, String> {
 
 /// The method of a name.
 pub fn method(name: &str) -> Method {
-    Method::resolve(&Choice { method: Some(name.into()), ..Choice::default() }).expect("the method is there")
+    Method::resolve(&Choice::default().named(name)).expect("the method is there")
 }
 
 /// Runs a description for some steps.

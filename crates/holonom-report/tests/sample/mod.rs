@@ -41,12 +41,13 @@ pub fn empty() -> Sample {
     sample
 }
 
-/// A column of a run as it was measured: every third row of it, a little off, and nothing else.
-pub fn measured(run: &Sample, column: &str) -> Sample {
+/// A column of a run as it was measured from a time (s) on: every third row of it, a little off, and nothing else.
+pub fn measured(run: &Sample, column: &str, from: f64) -> Sample {
     let heading = run.recording.find(column).unwrap().heading.clone();
     let mut recording = Recording::new([Heading::from("t".to_owned()), heading]);
     let (times, values) = (run.recording.column("t").unwrap(), run.recording.column(column).unwrap());
-    times.iter().zip(values).step_by(3).for_each(|(&t, &value)| recording.push(&[t, 1.02 * value + 0.01]));
+    let rows = times.iter().zip(values).filter(|(t, _)| **t >= from);
+    rows.step_by(3).for_each(|(&t, &value)| recording.push(&[t, 1.02 * value + 0.01]));
     let scene = Scene { axes: run.scene.axes.clone(), ..Scene::default() };
     let summary = json!({"label": "measured", "model": "measured", "status": "measured", "rows": recording.rows()});
     Sample { label: "measured".to_owned(), recording, scene, summary }

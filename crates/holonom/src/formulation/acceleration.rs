@@ -13,11 +13,15 @@ use super::kkt::Block;
 use super::level::Level;
 use super::newton::Newton;
 use super::workspace::Workspace;
+use crate::linalg::largest;
 use crate::system::System;
 
 /// Passes with a proximal δ; the first starts from the multipliers at hand and leaves δ of what they miss, the others are
 /// for redundant rows.
 const PASSES: usize = 3;
+
+/// Passes end where the next would change less than this share of accelerations and multipliers.
+const ROUNDED: f64 = 0.1 * f64::EPSILON;
 
 impl Newton {
     /// Writes [M Gᵀ; G −δ] at the evaluation of the end, with the proximal δ, and factors it. False when it cannot be.
@@ -48,6 +52,12 @@ impl Newton {
     /// The multipliers start from those in the workspace. They are of the order of the positions and velocities
     /// whatever these were found by, so that forces can be trusted (methods §17).
     pub fn react(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
+        system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
+        self.react_as_evaluated(system, t, work)
+    }
+
+    /// The same where the workspace has the evaluation at the end position.
+    pub fn react_as_evaluated(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
         let level = std::mem::replace(&mut work.level, Level::ACCELERATION);
         let outcome = self.balance(system, t, None, work);
         work.level = level;
@@ -57,6 +67,7 @@ impl Newton {
     /// Accelerations and multipliers at the end position and velocity by the formulation itself, which must be one that
     /// gives them: with rows at acceleration level, or soft.
     pub fn accelerate(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
+        system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
         match self.settings.multipliers {
             Multipliers::Penalty(alpha) if work.level.acceleration == 0.0 => self.push(system, t, alpha, work),
             Multipliers::Penalty(alpha) => self.balance(system, t, Some(alpha), work),
@@ -64,7 +75,7 @@ impl Newton {
         }
     }
 
-    /// Solves the system above; with `penalty` as it stands, otherwise until δ no longer matters.
+    /// Solves the system above at the evaluation of the end; with `penalty` as it stands, otherwise until δ no longer matters.
     fn balance(&mut self, system: &System, t: f64, penalty: Option<f64>, work: &mut Workspace) -> Result<(), Failure> {
         let n = system.coordinates();
         match penalty {
@@ -74,48 +85,47 @@ impl Newton {
             }
             None => self.proximal(1.0, None, &work.scales),
         }
-        work.sample_end(system, t);
+        work.sample_applied(system, t);
         self.assemble_inertia(work);
         self.factor(&work.scales)?;
-        let passes = if penalty.is_some() { 1 } else { PASSES };
         work.a[..n].fill(0.0);
-        for pass in 0..passes {
-            if pass > 0 {
-                work.resample_end(system, t);
-            }
-            work.sum_reactions(system);
-            work.weigh_levels(system, t, 1.0);
-            let (forces, rows) = self.unknowns.split_at_mut(n);
-            forces.iter_mut().zip(&work.inertial).for_each(|(unknown, sum)| *unknown = -sum);
-            rows.iter_mut().zip(&work.phi).for_each(|(unknown, row)| *unknown = -row);
+        work.weigh_levels_at_rest(system, t, 1.0);
+        let passes = if penalty.is_some() { 1 } else { PASSES };
+        let (leaves, mut before) = (self.rank.proximal_leaves(), [f64::INFINITY; 2]);
+        for _ in 0..passes {
+            work.sum_reactions(system, &mut self.unknowns);
             self.solve()?;
             let (steps, multipliers) = self.unknowns.split_at(n);
             work.a.iter_mut().zip(steps).for_each(|(a, step)| *a += step);
             work.lambda.iter_mut().zip(multipliers).for_each(|(lambda, step)| *lambda += step);
+            let taken = [largest(steps), work.scaled_multipliers(multipliers.iter().copied())];
+            let whole = [largest(&work.a[..n]), work.scaled_multipliers(work.lambda.iter().copied())];
+            if (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(leaves) <= ROUNDED * whole[k]) {
+                break;
+            }
+            before = taken;
         }
-        work.sample_end(system, t);
+        work.add_reactions(system);
         Ok(())
     }
 
     /// M a = Q − αGᵀΦ (5).
     fn push(&mut self, system: &System, t: f64, alpha: f64, work: &mut Workspace) -> Result<(), Failure> {
         let n = system.coordinates();
-        system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
         system.constraint_values(&work.end.at, t, &mut work.phi);
         work.lambda.iter_mut().zip(&work.phi).for_each(|(lambda, phi)| *lambda = alpha * phi);
-        work.sample_end(system, t);
+        work.sample_applied(system, t);
         self.kkt.clear();
         self.kkt.start_with_mass(1.0);
         self.kkt.write_sum(Block(0, 0));
         self.delta.fill(1.0);
         self.factor(&work.scales)?;
         work.a[..n].fill(0.0);
-        work.sum_reactions(system);
-        let (forces, rows) = self.unknowns.split_at_mut(n);
-        forces.iter_mut().zip(&work.inertial).for_each(|(unknown, sum)| *unknown = -sum);
-        rows.fill(0.0);
+        work.sum_reactions(system, &mut self.unknowns);
+        self.unknowns[n..].fill(0.0);
         self.solve()?;
         work.a[..n].copy_from_slice(&self.unknowns[..n]);
+        work.add_reactions(system);
         Ok(())
     }
 }
@@ -128,9 +138,21 @@ impl Workspace {
         force.iter_mut().for_each(|force| *force = -*force);
     }
 
-    /// M a + f + Gᵀλ as sampled into `inertial`.
-    fn sum_reactions(&mut self, system: &System) {
-        system.mass.times(system.dim, &self.a, &mut self.inertial);
-        self.inertial.iter_mut().zip(&self.forces.sum).for_each(|(sum, force)| *sum += force);
+    /// Leaves minus M a + f + Gᵀλ and minus the rows, `phi` and what the accelerations add to it, in the unknowns, where the forces f were
+    /// sampled without λ.
+    fn sum_reactions(&mut self, system: &System, unknowns: &mut [f64]) {
+        let Self { full, forces, sampled, .. } = self;
+        let (accelerated, rows) = unknowns.split_at_mut(system.coordinates());
+        full.copy_from_slice(&forces.sum);
+        system.slots.add_forces(system.dim, &self.lambda, &sampled.at.gradient, full);
+        system.mass.times(system.dim, &self.a, accelerated);
+        accelerated.iter_mut().zip(full).for_each(|(sum, force)| *sum = -(*sum + *force));
+        rows.iter_mut().zip(&self.phi).for_each(|(row, phi)| *row = -phi);
+        system.slots.add_along(system.dim, -self.level.acceleration, &sampled.at.gradient, &self.a, rows);
+    }
+
+    /// Adds Gᵀλ to the forces sampled without it.
+    fn add_reactions(&mut self, system: &System) {
+        system.slots.add_forces(system.dim, &self.lambda, &self.sampled.at.gradient, &mut self.forces.sum);
     }
 }

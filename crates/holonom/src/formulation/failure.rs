@@ -14,7 +14,7 @@ pub enum Failure {
     },
     /// The matrix of the step has no inverse, or none with finite numbers: the unknown whose pivot is none.
     Singular(Unknown),
-    /// Positions, velocities or forces that are not finite.
+    /// Positions, velocities, forces or derivatives of these that are not finite.
     NotFinite,
     /// No step is short enough for the accuracy.
     TooSmall,
@@ -43,6 +43,16 @@ pub enum Failure {
         /// How far it turns, rad.
         by: f64,
     },
+    /// A number that an event sets an input to has no value.
+    NoSetting {
+        /// Which of the system's events.
+        event: usize,
+    },
+    /// The condition of an event has no value, so that nobody knows whether it holds.
+    NoIndicator {
+        /// Which of the system's events.
+        event: usize,
+    },
 }
 
 /// An unknown of a step.
@@ -70,7 +80,9 @@ impl Failure {
             Self::Singular(Unknown::Node(node)) => {
                 format!("the matrix of the step is singular at node {node}: it has no mass and nothing holds it")
             }
-            Self::NotFinite => "positions, velocities or forces are not finite".into(),
+            Self::NotFinite => {
+                "positions, velocities, forces or their derivatives are not finite (a formula may be outside its domain, or a table outside its range)".into()
+            }
             Self::Broken { promise, by, bound, row } => {
                 let of = row.map_or(String::new(), |row| format!(" of `{}`", system.row_names()[row]));
                 format!("the step breaks a promise of the method: {promise}{of} is off by {by:.1e}, where round-off explains {bound:.1e}")
@@ -81,6 +93,14 @@ impl Failure {
             Self::Turned { gauge, by } => {
                 format!("`{}` turns by {by:.2} rad in a step, too far for turns to be counted: give a shorter step", system.gauges()[gauge])
             }
+            Self::NoIndicator { event } => format!(
+                "what the event `{}` waits for has no value there: a formula is outside its domain, or a table outside its range",
+                system.events[event].name
+            ),
+            Self::NoSetting { event } => format!(
+                "what the event `{}` sets an input to has no value there: a formula is outside its domain, or a table outside its range",
+                system.events[event].name
+            ),
             Self::TooSmall => "no step is short enough for the accuracy".into(),
         }
     }

@@ -477,8 +477,11 @@ impl Kkt {
         self.solver.solve(b);
     }
 
-    /// The node or row whose pivot is none.
-    fn blame(&self, Singular { pivot }: Singular) -> Failure {
+    /// The node or row whose pivot is none, where its numbers are such.
+    fn blame(&mut self, Singular { pivot }: Singular) -> Failure {
+        if self.solver.values_mut().iter().any(|value| !value.is_finite()) {
+            return Failure::NotFinite;
+        }
         Failure::Singular(match pivot.checked_sub(self.multiplier(0, 0)) {
             Some(row) => Unknown::Row(row / self.fields),
             None => Unknown::Node(pivot / (self.fields * self.dim)),

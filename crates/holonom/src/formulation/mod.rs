@@ -11,6 +11,7 @@
 mod acceleration;
 mod collocation;
 mod coupled;
+mod custom_rates;
 mod dampers;
 mod failure;
 mod hubs;

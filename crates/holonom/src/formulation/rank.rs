@@ -47,6 +47,11 @@ impl Rank {
         self.regular[row]
     }
 
+    /// Share of what the multipliers miss that a solution with the [proximal](Newton::proximal) δ may leave.
+    pub(super) fn proximal_leaves(&self) -> f64 {
+        if self.redundant == Some(0) { (1.0 / (RHO * self.weakest)).min(1.0) } else { 1.0 }
+    }
+
     /// Becomes the same without any allocation.
     pub fn copy_from(&mut self, other: &Self) {
         let Self { regular, redundant, changes, singular, spares_regular, weakest } = other;

@@ -5,7 +5,7 @@ use super::rank::Rank;
 use super::stage::Stage;
 use super::workspace::Workspace;
 use crate::linalg::largest;
-use crate::system::{System, scatter_rows};
+use crate::system::{Direction, System, scatter_rows};
 
 /// Residual of a node's forces over the sum of its terms' sizes that is round-off: each term is itself a sum of some products.
 const FORCES: f64 = 32.0 * f64::EPSILON;
@@ -113,7 +113,7 @@ impl Workspace {
     /// times positions.
     pub fn size_rates(&mut self, system: &System) {
         let Self { end, turned, rows, .. } = self;
-        system.turn(&end.at, &end.x, &end.v, 0.0, &mut turned.half, &mut turned.v);
+        system.turn(&end.at, &end.x, Direction::velocity(&end.v), 0.0, &mut turned.half, &mut turned.v);
         rows.fill(0.0);
         for slot in &system.slots.by_row {
             let (g, x) = (slot.slot as usize * system.dim, slot.node as usize * system.dim);

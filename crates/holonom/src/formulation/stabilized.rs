@@ -21,7 +21,7 @@ use super::stage::Stage;
 use super::sweep::Sweeps;
 use super::workspace::Workspace;
 use crate::linalg::largest;
-use crate::system::{MAX_ARGUMENTS, NO_CHANGE, System};
+use crate::system::{Direction, MAX_ARGUMENTS, NO_CHANGE, System};
 
 /// Scratch of the second level; the first is the workspace's.
 pub struct Stabilized {
@@ -38,9 +38,9 @@ pub struct Stabilized {
     /// What γ' is expected to change by in the first iteration (r); its matrices have it.
     pub gamma_change: Vec<f64>,
     /// h v̄ of all nodes (full), m.
-    w: Vec<f64>,
+    pub(super) w: Vec<f64>,
     /// H w, H u and H v_n, D a slot.
-    turned_w: Vec<f64>,
+    pub(super) turned_w: Vec<f64>,
     pub(super) turned_u: Vec<f64>,
     turned_start: Vec<f64>,
     /// ∂Φ̇/∂v between the ends of the step (D a slot).
@@ -49,6 +49,8 @@ pub struct Stabilized {
     pub(super) pull: Vec<f64>,
     /// ½h Φ̇ (r).
     rate: Vec<f64>,
+    /// What time alone changes the rates of the custom rows by over the step.
+    pub(super) rate_by_time: Vec<f64>,
     /// Residual and solution for u and γ'.
     pub(super) unknowns: Vec<f64>,
     pub(super) sweeps: Sweeps,
@@ -85,6 +87,7 @@ impl Stabilized {
             velocity_gradient: vec![0.0; slots],
             pull: vec![0.0; slots],
             rate: vec![0.0; r],
+            rate_by_time: vec![0.0; r - system.rows.len()],
             unknowns: vec![0.0; size],
             sweeps: Sweeps::new(size),
             curves: false,
@@ -144,15 +147,16 @@ impl Stabilized {
     pub fn turn(&mut self, system: &System, stage: &Stage, work: &mut Workspace) {
         let half = 0.5 * stage.step;
         self.w.iter_mut().zip(&self.u).zip(&work.start.v).for_each(|((w, u), v)| *w = u + half * v);
-        system.turn(&work.end.at, &work.end.x, &self.u, stage.end(), &mut work.turned.half, &mut self.turned_u);
+        let to_end = Direction { nodes: &self.u, time: half };
+        system.turn(&work.end.at, &work.end.x, to_end, stage.end(), &mut work.turned.half, &mut self.turned_u);
         // The Hessians of invariants are constant; the slots of functions come later.
         let turned = self.turned_u.iter().zip(&self.turned_start);
         self.turned_w.iter_mut().zip(turned).for_each(|(w, (u, start))| *w = u + half * start);
-        system.turn_custom(&work.sampled.x, &self.w, stage.time(), &mut self.turned_w);
         self.velocity_gradient.copy_from_slice(&work.sampled.at.gradient);
         self.turn_functions(system, stage.step, work);
+        self.turn_custom(system, stage, work);
         self.pull.iter_mut().zip(&self.turned_w).for_each(|(pull, turned)| *pull = 0.5 * turned);
-        if !system.functions.is_empty() {
+        if !(system.functions.is_empty() && system.custom.is_empty()) {
             for ((pull, position), velocity) in self.pull.iter_mut().zip(&work.sampled.at.gradient).zip(&self.velocity_gradient) {
                 *pull += position - velocity;
             }
@@ -284,8 +288,10 @@ impl Stabilized {
             }
         }
         for (row, slots) in system.slots.rows.iter().enumerate() {
-            let rate_change = system.explicit_rate(row, &work.end.at, stage.end()) - system.explicit_rate(row, &work.start.at, stage.start);
-            let mut along = rate_change;
+            let mut along = match row.checked_sub(system.rows.len()) {
+                Some(custom) => self.rate_by_time[custom],
+                None => system.explicit_rate(row, &work.end.at, stage.end()) - system.explicit_rate(row, &work.start.at, stage.start),
+            };
             for s in slots.clone().filter(|&s| system.slots.nodes[s] as usize >= system.free) {
                 let node = system.slots.nodes[s] as usize * dim;
                 for c in 0..dim {

@@ -4,7 +4,7 @@ use super::kkt::{Block, Kkt, LawFactors};
 use super::level::Level;
 use super::stage::{RowsAt, Sampling, Stage};
 use super::workspace::{Moment, Workspace};
-use crate::system::{Between, LoadEntry, Look, MAX_ARGUMENTS, Quantity, Reach, Response, Slopes, System, gather, scatter};
+use crate::system::{Between, Direction, LoadEntry, Look, MAX_ARGUMENTS, Quantity, Reach, Response, Slopes, System, gather, scatter};
 
 impl Workspace {
     /// Evaluates rows, laws and loads of a stage; leaves Φ in `phi` and the sum of forces in `forces`.
@@ -49,6 +49,15 @@ impl Workspace {
 
     /// Leaves the weighted sum of Φ̈, Φ̇ and Φ at the sampled state, with the accelerations `a`, times `scale` in `phi`.
     pub fn weigh_levels(&mut self, system: &System, t: f64, scale: f64) {
+        self.weigh_levels_at_rest(system, t, scale);
+        if self.level.acceleration != 0.0 {
+            let factor = scale * self.level.acceleration;
+            system.slots.add_along(system.dim, factor, &self.sampled.at.gradient, &self.a, &mut self.phi);
+        }
+    }
+
+    /// The same without accelerations.
+    pub(super) fn weigh_levels_at_rest(&mut self, system: &System, t: f64, scale: f64) {
         let level = self.level;
         system.constraint_values(&self.sampled.at, t, &mut self.phi);
         self.phi.iter_mut().for_each(|phi| *phi *= scale * level.position);
@@ -57,7 +66,8 @@ impl Workspace {
             self.phi.iter_mut().zip(&self.rows).for_each(|(phi, rate)| *phi += scale * level.velocity * rate);
         }
         if level.acceleration != 0.0 {
-            self.sampled_acceleration_violation(system, t);
+            let Self { sampled, turned, rows, .. } = self;
+            system.constraint_curvatures(&sampled.at, &sampled.x, &sampled.v, t, &mut turned.half, rows);
             self.phi.iter_mut().zip(&self.rows).for_each(|(phi, row)| *phi += scale * level.acceleration * row);
         }
     }
@@ -65,14 +75,20 @@ impl Workspace {
     /// H v and H a of all rows at the sampled state.
     pub fn turn(&mut self, system: &System, t: f64) {
         let Self { sampled, turned, a, .. } = self;
-        system.turn(&sampled.at, &sampled.x, &sampled.v, t, &mut turned.half, &mut turned.v);
+        system.turn(&sampled.at, &sampled.x, Direction::velocity(&sampled.v), t, &mut turned.half, &mut turned.v);
         if self.level.acceleration != 0.0 {
-            system.turn(&sampled.at, &sampled.x, a, t, &mut turned.half, &mut turned.a);
+            system.turn(&sampled.at, &sampled.x, Direction { nodes: a, time: 0.0 }, t, &mut turned.half, &mut turned.a);
         }
     }
 
     /// Sums gravity, laws as they have responded, loads and λᵀG at the sampled state, or between the ends of a step of this length.
     fn sum_forces(&mut self, system: &System, t: f64, between: Option<f64>) {
+        self.sum_applied(system, t, between);
+        system.slots.add_forces(system.dim, &self.lambda, &self.sampled.at.gradient, &mut self.forces.sum);
+    }
+
+    /// The same without λᵀG.
+    fn sum_applied(&mut self, system: &System, t: f64, between: Option<f64>) {
         let dim = system.dim;
         self.forces.sum.copy_from_slice(&self.forces.weight);
         for (law, response) in system.laws.iter().zip(&self.forces.responses) {
@@ -95,14 +111,13 @@ impl Workspace {
             }
             first += width;
         }
-        system.slots.add_forces(dim, &self.lambda, &self.sampled.at.gradient, &mut self.forces.sum);
     }
 
     /// Responses of all laws at the sampled state.
     fn respond(&mut self, system: &System, t: f64) {
         let Self { sampled, turned, forces, .. } = self;
         if forces.dissipative {
-            system.turn(&sampled.at, &sampled.x, &sampled.v, t, &mut turned.half, &mut forces.motion);
+            system.turn(&sampled.at, &sampled.x, Direction::velocity(&sampled.v), t, &mut turned.half, &mut forces.motion);
         }
         for (law, response) in system.laws.iter().zip(&mut forces.responses) {
             let value = system.arguments(law, &sampled.at);
@@ -298,9 +313,10 @@ impl Workspace {
         self.sum_forces(system, t, None);
     }
 
-    /// Samples forces at the end again with other multipliers, where nothing moved since.
-    pub(super) fn resample_end(&mut self, system: &System, t: f64) {
-        self.sum_forces(system, t, None);
+    /// Samples forces but those of the rows at the end, which has its evaluation.
+    pub(super) fn sample_applied(&mut self, system: &System, t: f64) {
+        self.respond_at_end(system, t);
+        self.sum_applied(system, t, None);
     }
 
     /// Leaves Φ̈ at the sampled position, with the accelerations `a`, in `rows`.

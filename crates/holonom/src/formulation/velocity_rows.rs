@@ -5,7 +5,7 @@
 
 use super::stage::{Sampling, Stage};
 use super::workspace::{Turned, Workspace};
-use crate::system::{InvariantId, MAX_ARGUMENTS, System};
+use crate::system::{Direction, InvariantId, MAX_ARGUMENTS, System};
 
 impl Workspace {
     /// Puts what the velocity rows stand for into `phi`.
@@ -48,9 +48,12 @@ impl Workspace {
                     std::array::from_fn(|i| [0.0, mean.gradient[i] + 0.5 * there.bend(i, &rise)])
                 });
             }
-            Sampling::Start => system.turn(&end.at, &end.x, full, stage.end(), &mut turned.half, &mut turned.v),
+            Sampling::Start => {
+                let way = Direction { nodes: full, time: stage.step };
+                system.turn(&end.at, &end.x, way, stage.end(), &mut turned.half, &mut turned.v)
+            }
             Sampling::End | Sampling::Middle => {
-                system.turn(&sampled.at, &sampled.x, &sampled.v, stage.time(), &mut turned.half, &mut turned.v)
+                system.turn(&sampled.at, &sampled.x, Direction::velocity(&sampled.v), stage.time(), &mut turned.half, &mut turned.v)
             }
         }
         let share = stage.share() / stage.rate;

@@ -12,7 +12,7 @@ use super::description::{Description, Unread};
 use super::element::Boxed;
 use super::entries::{Entries, Named};
 use super::entry::{Entry, Written};
-use super::expression::{Mistake, Scope, TimeProgram, Value as Known};
+use super::expression::{Functions, Mistake, Scope, TimeProgram, Value as Known};
 use super::fault::{Fault, Faults, Read, Refused, Sink};
 use super::geometry::{self, Vec3, unit};
 use super::joints::{self, Geometry, Survey};
@@ -21,7 +21,7 @@ use super::repeat::{self, Repetition};
 use super::settings::{Output, Settings};
 use super::signals::{Formula, Signals};
 use super::tables::Tables;
-use super::value::{Value, key_path};
+use super::value::{Table, Value, key_path};
 use super::{GRAVITY, Model, SCHEMA, finish, measure, parameters, points, start, tables};
 use crate::record::Constraints;
 use crate::system::{self, SystemBuilder};
@@ -30,8 +30,12 @@ use crate::system::{self, SystemBuilder};
 pub(super) fn model(description: &Description, unread: &Unread, files: &dyn Files, sink: Sink) -> Result<Model, Faults> {
     let parameters = parameters::read(&description.parameters, &sink);
     let room = || Cell::new(repeat::MOST);
-    let tables = Compiler { sink: &sink, files, parameters: &parameters, tables: &Tables::new(), room: room() }.tables(description, unread);
-    let compiler = Compiler { sink: &sink, files, parameters: &parameters, tables: &tables, room: room() };
+    let functions = &description.functions;
+    let nothing = Tables::new();
+    let first = Compiler { sink: &sink, files, parameters: &parameters, tables: &nothing, functions, room: room() };
+    let tables = first.tables(description, unread);
+    let compiler = Compiler { tables: &tables, room: room(), ..first };
+    compiler.functions();
     let (axes, gravity) = compiler.head(description);
     let (specs, faulty_points) = compiler.points(&description.points, axes);
     let (bodies, faulty_bodies) = compiler.bodies(&description.bodies, axes);
@@ -68,7 +72,7 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
             assembly.builder.switch(Arc::new(TimeProgram(program)));
         }
         let starts = std::mem::take(&mut assembly.starts);
-        if let Err((message, cure)) = start::assemble(&mut assembly.builder, &starts) {
+        if let Err((message, cure)) = start::begin(&mut assembly.builder, &starts) {
             drop(assembly);
             let _: Refused = sink.report(|| Fault::new("start", "start", message, cure));
             return Err(sink.finish().expect_err("there is a fault"));
@@ -91,13 +95,14 @@ struct Compiler<'a> {
     files: &'a dyn Files,
     parameters: &'a HashMap<String, Known>,
     tables: &'a Tables,
+    functions: &'a Functions,
     /// Entries that repetitions may still make.
     room: Cell<usize>,
 }
 
 impl Compiler<'_> {
     fn entry<'b>(&'b self, name: &'b str, path: &'b str, written: &'b dyn Written) -> Entry<'b> {
-        let scope = Scope { parameters: Some(self.parameters), indices: &[], tables: Some(self.tables) };
+        let scope = Scope { parameters: Some(self.parameters), indices: &[], tables: Some(self.tables), functions: Some(self.functions) };
         Entry { name, path, written, scope, sink: self.sink, files: self.files }
     }
 
@@ -112,6 +117,22 @@ impl Compiler<'_> {
             tables.insert(named.name.clone(), curve.ok().map(Arc::new));
         }
         tables
+    }
+
+    /// Refuses functions with names that formulas cannot call.
+    fn functions(&self) {
+        let nothing = Table::default();
+        let mut names: Vec<&str> = self.functions.keys().map(String::as_str).collect();
+        names.sort_unstable();
+        tables::require_unlike_parameters("function", names.iter().copied(), self.parameters, self.sink);
+        for name in names {
+            let path = key_path("function", name);
+            let entry = self.entry(name, &path, &nothing);
+            let _ = parameters::require_own_name(&entry);
+            if self.tables.contains_key(name) {
+                let _: Refused = entry.refuse_all(format!("`{name}` is also a table"), "give one of them another name");
+            }
+        }
     }
 
     /// Inputs, and the formulas of measures for forces that read them.
@@ -156,8 +177,7 @@ impl Compiler<'_> {
         });
         let missing = |name: &str| {
             let is_there = all.contains(name);
-            let mistake =
-                |cure: &str| Mistake { character: 0, message: format!("`{name}` is not recorded"), cure: cure.into(), known: false };
+            let mistake = |cure: &str| Mistake::new(0, format!("`{name}` is not recorded"), cure);
             match reactions {
                 Some(false) if is_there => Some(mistake("remove reactions = false from [output]")),
                 _ if is_there => Some(mistake("write reactions = true in [output]")),

@@ -7,6 +7,7 @@ use super::bodies::{Body, Files, NoFiles};
 use super::element::Boxed;
 use super::entries::{Entries, Named};
 use super::event::Event;
+use super::expression::{External, ExternalFunction, Functions};
 use super::fault::{Fault, Faults, Read, Refused, Sink, suggest};
 use super::fields::{Field, Keys, List, Number};
 use super::input::Input;
@@ -30,6 +31,8 @@ pub struct Description {
     pub parameters: Table,
     /// `[table.NAME]`: curves, which formulas call as functions.
     pub tables: Entries<Curve>,
+    /// Functions that a program gives, which formulas call by their names; a file has none.
+    pub functions: Functions,
     /// `[input.NAME]`: numbers from outside.
     pub inputs: Entries<Input>,
     /// `[point.NAME]`: particles, and places that stay or are driven.
@@ -107,6 +110,11 @@ impl Description {
     /// Adds a curve that formulas call as a function.
     pub fn table(&mut self, name: impl Into<String>, table: Curve) -> &mut Named<Curve> {
         self.tables.add(name, table)
+    }
+
+    /// Adds a function that formulas call by its name.
+    pub fn function(&mut self, name: impl Into<String>, function: impl ExternalFunction + 'static) {
+        self.functions.insert(name.into(), External::new(function));
     }
 
     /// Adds a number from outside.
@@ -300,6 +308,7 @@ pub(super) fn read(value: &Value, kinds: &Kinds, sink: &Sink) -> Read<Partial> {
             model,
             parameters,
             tables,
+            functions: kinds.functions.clone(),
             inputs,
             points,
             bodies,

@@ -21,6 +21,11 @@ pub struct End {
 }
 
 impl End {
+    /// Whether it is a place of the world.
+    pub fn never_moves(&self) -> bool {
+        is_fixed(&self.terms)
+    }
+
     /// The node or place it is, where it is a single one.
     pub fn place(&self) -> Option<Place> {
         match self.terms[..] {
@@ -28,6 +33,11 @@ impl End {
             _ => None,
         }
     }
+}
+
+/// Whether a sum is of fixed places alone.
+pub fn is_fixed(terms: &[Term]) -> bool {
+    terms.iter().all(|term| matches!(term.place, Place::Fixed(_)))
 }
 
 /// A place that never moves.

@@ -1,6 +1,7 @@
 //! The tables of kinds and keys that the reader, the schema, the manual and the tests walk.
 
 use super::element::{self, Boxed, Element};
+use super::expression::Functions;
 use super::fault::Read;
 use super::joints::{self, Layout};
 use super::reader::Reader;
@@ -147,6 +148,8 @@ pub struct Kinds {
     pub drives: Vec<Kind>,
     /// Of `[force.NAME]`.
     pub forces: Vec<Kind>,
+    /// Functions that formulas may call beside those of every expression.
+    pub functions: Functions,
 }
 
 impl Default for Kinds {
@@ -156,6 +159,7 @@ impl Default for Kinds {
             constraints: constraints::KINDS.to_vec(),
             drives: drives::KINDS.to_vec(),
             forces: forces::KINDS.to_vec(),
+            functions: Functions::new(),
         }
     }
 }

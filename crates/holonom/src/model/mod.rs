@@ -38,6 +38,7 @@ mod settings;
 mod signals;
 mod spline;
 mod start;
+mod stroke;
 mod sum;
 mod tables;
 #[cfg(test)]
@@ -54,6 +55,7 @@ pub use ends::{End, from_to};
 pub use entries::{Entries, Named};
 pub use entry::{Entry, Spot, Written};
 pub use event::Event;
+pub use expression::{External, ExternalFunction, Functions, differences};
 pub use fault::{Fault, Faults, Read, Refused, nearest, nearest_few};
 pub use fields::{Described, Field, Keys, List, Map, Number, Place, Rows, Site, Turn};
 pub use input::Input;

@@ -22,7 +22,7 @@ pub fn read(table: &Table, sink: &Sink) -> HashMap<String, Known> {
             name: "",
             path: "parameters",
             written: table,
-            scope: Scope { parameters: Some(&known), indices: &[], tables: None },
+            scope: Scope { parameters: Some(&known), ..Scope::default() },
             sink,
             files: &NoFiles,
         };

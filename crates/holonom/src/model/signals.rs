@@ -13,7 +13,7 @@ use super::geometry::unit;
 use super::measure::like;
 use super::sum::{Sum, cross};
 use crate::record::RecordedInput;
-use crate::system::{Form, Number as AnyNumber, Place, Reading, Sense};
+use crate::system::{Form, Number as AnyNumber, Place, Quantity, Reading, Sense};
 
 /// Inputs, and the formulas of measures.
 #[derive(Default)]
@@ -35,8 +35,6 @@ pub(super) struct Formula {
 /// What a formula reads, behind its own variables.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Leaf {
-    /// In the formula of a measure.
-    Time,
     /// A coordinate of the k-th place, or of its velocity.
     Place(usize, usize, bool),
     /// A component of the angular velocity of the k-th body.
@@ -78,12 +76,30 @@ impl Readings {
         self.leaves.len()
     }
 
-    /// Appends what it reads at coordinates `x` and velocities `v` of the nodes and then of the senses, at the time `t`.
-    pub fn append<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, out: &mut SmallVec<[N; ROOM]>) {
+    /// The name of the first number that is no position of a place.
+    pub fn first_but_positions(&self) -> Option<&str> {
+        let other = self.leaves.iter().position(|leaf| !matches!(leaf, Leaf::Place(_, _, false)))?;
+        Some(&self.names[0][other])
+    }
+
+    /// The name of the first number that is a velocity.
+    pub fn first_rate(&self) -> Option<&str> {
+        let rate = self.leaves.iter().position(|leaf| matches!(leaf, Leaf::Place(_, _, true) | Leaf::Turn(..) | Leaf::Sense(_, true)))?;
+        Some(&self.names[0][rate])
+    }
+
+    /// Adds a quantity that the load acts on, behind all that is read; says where it is among the load's coordinates. Nothing is read after
+    /// that.
+    pub fn own(&mut self, quantity: Quantity) -> usize {
+        self.reading.senses.push(Sense::Quantity(quantity));
+        self.dim * self.reading.nodes.len() + self.reading.senses.len() - 1
+    }
+
+    /// Appends what it reads at coordinates `x` and velocities `v` of the nodes and then of the senses.
+    pub fn append<N: AnyNumber>(&self, x: &[N], v: &[N], out: &mut SmallVec<[N; ROOM]>) {
         let own = self.dim * self.reading.nodes.len();
         for leaf in &self.leaves {
             out.push(match *leaf {
-                Leaf::Time => t,
                 Leaf::Place(k, axis, false) => self.places[k].at(x, self.dim, 1.0)[axis],
                 Leaf::Place(k, axis, true) => self.places[k].at(v, self.dim, 0.0)[axis],
                 Leaf::Sense(k, false) => x[own + k],
@@ -196,7 +212,7 @@ impl<'a, 'b> Reader<'a, 'b> {
         let directions: Vec<_> = (0..3).map(|k| own.direction(unit(k))).collect();
         if !directions.iter().all(|&direction| frame.holds(direction)) {
             let message = format!("how `{owner}` turns about itself is not known: it is thin, and nothing holds it there");
-            return Err(mistake(message, "give it some inertia about that axis"));
+            return Err(Mistake::new(0, message, "give it some inertia about that axis"));
         }
         let axes = directions.into_iter().map(|direction| frame.vector(direction)).collect::<Vec<_>>();
         let axes = axes.iter().map(|axis| Sum::new(axis, &mut self.readings.reading.nodes)).collect();
@@ -238,11 +254,11 @@ impl Names for Reader<'_, '_> {
         if let Some(known) = self.readings.names[0].iter().position(|known| known == name) {
             return Ok(Some(known));
         }
-        if name == "t" {
-            return Ok(Some(self.leaf(name, Leaf::Time)));
+        if name.split('.').next() == Some(GROUND) {
+            return Ok(None);
         }
-        if name.split('.').next() == Some(GROUND) || self.is_faulty(name) {
-            return if name.starts_with(GROUND) { Ok(None) } else { Err(Mistake { known: true, ..mistake("", "") }) };
+        if self.is_faulty(name) {
+            return Err(Mistake::known());
         }
         if let Some(input) = self.assembly.signals.inputs.iter().position(|input| input.name == name) {
             let sense = self.sense(name, |_| Sense::Input(input));
@@ -269,9 +285,10 @@ impl Names for Reader<'_, '_> {
         if name.contains('.') {
             let names = self.names();
             let cure = like(name, names.iter().map(String::as_str));
-            let message =
-                format!("`{name}` cannot be read here: positions, velocities, coordinates of joints, inputs and measures of these can");
-            return Err(mistake(message, cure));
+            // Constraints come before the coordinates of joints.
+            let coordinates = if self.assembly.joints.is_empty() { "" } else { "coordinates of joints, " };
+            let message = format!("`{name}` cannot be read here: positions, velocities, {coordinates}inputs and measures of these can");
+            return Err(Mistake::new(0, message, cure));
         }
         Ok(None)
     }
@@ -280,7 +297,7 @@ impl Names for Reader<'_, '_> {
         let Some(Formula { value, indices }) = self.assembly.signals.measures.get(name).cloned() else { return Ok(None) };
         if self.open.iter().any(|open| open == name) {
             let round: Vec<&str> = self.open.iter().map(String::as_str).chain([name]).collect();
-            return Err(mistake(format!("measures go round in a circle: {}", round.join(" → ")), "let one of them read no other"));
+            return Err(Mistake::new(0, format!("measures go round in a circle: {}", round.join(" → ")), "let one of them read no other"));
         }
         let text = match value {
             Number::Given(number) => return Ok(Some(Program::constant(number))),
@@ -288,11 +305,11 @@ impl Names for Reader<'_, '_> {
         };
         self.open.push(name.to_string());
         let scope = Scope { indices: &indices, ..self.entry.scope };
-        let program = Program::parse_with(&text, &[], self, &scope);
+        let program = Program::parse_with(&text, &["t"], self, &scope);
         self.open.pop();
         program.map(Some).map_err(|inner| match inner.known {
             true => inner,
-            false => mistake(format!("the measure `{name}` cannot be read here: {}", inner.message), inner.cure),
+            false => Mistake::new(0, format!("the measure `{name}` cannot be read here: {}", inner.message), inner.cure),
         })
     }
 
@@ -303,8 +320,4 @@ impl Names for Reader<'_, '_> {
     fn known(&self) -> Vec<String> {
         self.names()
     }
-}
-
-fn mistake(message: impl Into<String>, cure: impl Into<String>) -> Mistake {
-    Mistake { character: 0, message: message.into(), cure: cure.into(), known: false }
 }

@@ -8,8 +8,8 @@ use super::entry::Entry;
 use super::fault::Read;
 use super::fields::{Keys, Number};
 use super::joints::{Coordinate, coordinate};
-use crate::simulation::{Choice, Method, Simulation};
-use crate::system::{Constant, Signal, System, SystemBuilder};
+use crate::simulation::{Choice, Method, Simulation, State};
+use crate::system::{Constant, Shifted, Signal, System, SystemBuilder};
 
 /// `[start.JOINT]`
 #[derive(Clone, Debug, Default, PartialEq, Keys)]
@@ -21,28 +21,21 @@ pub struct Start {
     /// displacement of the joint at the start, counted from the pose that is written
     #[key(unit = "m", default = "as it comes")]
     pub displacement: Option<Number>,
+    /// rate of the angle at the start
+    #[key(unit = "rad/s", default = "as it comes")]
+    pub angle_rate: Option<Number>,
+    /// rate of the displacement at the start
+    #[key(unit = "m/s", default = "as it comes")]
+    pub displacement_rate: Option<Number>,
 }
 
-/// A coordinate, and what it is at the start.
+/// A coordinate, and what it and its rate are at the start, where they are given.
 pub struct Target {
     coordinate: Coordinate,
-    value: f64,
+    value: Option<f64>,
+    rate: Option<f64>,
     /// The row of its drive.
     row: Option<usize>,
-}
-
-/// A motion that begins elsewhere.
-struct Shifted(Arc<dyn Signal>, f64);
-
-impl Signal for Shifted {
-    fn at(&self, t: f64) -> [f64; 3] {
-        let [value, rate, second] = self.0.at(t);
-        [value + self.1, rate, second]
-    }
-
-    fn is_constant(&self) -> bool {
-        self.0.is_constant()
-    }
 }
 
 /// The profile of a drive of a coordinate, whose row is the next one: it counts from where the joint is at the start.
@@ -53,7 +46,7 @@ pub(super) fn profile(assembly: &mut Assembly<'_>, coordinate: &Coordinate, prof
         None => profile,
         Some(target) => {
             target.row = Some(row);
-            Arc::new(Shifted(profile, target.value))
+            Arc::new(Shifted(profile, target.value.unwrap_or(0.0)))
         }
     }
 }
@@ -61,18 +54,24 @@ pub(super) fn profile(assembly: &mut Assembly<'_>, coordinate: &Coordinate, prof
 impl Start {
     /// Adds the coordinates of the joint that the entry is called after to those that are moved.
     pub(super) fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
-        let given = [("angle", &self.angle), ("displacement", &self.displacement)];
-        if given.iter().all(|(_, value)| value.is_none()) {
-            return Err(entry.refuse_all("nothing is said of the start", "give `angle` or `displacement`"));
+        let given = [
+            ("angle", &self.angle, "angle_rate", &self.angle_rate),
+            ("displacement", &self.displacement, "displacement_rate", &self.displacement_rate),
+        ];
+        if given.iter().all(|(_, value, _, rate)| value.is_none() && rate.is_none()) {
+            return Err(entry.refuse_all("nothing is said of the start", "give `angle` or `displacement`, or a rate of these"));
         }
-        for (key, value) in given {
-            let Some(value) = entry.optional(key, value, Number::number)? else { continue };
-            let name = format!("{}.{key}", entry.name);
-            let coordinate = coordinate(assembly, entry, key.into(), &name)?;
-            if coordinate.is_angle && value.abs() >= std::f64::consts::PI {
+        for (key, value, rate_key, rate) in given {
+            let (value, rate) = (entry.optional(key, value, Number::number)?, entry.optional(rate_key, rate, Number::number)?);
+            if value.is_none() && rate.is_none() {
+                continue;
+            }
+            let at = if value.is_some() { key } else { rate_key };
+            let coordinate = coordinate(assembly, entry, at.into(), &format!("{}.{key}", entry.name))?;
+            if let Some(value) = value.filter(|value| coordinate.is_angle && value.abs() >= std::f64::consts::PI) {
                 return Err(entry.refuse(key, format!("{value} rad is half a turn or more"), "take the same angle within half a turn"));
             }
-            assembly.starts.push(Target { coordinate, value, row: None });
+            assembly.starts.push(Target { coordinate, value, rate, row: None });
         }
         Ok(())
     }
@@ -85,12 +84,21 @@ const LEAST_SHARE: f64 = 1e-4;
 /// Parts of the way that are tried.
 const MOST_TRIES: usize = 1000;
 
+/// Puts the mechanism where its coordinates are given, and has it move at the rates that are.
+///
+/// # Errors
+/// Why that cannot be, and the cure.
+pub(super) fn begin(builder: &mut SystemBuilder, targets: &[Target]) -> Result<(), (String, &'static str)> {
+    assemble(builder, targets)?;
+    set_off(builder, targets)
+}
+
 /// Moves all nodes on a way along which every constraint is met, with as little as possible of all else, in the metric of the mass.
 ///
 /// # Errors
 /// Why that cannot be, and the cure.
-pub(super) fn assemble(builder: &mut SystemBuilder, targets: &[Target]) -> Result<(), (String, &'static str)> {
-    if targets.is_empty() {
+fn assemble(builder: &mut SystemBuilder, targets: &[Target]) -> Result<(), (String, &'static str)> {
+    if targets.iter().all(|target| target.value.is_none()) {
         return Ok(());
     }
     if builder.is_moving() {
@@ -99,20 +107,23 @@ pub(super) fn assemble(builder: &mut SystemBuilder, targets: &[Target]) -> Resul
     }
     let (mut share, mut step) = (0.0, FIRST_SHARE);
     let mut here = builder.position().to_vec();
+    // Angles there: joints may turn further than half a turn on the way.
+    let mut turned = [Vec::new(), Vec::new()];
     // How far all nodes went, over the share.
     let mut way = vec![0.0; here.len()];
     for tries in 1.. {
         let next = f64::min(share + step, 1.0);
         let ahead: Vec<f64> = here.iter().zip(&way).map(|(x, way)| x + (next - share) * way).collect();
-        builder.move_to(&ahead);
+        builder.move_to(&ahead, turned.each_ref().map(|angles| &angles[..]));
         match at(builder.clone(), targets, next) {
-            Some((system, x)) => {
-                let there = system.in_world(&x);
+            Some((system, state)) => {
+                let there = system.in_world(&state.x);
                 way = there.iter().zip(&here).map(|(there, here)| (there - here) / (next - share)).collect();
                 here = there.to_vec();
+                turned = [state.angle, state.measured];
                 (share, step) = (next, 2.0 * step);
                 if share == 1.0 {
-                    builder.move_to(&here);
+                    builder.move_to(&here, turned.each_ref().map(|angles| &angles[..]));
                     break;
                 }
             }
@@ -128,8 +139,9 @@ pub(super) fn assemble(builder: &mut SystemBuilder, targets: &[Target]) -> Resul
 }
 
 /// The mechanism with its coordinates at a share of the way.
-fn at(mut builder: SystemBuilder, targets: &[Target], share: f64) -> Option<(Arc<System>, Vec<f64>)> {
-    for Target { coordinate, value, row } in targets {
+fn at(mut builder: SystemBuilder, targets: &[Target], share: f64) -> Option<(Arc<System>, State)> {
+    for Target { coordinate, value, row, .. } in targets {
+        let Some(value) = value else { continue };
         let here = Arc::new(Constant(share * value));
         if let Some(row) = row {
             builder.retarget(*row, here);
@@ -142,6 +154,55 @@ fn at(mut builder: SystemBuilder, targets: &[Target], share: f64) -> Option<(Arc
     let system = Arc::new(builder.build());
     let method = Method::resolve(&Choice::default()).expect("the default method goes with everything");
     let simulation = Simulation::new(system.clone(), method, 1e-3).ok()?;
-    let x = simulation.state().x.clone();
-    Some((system, x))
+    let state = simulation.state().clone();
+    Some((system, state))
+}
+
+/// A coordinate that has a rate: its value now, and that.
+struct Rising([f64; 2]);
+
+impl Signal for Rising {
+    fn at(&self, t: f64) -> [f64; 3] {
+        let [value, rate] = self.0;
+        [value + rate * t, rate, 0.0]
+    }
+}
+
+/// Gives the nodes the velocities at which coordinates have their rates and all constraints are met, with as little as possible of a change
+/// of those that are written, in the metric of the mass.
+fn set_off(builder: &mut SystemBuilder, targets: &[Target]) -> Result<(), (String, &'static str)> {
+    let rated: Vec<(&Target, f64)> = targets.iter().filter_map(|target| Some((target, target.rate?))).collect();
+    if rated.is_empty() {
+        return Ok(());
+    }
+    if let Some((Target { coordinate, .. }, _)) = rated.iter().find(|(target, _)| target.row.is_some()) {
+        let message = format!("`{}.{}` is driven: its drive says how fast it is", coordinate.joint, coordinate.name);
+        return Err((message, "remove the rate, or the drive"));
+    }
+    let mut led = builder.clone();
+    let first = led.rows();
+    for (Target { coordinate, .. }, _) in &rated {
+        let part = led.part(&coordinate.form);
+        let sum = led.sum(&[(part, 1.0)]);
+        led.row(&coordinate.joint, sum, Arc::new(Constant(0.0)));
+    }
+    // What the new rows are at zero targets are the coordinates as they are counted there.
+    let here = led.clone().build();
+    let (mut at, mut values) = (here.evaluation(), vec![0.0; here.constraints()]);
+    here.evaluate_again(here.start_position(), 0.0, &mut at);
+    here.constraint_values(&at, 0.0, &mut values);
+    for (k, (_, rate)) in rated.iter().enumerate() {
+        led.retarget(first + k, Arc::new(Rising([values[first + k], *rate])));
+    }
+    let method = Method::resolve(&Choice::default()).expect("the default method goes with everything");
+    match Simulation::new(Arc::new(led.build()), method, 1e-3) {
+        Ok(simulation) => builder.set_velocity(&simulation.state().v),
+        Err(_) => {
+            let name = |(Target { coordinate, .. }, _): &(&Target, f64)| format!("`{}.{}`", coordinate.joint, coordinate.name);
+            let names = rated.iter().map(name).collect::<Vec<_>>().join(", ");
+            let message = format!("no velocities at the start meet all constraints and the rates that are given of {names}");
+            return Err((message, "take rates that the joints can have together, and that no constraint forbids"));
+        }
+    }
+    Ok(())
 }

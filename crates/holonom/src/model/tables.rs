@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::drives::Row;
-use super::entry::{Entry, Spot, all};
+use super::drives::{Row, rows};
+use super::entry::{Entry, Spot};
 use super::expression::{self, Beyond};
 use super::fault::{Read, Sink, suggest};
 use super::fields::{Keys, List};
@@ -85,12 +85,7 @@ impl Curve {
                 if let Some((key, _)) = columns.iter().find(|(_, name)| name.is_some()) {
                     return Err(entry.refuse(*key, format!("`{key}` is a column of a file, and this table has none"), "remove it"));
                 }
-                let row = |(k, row): (usize, &Row)| {
-                    let spot = Spot { key: "points", item: Some(k) };
-                    let (x, y) = (row.time.number(entry, spot), row.value.number(entry, spot));
-                    Ok((x?, y?))
-                };
-                let (x, y) = all(points.iter().enumerate().map(row))?.into_iter().unzip();
+                let (x, y) = rows(points, entry, "points")?;
                 Ok(("points", x, y))
             }
             (None, Some(name)) => {

@@ -13,7 +13,7 @@ fn folders() -> [(&'static str, Vec<&'static Kind>, &'static [&'static str]); 4]
         (
             "forces",
             forces::KINDS.iter().collect(),
-            &["body-load", "along-laws", "coordinate-laws", "joint", "laws", "point-load", "rope-laws"],
+            &["body-load", "along-laws", "coordinate-laws", "joint", "laws", "point-load", "following", "rope-laws"],
         ),
     ]
 }

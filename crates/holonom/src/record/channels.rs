@@ -246,7 +246,7 @@ impl Channels {
             let is_angle = self.angles.contains(name);
             let (units, what) = (Units::of(is_angle), if is_angle { "angle" } else { "displacement" });
             [
-                Heading::new(name.clone(), units.value, format!("{what}, from the start")),
+                Heading::new(name.clone(), units.value, format!("{what}, from the pose that is written")),
                 Heading::new(format!("{name}_rate"), units.rate, format!("rate of the {what}")),
             ]
         })

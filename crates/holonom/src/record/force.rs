@@ -24,7 +24,12 @@ pub enum Shows {
     /// Nothing.
     Power,
     /// Length, its rate and the tension.
-    Tension(Lengths),
+    Tension {
+        /// What the tension acts along, in the order of the lengths; the coordinate of a drum last.
+        quantities: Vec<Quantity>,
+        /// How the length follows from them.
+        lengths: Lengths,
+    },
     /// What its laws exert along some coordinates.
     Along(Vec<Along>),
     /// What its load exerts.
@@ -45,6 +50,8 @@ pub enum Lengths {
         factors: Vec<f64>,
         /// What is added to them, m.
         fixed: f64,
+        /// The drum, whose coordinate is the argument behind them.
+        drum: Option<Along>,
     },
     /// It is the argument itself, along an axis.
     Along,
@@ -53,7 +60,7 @@ pub enum Lengths {
 /// A coordinate that laws act along.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Along {
-    /// The first argument of the laws.
+    /// The first argument of the laws, or that behind the lengths of a rope.
     pub coordinate: FunctionId,
     /// Suffix of the column of the coordinate itself, and what it is in words, where it is shown.
     pub value: Option<[String; 2]>,
@@ -111,6 +118,13 @@ impl At<'_> {
     }
 }
 
+impl Along {
+    fn effort_heading(&self, of: &dyn Fn(&str, &'static str, String) -> Heading) -> Heading {
+        let [suffix, words] = &self.effort;
+        of(suffix, Units::of(self.is_angle).effort, words.clone())
+    }
+}
+
 impl RecordedForce {
     /// Its columns, for a model with these axes.
     pub(super) fn headings(&self, axes: &str) -> Vec<Heading> {
@@ -118,7 +132,7 @@ impl RecordedForce {
         let mut headings = Vec::new();
         match &self.shows {
             Shows::Power => (),
-            Shows::Tension(lengths) => {
+            Shows::Tension { lengths, .. } => {
                 let what = match lengths {
                     Lengths::Distances { factors, .. } if factors.len() == 1 => "distance of its ends",
                     Lengths::Distances { .. } => "length from end to end",
@@ -129,14 +143,14 @@ impl RecordedForce {
                     of("length_rate", "m/s", "rate of the length".into()),
                     of("force", "N", "tension: above zero it pulls its ends together".into()),
                 ]);
+                if let Lengths::Distances { drum: Some(drum), .. } = lengths {
+                    headings.push(drum.effort_heading(&of));
+                }
             }
             Shows::Along(coordinates) => {
                 let shown = |along: &Along| along.value.clone().map(|[suffix, words]| (suffix, words, Units::of(along.is_angle)));
                 headings.extend(coordinates.iter().filter_map(shown).map(|(suffix, words, units)| of(&suffix, units.value, words)));
-                headings.extend(coordinates.iter().map(|along| {
-                    let [suffix, words] = &along.effort;
-                    of(suffix, Units::of(along.is_angle).effort, words.clone())
-                }));
+                headings.extend(coordinates.iter().map(|along| along.effort_heading(&of)));
             }
             Shows::Load { is_moment, .. } => {
                 let [letter, unit, what] = if *is_moment { ["t", "N·m", "moment"] } else { ["f", "N", "force"] };
@@ -158,21 +172,25 @@ impl RecordedForce {
         let responses: Vec<_> = laws.iter().map(|law| at.response(law)).collect();
         match &self.shows {
             Shows::Power => (),
-            Shows::Tension(lengths) => {
-                let Some(law) = laws.first() else { return };
+            Shows::Tension { quantities, lengths } => {
                 let of = |quantity: &Quantity| [at.value(*quantity), at.rate(*quantity)];
-                let forces = responses.iter().map(|(_, response)| response.force[0]);
+                let force = |k: usize| {
+                    let of_loads = loads.iter().map(|load| at.along(load, quantities[k]));
+                    responses.iter().map(|(_, response)| response.force[k]).sum::<f64>() - of_loads.sum::<f64>()
+                };
                 match lengths {
-                    Lengths::Distances { factors, fixed } => {
-                        let each: Vec<(f64, f64)> = law.arguments.iter().map(of).map(|[value, rate]| length(value, rate)).collect();
-                        let tension: f64 = forces.map(|force| force * each[0].0 / factors[0]).sum();
+                    Lengths::Distances { factors, fixed, drum } => {
+                        let stretches = quantities[..factors.len()].iter();
+                        let each: Vec<(f64, f64)> = stretches.map(of).map(|[value, rate]| length(value, rate)).collect();
+                        let tension = force(0) * each[0].0 / factors[0];
                         let sum =
                             |of: &dyn Fn(&(f64, f64)) -> f64| each.iter().zip(factors).map(|(one, factor)| factor * of(one)).sum::<f64>();
                         row.extend([fixed + sum(&|one| one.0), sum(&|one| one.1), tension]);
+                        row.extend(drum.as_ref().map(|_| 0.0 - force(factors.len())));
                     }
                     Lengths::Along => {
-                        let [length, rate] = of(&law.arguments[0]);
-                        row.extend([length, rate, forces.sum()]);
+                        let [length, rate] = of(&quantities[0]);
+                        row.extend([length, rate, force(0)]);
                     }
                 }
             }

@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::simulation::any_number;
+
 /// A formula of some numbers.
 pub trait Formula: Send + Sync {
     /// Its value.
@@ -87,25 +89,28 @@ impl RecordedMeasure {
 pub struct RunningValue {
     /// Times of the first number and of the last, s.
     times: [f64; 2],
-    /// The last number, and the largest, the smallest or the integral; none before the first.
-    values: Option<[f64; 2]>,
+    /// The last number, and the largest, the smallest or the integral.
+    #[serde(with = "any_number")]
+    values: [f64; 2],
+    /// Whether there was a number yet.
+    has_begun: bool,
 }
 
 impl RunningValue {
     /// Takes the number at a time in, and hands back the running value. What is no number shows, and stays.
     pub fn add(&mut self, running: Running, t: f64, value: f64) -> f64 {
-        let [since, before] = if self.values.is_some() { self.times } else { [t, t] };
-        let step = t - before;
-        let sum = match (running, self.values) {
-            (Running::Max | Running::Min, None) => value,
-            (_, None) => 0.0,
-            (Running::Max, Some([_, sum])) if value <= sum || sum.is_nan() => sum,
-            (Running::Min, Some([_, sum])) if value >= sum || sum.is_nan() => sum,
-            (Running::Max | Running::Min, Some(_)) => value,
-            (Running::Integral | Running::Mean, Some([last, sum])) => sum + 0.5 * step * (last + value),
-            (Running::Rms, Some([last, sum])) => sum + step / 3.0 * (last * last + last * value + value * value),
+        let [since, before] = if self.has_begun { self.times } else { [t, t] };
+        let (step, [last, sum]) = (t - before, self.values);
+        let sum = match running {
+            Running::Max | Running::Min if !self.has_begun => value,
+            _ if !self.has_begun => 0.0,
+            Running::Max if value <= sum || sum.is_nan() => sum,
+            Running::Min if value >= sum || sum.is_nan() => sum,
+            Running::Max | Running::Min => value,
+            Running::Integral | Running::Mean => sum + 0.5 * step * (last + value),
+            Running::Rms => sum + step / 3.0 * (last * last + last * value + value * value),
         };
-        (self.times, self.values) = ([since, t], Some([value, sum]));
+        *self = Self { times: [since, t], values: [value, sum], has_begun: true };
         let whole = t - since;
         match running {
             Running::Max | Running::Min | Running::Integral => sum,
@@ -118,8 +123,8 @@ impl RunningValue {
 }
 
 /// The measures of a recording while it goes on.
-pub(super) struct Measures<'a> {
-    measures: &'a [RecordedMeasure],
+pub(super) struct Measures {
+    measures: Vec<RecordedMeasure>,
     /// Of each measure the places of its variables in the row, or which series they are; none of a column that is not recorded.
     places: Vec<Vec<Option<Place>>>,
     /// Of each measure the sums of its series.
@@ -134,12 +139,9 @@ enum Place {
     Series(usize),
 }
 
-impl<'a> Measures<'a> {
+impl Measures {
     /// Of a recording with these columns before those of the measures.
-    pub fn new<'n>(measures: &'a [RecordedMeasure], columns: impl Iterator<Item = &'n str>) -> Self
-    where
-        'a: 'n,
-    {
+    pub fn new<'a>(measures: &'a [RecordedMeasure], columns: impl Iterator<Item = &'a str>) -> Self {
         let own = measures.iter().map(|measure| measure.name.as_str());
         let by_name: std::collections::HashMap<&str, usize> = columns.chain(own).enumerate().map(|(k, name)| (name, k)).collect();
         let place = |read: &MeasureReads| match read {
@@ -150,7 +152,7 @@ impl<'a> Measures<'a> {
             places: measures.iter().map(|measure| measure.reads.iter().map(place).collect()).collect(),
             sums: measures.iter().map(|measure| vec![RunningValue::default(); measure.series.len()]).collect(),
             values: Vec::new(),
-            measures,
+            measures: measures.to_vec(),
         }
     }
 

@@ -43,6 +43,14 @@ impl Recording {
         Self { columns, by_name }
     }
 
+    /// A table of columns that are there already; none where their numbers or lengths differ.
+    pub fn of_columns(headings: impl IntoIterator<Item = impl Into<Heading>>, values: Vec<Vec<f64>>) -> Option<Self> {
+        let mut table = Self::new(headings);
+        let is_even = values.len() == table.columns.len() && values.windows(2).all(|two| two[0].len() == two[1].len());
+        table.columns.iter_mut().zip(values).for_each(|(column, values)| column.values = values);
+        is_even.then_some(table)
+    }
+
     /// Appends one row.
     ///
     /// # Panics

@@ -82,7 +82,7 @@ impl Peaks {
             let column = |suffix: &str| format!("{}.{suffix}", force.name);
             match &force.shows {
                 Shows::Power => Vec::new(),
-                Shows::Tension(_) => vec![peak(&force.name, &[column("force")])],
+                Shows::Tension { .. } => vec![peak(&force.name, &[column("force")])],
                 Shows::Along(along) => along.iter().map(|along| peak(&force.name, &[column(&along.effort[0])])).collect(),
                 Shows::Load { is_moment, .. } => {
                     let letter = if *is_moment { 't' } else { 'f' };

@@ -1,5 +1,7 @@
 //! An observer that records a run: the columns of `trajectory.csv`.
 
+use std::borrow::Cow;
+
 use nalgebra::{Quaternion, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
@@ -56,7 +58,7 @@ pub enum Constraints {
 /// Records the start, every `every`-th step and nothing else. ΔE_i and ΔE_p of the steps between are summed into the
 /// row that follows them, so that the columns add up whatever is left out.
 pub struct Recorder<'a> {
-    channels: &'a Channels,
+    channels: Cow<'a, Channels>,
     every: u64,
     seen: u64,
     /// ΔE_i and ΔE_p since the last row, J.
@@ -64,7 +66,7 @@ pub struct Recorder<'a> {
     last: [f64; 2],
     resumed: bool,
     constraints: Constraints,
-    measures: Measures<'a>,
+    measures: Measures,
     orientations: Vec<UnitQuaternion<f64>>,
     row: Vec<f64>,
     recording: Recording,
@@ -73,6 +75,10 @@ pub struct Recorder<'a> {
 impl<'a> Recorder<'a> {
     /// Records channels of a system, and `constraints` where the simulation finds forces.
     pub fn new(channels: &'a Channels, system: &System, every: u64, constraints: Constraints) -> Self {
+        Self::of(Cow::Borrowed(channels), system, every, constraints)
+    }
+
+    fn of(channels: Cow<'a, Channels>, system: &System, every: u64, constraints: Constraints) -> Self {
         let mut headings = channels.headings(system, constraints);
         let measures = Measures::new(&channels.measures, headings.iter().map(|heading| heading.name.as_str()));
         headings.extend(channels.measures.iter().map(|measure| Heading::new(&measure.name, measure.unit.clone(), &measure.meaning)));
@@ -90,6 +96,11 @@ impl<'a> Recorder<'a> {
             measures,
             recording,
         }
+    }
+
+    /// The same recorder with channels of its own, which goes wherever its simulation goes.
+    pub fn into_owned(self) -> Recorder<'static> {
+        Recorder { channels: Cow::Owned(self.channels.into_owned()), ..self }
     }
 
     /// Goes on from an earlier recording of the same model, where the run is resumed.

@@ -23,10 +23,7 @@ impl Checkpoint {
     /// Whether a run that goes on from here is as one that did not end here: not from within a nominal step, as after a last one that the
     /// end of the run has cut short, and not where an event has ended the run.
     pub fn goes_on_unbroken(&self) -> bool {
-        self.run.as_ref().is_some_and(|run| {
-            let is_ended = run.happenings.last().is_some_and(|last| last.stopped && last.t == self.state.t);
-            self.state.t == run.grid.at(run.grid.passed) && !is_ended
-        })
+        self.run.as_ref().is_some_and(|run| self.state.t == run.grid.at(run.grid.passed) && !run.has_ended)
     }
 }
 
@@ -42,6 +39,16 @@ struct Run {
     /// The method in words.
     method: String,
     grid: Grid,
+    happenings: Vec<Happening>,
+    /// How often events with a period have happened.
+    samples: Vec<u64>,
+    has_ended: bool,
+    progress: Progress,
+}
+
+/// What a step changes beside the state.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Progress {
     steps: u64,
     /// Velocities and accelerations that are shown.
     shown: [Vec<f64>; 2],
@@ -52,8 +59,12 @@ struct Run {
     /// Iterations and factorisations so far.
     counters: [u64; 2],
     flight: Option<Flight>,
-    #[serde(default)]
-    happenings: Vec<Happening>,
+}
+
+/// Where steps within a nominal one begin, to go back to.
+pub(super) struct Moment {
+    state: State,
+    progress: Progress,
 }
 
 /// What the steps before said of rows and dampers, of which the next step is made beside the state.
@@ -125,14 +136,30 @@ impl Grid {
     }
 }
 
+impl Moment {
+    pub(super) fn t(&self) -> f64 {
+        self.state.t
+    }
+}
+
 impl Simulation {
     /// All that the run goes on from.
     pub fn checkpoint(&self) -> Checkpoint {
-        let mut measured = Measured::default();
-        measured.keep(&self.gauges);
         let run = Run {
             method: words(&self.method),
             grid: self.grid,
+            happenings: self.happenings.clone(),
+            samples: self.samples.clone(),
+            has_ended: self.has_ended,
+            progress: self.progress(),
+        };
+        Checkpoint { state: self.state.clone(), run: Some(run) }
+    }
+
+    fn progress(&self) -> Progress {
+        let mut measured = Measured::default();
+        measured.keep(&self.gauges);
+        Progress {
             steps: self.steps,
             shown: [self.shown_v.clone(), self.shown_a.clone()],
             measured,
@@ -141,9 +168,7 @@ impl Simulation {
             hints: Hints::of(&self.newton, &*self.integrator),
             counters: [self.newton.iterations, self.newton.factorizations],
             flight: self.pilot.as_ref().map(|pilot| pilot.flight()),
-            happenings: self.happenings.clone(),
-        };
-        Checkpoint { state: self.state.clone(), run: Some(run) }
+        }
     }
 
     /// Goes on from a checkpoint of an earlier run of the same system: with the same method and nominal step to the same bits, with
@@ -163,43 +188,42 @@ impl Simulation {
         system.evaluate_again(&state.x, state.t, &mut work.start.at);
         let mut simulation = Self::assemble(system, method, integrator, step, newton, work, state);
         if let Some(run) = run.filter(|run| run.method == words(&simulation.method)) {
-            simulation.go_on(run);
+            simulation.go_on(run.progress);
+            (simulation.happenings, simulation.samples, simulation.has_ended) = (run.happenings, run.samples, run.has_ended);
+            if run.grid.step == simulation.step {
+                simulation.grid = run.grid;
+            }
         }
         Some(simulation)
     }
 
-    /// Goes back to a checkpoint of this run.
-    pub(super) fn restore(&mut self, checkpoint: &Checkpoint) {
-        self.state.copy_from(&checkpoint.state);
+    /// The present moment, to go back to.
+    pub(super) fn moment(&self) -> Moment {
+        Moment { state: self.state.clone(), progress: self.progress() }
+    }
+
+    /// Goes back to a moment of this run.
+    pub(super) fn restore(&mut self, moment: &Moment) {
+        self.state.copy_from(&moment.state);
         self.work.memory.copy_from_slice(&self.state.memory);
-        self.go_on(checkpoint.run.clone().expect("a checkpoint of a run"));
+        self.go_on(moment.progress.clone());
     }
 
-    /// Has the nominal step begin at a checkpoint of this run that it was taken from in parts.
-    pub(super) fn join_parts(&mut self, first: &Checkpoint) {
-        if let Some(run) = &first.run {
-            self.audit.join_parts(&run.audit);
-        }
-    }
-
-    fn go_on(&mut self, run: Run) {
+    fn go_on(&mut self, progress: Progress) {
         let state = self.state.clone();
-        if let (Some(mut pilot), Some(flight)) = (self.pilot.take(), run.flight) {
+        if let (Some(mut pilot), Some(flight)) = (self.pilot.take(), progress.flight) {
             pilot.take_over(flight, self);
             self.pilot = Some(pilot);
         }
         self.state.copy_from(&state);
-        [self.shown_v, self.shown_a] = run.shown;
-        self.gauges.restore(&run.measured);
+        [self.shown_v, self.shown_a] = progress.shown;
+        self.gauges.restore(&progress.measured);
         self.gauges.count_on(&state.measured);
-        (self.audit, self.reactions) = (run.audit, run.reactions);
-        [self.newton.iterations, self.newton.factorizations] = run.counters;
-        self.hints = run.hints;
+        (self.audit, self.reactions) = (progress.audit, progress.reactions);
+        [self.newton.iterations, self.newton.factorizations] = progress.counters;
+        self.hints = progress.hints;
         self.hints.restore(&mut self.newton, &mut *self.integrator);
-        (self.steps, self.happenings) = (run.steps, run.happenings);
-        if run.grid.step == self.step {
-            self.grid = run.grid;
-        }
+        self.steps = progress.steps;
         state.load(&mut self.work);
         self.system.evaluate_again(&state.x, state.t, &mut self.work.start.at);
     }

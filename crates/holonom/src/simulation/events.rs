@@ -1,10 +1,11 @@
-//! Inputs, and events: when the indicators of a system go through zero, and what happens then.
+//! Inputs, and events: when the indicators of a system go through zero or a period is over, and what happens then.
 
 use serde::{Deserialize, Serialize};
 
-use super::{Checkpoint, Simulation};
+use super::checkpoint::Moment;
+use super::{Audit, Simulation};
 use crate::formulation::Failure;
-use crate::system::Look;
+use crate::system::{Look, Trigger};
 
 /// An event that happened.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,7 +22,7 @@ pub struct Happening {
 const LOCATED: f64 = 1e-12;
 
 /// Shortest part of a step: over a shorter one a rounding of positions would be a velocity. An event closer to the beginning of a step is taken
-/// there, and what is left of a step behind one is left out.
+/// there, and one closer to its end at that end.
 const SHORTEST: f64 = 1e-6;
 
 /// Tries to find the time of an event. Each halves the interval at least every other time.
@@ -31,6 +32,11 @@ impl Simulation {
     /// Events that happened so far, in their order.
     pub fn events(&self) -> &[Happening] {
         &self.happenings
+    }
+
+    /// The event that ended the last run.
+    pub(super) fn ending(&self) -> Option<&Happening> {
+        self.happenings.iter().rev().find(|event| self.has_ended && event.stopped)
     }
 
     /// Sets a number from outside, which counts from here on; says whether there is an input of that name. Set between steps, it is the same
@@ -67,59 +73,135 @@ impl Simulation {
         }
         let system = self.system.clone();
         let shortest = SHORTEST * (target - self.state.t);
-        let mut first_part = None;
+        let first = (self.audit.clone(), self.steps);
         // Indicators where the part begins; zero of events that happened there, also at the end of the step before.
-        let mut from = self.indicate();
-        for last in self.happenings.iter().rev().take_while(|last| (self.state.t - last.t).abs() <= shortest) {
+        let mut from = self.indicate()?;
+        for last in self.happenings.iter().rev().take_while(|last| (self.state.t - last.t).abs() <= 2.0 * shortest) {
             let same = system.events.iter().zip(&mut from).filter(|(event, _)| event.name == last.event);
             same.for_each(|(_, from)| *from = 0.0);
         }
         loop {
-            let before = self.checkpoint();
-            self.advance(target, wants_forces)?;
-            let first = first_part.get_or_insert_with(|| before.clone());
-            self.join_parts(first);
-            let to = self.indicate();
-            let crossed = |to: &[f64]| (0..to.len()).find(|&k| system.events[k].crossing.is_between(from[k], to[k]));
-            let Some(k) = crossed(&to) else { return Ok(false) };
-            let (t, k) = self.locate(&before, k, &from, shortest, wants_forces, &crossed)?;
-            let now = self.indicate();
-            let happens = |at: usize| at == k || system.events[at].crossing.is_between(from[at], now[at]);
+            self.sample(shortest)?;
+            if self.state.t == target {
+                self.join_parts(&first);
+                return Ok(false);
+            }
+            let before = self.moment();
+            let until = self.next_sample().filter(|next| *next < target - shortest).unwrap_or(target);
+            self.advance(until, wants_forces)?;
+            let to = self.indicate().inspect_err(|_| self.restore(&before))?;
+            let crossed = |to: &[f64]| (0..to.len()).find(|&k| system.events[k].trigger.is_between(from[k], to[k]));
+            let (t, k) = match crossed(&to) {
+                Some(k) => self.locate(&before, k, &from, shortest, wants_forces, &crossed)?,
+                None => {
+                    from = to;
+                    continue;
+                }
+            };
+            let now = self.indicate()?;
+            let happens = |at: usize| at == k || system.events[at].trigger.is_between(from[at], now[at]);
             let happening: Vec<usize> = (0..now.len()).filter(|&at| happens(at)).collect();
-            from = now;
+            if self.state.t > before.t() {
+                from = now;
+            }
             let mut stops = false;
             for k in happening {
                 let event = &system.events[k];
                 from[k] = 0.0;
-                self.set_inputs(&event.set);
+                self.set_by(k)?;
                 stops |= event.stops;
                 self.happenings.push(Happening { event: event.name.clone(), t, stopped: event.stops });
             }
-            if let Some(first) = &first_part {
-                self.join_parts(first);
-            }
-            if stops || target - self.state.t < shortest {
-                return Ok(stops);
+            if stops {
+                self.join_parts(&first);
+                return Ok(true);
             }
         }
+    }
+
+    /// Sets inputs as an event says.
+    fn set_by(&mut self, event: usize) -> Result<(), Failure> {
+        let system = self.system.clone();
+        let set = system.settings(&system.events[event], self.look());
+        if set.iter().any(|(_, value)| !value.is_finite()) {
+            return Err(Failure::NoSetting { event });
+        }
+        self.set_inputs(&set);
+        Ok(())
+    }
+
+    /// Periods of events, with how often they have happened.
+    fn periods(&self) -> impl Iterator<Item = (usize, f64, u64)> {
+        let period = |(k, taken): (usize, &u64)| match self.system.events[k].trigger {
+            Trigger::Every(period) => Some((k, period, *taken)),
+            Trigger::When(..) => None,
+        };
+        self.samples.iter().enumerate().filter_map(period)
+    }
+
+    /// When the next event with a period happens.
+    fn next_sample(&self) -> Option<f64> {
+        self.periods().map(|(_, period, taken)| taken as f64 * period).reduce(f64::min)
+    }
+
+    /// Lets the events happen whose periods are over, up to so much later.
+    pub(super) fn sample(&mut self, within: f64) -> Result<(), Failure> {
+        let due: Vec<usize> =
+            self.periods().filter(|(_, period, taken)| *taken as f64 * period <= self.state.t + within).map(|(k, ..)| k).collect();
+        for k in due {
+            self.set_by(k)?;
+            self.samples[k] = self.taken(k, within);
+        }
+        Ok(())
+    }
+
+    /// How often an event with a period happens up to the present time, from t = 0 on.
+    fn taken(&self, event: usize, within: f64) -> u64 {
+        match self.system.events[event].trigger {
+            Trigger::Every(period) => ((self.state.t + within) / period).floor().max(0.0) as u64 + 1,
+            Trigger::When(..) => 0,
+        }
+    }
+
+    /// Counts as happened what lies before the present time, at which a run begins.
+    pub(super) fn begin_periods(&mut self) {
+        let before = -SHORTEST * self.step;
+        self.samples = (0..self.system.events.len()).map(|k| if self.state.t > 0.0 { self.taken(k, before) } else { 0 }).collect();
+    }
+
+    /// Lets what happens at the beginning of a run happen.
+    pub(super) fn begin_sampling(&mut self) -> Result<(), Failure> {
+        self.sample(SHORTEST * self.step)
+    }
+
+    fn look(&self) -> Look<'_> {
+        let (state, at) = (&self.state, &self.work.start.at);
+        Look { x: &state.x, v: &self.shown_v, t: state.t, at, inputs: &state.inputs, span: None }
+    }
+
+    /// Makes one nominal step of the parts that were taken since the audit and the count of steps were as in `first`. Where an event stops
+    /// the run at once there is none.
+    fn join_parts(&mut self, first: &(Audit, u64)) {
+        self.audit.join_parts(&first.0);
+        self.steps = self.steps.min(first.1 + 1);
     }
 
     /// Goes to where the first event happens in the part that began at `before` and in which the k-th has happened, and says when that is
     /// and which it is.
     fn locate(
         &mut self,
-        before: &Checkpoint,
+        before: &Moment,
         mut k: usize,
         from: &[f64],
         shortest: f64,
         wants_forces: bool,
         crossed: &dyn Fn(&[f64]) -> Option<usize>,
     ) -> Result<(f64, usize), Failure> {
-        let begin = before.state.t;
+        let (begin, end) = (before.t(), self.state.t);
         // None has happened at `low`, and the k-th has at `high`.
-        let (mut low, mut high) = (begin, self.state.t);
+        let (mut low, mut high) = (begin, end);
         let width = (LOCATED * (high - low)).max(f64::EPSILON * high.abs());
-        let (mut at_low, mut at_high) = (from[k], self.indicate()[k]);
+        let (mut at_low, mut at_high) = (from[k], self.indicate()?[k]);
         let (mut here, mut bisects) = (high, false);
         for _ in 0..MOST_TRIES {
             if high - low <= width {
@@ -139,7 +221,7 @@ impl Simulation {
             self.restore(before);
             self.advance(next, wants_forces)?;
             here = next;
-            let now = self.indicate();
+            let now = self.indicate().inspect_err(|_| self.restore(before))?;
             match crossed(&now) {
                 Some(other) => {
                     at_low = if other == k { at_low } else { from[other] };
@@ -149,16 +231,20 @@ impl Simulation {
             }
             bisects = high - low > 0.5 * whole;
         }
-        if here != high {
+        let lands = if end - high < shortest { end } else { high };
+        if here != lands {
             self.restore(before);
-            self.advance(high, wants_forces)?;
+            self.advance(lands, wants_forces)?;
         }
         Ok((high, k))
     }
 
     /// Values of all indicators at the present state.
-    fn indicate(&self) -> Vec<f64> {
-        let (state, at) = (&self.state, &self.work.start.at);
-        self.system.indicators(Look { x: &state.x, v: &self.shown_v, t: state.t, at, inputs: &state.inputs, span: None })
+    fn indicate(&self) -> Result<Vec<f64>, Failure> {
+        let found = self.system.indicators(self.look());
+        match found.iter().position(|found| found.is_nan()) {
+            Some(event) => Err(Failure::NoIndicator { event }),
+            None => Ok(found),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! A method is a formulation, an integrator and projections; the names people choose, and what may go together.
 
-use super::words::{accuracy, iterations, name, names, order, partners, pick, positive, spell, together, within};
-use super::{MethodError, MethodSummary, ProjectionSummary};
+use super::words::{MethodError, accuracy, iterations, name, names, order, partners, pick, positive, spell, together, within};
+use super::{MethodSummary, ProjectionSummary};
 use crate::formulation::{FORMULATIONS, Formulation, ITERATIONS, Iteration, Multipliers, RowsAt, SolveSettings};
 use crate::integrator::{Entry, INTEGRATORS, Parameters};
 use crate::projection::{METRICS, Metric, Projection, SOLVES, Solve};

@@ -1,6 +1,8 @@
 //! A method at work on a system: the step loop, step control, and how a run ended.
 
 mod adapt;
+mod advance;
+pub(crate) mod any_number;
 mod audit;
 mod checkpoint;
 mod control;
@@ -26,70 +28,16 @@ use start::Asked;
 pub use start::{Start, StartError};
 pub use state::State;
 pub use summary::{EnergySummary, MethodSummary, ModelSize, MomentumSummary, ProjectionSummary, Summary, ViolationSummary, WorkSummary};
+pub use words::MethodError;
 
 use std::sync::Arc;
 
-use crate::formulation::{Failure, Independence, Iteration, Newton, Workspace};
-use crate::integrator::{Integrator, Step};
+use crate::formulation::{Failure, Independence, Newton, Workspace};
+use crate::integrator::Integrator;
 use crate::system::{Evaluation, GaugeValues, System};
 use adapt::Pilot;
 use checkpoint::{Grid, Hints};
 use promise::Judge;
-
-/// Why words do not make a method.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum MethodError {
-    /// A name that nothing has.
-    #[error("there is no {kind} `{given}`; there are: {known}")]
-    Unknown {
-        /// What was to be named: `method`, `formulation`, …
-        kind: &'static str,
-        /// The name that there is not.
-        given: String,
-        /// All names that there are, with commas between them.
-        known: String,
-    },
-    /// Two parts of a method that do not go together.
-    #[error("the {kind} `{name}` does not go with the {with} `{given}`; it goes with: {partners}")]
-    Pair {
-        /// What the first of the two is: `integrator`, `projection`, …
-        kind: &'static str,
-        /// The first of the two.
-        name: String,
-        /// What the second is: `formulation`, `iteration`, …
-        with: &'static str,
-        /// The second of the two.
-        given: String,
-        /// All that the first goes with in place of it, with commas between them.
-        partners: String,
-    },
-    /// A value that a key cannot have.
-    #[error("`{key}` cannot be {given}; it can be: {allowed}")]
-    Value {
-        /// Key of `[simulation]`, such as `order` or `projection.levels`.
-        key: &'static str,
-        /// The value that it cannot have.
-        given: String,
-        /// What it may be, in words.
-        allowed: String,
-    },
-    /// An accuracy, and an integrator that cannot choose steps by it.
-    #[error("the integrator `{integrator}` has no error estimate to choose steps by accuracy; these have: {partners}")]
-    NoEstimate {
-        /// Its name, with the order where that is what is wrong.
-        integrator: String,
-        /// The integrators that have an estimate, with commas between them.
-        partners: String,
-    },
-    /// An accuracy, and an integrator that is unstable without projection of velocities.
-    #[error(
-        "the integrator `{integrator}` is unstable on index 3 without projection, so that no step gives an accuracy; project velocities"
-    )]
-    Unstable {
-        /// Its name.
-        integrator: &'static str,
-    },
-}
 
 /// How a run ended.
 #[must_use]
@@ -132,14 +80,8 @@ impl<F: FnMut(&Simulation) -> Verdict> Observer for F {
     }
 }
 
-/// Halvings of a step before a run gives up.
-const MOST_HALVINGS: u32 = 12;
-
 /// A row that is missed by less than this share of the mechanism's size is not to blame for a step that fails.
 const BLAMED: f64 = 1e-10;
-
-/// Units that the parts of a nominal step are counted in: what is left may be three quarters of it, and halved as often.
-const PARTS: u32 = 1 << 24;
 
 /// A method at work on a system. Everything a step needs is allocated when it is made.
 pub struct Simulation {
@@ -174,6 +116,8 @@ pub struct Simulation {
     hints: Hints,
     /// Events so far.
     happenings: Vec<Happening>,
+    /// How often each event with a period has happened.
+    samples: Vec<u64>,
     /// Whether the last of them ended the last run.
     has_ended: bool,
 }
@@ -237,7 +181,7 @@ impl Simulation {
         system.measure(&state.x, &state.v, &mut gauges);
         state.measured.copy_from_slice(gauges.counted());
         let pilot = Pilot::new(&system, &method, &newton, &state, &gauges, &audit);
-        Self {
+        let mut simulation = Self {
             hints: Hints::of(&newton, &*integrator),
             grid: Grid::new(state.t, step),
             integrator,
@@ -261,8 +205,11 @@ impl Simulation {
             reactions: None,
             apart: None,
             happenings: Vec::new(),
+            samples: Vec::new(),
             has_ended: false,
-        }
+        };
+        simulation.begin_periods();
+        simulation
     }
 
     /// Takes the next nominal step. An accuracy is that of a call: errors of many add up to more.
@@ -277,13 +224,17 @@ impl Simulation {
 
     /// Runs to time `end` (s), or to an event that ends the run, and shows the start and every nominal step to the observer.
     pub fn run(&mut self, end: f64, observer: &mut dyn Observer) -> Status {
+        if let Err(failure) = self.begin_sampling() {
+            return Status::Stopped { at: self.state.t, reason: self.reason(failure) };
+        }
         if observer.after_step(self) == Verdict::Stop {
             return self.interrupted();
         }
         self.begin_adapting(end);
         self.has_ended = false;
         while self.state.t < end {
-            let target = self.grid.next(self.state.t, end);
+            let before = self.state.t;
+            let target = self.grid.next(before, end);
             self.has_ended = match self.advance_through_events(target, observer.wants_forces()) {
                 Ok(has_ended) => has_ended,
                 Err(failure) => {
@@ -293,6 +244,11 @@ impl Simulation {
                     return Status::Stopped { at: self.state.t, reason: self.reason(failure) };
                 }
             };
+            if self.state.t == before {
+                // An event stopped the run as it began the step: what is there was shown.
+                self.grid.back();
+                break;
+            }
             if observer.after_step(self) == Verdict::Stop {
                 return self.interrupted();
             }
@@ -305,125 +261,6 @@ impl Simulation {
 
     fn interrupted(&self) -> Status {
         Status::Stopped { at: self.state.t, reason: "interrupted".into() }
-    }
-
-    /// Takes the nominal step to `target`.
-    fn advance(&mut self, target: f64, reacts: bool) -> Result<(), Failure> {
-        let from = self.state.t;
-        self.audit.begin_step();
-        match self.pilot.take() {
-            None => self.halve(target)?,
-            Some(mut pilot) => {
-                let outcome = match self.method.integrator.dense {
-                    true => self.cruise(target, &mut pilot),
-                    false => self.land(target, &mut pilot),
-                };
-                self.pilot = Some(pilot);
-                outcome?;
-            }
-        }
-        let h = self.state.t - from;
-        self.judge.whole(&self.system, h, &self.audit, &self.work)?;
-        let known = self.pilot.as_ref().map_or(0.0, |pilot| pilot.supply());
-        self.judge.supply(h, known, &self.audit, &self.work)?;
-        self.steps += 1;
-        self.audit.end_step(&self.system, &mut self.work, &self.state, self.steps);
-        if reacts {
-            self.react();
-        }
-        Ok(())
-    }
-
-    /// In parts where it fails as a whole. Parts are counted, and their ends reckoned from the start: the sum of their rounded
-    /// lengths may miss the target by a rounding of time, and over so short a part a rounding of positions is any velocity.
-    fn halve(&mut self, target: f64) -> Result<(), Failure> {
-        let from = self.state.t;
-        let whole = target - from;
-        let (mut done, mut part) = (0, PARTS);
-        while done < PARTS {
-            part = part.min(PARTS - done);
-            let end = done + part;
-            let until = if end == PARTS { target } else { from + whole * f64::from(end) / f64::from(PARTS) };
-            match self.substep(whole * f64::from(part) / f64::from(PARTS), until) {
-                Ok(_) => (done, part) = (end, 2 * part),
-                Err(failure) if !self.method.subdivide || part <= PARTS >> MOST_HALVINGS => return Err(failure),
-                Err(_) => {
-                    part /= 2;
-                    self.audit.reject(&self.newton);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// One step of the method. Where its result breaks a promise it is iterated until nothing but round-off is left.
-    fn substep(&mut self, step: f64, target: f64) -> Result<Step, Failure> {
-        let mut outcome = self.try_step(step, target);
-        if let Err(Failure::Broken { .. }) = outcome {
-            let tolerance = std::mem::take(&mut self.newton.settings.tolerance);
-            outcome = self.try_step(step, target);
-            self.newton.settings.tolerance = tolerance;
-        }
-        outcome
-    }
-
-    /// Integrates and finishes a step.
-    fn try_step(&mut self, step: f64, target: f64) -> Result<Step, Failure> {
-        let (system, work) = (&*self.system, &mut self.work);
-        self.state.load(work);
-        system.constraint_values(&work.start.at, self.state.t, &mut work.phi_start);
-        let taken = self.integrator.step(system, self.state.t, step, &mut self.newton, work)?;
-        self.finish(taken, step, target)
-    }
-
-    /// Audits, projects and judges what the integrator left in the workspace; it becomes the present state only then.
-    fn finish(&mut self, taken: Step, step: f64, target: f64) -> Result<Step, Failure> {
-        let (system, work, method) = (&*self.system, &mut self.work, &self.method);
-        for i in 0..system.coordinates() {
-            work.end.x[i] = work.start.x[i] + work.d[i];
-        }
-        system.evaluate(&work.end.x, target, &work.start.at, &mut work.end.at);
-        let mut audit = self.audit.clone();
-        let accounts = audit.integrated(system, &taken, target, work);
-        self.judge.positions(system, target, work)?;
-        audit.violate_acceleration(system, method, &taken, target, work);
-        self.found_v.copy_from_slice(&work.end.v);
-        self.found_a.copy_from_slice(&work.a);
-        method.projection.apply(system, target, step, &mut self.newton, work)?;
-        audit.projected(system, method, &self.found_v, accounts, target, work);
-        self.judge.velocities(system, target, step, work)?;
-        audit.closed(system, method, target, &self.newton, work);
-        self.judge.accelerations(step, work)?;
-        self.judge.energy(system, step, &self.audit, &audit, work)?;
-        // A part that takes the nominal step out of its bound can be taken again.
-        self.judge.whole(system, step, &audit, work)?;
-        self.next_gauges.copy_from(&self.gauges);
-        system.measure(&work.end.x, &work.end.v, &mut self.next_gauges);
-        self.judge.turns(system, step, &self.gauges, &self.next_gauges)?;
-        self.commit(audit, step, target);
-        Ok(taken)
-    }
-
-    /// Makes the end of a step in the workspace the present state.
-    fn commit(&mut self, audit: Audit, step: f64, target: f64) {
-        let work = &mut self.work;
-        self.audit = audit;
-        // The paper's loops start from the paper's prediction.
-        if self.method.settings.iteration == Iteration::Newton {
-            self.state.remember(step, &self.found_a, work);
-        }
-        self.state.land(target, &self.found_a, work);
-        self.shown_v.copy_from_slice(&work.end.v);
-        self.shown_a.copy_from_slice(&work.a);
-        let goes_on = !self.method.projection.shadow;
-        self.state.v.copy_from_slice(if goes_on { &work.end.v } else { &self.found_v });
-        if goes_on {
-            self.state.a.copy_from_slice(&work.a);
-        }
-        std::mem::swap(&mut work.start.at, &mut work.end.at);
-        std::mem::swap(&mut self.gauges, &mut self.next_gauges);
-        self.state.measured.copy_from_slice(self.gauges.counted());
-        self.hints.keep(&self.newton, &*self.integrator);
     }
 
     fn reason(&mut self, failure: Failure) -> String {
@@ -506,7 +343,7 @@ impl Simulation {
             reason,
             step: self.step,
             end,
-            ended_by: self.happenings.last().filter(|_| self.has_ended).map(|last| last.event.clone()),
+            ended_by: self.ending().map(|event| event.event.clone()),
             events: self.happenings.clone(),
             steps: self.steps,
             size,

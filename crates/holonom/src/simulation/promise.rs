@@ -200,7 +200,9 @@ impl Judge {
         let scales = &work.scales;
         let kinetic = before.kinetic.abs() + after.kinetic.abs();
         let rows = work.lambda.iter().zip(&scales.gradient).map(|(lambda, g)| (lambda * g).abs()).sum::<f64>() * scales.length;
-        let sizes = kinetic + energy::size(system, work, &work.end.x) + (after.work - before.work).abs() + rows;
+        // What forces do along rounded positions, also where hardly anything moves.
+        let working = if work.is_worked_on() { energy::size_of_working_forces(system, work) * scales.length } else { 0.0 };
+        let sizes = kinetic + energy::size(system, work, &work.end.x) + (after.work - before.work).abs() + rows + working;
         // Cauchy and Schwarz: Σ m |v| is at most √(2 T Σ m).
         let momentum = (2.0 * kinetic * self.mass).sqrt();
         ROUND_OFF * sizes + momentum * scales.length * 2.0 / h.abs() * (ROUNDED + self.tolerance)

@@ -14,10 +14,13 @@ use crate::system::{Evaluation, NodeId, Quantity, Sense, System, Term, place_of,
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Reactions {
     /// Multipliers λ (r).
+    #[serde(with = "super::any_number")]
     pub lambda: Vec<f64>,
     /// Accelerations of all nodes (D × nodes), m/s².
+    #[serde(with = "super::any_number")]
     pub a: Vec<f64>,
     /// Forces of the constraints on the nodes, −Gᵀλ (D × nodes), N. Redundant rows leave λ undetermined, not these.
+    #[serde(with = "super::any_number")]
     pub force: Vec<f64>,
 }
 
@@ -84,8 +87,9 @@ impl Elsewhere {
         }
         work.inputs.copy_from_slice(&state.inputs);
         system.evaluate_again(&work.end.x, state.t, &mut work.start.at);
+        work.end.at.copy_from(&work.start.at);
         work.lambda.copy_from_slice(&reactions.lambda);
-        let outcome = newton.react(system, state.t, work);
+        let outcome = newton.react_as_evaluated(system, state.t, work);
         reactions.take(system, outcome.is_ok(), work);
     }
 }
@@ -184,7 +188,10 @@ impl Simulation {
         // A penalty's force is its own; that of every other formulation errs, and the constraints' is meant.
         let outcome = match self.method.formulation.soft {
             true => newton.accelerate(system, state.t, work),
-            false => newton.react(system, state.t, work),
+            false => {
+                work.end.at.copy_from(&work.start.at);
+                newton.react_as_evaluated(system, state.t, work)
+            }
         };
         reactions.take(system, outcome.is_ok(), work);
         // The next step is the same as if nobody had looked.

@@ -1,9 +1,63 @@
 //! From words to the parts of a method, and back to its name.
 
-use super::MethodError;
 use super::method::{Choice, NAMED, Named, ProjectionChoice};
 use crate::formulation::{FORMULATIONS, Formulation};
 use crate::integrator::{Entry, Estimate, INTEGRATORS};
+
+/// Why words do not make a method.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MethodError {
+    /// A name that nothing has.
+    #[error("there is no {kind} `{given}`; there are: {known}")]
+    Unknown {
+        /// What was to be named: `method`, `formulation`, …
+        kind: &'static str,
+        /// The name that there is not.
+        given: String,
+        /// All names that there are, with commas between them.
+        known: String,
+    },
+    /// Two parts of a method that do not go together.
+    #[error("the {kind} `{name}` does not go with the {with} `{given}`; it goes with: {partners}")]
+    Pair {
+        /// What the first of the two is: `integrator`, `projection`, …
+        kind: &'static str,
+        /// The first of the two.
+        name: String,
+        /// What the second is: `formulation`, `iteration`, …
+        with: &'static str,
+        /// The second of the two.
+        given: String,
+        /// All that the first goes with in place of it, with commas between them.
+        partners: String,
+    },
+    /// A value that a key cannot have.
+    #[error("`{key}` cannot be {given}; it can be: {allowed}")]
+    Value {
+        /// Key of `[simulation]`, such as `order` or `projection.levels`.
+        key: &'static str,
+        /// The value that it cannot have.
+        given: String,
+        /// What it may be, in words.
+        allowed: String,
+    },
+    /// An accuracy, and an integrator that cannot choose steps by it.
+    #[error("the integrator `{integrator}` has no error estimate to choose steps by accuracy; these have: {partners}")]
+    NoEstimate {
+        /// Its name, with the order where that is what is wrong.
+        integrator: String,
+        /// The integrators that have an estimate, with commas between them.
+        partners: String,
+    },
+    /// An accuracy, and an integrator that is unstable without projection of velocities.
+    #[error(
+        "the integrator `{integrator}` is unstable on index 3 without projection, so that no step gives an accuracy; project velocities"
+    )]
+    Unstable {
+        /// Its name.
+        integrator: &'static str,
+    },
+}
 
 /// The parts of a name that is none of [`NAMED`]: an integrator alone, or formulation, integrator and projection levels
 /// joined by strokes, with the order behind the integrator, as in `bdf-3` and `lagrange-2/bdf-3/velocity+acceleration`.
@@ -17,8 +71,8 @@ pub(super) fn spell(choice: &Choice) -> Option<Choice> {
         _ => return None,
     };
     let is_known = |name: &str| INTEGRATORS.iter().any(|entry| entry.name == name);
-    let (integrator, order) = match integrator.rsplit_once('-') {
-        Some((front, last)) if is_known(front) && !is_known(integrator) => (front, last.parse().ok()),
+    let (integrator, order) = match integrator.rsplit_once('-').map(|(front, last)| (front, last.parse())) {
+        Some((front, Ok(order))) if is_known(front) && !is_known(integrator) => (front, Some(order)),
         _ => (integrator, None),
     };
     if formulation.is_none() && !is_known(integrator) {
@@ -190,5 +244,18 @@ pub(super) fn within(key: &'static str, given: Option<f64>, default: f64, low: f
     match given.unwrap_or(default) {
         value if (low..=high).contains(&value) => Ok(value),
         value => Err(MethodError::Value { key, given: value.to_string(), allowed: allowed.into() }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::simulation::{Choice, Method, MethodError};
+
+    #[test]
+    fn a_misspelt_method_is_no_integrator_with_an_order() {
+        for name in ["conserving-gll", "conserving-2x", "generalized-alpha-", "radau-"] {
+            let resolved = Method::resolve(&Choice { method: Some(name.into()), ..Choice::default() });
+            assert!(matches!(resolved, Err(MethodError::Unknown { kind: "method", .. })), "{name}");
+        }
     }
 }

@@ -24,6 +24,9 @@ pub trait CustomRows: Send + Sync {
     /// Σ λ_k ∂²Φ_k/∂x² (k × k, row-major).
     fn hessian(&self, x: &[f64], t: f64, lambda: &[f64], out: &mut [f64]);
 
+    /// ∂²Φ/∂x∂t (rows × k, row-major): how gradients change with time alone.
+    fn mixed(&self, x: &[f64], t: f64, out: &mut [f64]);
+
     /// d²Φ/ds² along (x + s v, t + s): all of Φ̈ but G a (rows).
     fn curvature(&self, x: &[f64], v: &[f64], t: f64, out: &mut [f64]);
 }
@@ -136,6 +139,19 @@ impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
                     out[i * k + j] = sum;
                     out[j * k + i] = sum;
                 }
+            }
+        });
+    }
+
+    fn mixed(&self, x: &[f64], t: f64, out: &mut [f64]) {
+        let (k, rows) = (x.len(), self.0.rows());
+        with_room(HyperDual64::from(0.0), k + rows, |room| {
+            let (point, phi) = room.split_at_mut(k);
+            for i in 0..k {
+                point.iter_mut().zip(x).for_each(|(point, &x)| *point = HyperDual64::from(x));
+                point[i].eps1 = 1.0;
+                self.0.evaluate(point, HyperDual64::new(t, 0.0, 1.0, 0.0), phi);
+                (0..rows).for_each(|row| out[row * k + i] = phi[row].eps1eps2);
             }
         });
     }

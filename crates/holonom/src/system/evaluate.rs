@@ -207,36 +207,46 @@ impl System {
         }
     }
 
-    /// H v of all rows' and laws' slots (D a slot), their second derivatives times a direction over all nodes, at the
-    /// evaluation `at` of `x`. `half` has room for one number an invariant.
-    pub(crate) fn turn(&self, at: &Evaluation, x: &[f64], v: &[f64], t: f64, half: &mut [f64], turned: &mut [f64]) {
-        self.invariants.curvature(v, half, turned);
+    /// H v of all rows' and laws' slots (D a slot), their second derivatives times a direction, at the evaluation `at`
+    /// of `x`. `half` has room for one number an invariant.
+    pub(crate) fn turn(&self, at: &Evaluation, x: &[f64], along: Direction<'_>, t: f64, half: &mut [f64], turned: &mut [f64]) {
+        self.invariants.curvature(along.nodes, half, turned);
         self.turn_functions(at, turned, |k, base| {
-            let rates = self.rates(base, at, v);
+            let rates = self.rates(base, at, along.nodes);
             let local = &at.functions.local[k];
             std::array::from_fn(|i| [local.gradient[i], local.bend(i, &rates)])
         });
-        self.turn_custom(x, v, t, turned);
+        self.turn_custom(x, along, t, turned);
+    }
+
+    /// Where the gradients of the custom rows begin in an evaluation.
+    pub(crate) fn custom_slots(&self) -> usize {
+        (self.invariants.slots() + self.functions.slots()) * self.dim
     }
 
     /// The slots of the custom rows in what [`System::turn`] fills.
-    pub(crate) fn turn_custom(&self, x: &[f64], v: &[f64], t: f64, turned: &mut [f64]) {
+    pub(crate) fn turn_custom(&self, x: &[f64], along: Direction<'_>, t: f64, turned: &mut [f64]) {
         if self.custom.is_empty() {
             return;
         }
-        let mut slot = (self.invariants.slots() + self.functions.slots()) * self.dim;
+        let mut slot = self.custom_slots();
         for entry in &self.custom {
-            let (position, direction) = (gather(self.dim, &entry.nodes, x), gather(self.dim, &entry.nodes, v));
-            let width = position.len();
+            let (position, direction) = (gather(self.dim, &entry.nodes, x), gather(self.dim, &entry.nodes, along.nodes));
+            let (width, rows) = (position.len(), entry.rows.rows());
             let mut hessian: SmallVec<[f64; SIZE * SIZE]> = smallvec![0.0; width * width];
-            let mut unit: Local = smallvec![0.0; entry.rows.rows()];
-            for row in 0..entry.rows.rows() {
+            let mut mixed: SmallVec<[f64; SIZE * SIZE]> = smallvec![0.0; rows * width];
+            if along.time != 0.0 {
+                entry.rows.mixed(&position, t, &mut mixed);
+            }
+            let mut unit: Local = smallvec![0.0; rows];
+            for row in 0..rows {
                 unit.fill(0.0);
                 unit[row] = 1.0;
                 entry.rows.hessian(&position, t, &unit, &mut hessian);
                 for i in 0..width {
                     let line = &hessian[i * width..(i + 1) * width];
-                    turned[slot + i] = line.iter().zip(&direction).map(|(h, v)| h * v).sum();
+                    let by_nodes: f64 = line.iter().zip(&direction).map(|(h, v)| h * v).sum();
+                    turned[slot + i] = by_nodes + mixed[row * width + i] * along.time;
                 }
                 slot += width;
             }
@@ -262,7 +272,7 @@ impl System {
         if self.custom.is_empty() {
             return;
         }
-        let (mut row, mut slot) = (0, (self.invariants.slots() + self.functions.slots()) * self.dim);
+        let (mut row, mut slot) = (0, self.custom_slots());
         let values = self.invariants.len() + self.functions.len();
         for entry in &self.custom {
             let (rows, width) = (entry.rows.rows(), entry.nodes.len() * self.dim);
@@ -285,6 +295,22 @@ struct CustomPart<'a> {
     gradient: &'a mut [f64],
     by_time: &'a mut [f64],
     beta: &'a mut [f64],
+}
+
+/// A direction in which positions and time change together.
+#[derive(Clone, Copy)]
+pub(crate) struct Direction<'a> {
+    /// Over all nodes.
+    pub nodes: &'a [f64],
+    /// How much time goes by: one along a velocity, none along an acceleration.
+    pub time: f64,
+}
+
+impl<'a> Direction<'a> {
+    /// The way of the nodes in a unit of time.
+    pub fn velocity(nodes: &'a [f64]) -> Self {
+        Self { nodes, time: 1.0 }
+    }
 }
 
 /// Coordinates of the nodes of a load or custom row.
@@ -315,9 +341,11 @@ fn directional_point(dim: usize, entry: &CustomEntry, span: Between<'_>, row: us
         }
         let t = span.start + beta * span.step;
         entry.rows.gradient(&local, t, &mut gradient, &mut by_time);
-        let along: f64 = (0..k).map(|i| gradient[row * k + i] * rate[i]).sum::<f64>() + by_time[row];
+        let parts = (0..k).map(|i| gradient[row * k + i] * rate[i]).chain([by_time[row]]);
+        // What keeps up with a row that moves is a sum of large parts, and rounded as they are.
+        let (along, size) = parts.fold((0.0, 0.0), |(sum, size): (f64, f64), part| (sum + part, size + part.abs()));
         let excess = span.step * along - rise;
-        if excess.abs() <= 4.0 * f64::EPSILON * (rise.abs() + span.step * along.abs()) {
+        if excess.abs() <= 4.0 * f64::EPSILON * (rise.abs() + span.step * size) {
             break;
         }
         entry.rows.curvature(&local, &rate, t, &mut curvature);

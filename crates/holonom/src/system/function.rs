@@ -98,7 +98,8 @@ pub(crate) struct Functions {
     items: Vec<Function>,
     /// For each slot of a function the slot of the invariant that it comes from, and which argument that is.
     source: Vec<(u32, u8)>,
-    angles: usize,
+    /// Angles at the start, from which turns are counted.
+    start: Vec<f64>,
 }
 
 /// Evaluated functions: value and derivatives by their arguments, and the angles counted.
@@ -111,14 +112,16 @@ pub(crate) struct FunctionValues {
 
 impl Functions {
     pub fn add(&mut self, invariants: &Invariants, parts: &[(Part, f64)]) -> FunctionId {
-        let mut function = Function { summands: Vec::new(), base: Vec::new(), slot: self.source.len(), slots: 0, angle: self.angles };
+        let mut function = Function { summands: Vec::new(), base: Vec::new(), slot: self.source.len(), slots: 0, angle: self.start.len() };
         for (part, factor) in parts {
             let of = match part {
                 Part::Invariant(id) => vec![*id],
                 Part::Angle { cosine, sine } => vec![*cosine, *sine],
                 Part::Smooth { of, .. } | Part::Followed { of, .. } | Part::Pfaffian { of, .. } => of.clone(),
             };
-            self.angles += usize::from(matches!(part, Part::Angle { .. } | Part::Followed { .. }));
+            if matches!(part, Part::Angle { .. } | Part::Followed { .. }) {
+                self.start.push(0.0);
+            }
             let summand = Summand { part: part.clone(), factor: *factor, first: function.base.len(), arguments: of.len() };
             function.summands.push(summand);
             function.base.extend(of);
@@ -170,15 +173,20 @@ impl Functions {
         &self.items[k].base
     }
 
-    /// Room for values.
+    /// Has angles counted from these at the start.
+    pub fn begin_at(&mut self, angles: &[f64]) {
+        self.start.iter_mut().zip(angles).for_each(|(own, angle)| *own = *angle);
+    }
+
+    /// Room for values, with the angles of the start.
     pub fn values(&self) -> FunctionValues {
-        FunctionValues { local: vec![Derivatives::default(); self.items.len()], angle: vec![0.0; self.angles] }
+        FunctionValues { local: vec![Derivatives::default(); self.items.len()], angle: self.start.clone() }
     }
 
     /// The angles of a function among those of all.
     pub fn angles_of(&self, id: FunctionId) -> std::ops::Range<usize> {
         let k = id.0 as usize;
-        self.items[k].angle..self.items.get(k + 1).map_or(self.angles, |next| next.angle)
+        self.items[k].angle..self.items.get(k + 1).map_or(self.start.len(), |next| next.angle)
     }
 
     /// Values and derivatives at the invariants `pi`, with angles counted from those that `out` holds.

@@ -112,6 +112,11 @@ impl Gauges {
         self.invariants.move_origin(is_point, origin);
     }
 
+    /// Has angles counted from these at the start.
+    pub fn begin_at(&mut self, angles: &[f64]) {
+        self.functions.begin_at(angles);
+    }
+
     pub fn add(&mut self, name: String, form: &Form) {
         let part = form.part(&mut self.invariants);
         self.functions.add(&self.invariants, &[(part, 1.0)]);
@@ -133,7 +138,7 @@ impl System {
         &self.gauges.names
     }
 
-    /// Room for what is measured; angles start between −π and π.
+    /// Room for what is measured; angles start within half a turn of those of the start.
     pub fn gauge_values(&self) -> GaugeValues {
         let Gauges { invariants, functions, names, .. } = &self.gauges;
         GaugeValues {

@@ -1,5 +1,7 @@
 //! Known functions of time.
 
+use std::sync::Arc;
+
 /// A known function of time with its first two derivatives.
 pub trait Signal: Send + Sync {
     /// Value, rate and second derivative at `t`.
@@ -22,5 +24,33 @@ impl Signal for Constant {
 
     fn is_constant(&self) -> bool {
         true
+    }
+}
+
+/// A motion that begins elsewhere: a number is added.
+pub(crate) struct Shifted(pub Arc<dyn Signal>, pub f64);
+
+impl Signal for Shifted {
+    fn at(&self, t: f64) -> [f64; 3] {
+        let [value, rate, second] = self.0.at(t);
+        [value + self.1, rate, second]
+    }
+
+    fn is_constant(&self) -> bool {
+        self.0.is_constant()
+    }
+}
+
+/// ½ L(t)² of a length L.
+pub(crate) struct HalfSquare(pub Arc<dyn Signal>);
+
+impl Signal for HalfSquare {
+    fn at(&self, t: f64) -> [f64; 3] {
+        let [length, rate, second] = self.0.at(t);
+        [0.5 * length * length, length * rate, rate * rate + length * second]
+    }
+
+    fn is_constant(&self) -> bool {
+        self.0.is_constant()
     }
 }

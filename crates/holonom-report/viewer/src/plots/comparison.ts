@@ -35,7 +35,7 @@ export class Readout {
 
   /** At time t, for a pointer at `left` in a drawing of the given width; of one curve alone, if it is given. */
   show(t: number, left: number, width: number, only?: Curve): void {
-    const shown = (curve: Curve): boolean => curve.shown && this.visibility.shows(curve.run) && t <= curve.x[curve.x.length - 1];
+    const shown = (curve: Curve): boolean => curve.shown && this.visibility.shows(curve.run) && curve.x[0] <= t && t <= curve.x[curve.x.length - 1];
     const rows = (only ? [only] : this.chart.curves.filter(shown)).map((curve) => ({ curve, value: curve.y[rowNear(curve, t)] }));
     rows.sort((a, b) => order(b.value) - order(a.value));
     const cells = rows.flatMap(({ curve, value }) => [

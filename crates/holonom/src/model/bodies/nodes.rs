@@ -10,6 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::frame::{Basis, Frame, PseudoInertia, edges, mass_blocks};
 use super::{RigidBody, inertia};
+use crate::model::ends::is_fixed;
 use crate::model::geometry::{Vec3, dot, norm, rest, scale, subtract};
 use crate::system::{Place, SystemBuilder, Term};
 
@@ -366,7 +367,6 @@ fn keep_rigid(builder: &mut SystemBuilder, name: &str, basis: &[Basis], kept: &m
     let edges = edges(basis);
     for (i, a) in edges.iter().enumerate() {
         for (j, b) in edges.iter().enumerate().skip(i) {
-            let is_fixed = |terms: &[Term]| terms.iter().all(|term| matches!(term.place, Place::Fixed(_)));
             if is_fixed(&a.terms) && is_fixed(&b.terms) {
                 continue;
             }

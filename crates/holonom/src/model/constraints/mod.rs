@@ -1,7 +1,8 @@
-//! `[constraint.NAME]`: rows between points. A kind is one file here and its line in the table.
+//! `[constraint.NAME]`: rows of points. A kind is one file here and its line in the table.
 
 mod collinear;
 mod distance;
+mod expression;
 mod fixed;
 mod perpendicular;
 mod point_on_line;
@@ -9,6 +10,7 @@ mod point_on_plane;
 
 pub use collinear::Collinear;
 pub use distance::Distance;
+pub use expression::Expression;
 pub use fixed::Fixed;
 pub use perpendicular::Perpendicular;
 pub use point_on_line::PointOnLine;
@@ -24,4 +26,5 @@ pub const KINDS: &[Kind] = &[
     Kind::of::<PointOnLine>(),
     Kind::of::<PointOnPlane>(),
     Kind::of::<Fixed>(),
+    Kind::of::<Expression>(),
 ];

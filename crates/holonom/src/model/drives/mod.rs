@@ -11,6 +11,7 @@ pub use angle::Angle;
 pub use displacement::Displacement;
 pub use distance::Distance;
 pub use point::Point;
+pub(in crate::model) use profile::rows;
 pub use profile::{Profile, ProfileTable, Row};
 
 use super::key::Kind;

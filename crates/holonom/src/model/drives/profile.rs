@@ -120,10 +120,19 @@ impl Profile {
     }
 }
 
+/// Arguments and values of the rows that stand at `key`.
+pub(in crate::model) fn rows(rows: &[Row], entry: &Entry<'_>, key: &str) -> Read<(Vec<f64>, Vec<f64>)> {
+    let row = |(k, row): (usize, &Row)| {
+        let spot = Spot { key, item: Some(k) };
+        let (time, value) = (row.time.number(entry, spot), row.value.number(entry, spot));
+        Ok((time?, value?))
+    };
+    Ok(all(rows.iter().enumerate().map(row))?.into_iter().unzip())
+}
+
 impl ProfileTable {
     fn spline(&self, entry: &Entry<'_>) -> Read<Spline> {
         let ends = entry.optional("ends", &self.ends, |ends, entry, key| entry.choice(key, ends, ENDS));
-        let spot = |k| Spot { key: "table", item: Some(k) };
         if self.table.len() < 2 {
             return Err(entry.refuse(
                 "table",
@@ -131,14 +140,10 @@ impl ProfileTable {
                 "add [t, value]",
             ));
         }
-        let row = |(k, row): (usize, &Row)| {
-            let (time, value) = (row.time.number(entry, spot(k)), row.value.number(entry, spot(k)));
-            Ok((time?, value?))
-        };
-        let (knots, values): (Vec<f64>, Vec<f64>) = all(self.table.iter().enumerate().map(row))?.into_iter().unzip();
+        let (knots, values) = rows(&self.table, entry, "table")?;
         if let Some(k) = (1..knots.len()).find(|&k| knots[k] <= knots[k - 1]) {
             let message = format!("the time {} comes after {}", knots[k], knots[k - 1]);
-            return Err(entry.refuse(spot(k), message, "let the times rise from row to row"));
+            return Err(entry.refuse(Spot { key: "table", item: Some(k) }, message, "let the times rise from row to row"));
         }
         entry.sink.switches.borrow_mut().extend(knots.iter().map(|&knot| Program::since(knot)));
         Ok(if ends? == Some("rest") { Spline::resting(knots, values) } else { Spline::natural(knots, values) })

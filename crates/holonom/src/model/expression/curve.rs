@@ -1,5 +1,9 @@
 //! Curves through given points as functions of one number: `[table.NAME]`.
 
+use std::f64::consts::PI;
+
+use super::Op;
+use super::functions::Function;
 use crate::model::spline::Spline;
 use crate::system::Number;
 
@@ -65,9 +69,12 @@ impl Curve {
         Self { knots, values, slopes: Some(slopes), spline: None, beyond }
     }
 
-    /// Where its derivatives jump.
-    pub fn kinks(&self) -> impl Iterator<Item = f64> {
-        self.knots.iter().copied()
+    /// What to do to an argument, for each place where derivatives jump, to have a number that passes zero there: in every period of a
+    /// curve that has some.
+    pub(super) fn kinks(&self) -> impl Iterator<Item = Vec<Op>> {
+        let period = (self.beyond == Beyond::Periodic).then(|| self.knots[self.knots.len() - 1] - self.knots[0]);
+        let turns = period.map(|period| [Op::Constant(PI / period), Op::Mul, Op::OfOne(Function::Sin)]);
+        self.knots.iter().map(move |&knot| [Op::Constant(knot), Op::Sub].into_iter().chain(turns.clone().into_iter().flatten()).collect())
     }
 
     /// The value at `s`, with whatever derivatives the number carries.

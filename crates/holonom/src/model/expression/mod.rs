@@ -5,7 +5,9 @@
 //! names have dots, as `hinge.angle`, and stand in single quotes where they have other signs: `'left-strut.force'`.
 
 mod curve;
+mod external;
 mod functions;
+mod lex;
 mod names;
 mod parse;
 #[cfg(test)]
@@ -19,6 +21,7 @@ use num_dual::Dual2_64;
 use crate::record::Formula;
 use crate::system::{Number, Signal};
 pub use curve::{Beyond, Curve};
+pub use external::{External, ExternalFunction, Functions, differences};
 use functions::Function;
 pub use names::{Names, Nothing};
 
@@ -37,8 +40,13 @@ pub struct Mistake {
 }
 
 impl Mistake {
-    fn new(character: usize, message: impl Into<String>, cure: impl Into<String>) -> Self {
+    pub(super) fn new(character: usize, message: impl Into<String>, cure: impl Into<String>) -> Self {
         Self { character, message: message.into(), cure: cure.into(), known: false }
+    }
+
+    /// Of what follows from a fault that has been reported.
+    pub(super) fn known() -> Self {
+        Self { known: true, ..Self::new(0, "", "") }
     }
 }
 
@@ -59,6 +67,8 @@ pub struct Scope<'a> {
     pub indices: &'a [(String, f64)],
     /// `[table.NAME]`, which are functions of one number; `None` where one could not be read.
     pub tables: Option<&'a HashMap<String, Option<Arc<Curve>>>>,
+    /// Functions that a program gives.
+    pub functions: Option<&'a Functions>,
 }
 
 impl<'a> Scope<'a> {
@@ -106,13 +116,13 @@ pub fn indexed(name: &str, scope: &Scope<'_>) -> Result<String, Mistake> {
 
 /// The names in an expression that are not called as functions; none where it cannot be read.
 pub fn names_in(text: &str) -> Vec<String> {
-    parse::names(text)
+    lex::names(text)
 }
 
 #[derive(Clone, Debug, PartialEq)]
 enum Op {
     Constant(f64),
-    Variable(u8),
+    Variable(usize),
     Neg,
     Add,
     Sub,
@@ -123,6 +133,8 @@ enum Op {
     OfOne(Function),
     OfTwo(Function),
     OfTable(Arc<Curve>),
+    /// A value of a function that a program gives.
+    OfMany(External, usize),
 }
 
 /// An expression ready to be evaluated.
@@ -161,6 +173,11 @@ impl Program {
         }
     }
 
+    /// Whether it depends on anything behind its first variables, which are so many.
+    pub fn reads_behind(&self, variables: usize) -> bool {
+        self.ops.iter().any(|op| matches!(op, Op::Variable(k) if *k >= variables))
+    }
+
     /// The expressions of the variable `t` alone, and of nothing else, at whose zeros this one jumps or has a kink, as programs of
     /// one variable: the arguments of `step`, `sign` and `abs`, and the difference of those of `min` and `max`.
     pub fn switches(&self, t: usize) -> Vec<Self> {
@@ -175,9 +192,11 @@ impl Program {
                 }
                 Op::OfTable(curve) => {
                     let argument = &self.ops[begins[begins.len() - 1]..k];
-                    found.extend(curve.kinks().filter_map(|knot| self.of_time(t, argument, &[Op::Constant(knot), Op::Sub])));
+                    found.extend(curve.kinks().filter_map(|kink| self.of_time(t, argument, &kink)));
                 }
                 Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) => (),
+                // What it jumps at is not known.
+                Op::OfMany(function, _) => begins.truncate(begins.len() + 1 - function.arguments()),
                 _ => {
                     begins.pop();
                     if let Op::OfTwo(Function::Min | Function::Max) = op {
@@ -191,12 +210,12 @@ impl Program {
 
     /// How many variables it needs: one more than the largest number of one.
     pub fn variables(&self) -> usize {
-        self.ops.iter().map(|op| if let Op::Variable(k) = op { usize::from(*k) + 1 } else { 0 }).max().unwrap_or(0)
+        self.ops.iter().map(|op| if let Op::Variable(k) = op { k + 1 } else { 0 }).max().unwrap_or(0)
     }
 
     /// A program of these operations, where they depend on the variable `t` alone.
     fn of_time(&self, t: usize, ops: &[Op], last: &[Op]) -> Option<Self> {
-        let mut variables = ops.iter().filter_map(|op| if let Op::Variable(k) = op { Some(usize::from(*k)) } else { None }).peekable();
+        let mut variables = ops.iter().filter_map(|op| if let Op::Variable(k) = op { Some(*k) } else { None }).peekable();
         if variables.peek().is_none() || variables.any(|k| k != t) {
             return None;
         }
@@ -221,7 +240,7 @@ impl Program {
                     continue;
                 }
                 Op::Variable(k) => {
-                    stack[top] = variables[usize::from(*k)];
+                    stack[top] = variables[*k];
                     top += 1;
                     continue;
                 }
@@ -237,6 +256,12 @@ impl Program {
                 };
                 continue;
             }
+            if let Op::OfMany(function, k) = op {
+                let begin = top - function.arguments();
+                stack[begin] = function.evaluate(*k, &stack[begin..top]);
+                top = begin + 1;
+                continue;
+            }
             top -= 1;
             let first = stack[top - 1];
             stack[top - 1] = match op {
@@ -245,7 +270,7 @@ impl Program {
                 Op::Mul => first * last,
                 Op::Div => first / last,
                 Op::OfTwo(function) => function.of_two(first, last),
-                _ => unreachable!("operations of one number came before"),
+                _ => unreachable!("operations of one and of many numbers came before"),
             };
         }
         stack[0]

@@ -11,7 +11,7 @@ pub trait Names {
     /// Something that is there and cannot be read here.
     fn variable(&mut self, name: &str) -> Result<Option<usize>, Mistake>;
 
-    /// The formula that a name stands for, of the same variables.
+    /// The formula that a name stands for: of `t`, which is its variable 0, and behind it of what is numbered here.
     ///
     /// # Errors
     /// A formula that cannot be read here.
@@ -66,18 +66,22 @@ pub(super) fn of_places(name: &str, places: &[String], axes: &str) -> String {
         let products: Vec<String> = u.iter().zip(w).map(|(u, w)| format!("{u}*{w}")).collect();
         products.join("+")
     };
+    let length = |u: &[String]| {
+        let squares: Vec<String> = u.iter().map(|u| format!("{u}^2")).collect();
+        format!("sqrt({})", squares.join("+"))
+    };
     match name {
-        "distance" => format!("sqrt({0})", dot(&from_to(0, 1, ""), &from_to(0, 1, ""))),
+        "distance" => length(&from_to(0, 1, "")),
         "speed" => {
             let (way, rate) = (from_to(0, 1, ""), from_to(0, 1, "v"));
-            format!("({})/sqrt({})", dot(&way, &rate), dot(&way, &way))
+            format!("({})/{}", dot(&way, &rate), length(&way))
         }
         _ => {
             let (u, w) = (from_to(1, 0, ""), from_to(1, 2, ""));
             let cross = |i: usize, j: usize| format!("({}*{}-{}*{})", u[i], w[j], u[j], w[i]);
             let sine = match axes.len() {
                 2 => format!("abs({})", cross(0, 1)),
-                _ => format!("sqrt({}^2+{}^2+{}^2)", cross(1, 2), cross(2, 0), cross(0, 1)),
+                _ => length(&[cross(1, 2), cross(2, 0), cross(0, 1)]),
             };
             format!("atan2({sine},{})", dot(&u, &w))
         }

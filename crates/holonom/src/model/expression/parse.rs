@@ -1,15 +1,13 @@
 //! From the text of an expression to a program, by recursive descent; every mistake has a character and a cure.
 
 use super::functions::{CONSTANTS, FUNCTIONS, Function, UNITS, real_power};
+use super::lex::{Token, lex};
 use super::names::{self, Names, OF_PLACES, RUNNING};
-use super::{Mistake, Op, Program, STACK, Scope, Value};
+use super::{External, Functions, Mistake, Op, Program, STACK, Scope, Value};
 use crate::model::fault::{nearest, suggest};
 
 /// Deepest nesting of brackets, signs and powers.
 const DEPTH: usize = 50;
-
-/// Longest expression, characters.
-const LONGEST: usize = 10_000;
 
 /// Names of all functions.
 pub(super) fn functions() -> impl Iterator<Item = &'static str> + Clone {
@@ -34,119 +32,25 @@ pub(super) fn parse(text: &str, variables: &[&str], names: &mut dyn Names, scope
     }
 }
 
-/// The names in an expression that are not called as functions, for finding what a parameter depends on.
-pub(super) fn names(text: &str) -> Vec<String> {
-    let tokens = lex(text).unwrap_or_default();
-    let called = |k: usize| matches!(tokens.get(k + 1), Some((_, Token::Open)));
-    let name = |(k, (_, token)): (usize, &(usize, Token))| match token {
-        Token::Name(name) if !called(k) => Some(name.clone()),
-        _ => None,
+/// The function that a name calls, and which of its values.
+fn external(functions: &Functions, name: &str) -> Result<Option<(External, usize)>, Mistake> {
+    let (base, index) = name.split_once('[').map_or((name, None), |(base, index)| (base, Some(index)));
+    let Some(function) = functions.get(base) else { return Ok(None) };
+    let values = function.values();
+    let value = match index {
+        None if values == 1 => Some(0),
+        None => None,
+        Some(index) => index.strip_suffix(']').and_then(|index| index.parse().ok()).filter(|&value| value < values),
     };
-    tokens.iter().enumerate().filter_map(name).collect()
-}
-
-#[derive(Clone, Debug, PartialEq)]
-enum Token {
-    Number(f64),
-    Name(String),
-    Operator(char),
-    Open,
-    Close,
-    Comma,
-    End,
-}
-
-/// Tokens and the character at which each starts.
-fn lex(text: &str) -> Result<Vec<(usize, Token)>, Mistake> {
-    let characters: Vec<char> = text.chars().take(LONGEST + 1).collect();
-    if characters.len() > LONGEST {
-        return Err(Mistake::new(0, format!("the expression is longer than {LONGEST} characters"), "split it over [parameters]"));
-    }
-    let (mut tokens, mut k) = (Vec::new(), 0);
-    while k < characters.len() {
-        let (start, c) = (k, characters[k]);
-        k += 1;
-        let token = match c {
-            c if c.is_whitespace() => continue,
-            '(' => Token::Open,
-            ')' => Token::Close,
-            ',' => Token::Comma,
-            '*' if characters.get(k) == Some(&'*') => return Err(Mistake::new(start, "`**` is no operator", "powers are written with ^")),
-            '+' | '-' | '*' | '/' | '^' => Token::Operator(c),
-            '0'..='9' | '.' => {
-                k = end_of_number(&characters, start);
-                let text: String = characters[start..k].iter().collect();
-                match text.parse() {
-                    Ok(number) => Token::Number(number),
-                    Err(_) => return Err(Mistake::new(start, format!("`{text}` is no number"), "write 0.5, 2 or 1e-3")),
-                }
-            }
-            c if c.is_alphabetic() || c == '_' => {
-                k = end_of_name(&characters, start)?;
-                Token::Name(characters[start..k].iter().collect())
-            }
-            '\'' => {
-                let Some(length) = characters[k..].iter().position(|&c| c == '\'') else {
-                    return Err(Mistake::new(start, "this quote is never closed", "put names with other signs in single quotes: 'a-b.x'"));
-                };
-                k += length + 1;
-                Token::Name(characters[start + 1..k - 1].iter().collect())
-            }
-            '=' | '<' | '>' => {
-                let message = format!("`{c}` compares, and an expression is a number");
-                return Err(Mistake::new(start, message, "write the difference of both sides, or step(a - b)"));
-            }
-            other => {
-                return Err(Mistake::new(
-                    start,
-                    format!("`{other}` means nothing in an expression"),
-                    "known are + - * / ^ ( ) and functions",
-                ));
-            }
-        };
-        tokens.push((start, token));
-    }
-    tokens.push((characters.len(), Token::End));
-    Ok(tokens)
-}
-
-/// Where a name that starts at `start` ends: it goes on behind dots that a letter follows, and over indices in brackets.
-fn end_of_name(characters: &[char], start: usize) -> Result<usize, Mistake> {
-    let mut k = start;
-    let begins = |k: usize| characters.get(k).is_some_and(|c| c.is_alphabetic() || *c == '_');
-    loop {
-        while characters.get(k).is_some_and(|c| c.is_alphanumeric() || *c == '_') {
-            k += 1;
-        }
-        while characters.get(k) == Some(&'[') {
-            match characters[k..].iter().position(|&c| c == ']') {
-                Some(length) => k += length + 1,
-                None => return Err(Mistake::new(k, "this bracket is never closed", "write \"NAME[i]\"")),
-            }
-        }
-        if characters.get(k) != Some(&'.') || !begins(k + 1) {
-            return Ok(k);
-        }
-        k += 1;
-    }
-}
-
-/// Where a number that starts at `k` ends: digits, a point, and an exponent if there is a whole one.
-fn end_of_number(characters: &[char], mut k: usize) -> usize {
-    let digit = |k: usize| characters.get(k).is_some_and(char::is_ascii_digit);
-    while digit(k) || characters.get(k) == Some(&'.') {
-        k += 1;
-    }
-    if matches!(characters.get(k), Some('e' | 'E')) {
-        let sign = usize::from(matches!(characters.get(k + 1), Some('+' | '-')));
-        if digit(k + 1 + sign) {
-            k += 1 + sign;
-            while digit(k) {
-                k += 1;
-            }
+    match value {
+        Some(value) => Ok(Some((function.clone(), value))),
+        None => {
+            let message = format!("`{base}` has {values} value{}", if values == 1 { "" } else { "s" });
+            let last = values - 1;
+            let cure = if values == 1 { format!("write {base}(…)") } else { format!("write {base}[0](…) to {base}[{last}](…)") };
+            Err(Mistake::new(0, message, cure))
         }
     }
-    k
 }
 
 struct Parser<'a> {
@@ -296,12 +200,17 @@ impl Parser<'_> {
         if let Some(tables) = self.scope.tables
             && let Some(curve) = tables.get(name)
         {
-            let Some(curve) = curve else { return Err(Mistake { known: true, ..self.mistake("", "") }) };
+            let Some(curve) = curve else { return Err(Mistake::known()) };
             let curve = curve.clone();
             self.at += 2;
             self.sum()?;
             self.close()?;
             return self.emit(Op::OfTable(curve));
+        }
+        if let Some(functions) = self.scope.functions
+            && let Some((function, value)) = external(functions, name).map_err(|inner| Mistake { character: start, ..inner })?
+        {
+            return self.call_external(name, function, value);
         }
         if OF_PLACES.iter().any(|known| known.0 == name) {
             return self.of_places(name);
@@ -311,7 +220,8 @@ impl Parser<'_> {
         if function.is_none() && running.is_none() {
             let is_value = matches!(self.value_of(name), Ok(Some(_)));
             let tables = self.scope.tables.into_iter().flat_map(|tables| tables.keys().map(String::as_str));
-            let mut known: Vec<&str> = tables.collect();
+            let given = self.scope.functions.into_iter().flat_map(|functions| functions.keys().map(String::as_str));
+            let mut known: Vec<&str> = tables.chain(given).collect();
             known.sort_unstable();
             functions().for_each(|name| known.push(name));
             let cure = if is_value { format!("write {name}*(…)") } else { suggest(name, known.iter().copied()) };
@@ -331,7 +241,7 @@ impl Parser<'_> {
                 };
                 return Err(Mistake::new(start, message, format!("use {name}(…) in a [measure.NAME] that no force and no event reads")));
             };
-            return self.emit(variable_op(variable, start)?);
+            return self.emit(Op::Variable(self.variables.len() + variable));
         }
         let Some(&(_, arguments, function)) = function else {
             return Err(Mistake::new(start, format!("`{name}` takes one argument"), format!("write {name}(a)")));
@@ -351,6 +261,25 @@ impl Parser<'_> {
         }
     }
 
+    /// A value of a function that a program gives.
+    fn call_external(&mut self, name: &str, function: External, value: usize) -> Result<(), Mistake> {
+        let (start, count) = (self.tokens[self.at].0, function.arguments());
+        self.at += 1;
+        let mut given = 0;
+        while given == 0 || *self.peek() == Token::Comma {
+            self.at += 1;
+            self.sum()?;
+            given += 1;
+        }
+        if given != count {
+            let plural = if count == 1 { "" } else { "s" };
+            let message = format!("`{name}` takes {count} argument{plural}, and these are {given}");
+            return Err(Mistake::new(start, message, "separate arguments by commas"));
+        }
+        self.close()?;
+        self.emit(Op::OfMany(function, value))
+    }
+
     /// A function of places, such as `distance(A, B)`, written out as a formula of their coordinates.
     fn of_places(&mut self, name: &str) -> Result<(), Mistake> {
         let start = self.tokens[self.at].0;
@@ -358,7 +287,7 @@ impl Parser<'_> {
         let Some(axes) = self.names.axes() else {
             return Err(self.mistake(
                 format!("`{name}` is of places, and nothing moves here"),
-                "use it in measures, events, and forces of type effort, force, torque and expression",
+                "use it in measures, events, and forces of type effort, force, torque, expression, spring and rope",
             ));
         };
         let wrong = |at: usize| Mistake::new(at, format!("`{name}` takes {count} names of places"), format!("write {example}"));
@@ -383,30 +312,23 @@ impl Parser<'_> {
             self.is_place(place, &axes[..1]).map_err(|mistake| Mistake { character: begin, ..mistake })?;
         }
         let text = names::of_places(name, &places, axes);
-        let inner = Program::parse_with(&text, &[], self.names, self.scope).map_err(|inner| Mistake { character: start, ..inner })?;
-        self.inline(inner)
+        let written = Program::parse_with(&text, self.variables, self.names, self.scope);
+        let program = written.map_err(|inner| Mistake { character: start, ..inner })?;
+        program.ops.into_iter().try_for_each(|op| self.emit(op))
     }
 
     /// Refuses what has no coordinate of this name as no place, in words of what was written.
     fn is_place(&mut self, place: &str, axis: &str) -> Result<(), Mistake> {
-        let Err(unknown) = Program::parse_with(&format!("'{place}.{axis}'"), &[], self.names, self.scope) else { return Ok(()) };
-        if !unknown.message.ends_with("is not known here") {
-            return Err(unknown);
+        let coordinate = super::indexed(&format!("{place}.{axis}"), self.scope)?;
+        if self.names.variable(&coordinate)?.is_some() {
+            return Ok(());
         }
-        let cure = match unknown.cure.strip_suffix(&format!(".{axis}`?")) {
-            Some(near) => format!("{near}`?"),
+        let (known, suffix) = (self.names.known(), format!(".{axis}"));
+        let cure = match nearest(place, known.iter().filter_map(|name| name.strip_suffix(&suffix))) {
+            Some(near) => format!("did you mean `{near}`?"),
             None => "name a point, a body, BODY.POINT or ground; a fixed place is a [point.NAME] with `fixed = true`".into(),
         };
         Err(Mistake::new(0, format!("there is no place `{place}`"), cure))
-    }
-
-    /// Appends the operations of a program of what names stand for, and of no other variables.
-    fn inline(&mut self, program: Program) -> Result<(), Mistake> {
-        let (first, at) = (self.variables.len(), self.tokens[self.at.min(self.tokens.len() - 1)].0);
-        program.ops.into_vec().into_iter().try_for_each(|op| match op {
-            Op::Variable(k) => self.emit(variable_op(first + usize::from(k), at)?),
-            other => self.emit(other),
-        })
     }
 
     /// What a mechanism does, by its name: a variable, or a formula of some; or a unit.
@@ -415,10 +337,15 @@ impl Parser<'_> {
         let place = |mistake: Mistake| Mistake { character: at, ..mistake };
         let full = super::indexed(name, self.scope).map_err(|mistake| Mistake { character: at + mistake.character, ..mistake })?;
         if let Some(program) = self.names.formula(&full).map_err(place)? {
-            return self.inline(program);
+            let t = self.variables.iter().position(|&variable| variable == "t");
+            return program.ops.into_iter().try_for_each(|op| match op {
+                Op::Variable(0) => self.emit(Op::Variable(t.ok_or_else(|| self.unknown("t"))?)),
+                Op::Variable(k) => self.emit(Op::Variable(self.variables.len() + k - 1)),
+                other => self.emit(other),
+            });
         }
         match self.names.variable(&full).map_err(place)? {
-            Some(variable) => self.emit(variable_op(self.variables.len() + variable, at)?),
+            Some(variable) => self.emit(Op::Variable(self.variables.len() + variable)),
             // Whatever the model calls so comes first.
             None => match UNITS.iter().find(|unit| unit.0 == name) {
                 Some(&(_, value)) => self.emit(Op::Constant(value)),
@@ -436,9 +363,9 @@ impl Parser<'_> {
                 let message = format!("`{name}` could be the variable of this expression or what the model calls `{name}`");
                 Err(self.mistake(message, "give the parameter or index another name"))
             }
-            (Some(k), None) => Ok(Some(Op::Variable(k as u8))),
+            (Some(k), None) => Ok(Some(Op::Variable(k))),
             (None, Some(Value::Known(value))) => Ok(Some(Op::Constant(value))),
-            (None, Some(Value::Faulty)) => Err(Mistake { known: true, ..self.mistake("", "") }),
+            (None, Some(Value::Faulty)) => Err(Mistake::known()),
             (None, None) => Ok(CONSTANTS.iter().find(|constant| constant.0 == name).map(|&(_, value)| Op::Constant(value))),
         }
     }
@@ -456,12 +383,15 @@ impl Parser<'_> {
         if self.scope.tables.is_some_and(|tables| tables.contains_key(name)) {
             return self.mistake(format!("the table `{name}` is a function and needs its argument"), format!("write {name}(…)"));
         }
+        if self.scope.functions.is_some_and(|functions| functions.contains_key(name)) {
+            return self.mistake(format!("the function `{name}` needs its arguments"), format!("write {name}(…)"));
+        }
         let of_mechanism = self.names.known();
         let message = format!("the name `{name}` is not known here");
         if name.contains('.') && of_mechanism.is_empty() {
             return self.mistake(
                 message,
-                "names with dots are of what moves: use them in measures, events, and forces of type effort, force, torque and expression",
+                "names with dots are of what moves: use them in measures, events, and forces of type effort, force, torque, expression, spring and rope",
             );
         }
         let cure = match nearest(name, known.iter().copied().chain(of_mechanism.iter().map(String::as_str))) {
@@ -481,13 +411,16 @@ impl Parser<'_> {
             Op::Constant(_) | Op::Variable(_) => 0,
             Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) | Op::OfTable(_) => 1,
             Op::Add | Op::Sub | Op::Mul | Op::Div | Op::OfTwo(_) => 2,
+            Op::OfMany(ref function, _) => function.arguments(),
         };
+        let is_external = matches!(op, Op::OfMany(..));
         self.used = self.used + 1 - takes;
         if self.used > STACK {
             return Err(self.mistake("this expression holds too many numbers at once", "split it over [parameters]"));
         }
         let first = self.ops.len() - takes.min(self.ops.len());
-        let constant = takes > 0 && self.ops[first..].iter().all(|op| matches!(op, Op::Constant(_)));
+        // What a program gives is called when it runs.
+        let constant = takes > 0 && !is_external && self.ops[first..].iter().all(|op| matches!(op, Op::Constant(_)));
         self.ops.push(op);
         if constant {
             let folded = Program { ops: self.ops.drain(first..).collect() }.evaluate::<f64>(&[]);
@@ -495,12 +428,6 @@ impl Parser<'_> {
         }
         Ok(())
     }
-}
-
-/// The variable of a number, of which there are not too many.
-fn variable_op(variable: usize, at: usize) -> Result<Op, Mistake> {
-    let variable = u8::try_from(variable).map_err(|_| Mistake::new(at, "this expression names too many quantities", "name at most 250"))?;
-    Ok(Op::Variable(variable))
 }
 
 impl Op {

@@ -1,10 +1,11 @@
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use num_dual::{Dual2_64, Dual64, HyperDual64};
 
 use super::functions::FUNCTIONS;
-use super::{Program, STACK, Scope, TimeProgram, Value};
-use crate::system::Signal;
+use super::{Beyond, Curve, Program, STACK, Scope, TimeProgram, Value};
+use crate::system::{Signal, zeros};
 
 fn value(text: &str) -> f64 {
     let program = Program::parse(text, &[], &Scope::default()).unwrap_or_else(|mistake| panic!("{text}: {mistake:?}"));
@@ -131,7 +132,7 @@ fn powers_of_zero_and_of_negative_numbers_are_right() {
 fn parameters_fold_and_never_hide_a_variable() {
     let parameters: HashMap<String, Value> =
         [("n".to_string(), Value::Known(2.0)), ("bad".to_string(), Value::Faulty), ("t".to_string(), Value::Known(1.0))].into();
-    let scope = Scope { parameters: Some(&parameters), indices: &[("i".to_string(), 3.0)], tables: None };
+    let scope = Scope { parameters: Some(&parameters), indices: &[("i".to_string(), 3.0)], ..Scope::default() };
     assert_eq!(Program::parse("i^n + 1", &[], &scope).unwrap().as_constant(), Some(10.0));
     assert!(Program::parse("bad + 1", &[], &scope).unwrap_err().known);
     assert!(Program::parse("t + 1", &["t"], &scope).unwrap_err().message.contains("could be"));
@@ -150,4 +151,18 @@ fn signals_have_two_derivatives() {
     let program = Program::parse("0.1*sin(10*t)", &["t"], &Scope::default()).unwrap();
     let [value, rate, second] = TimeProgram(program).at(0.3);
     assert!((value - 0.1 * 3f64.sin()).abs() < 1e-16 && (rate - 3f64.cos()).abs() < 1e-15 && (second + 10.0 * 3f64.sin()).abs() < 1e-14);
+}
+
+/// Every period of a periodic table has its kinks, at the times at which its formula has them.
+#[test]
+fn kinks_of_periodic_tables_come_again_in_every_period() {
+    let curve = Curve::linear(vec![0.1, 0.4, 0.9], vec![0.0, 1.0, 0.0], Beyond::Periodic);
+    let tables = HashMap::from([("wave".to_string(), Some(Arc::new(curve)))]);
+    let scope = Scope { tables: Some(&tables), ..Scope::default() };
+    let program = Program::parse("3*wave(2*t)", &["t"], &scope).unwrap();
+    let mut times: Vec<f64> = program.switches(0).into_iter().flat_map(|switch| zeros(&TimeProgram(switch), 1.0)).collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup_by(|b, a| *b - *a < 1e-12);
+    let expected = [0.05, 0.2, 0.45, 0.6, 0.85];
+    assert!(times.len() == 5 && times.iter().zip(expected).all(|(t, known)| (t - known).abs() < 1e-12), "{times:?}");
 }

@@ -66,7 +66,7 @@ impl BodyLoad {
         variables.extend_from_slice(&self.point.at(x, dim, 1.0)[..dim]);
         variables.extend_from_slice(&self.point.at(v, dim, 0.0)[..dim]);
         variables.extend_from_slice(if dim == 2 { &turn[2..] } else { &turn[..] });
-        self.readings.append(x, v, t, &mut variables);
+        self.readings.append(x, v, &mut variables);
         let mut given = [zero; 3];
         given.iter_mut().zip(&self.formulas).for_each(|(given, formula)| *given = formula.evaluate(&variables));
         given

@@ -126,7 +126,7 @@ impl ForceFunction for EffortLoad {
         for k in self.own..self.own + self.coordinates {
             variables.extend([x[k], v[k]]);
         }
-        self.readings.append(x, v, t, &mut variables);
+        self.readings.append(x, v, &mut variables);
         force.fill(N::from(0.0));
         force[self.own] = self.effort.evaluate(&variables);
     }

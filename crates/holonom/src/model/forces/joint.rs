@@ -7,11 +7,17 @@ use crate::system::FunctionId;
 
 /// A coordinate as a quantity of the equations. What acts along it is recorded.
 pub(super) fn acted_on(assembly: &mut Assembly<'_>, coordinate: &Coordinate) -> FunctionId {
-    let q = quantity(assembly, coordinate);
-    let words = format!("effort along the {} of {}", coordinate.name, coordinate.joint);
-    let along = Along { coordinate: q, value: None, effort: ["effort".into(), words], is_angle: coordinate.is_angle };
+    let along = along(assembly, coordinate);
+    let q = along.coordinate;
     assembly.show(Shows::Along(vec![along]));
     q
+}
+
+/// A coordinate as a quantity of the equations, and what is recorded along it.
+pub(super) fn along(assembly: &mut Assembly<'_>, coordinate: &Coordinate) -> Along {
+    let words = format!("effort along the {} of {}", coordinate.name, coordinate.joint);
+    let effort = ["effort".into(), words];
+    Along { coordinate: quantity(assembly, coordinate), value: None, effort, is_angle: coordinate.is_angle }
 }
 
 /// A coordinate as a quantity of the equations.

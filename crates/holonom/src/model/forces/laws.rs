@@ -14,6 +14,9 @@ pub(super) const SHORTEST: f64 = 1e-9;
 /// Relative change of length below which the quotient ΔV/Δr gives way to an average of V′, which does not cancel.
 const QUOTIENT: f64 = 1e-3;
 
+/// Work over a way, over the energy itself, below which the difference of the energy is too much of rounding.
+const CANCELS: f64 = 1e-6;
+
 /// Points and weights of the three-point Gauss rule on [0, 1].
 const GAUSS: [(f64, f64); 3] = [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
@@ -125,9 +128,10 @@ impl Energy {
 
     /// Mean of V′ over the way from `start` to `end`, `rise` long, and its derivative by the end. Lengths are of the size `size`.
     pub fn average(&self, [start, end]: [f64; 2], rise: f64, size: f64) -> [f64; 2] {
-        if rise.abs() > QUOTIENT * size {
-            let (from, to) = (self.value(start), self.v(end));
-            let average = (to.re - from) / rise;
+        let (from, to) = (self.v(start), self.v(end));
+        let work = rise.abs() * from.v1.abs().max(to.v1.abs());
+        if rise.abs() > QUOTIENT * size && work >= CANCELS * from.re.abs().max(to.re.abs()) {
+            let average = (to.re - from.re) / rise;
             return [average, (to.v1 - average) / rise];
         }
         let [mut average, mut by_end] = [0.0; 2];
@@ -282,6 +286,21 @@ mod tests {
         let (below, above) = (between(&**law, from, to(0.9999e-3)), between(&**law, from, to(1.0011e-3)));
         assert!((below.force[0] - above.force[0]).abs() < 1e-4);
         assert!((below.by_value[0][0] - above.by_value[0][0]).abs() < 1e-3);
+    }
+
+    /// A difference of large energies over a way as short as 1e-9 m from zero is nothing but rounding.
+    #[test]
+    fn a_large_constant_in_an_energy_is_no_force() {
+        let parse = |text| Program::parse(text, ENERGY_VARIABLES, &Scope::default()).unwrap();
+        let [plain, raised] =
+            ["4*length^2 + 2*length", "4*length^2 + 2*length + 1e5"].map(|text| Energy { formula: parse(text), rest: 0.7 });
+        for way in [1e-12, 1e-9, 1e-6, 1e-3, 0.1] {
+            let [plain, raised] = [&plain, &raised].map(|energy| energy.average([0.0, way], way, way));
+            assert!((plain[0] - raised[0]).abs() < 1e-7 && (plain[1] - raised[1]).abs() < 1e-3, "{way} m: {plain:?}, {raised:?}");
+        }
+        // From slope to slope over a hill, the average is still that of the energy.
+        let hill = Energy { formula: parse("exp(-length^2)"), rest: 0.7 };
+        assert_eq!(hill.average([-0.5, 0.5], 1.0, 0.5)[0], 0.0);
     }
 
     #[test]

@@ -7,6 +7,7 @@ mod constant;
 mod coordinate_laws;
 mod effort;
 mod expression;
+mod following;
 mod force;
 mod friction;
 mod joint;

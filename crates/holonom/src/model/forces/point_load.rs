@@ -24,11 +24,10 @@ struct PointLoad {
 
 /// Adds a force on a point, of formulas that have these readings.
 pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, point: &End, mut readings: Readings, formulas: Vec<Program>) -> Read<()> {
-    let before = readings.reading.nodes.len();
-    let sum = Sum::new(&point.terms, &mut readings.reading.nodes);
-    if before == 0 && readings.reading.nodes.is_empty() {
+    if point.never_moves() {
         return Err(entry.refuse("point", "a force on a fixed point does nothing", "name a point that can move"));
     }
+    let sum = Sum::new(&point.terms, &mut readings.reading.nodes);
     let reading = readings.reading.clone();
     let load = Arc::new(PointLoad { dim: assembly.dimension(), point: sum, readings, formulas });
     assembly.builder.load_reading(entry.name, reading, Arc::new(Differentiated(load.clone())));
@@ -43,7 +42,7 @@ impl PointLoad {
         let mut variables = SmallVec::from_slice(&[t]);
         variables.extend_from_slice(&self.point.at(x, self.dim, 1.0)[..self.dim]);
         variables.extend_from_slice(&self.point.at(v, self.dim, 0.0)[..self.dim]);
-        self.readings.append(x, v, t, &mut variables);
+        self.readings.append(x, v, &mut variables);
         let mut whole = [N::from(0.0); 3];
         whole.iter_mut().zip(&self.formulas).for_each(|(whole, formula)| *whole = formula.evaluate(&variables));
         whole

@@ -1,5 +1,7 @@
 use std::sync::Arc;
 
+use super::following::{Follows, RopeLoad};
+use super::joint::along;
 use super::rope_laws::{Damping, Elastic, Strands, Taut};
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
@@ -8,15 +10,17 @@ use crate::model::entry::{Entry, Spot, all};
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number, Place};
 use crate::model::geometry::norm;
+use crate::model::joints::{Coordinate, coordinate};
 use crate::model::key::Shape;
+use crate::model::signals::Readings;
 use crate::record::{Lengths, LineKind, Shows};
-use crate::system::{InvariantId, MAX_ARGUMENTS, Place as NodePlace, Term};
+use crate::system::{Differentiated, InvariantId, MAX_ARGUMENTS, Quantity, Reading, Term};
 
-/// an elastic rope between two points, also over small sheaves: it pulls when it is longer than its free length, and never pushes
+/// an elastic rope between two points, also over small sheaves and from a drum: it pulls when it is longer than its free length, and never pushes
 #[derive(Clone, Debug, PartialEq, Keys)]
 #[kind(
     name = "rope",
-    equations = "tension k (ℓ − L) + c dℓ/dt where ℓ > L, never below 0, with ℓ = |x_1 − x_a| + |x_2 − x_1| + … + |x_b − x_n|; slack where ℓ ≤ L",
+    equations = "tension k (ℓ − L) + c dℓ/dt where ℓ > L, never below 0, with ℓ = |x_1 − x_a| + |x_2 − x_1| + … + |x_b − x_n|; slack where ℓ ≤ L. From a drum L + R q in place of L, with the effort R times the tension along q",
     example = r#"
 [point.bob]
 mass = 1
@@ -39,48 +43,105 @@ pub struct Rope {
     /// the sheaves between them, without friction and so small that they are points, in their order along the rope
     #[key(default = "none", shape = Shape::Ends(0, usize::MAX))]
     pub through: Option<List<Place>>,
-    /// L, the free length of the whole rope
-    #[key(unit = "m", default = "the length at the start")]
+    /// L, the free length of the whole rope, with a drum where its coordinate is zero; as a formula of t, of inputs, measures of
+    /// positions and what moves, by the names of columns, its work is booked
+    #[key(unit = "m", default = "the length at the start", shape = Shape::Formula(&["t"]))]
     pub length: Option<Number>,
-    /// k of the whole rope
-    #[key(unit = "N/m")]
+    /// the drum that it is wound on: a joint, or its coordinate as "JOINT.angle" or "JOINT.displacement"
+    #[key(default = "none")]
+    pub drum: Option<String>,
+    /// R, the radius of the drum: what it lets out when it turns forward; below 0 it lets out when it turns back
+    #[key(unit = "m, or m/m along a rail", default = "needed with `drum`")]
+    pub radius: Option<Number>,
+    /// k of the whole rope; it may be a formula, of velocities too
+    #[key(unit = "N/m", shape = Shape::Formula(&["t"]))]
     pub stiffness: Number,
-    /// c while it is taut; what it takes is booked as work
-    #[key(unit = "N·s/m", default = "none")]
+    /// c while it is taut, which may be a formula; what it takes is booked as work
+    #[key(unit = "N·s/m", default = "none", shape = Shape::Formula(&["t"]))]
     pub damping: Option<Number>,
 }
 
 impl Element for Rope {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let ends = self.ends(assembly, entry);
-        let length = entry.optional("length", &self.length, Number::positive);
-        let stiffness = self.stiffness.positive(entry, "stiffness");
-        let damping = entry.optional("damping", &self.damping, Number::not_negative);
-        let (ends, length, stiffness, damping) = (ends?, length?, stiffness?, damping?);
+        let mut readings = Readings::new(assembly.dimension(), Reading::default());
+        let numbers = self.numbers(assembly, entry, &mut readings);
+        let drum = self.winch(assembly, entry);
+        let (ends, [length, stiffness, damping], drum) = (ends?, numbers?, drum?);
+        let stiffness = stiffness.expect("a rope has a stiffness");
         assembly.require_free(entry, "between", &ends)?;
         let falls = falls(assembly, &ends);
         if falls.moving.is_empty() {
             return Err(entry.refuse("between", "the length of this rope never changes", "tie it to what moves against its other end"));
         }
-        if falls.moving.len() > MAX_ARGUMENTS {
-            let message =
-                format!("{} stretches of this rope change their lengths, and a rope has at most {MAX_ARGUMENTS}", falls.moving.len());
+        let most = MAX_ARGUMENTS - drum.as_ref().map_or(0, |(coordinate, _)| if coordinate.is_angle { 2 } else { 1 });
+        if falls.moving.len() > most {
+            let message = format!("{} stretches of this rope change their lengths, and it can have at most {most}", falls.moving.len());
             return Err(entry.refuse("through", message, "let it run over fewer sheaves that move against each other"));
         }
         let start: f64 = ends.windows(2).map(|pair| norm(difference(&pair[0], &pair[1]))).sum();
-        let (lengths, factors): (Vec<InvariantId>, Vec<f64>) = falls.moving.into_iter().unzip();
-        let strands = Strands::new(&factors, length.unwrap_or(start) - falls.fixed);
-        assembly.builder.law(entry.name, &lengths, Arc::new(Taut { strands, pull: Elastic { stiffness } }));
-        if let Some(damping) = damping.filter(|&damping| damping > 0.0) {
-            assembly.builder.law(entry.name, &lengths, Arc::new(Taut { strands, pull: Damping { damping, stiffness } }));
+        let (mut arguments, factors): (Vec<Quantity>, Vec<f64>) =
+            falls.moving.into_iter().map(|(id, factor)| (Quantity::from(id), factor)).unzip();
+        let radius = drum.as_ref().map(|(_, radius)| *radius);
+        let drum = drum.map(|(coordinate, _)| along(assembly, &coordinate));
+        arguments.extend(drum.iter().map(|drum| Quantity::from(drum.coordinate)));
+        let (length, damping) = (length.unwrap_or(Follows::Known(start)), damping.unwrap_or(Follows::Known(0.0)));
+        match (length.known(), stiffness.known(), damping.known()) {
+            (Some(length), Some(stiffness), Some(damping)) => {
+                let strands = Strands::new(&factors, radius.unwrap_or(0.0), length - falls.fixed);
+                assembly.builder.law(entry.name, &arguments, Arc::new(Taut { strands, pull: Elastic { stiffness } }));
+                if damping > 0.0 {
+                    assembly.builder.law(entry.name, &arguments, Arc::new(Taut { strands, pull: Damping { damping, stiffness } }));
+                }
+            }
+            _ => {
+                let own = arguments.iter().map(|&quantity| readings.own(quantity)).min().expect("a length changes");
+                let (factors, fixed, reading) = (factors.clone(), falls.fixed, readings.reading.clone());
+                let load = RopeLoad { own, factors, radius, fixed, length, stiffness, damping, readings };
+                assembly.builder.load_reading(entry.name, reading, Arc::new(Differentiated(load)));
+            }
         }
-        assembly.show(Shows::Tension(Lengths::Distances { factors, fixed: falls.fixed }));
+        assembly.show(Shows::Tension { quantities: arguments, lengths: Lengths::Distances { factors, fixed: falls.fixed, drum } });
         ends.windows(2).for_each(|pair| assembly.draw(entry, LineKind::Rope, &pair[0], &pair[1]));
         Ok(())
     }
 }
 
 impl Rope {
+    /// Length, stiffness and damping.
+    fn numbers(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>, readings: &mut Readings) -> Read<[Option<Follows>; 3]> {
+        let positive = |number: &Number, entry: &Entry<'_>, key: &str| number.positive(entry, key);
+        let length = entry.optional("length", &self.length, |number, entry, key| {
+            let length = Follows::read(assembly, readings, (entry, key), number, positive)?;
+            // How fast it changes counts, and accelerations are not known.
+            match readings.first_rate() {
+                Some(name) => {
+                    let message = format!("the length of a rope cannot follow a velocity, as `{name}` is");
+                    Err(entry.refuse(key, message, "let it follow time, inputs and positions"))
+                }
+                None => Ok(length),
+            }
+        });
+        let stiffness = Follows::read(assembly, readings, (entry, "stiffness"), &self.stiffness, positive);
+        let damping = entry.optional("damping", &self.damping, |number, entry, key| {
+            Follows::read(assembly, readings, (entry, key), number, |number, entry, key| number.not_negative(entry, key))
+        });
+        Ok([length?, Some(stiffness?), damping?])
+    }
+
+    /// The coordinate of the drum, and its radius.
+    fn winch(&self, assembly: &Assembly<'_>, entry: &Entry<'_>) -> Read<Option<(Coordinate, f64)>> {
+        let radius = entry.optional("radius", &self.radius, Number::number)?;
+        match (&self.drum, radius) {
+            (None, None) => Ok(None),
+            (None, Some(_)) => Err(entry.refuse("radius", "a radius means nothing without a drum", "add drum = \"JOINT\", or remove it")),
+            (Some(_), None | Some(0.0)) => {
+                Err(entry.refuse_key("drum", "how much rope the drum lets out is not said", "add its radius, above 0 or below"))
+            }
+            (Some(drum), Some(radius)) => Ok(Some((coordinate(assembly, entry, "drum".into(), drum)?, radius))),
+        }
+    }
+
     /// All it runs through, from end to end.
     fn ends(&self, assembly: &Assembly<'_>, entry: &Entry<'_>) -> Read<Vec<End>> {
         let sheaves = self.through.as_ref().map_or(&[][..], |through| &through[..]);
@@ -116,8 +177,7 @@ fn falls(assembly: &mut Assembly<'_>, ends: &[End]) -> Falls {
     let mut seen: Vec<[&Vec<Term>; 2]> = Vec::new();
     for pair in ends.windows(2) {
         let [a, b] = [&pair[0], &pair[1]];
-        let never_moves = |end: &End| end.terms.iter().all(|term| matches!(term.place, NodePlace::Fixed(_)));
-        if (a.body.is_some() && a.body == b.body) || (never_moves(a) && never_moves(b)) {
+        if (a.body.is_some() && a.body == b.body) || (a.never_moves() && b.never_moves()) {
             falls.fixed += norm(difference(a, b));
         } else if let Some(k) = seen.iter().position(|&known| known == [&a.terms, &b.terms] || known == [&b.terms, &a.terms]) {
             falls.moving[k].1 += 1.0;

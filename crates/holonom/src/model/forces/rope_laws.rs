@@ -1,7 +1,8 @@
-//! Laws of a rope: one tension along all its stretches, which follows from their whole length ℓ = Σ w_i r_i.
+//! Laws of a rope: one tension along all its stretches, which follows from their whole length ℓ = Σ w_i r_i and from what a drum lets out.
 //!
 //! A law hands over f_i with force on the nodes −Σ f_i ∇π_i, π_i = ½ r_i²: f_i is w_i times the tension over r_i. Between two
-//! positions f_i = w_i T̄ / r̄_i makes Σ f_i Δπ_i exactly T̄ Δℓ, as for a spring (`laws.rs`).
+//! positions f_i = w_i T̄ / r̄_i makes Σ f_i Δπ_i exactly T̄ Δℓ, as for a spring (`laws.rs`). Along the coordinate q of a drum of
+//! radius R, which lets out R q, it is −R times the tension.
 
 use super::laws::{length, lengths};
 use crate::system::{Law, MAX_ARGUMENTS, Reach, Response};
@@ -11,21 +12,26 @@ use crate::system::{Law, MAX_ARGUMENTS, Reach, Response};
 pub(super) struct Strands {
     /// w_i: how many stretches are as long as that.
     factors: [f64; MAX_ARGUMENTS],
-    /// Free length that is left for them, m.
+    /// How many lengths there are. Behind them comes the coordinate of the drum, if there is one.
+    lengths: usize,
+    /// R, m, or m/m where the drum is a rail.
+    radius: f64,
+    /// Free length that is left for them where the drum is at zero, m.
     free: f64,
 }
 
 impl Strands {
-    pub(super) fn new(factors: &[f64], free: f64) -> Self {
+    pub(super) fn new(factors: &[f64], radius: f64, free: f64) -> Self {
         let mut all = [0.0; MAX_ARGUMENTS];
         all[..factors.len()].copy_from_slice(factors);
-        Self { factors: all, free }
+        Self { factors: all, lengths: factors.len(), radius, free }
     }
 
     /// By how much a rope is longer than its free length, m, below zero where it is slack.
     fn beyond(&self, value: &[f64]) -> f64 {
-        let whole: f64 = value.iter().zip(self.factors).map(|(&value, factor)| factor * length(value).0).sum();
-        whole - self.free
+        let (lengths, drum) = value.split_at(self.lengths);
+        let whole: f64 = lengths.iter().zip(self.factors).map(|(&value, factor)| factor * length(value).0).sum();
+        whole - self.free - drum.first().map_or(0.0, |q| self.radius * q)
     }
 }
 
@@ -33,7 +39,7 @@ impl Strands {
 pub(super) struct Change {
     /// How far it is stretched at its start and at its end, 0 where it is slack, m.
     stretch: [f64; 2],
-    /// Change of the whole length, m.
+    /// Change of the whole length beyond what the drum lets out, m.
     rise: f64,
     /// s
     step: f64,
@@ -48,7 +54,9 @@ impl Change {
             (false, false) => [0.0, 0.0],
             (_, is_taut) => {
                 let share = (after - before) / self.rise;
-                [share, (f64::from(is_taut) - share) / self.rise]
+                // Of a way as short as a rounding the quotient is anything.
+                let is_known = (0.0..1.0).contains(&share);
+                if is_known { [share, (f64::from(is_taut) - share) / self.rise] } else { [1.0, 0.0] }
             }
         }
     }
@@ -151,19 +159,26 @@ impl<P: Pull> Law for Taut<P> {
         // Of each stretch the derivatives of ℓ and of dℓ/dt by its π, and that of ℓ̇ by its π̇.
         let (mut by_value, mut by_rate, mut speed) = ([[0.0; 2]; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS], 0.0);
         for (i, (&value, &rate)) in value.iter().zip(rate).enumerate() {
-            let ((r, slope), factor) = (length(value), self.strands.factors[i]);
-            by_rate[i] = factor / r;
-            by_value[i] = [factor * slope, -factor * rate / (r * r) * slope];
+            if i < self.strands.lengths {
+                let ((r, slope), factor) = (length(value), self.strands.factors[i]);
+                by_rate[i] = factor / r;
+                by_value[i] = [factor * slope, -factor * rate / (r * r) * slope];
+            } else {
+                by_rate[i] = -self.strands.radius;
+                by_value[i] = [-self.strands.radius, 0.0];
+            }
             speed += by_rate[i] * rate;
         }
         let [tension, by_length, by_speed] = self.pull.at(stretch, speed);
         for i in 0..value.len() {
-            let (r, slope) = length(value[i]);
             out.force[i] = by_rate[i] * tension;
             for j in 0..value.len() {
                 out.by_value[i][j] = by_rate[i] * (by_length * by_value[j][0] + by_speed * by_value[j][1]);
                 out.by_rate[i][j] = by_rate[i] * by_speed * by_rate[j];
             }
+        }
+        for (i, &value) in value[..self.strands.lengths].iter().enumerate() {
+            let (r, slope) = length(value);
             out.by_value[i][i] -= by_rate[i] * tension / r * slope;
         }
     }
@@ -173,20 +188,26 @@ impl<P: Pull> Law for Taut<P> {
         if stretch == [0.0; 2] {
             return;
         }
-        let (mut mean, mut slope, mut rise) = ([0.0; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS], 0.0);
+        // Of each argument: what the rope gets longer by over its change, and at its end; and how the former changes with the end.
+        let (mut share, mut slope, mut bend, mut rise) = ([0.0; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS], 0.0);
         for i in 0..reach.from.len() {
-            let of_one = lengths(reach.from[i], reach.to[i]);
-            (mean[i], slope[i]) = (of_one.mean, of_one.slope);
-            rise += self.strands.factors[i] * of_one.rise;
+            if i < self.strands.lengths {
+                let (of_one, factor) = (lengths(reach.from[i], reach.to[i]), self.strands.factors[i]);
+                (share[i], slope[i]) = (factor / of_one.mean, factor * of_one.slope);
+                bend[i] = -share[i] * 0.5 * of_one.slope / of_one.mean;
+                rise += factor * of_one.rise;
+            } else {
+                (share[i], slope[i]) = (-self.strands.radius, -self.strands.radius);
+                rise -= self.strands.radius * (reach.to[i] - reach.from[i]);
+            }
         }
         let [tension, by_length] = self.pull.between(&Change { stretch, rise, step: reach.step });
         for i in 0..reach.from.len() {
-            let factor = self.strands.factors[i] / mean[i];
-            out.force[i] = factor * tension;
+            out.force[i] = share[i] * tension;
             for j in 0..reach.from.len() {
-                out.by_value[i][j] = factor * by_length * self.strands.factors[j] * slope[j];
+                out.by_value[i][j] = share[i] * by_length * slope[j];
             }
-            out.by_value[i][i] -= factor * tension * 0.5 * slope[i] / mean[i];
+            out.by_value[i][i] += bend[i] * tension;
         }
     }
 }
@@ -196,12 +217,38 @@ mod tests {
     use super::*;
 
     fn laws() -> Vec<(&'static str, Box<dyn Law>)> {
-        let strands = Strands::new(&[1.0, 2.0], 3.0);
+        let strands = Strands::new(&[1.0, 2.0], 0.0, 3.0);
         vec![
             ("elastic", Box::new(Taut { strands, pull: Elastic { stiffness: 30.0 } })),
             ("damping", Box::new(Taut { strands, pull: Damping { damping: 2.0, stiffness: 30.0 } })),
             ("damping that would push", Box::new(Taut { strands, pull: Damping { damping: 200.0, stiffness: 30.0 } })),
         ]
+    }
+
+    /// Derivatives and work of a rope from a drum, too, whose coordinate is an argument as it is.
+    #[test]
+    fn a_drum_is_as_exact_as_a_length() {
+        let (h, strands) = (1e-6, Strands::new(&[2.0], 0.4, 1.5));
+        let laws: [(&str, Box<dyn Law>); 2] = [
+            ("elastic", Box::new(Taut { strands, pull: Elastic { stiffness: 30.0 } })),
+            ("damping", Box::new(Taut { strands, pull: Damping { damping: 2.0, stiffness: 30.0 } })),
+        ];
+        for (name, law) in laws {
+            for (from, to) in [([0.5, 0.3], [0.6, 0.2]), ([0.4, -0.5], [0.5, 0.9]), ([0.2, 1.2], [0.5, 0.1]), ([0.5, 0.3], [0.5, 0.2])] {
+                let (here, now) = (at(&*law, from, [0.7, -0.3]), between(&*law, from, to));
+                for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                    let of = |value, rate| at(&*law, value, rate).force[i];
+                    let rate = [0.7, -0.3];
+                    close(name, here.by_value[i][j], (of(moved(from, j, h), rate) - of(moved(from, j, -h), rate)) / (2.0 * h));
+                    close(name, here.by_rate[i][j], (of(from, moved(rate, j, h)) - of(from, moved(rate, j, -h))) / (2.0 * h));
+                    let of = |to| between(&*law, from, to).force[i];
+                    close(name, now.by_value[i][j], (of(moved(to, j, h)) - of(moved(to, j, -h))) / (2.0 * h));
+                }
+                let work: f64 = (0..2).map(|i| now.force[i] * (to[i] - from[i])).sum();
+                let rise = law.energy(&to) - law.energy(&from);
+                assert!(if law.conservative() { (work - rise).abs() < 1e-13 } else { work >= 0.0 }, "{name}: {work} and {rise} J");
+            }
+        }
     }
 
     /// Half the squares of two lengths.
@@ -277,6 +324,20 @@ mod tests {
                 } else {
                     assert!(work >= 0.0, "{name} gives {work}");
                 }
+            }
+        }
+    }
+
+    /// A rope that gets taut by a rounding has a tension and a tangent as small as that.
+    #[test]
+    fn a_rounding_past_its_length_is_nothing() {
+        for (name, law) in laws() {
+            for (from, to) in [([1.0, 1.0], [1.0, 1.0 + 3e-16]), ([1.0, 1.0 - 2e-16], [1.0 + 3e-16, 1.0]), ([1.0, 1.0 + 3e-16], [1.0, 1.0])]
+            {
+                let here = between(&*law, halves(from), halves(to));
+                assert!(here.force[..2].iter().all(|force| force.abs() < 1e-11), "{name}: {:?}", here.force);
+                let tangent = here.by_value.iter().flatten().all(|slope| slope.is_finite() && slope.abs() < 1e4);
+                assert!(tangent, "{name}: {:?}", here.by_value);
             }
         }
     }

@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use super::along_laws::Along;
 use super::coordinate_laws::{self, Resisting, Viscous};
+use super::following::{Follows, SpringLoad};
 use super::laws::{Damper, ENERGY_VARIABLES, Energy, FORCE_VARIABLES, Force, LinearSpring, SHORTEST};
 use crate::model::assembly::Assembly;
 use crate::model::bodies::nodes::Member;
@@ -14,9 +15,10 @@ use crate::model::fields::{Keys, List, Number, Place, Site};
 use crate::model::geometry::{Vec3, dot, norm, scale};
 use crate::model::key::Shape;
 use crate::model::references::split_place;
+use crate::model::signals::{Reader, Readings};
 use crate::model::value::Value;
 use crate::record::{Lengths, LineKind, SceneAxis, Shows};
-use crate::system::{Law, Term};
+use crate::system::{Differentiated, Law, Quantity, Reading, Term};
 
 /// a spring, a damper, or both, between two points or along an axis; linear or as a formula
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -46,19 +48,19 @@ pub struct Spring {
     /// along it and may be negative
     #[key(unit = "any", default = "none: from point to point", shape = Shape::Direction)]
     pub along: Option<Site>,
-    /// k
-    #[key(unit = "N/m", default = "none")]
+    /// k; as a formula of t, of inputs, measures and what moves, by the names of columns, its work is booked
+    #[key(unit = "N/m", default = "none", shape = Shape::Formula(&["t"]))]
     pub stiffness: Option<Number>,
-    /// L₀, the length without tension of the stiffness, and `rest` in formulas
-    #[key(unit = "m", default = "the length at the start")]
+    /// L₀, the length without tension of the stiffness, and `rest` in formulas; as k it may be a formula
+    #[key(unit = "m", default = "the length at the start", shape = Shape::Formula(&["t"]))]
     pub rest_length: Option<Number>,
-    /// c; what it takes is booked as work
-    #[key(unit = "N·s/m", default = "none")]
+    /// c, which may be a formula as k; what it takes is booked as work
+    #[key(unit = "N·s/m", default = "none", shape = Shape::Formula(&["t"]))]
     pub damping: Option<Number>,
     /// energy as a formula of the length, of `rest` and of `extension`, the length less `rest`
     #[key(unit = "J", default = "none", shape = Shape::Formula(ENERGY_VARIABLES))]
     pub energy: Option<Number>,
-    /// tension as a formula of length, rate and t, of `rest` and of `extension`, booked as work
+    /// tension as a formula of length, rate and t, of `rest` and of `extension`, of inputs, measures and what moves, booked as work
     #[key(unit = "N", default = "none", shape = Shape::Formula(FORCE_VARIABLES))]
     pub force: Option<Number>,
 }
@@ -72,55 +74,115 @@ impl Element for Spring {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let ends = assembly.moving_pair(entry, "between", &self.between);
         let axis = entry.optional("along", &self.along, |along, entry, key| axis(assembly, entry, key, along));
-        let stiffness = entry.optional("stiffness", &self.stiffness, Number::not_negative);
-        let rest_length = entry.optional("rest_length", &self.rest_length, |length, entry, key| match self.along {
-            Some(_) => length.number(entry, key),
-            None => length.not_negative(entry, key),
-        });
-        let damping = entry.optional("damping", &self.damping, Number::not_negative);
-        let formula = |key, formula: &Option<Number>, variables: &[&'static str]| {
-            entry.optional(key, formula, |formula, entry, key| formula.formula(entry, key, &not_taken(entry, variables)))
+        let mut readings = Readings::new(assembly.dimension(), Reading::default());
+        let mut number = |key, number: &Option<Number>, check: fn(&Number, &Entry<'_>, &str) -> Read<f64>| {
+            entry.optional(key, number, |number, entry, key| Follows::read(assembly, &mut readings, (entry, key), number, check))
         };
-        let (energy, force) = (formula("energy", &self.energy, ENERGY_VARIABLES), formula("force", &self.force, FORCE_VARIABLES));
+        let not_negative = |number: &Number, entry: &Entry<'_>, key: &str| number.not_negative(entry, key);
+        let any = |number: &Number, entry: &Entry<'_>, key: &str| number.number(entry, key);
+        let stiffness = number("stiffness", &self.stiffness, not_negative);
+        let rest = number("rest_length", &self.rest_length, if self.along.is_some() { any } else { not_negative });
+        let damping = number("damping", &self.damping, not_negative);
+        let energy =
+            entry.optional("energy", &self.energy, |formula, entry, key| formula.formula(entry, key, &not_taken(entry, ENERGY_VARIABLES)));
+        let force = entry.optional("force", &self.force, |formula, entry, key| {
+            let variables = not_taken(entry, FORCE_VARIABLES);
+            formula.formula_reading(entry, key, &variables, &mut Reader::new(assembly, entry, &mut readings))
+        });
         if let Self { stiffness: None, rest_length: None, damping: None, energy: None, force: None, .. } = self {
             entry.refuse_all(format!("the spring `{}` does nothing", entry.name), "add stiffness, damping, energy or force");
         }
         if let Self { rest_length: Some(_), stiffness: None, energy: None, force: None, .. } = self {
             entry.refuse("rest_length", "a rest length without a stiffness or a formula has no meaning", "add stiffness, energy or force");
         }
-        let ([a, b], axis, stiffness, rest_length) = (ends?, axis?, stiffness?, rest_length?);
+        let ([a, b], axis, stiffness, rest_length) = (ends?, axis?, stiffness?, rest?);
         let (damping, energy, force) = (damping?, energy?, force?);
+        if rest_length.as_ref().is_some_and(Follows::is_formula) && energy.is_some() {
+            let message = "an energy is one of the length alone, and here `rest_length` follows something else";
+            return Err(entry.refuse("energy", message, "write the tension as `force`, or give a number as rest_length"));
+        }
         let drawn = if stiffness.is_none() && energy.is_none() { LineKind::Cylinder } else { LineKind::Spring };
         let (d, from_a_to_b) = (difference(&a, &b), from_to(&a, &b));
         let start = axis.as_ref().map_or(norm(d), |axis| dot(d, axis.start));
-        let rest = rest_length.unwrap_or(start);
+        let rest = rest_length.unwrap_or(Follows::Known(start));
         let shortest = if axis.is_some() { start } else { start.max(SHORTEST) };
-        if let Some(formula) = &energy {
-            finite(entry, "energy", formula, &[shortest, rest, shortest - rest])?;
-        }
-        if let Some(formula) = &force {
-            finite(entry, "force", formula, &[shortest, 0.0, 0.0, rest, shortest - rest])?;
-        }
-        let energy = energy.map(|formula| Energy { formula, rest });
-        let force = force.map(|formula| Force { formula, rest });
-        let (length, laws) = match &axis {
-            None => {
-                let linear = stiffness.map(|stiffness| law(LinearSpring { stiffness, rest_length: rest }));
-                let laws = [linear, damping.map(|damping| law(Damper { damping })), energy.map(law), force.map(law)];
-                (assembly.builder.square(&from_a_to_b), laws)
-            }
-            Some(axis) => {
-                let linear = stiffness.map(|stiffness| law(coordinate_laws::Spring { stiffness, rest }));
-                let damper = damping.map(|damping| law(Resisting(Viscous(damping))));
-                let laws = [linear, damper, energy.map(|energy| law(Along(energy))), force.map(|force| law(Along(force)))];
-                (assembly.builder.dot(&from_a_to_b, &axis.terms), laws)
-            }
+        let length: Quantity = match &axis {
+            None => assembly.builder.square(&from_a_to_b).into(),
+            Some(axis) => assembly.builder.dot(&from_a_to_b, &axis.terms).into(),
         };
-        laws.into_iter().flatten().for_each(|law| assembly.builder.law(entry.name, &[length], law));
-        let lengths = if axis.is_some() { Lengths::Along } else { Lengths::Distances { factors: vec![1.0], fixed: 0.0 } };
-        assembly.show(Shows::Tension(lengths));
+        let (parts, followed) = Parts { stiffness, damping, energy, force }.split(&rest);
+        // Where the rest length follows something, no law has it.
+        let known = rest.known().unwrap_or(start);
+        parts.check(entry, shortest, known)?;
+        for law in parts.laws(known, axis.is_some()) {
+            assembly.builder.law(entry.name, &[length], law);
+        }
+        if let Some(Parts { stiffness, damping, force, .. }) = followed {
+            let own = readings.own(length);
+            let reading = readings.reading.clone();
+            let load = SpringLoad { own, is_square: axis.is_none(), stiffness, rest, damping, force, readings };
+            assembly.builder.load_reading(entry.name, reading, Arc::new(Differentiated(load)));
+        }
+        let lengths = if axis.is_some() { Lengths::Along } else { Lengths::Distances { factors: vec![1.0], fixed: 0.0, drum: None } };
+        assembly.show(Shows::Tension { quantities: vec![length], lengths });
         assembly.draw_along(entry, drawn, &a, &b, axis.map(|axis| axis.drawn));
         Ok(())
+    }
+}
+
+/// What a spring consists of.
+#[derive(Default)]
+struct Parts {
+    stiffness: Option<Follows>,
+    damping: Option<Follows>,
+    energy: Option<Program>,
+    force: Option<Program>,
+}
+
+impl Parts {
+    /// What depends on the length, its rate and the time alone, and is laws of these; and what follows something else, where there is
+    /// anything.
+    fn split(mut self, rest: &Follows) -> (Self, Option<Self>) {
+        let mut followed = Self::default();
+        let moves = rest.is_formula();
+        if moves || self.stiffness.as_ref().is_some_and(Follows::is_formula) {
+            followed.stiffness = self.stiffness.take();
+        }
+        if self.damping.as_ref().is_some_and(Follows::is_formula) {
+            followed.damping = self.damping.take();
+        }
+        if moves || self.force.as_ref().is_some_and(|force| force.reads_behind(FORCE_VARIABLES.len())) {
+            followed.force = self.force.take();
+        }
+        let is_any = followed.stiffness.is_some() || followed.damping.is_some() || followed.force.is_some();
+        (self, is_any.then_some(followed))
+    }
+
+    /// Formulas must at least be numbers where the simulation starts.
+    fn check(&self, entry: &Entry<'_>, start: f64, rest: f64) -> Read<()> {
+        if let Some(formula) = &self.energy {
+            finite(entry, "energy", formula, &[start, rest, start - rest])?;
+        }
+        match &self.force {
+            Some(formula) => finite(entry, "force", formula, &[start, 0.0, 0.0, rest, start - rest]),
+            None => Ok(()),
+        }
+    }
+
+    fn laws(self, rest: f64, is_along: bool) -> Vec<Arc<dyn Law>> {
+        let known = |number: Option<Follows>| number.and_then(|number| number.known());
+        let (stiffness, damping) = (known(self.stiffness), known(self.damping));
+        let energy = self.energy.map(|formula| Energy { formula, rest });
+        let force = self.force.map(|formula| Force { formula, rest });
+        let laws = if is_along {
+            let linear = stiffness.map(|stiffness| law(coordinate_laws::Spring { stiffness, rest }));
+            let damper = damping.map(|damping| law(Resisting(Viscous(damping))));
+            [linear, damper, energy.map(|energy| law(Along(energy))), force.map(|force| law(Along(force)))]
+        } else {
+            let linear = stiffness.map(|stiffness| law(LinearSpring { stiffness, rest_length: rest }));
+            [linear, damping.map(|damping| law(Damper { damping })), energy.map(law), force.map(law)]
+        };
+        laws.into_iter().flatten().collect()
     }
 }
 

@@ -1,0 +1,59 @@
+"""What is wrong with a model."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple, Sequence
+
+if TYPE_CHECKING:
+    from ._run import Run
+
+
+class Fault(NamedTuple):
+    """One thing that is wrong."""
+
+    message: str
+    """What is wrong, and what was expected."""
+    place: str
+    """File, line and column of a model file, or file and line of a program; empty where neither has it."""
+    path: str
+    """Where in the model, such as ``joint.hinge.axis[1]``; empty for the model as a whole."""
+    cure: str
+    """What to do about it; empty where the message says it all."""
+
+    def __str__(self) -> str:
+        lines = [f"error: {self.message}"]
+        place = self.place + (f" ({self.path})" if self.place and self.path else self.path)
+        if place:
+            lines.append(f"  --> {place}")
+        if self.cure:
+            lines.append(f"  = cure: {self.cure}")
+        return "\n".join(lines)
+
+
+class ModelError(ValueError):
+    """A model, or an argument, that cannot be; ``faults`` lists everything that is wrong."""
+
+    faults: list[Fault]
+
+    def __init__(self, faults: Sequence[Fault], text: str | None = None) -> None:
+        super().__init__(faults, text)
+        self.faults = list(faults)
+        self._text = text
+
+    def __str__(self) -> str:
+        if self._text is not None:
+            return self._text.rstrip()
+        faults = "\n".join(map(str, self.faults))
+        return f"{faults}\n{len(self.faults)} faults" if len(self.faults) > 1 else faults
+
+
+class FunctionError(RuntimeError):
+    """A function of a model has raised an exception, which is the cause of this one; ``run`` has what was simulated before, where there is
+    some."""
+
+    run: Run | None = None
+
+
+def refuse(path: str, message: str, cure: str) -> ModelError:
+    """The error of one argument."""
+    return ModelError([Fault(message, "", path, cure)])

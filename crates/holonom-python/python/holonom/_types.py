@@ -1,0 +1,21 @@
+"""What arguments may be."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Union
+
+import numpy as np
+import numpy.typing as npt
+
+#: A number, or a formula.
+Number = Union[float, str, "np.floating[Any]", "np.integer[Any]"]
+
+#: Several of these.
+Numbers = Union[Sequence[Number], npt.NDArray[Any]]
+
+#: Rows of numbers.
+Rows = Union[Sequence[Numbers], npt.NDArray[Any]]
+
+#: The name of a point or of a place of a body, an entry, or a place in the world.
+Place = Union[str, Numbers]

@@ -1,0 +1,156 @@
+//! Functions of Python that formulas call: what is called of them, and what one of them raised.
+
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use holonom::model::{External, ExternalFunction};
+use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyFloat, PyTuple};
+
+use crate::native::Native;
+
+/// What the first function that failed has raised; after it all give no numbers, so that the run stops.
+#[derive(Clone, Default)]
+pub struct Trouble(Arc<Mutex<Option<PyErr>>>);
+
+impl Trouble {
+    fn held(&self) -> MutexGuard<'_, Option<PyErr>> {
+        self.0.lock().unwrap_or_else(|broken| broken.into_inner())
+    }
+
+    /// Takes what was raised, which is nothing from here on.
+    pub fn take(&self) -> Option<PyErr> {
+        self.held().take()
+    }
+}
+
+/// What Python says of a function, as `holonom._functions.Function.parts` gives it.
+#[derive(FromPyObject)]
+pub struct Parts {
+    /// What is called for the values, and for the derivatives.
+    callable: Py<PyAny>,
+    gradient: Option<Py<PyAny>>,
+    /// Numbers of each argument: one is a float, more are an array.
+    sizes: Vec<usize>,
+    values: usize,
+    /// Where its machine code is, and whether that takes pointers to arguments and to values.
+    native: Option<(usize, bool)>,
+}
+
+impl Parts {
+    /// Whether it is called without the interpreter.
+    pub fn is_native(&self) -> bool {
+        self.native.is_some()
+    }
+}
+
+/// A function as the engine calls it.
+pub fn external(name: &str, parts: Parts, trouble: &Trouble) -> External {
+    match parts.native {
+        Some((address, is_of_pointers)) => {
+            External::new(Native::new(address, is_of_pointers, parts.sizes.iter().sum(), parts.values, parts.callable))
+        }
+        None => External::new(Called { name: name.into(), parts, trouble: trouble.clone() }),
+    }
+}
+
+/// A callable of Python.
+struct Called {
+    name: String,
+    parts: Parts,
+    trouble: Trouble,
+}
+
+impl Called {
+    /// Runs what may raise, once nothing was raised before; else no numbers are given.
+    fn attempt(&self, out: &mut [f64], work: impl FnOnce(Python<'_>, &mut [f64]) -> PyResult<()>) {
+        if self.trouble.held().is_none() {
+            let outcome = Python::attach(|py| work(py, out).map_err(|error| self.failure(py, error)));
+            match outcome {
+                Ok(()) => return,
+                Err(error) => drop(self.trouble.held().get_or_insert(error)),
+            }
+        }
+        out.fill(f64::NAN);
+    }
+
+    fn given<'py>(&self, py: Python<'py>, arguments: &[f64]) -> PyResult<Bound<'py, PyTuple>> {
+        let mut at = 0;
+        let each = self.parts.sizes.iter().map(|&size| {
+            let numbers = &arguments[at..at + size];
+            at += size;
+            match size {
+                1 => PyFloat::new(py, numbers[0]).into_any(),
+                _ => PyArray1::from_slice(py, numbers).into_any(),
+            }
+        });
+        PyTuple::new(py, each.collect::<Vec<_>>())
+    }
+
+    /// The exception that the run raises.
+    fn failure(&self, py: Python<'_>, error: PyErr) -> PyErr {
+        let make = || {
+            let class = py.import("holonom._errors")?.getattr("FunctionError")?;
+            let raised = format!("the function `{}` raised {}", self.name, error.value(py).repr()?);
+            let failure = PyErr::from_value(class.call1((raised,))?);
+            failure.set_cause(py, Some(error.clone_ref(py)));
+            Ok(failure)
+        };
+        make().unwrap_or_else(|error: PyErr| error)
+    }
+
+    fn wrong<T>(&self, given: &Bound<'_, PyAny>) -> PyResult<T> {
+        let values = self.parts.values;
+        let wanted = if values == 1 { "a number".to_string() } else { format!("{values} numbers") };
+        let given = given.repr().map_or(String::new(), |text| text.to_string_lossy().chars().take(60).collect());
+        Err(pyo3::exceptions::PyTypeError::new_err(format!("it gave {given}, and {wanted} is wanted")))
+    }
+}
+
+impl ExternalFunction for Called {
+    fn arguments(&self) -> usize {
+        self.parts.sizes.iter().sum()
+    }
+
+    fn values(&self) -> usize {
+        self.parts.values
+    }
+
+    fn call(&self, arguments: &[f64], values: &mut [f64]) {
+        self.attempt(values, |py, values| {
+            let given = self.parts.callable.bind(py).call1(self.given(py, arguments)?)?;
+            if let [value] = values {
+                return match given.extract() {
+                    Ok(number) => {
+                        *value = number;
+                        Ok(())
+                    }
+                    Err(_) => self.wrong(&given),
+                };
+            }
+            if let Ok(array) = given.extract::<PyReadonlyArray1<'_, f64>>()
+                && array.len()? == values.len()
+            {
+                values.iter_mut().zip(array.as_array()).for_each(|(value, given)| *value = *given);
+                return Ok(());
+            }
+            match given.extract::<Vec<f64>>() {
+                Ok(numbers) if numbers.len() == values.len() => {
+                    values.copy_from_slice(&numbers);
+                    Ok(())
+                }
+                _ => self.wrong(&given),
+            }
+        });
+    }
+
+    fn gradient(&self, arguments: &[f64], gradient: &mut [f64]) {
+        let Some(of) = &self.parts.gradient else { return holonom::model::differences(self, arguments, gradient) };
+        self.attempt(gradient, |py, gradient| {
+            let given = of.bind(py).call1(self.given(py, arguments)?)?;
+            let matrix: PyReadonlyArray2<'_, f64> = given.extract()?;
+            gradient.iter_mut().zip(matrix.as_array()).for_each(|(slope, given)| *slope = *given);
+            Ok(())
+        });
+    }
+}

@@ -1,0 +1,361 @@
+//! A simulation that a program steps.
+
+use std::cell::RefCell;
+use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::time::{Duration, Instant};
+
+use holonom::model::nearest;
+use holonom::record::{Constraints, Recorder, RecorderMark};
+use holonom::run::RunError;
+use holonom::simulation::{Checkpoint, Method, Observer, Simulation, Status};
+use holonom_cli::Loaded;
+use pyo3::exceptions::PyKeyError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+use crate::draft::{Draft, run_error};
+use crate::fault::refuse;
+use crate::function::Trouble;
+use crate::run::{read_changes, unknown};
+
+/// Steps between two looks whether Ctrl-C was pressed.
+const LOOK: i64 = 256;
+
+/// Steps that take less time keep the interpreter to themselves: to give it away and to take it back would be a good part of them.
+const SHORT: Duration = Duration::from_micros(100);
+
+/// Time between two looks whether another thread is done.
+const PAUSE: Duration = Duration::from_micros(20);
+
+thread_local! {
+    /// Where the simulations are within which this thread is.
+    static WITHIN: RefCell<Vec<usize>> = const { RefCell::new(Vec::new()) };
+}
+
+/// A model at work, step by step.
+#[pyclass(frozen, module = "holonom._engine")]
+pub struct Simulator {
+    loaded: Loaded,
+    running: Mutex<Running>,
+    trouble: Trouble,
+}
+
+struct Running {
+    simulation: Simulation,
+    recorder: Recorder<'static>,
+    /// Whether measures are of the whole run, so that the recorder has to see every step.
+    sees_all: bool,
+    /// The columns at the present state, and whether they are those.
+    row: Vec<f64>,
+    is_row_new: bool,
+    /// Whether the last step that was taken alone was a short one.
+    is_short: bool,
+    /// Why the last step was the last, and the event that it was.
+    ended: Option<String>,
+    event: Option<String>,
+}
+
+/// All that a simulation goes on from.
+#[pyclass(frozen, eq, module = "holonom._engine")]
+#[derive(PartialEq)]
+pub struct State {
+    point: (Checkpoint, RecorderMark),
+}
+
+impl Running {
+    /// Looks at the state that was just reached.
+    fn arrive(&mut self) {
+        self.is_row_new = false;
+        if self.sees_all {
+            // A recorder wants no run to stop.
+            let _ = self.recorder.after_step(&self.simulation);
+        }
+    }
+
+    /// Whether the run goes on after a step.
+    fn judge(&mut self, status: Status) -> bool {
+        let t = self.simulation.state().t;
+        (self.ended, self.event) = match status {
+            Status::Stopped { reason, .. } => (Some(reason), None),
+            Status::Completed => {
+                let event = self.simulation.events().last().filter(|last| last.stopped && last.t == t).map(|last| last.event.clone());
+                (event.as_ref().map(|event| format!("ended by the event `{event}`")), event)
+            }
+        };
+        self.ended.is_none()
+    }
+
+    /// Takes nominal steps, and says whether the run goes on.
+    fn advance(&mut self, count: i64) -> bool {
+        let begun = Instant::now();
+        let goes_on = (0..count).all(|_| {
+            let status = self.simulation.step();
+            self.arrive();
+            self.judge(status)
+        });
+        self.is_short = count == 1 && begun.elapsed() < SHORT;
+        goes_on
+    }
+
+    fn look(&mut self) -> &[f64] {
+        if !self.is_row_new {
+            self.row.clear();
+            self.row.extend_from_slice(self.recorder.look(&self.simulation));
+            self.is_row_new = true;
+        }
+        &self.row
+    }
+}
+
+impl Simulator {
+    /// The simulation, once no other thread is at it. A function that a step calls cannot have it.
+    fn running(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Running>> {
+        self.require_outside(py)?;
+        loop {
+            match self.running.try_lock() {
+                Ok(running) => return Ok(running),
+                Err(TryLockError::Poisoned(broken)) => return Ok(broken.into_inner()),
+                // The other thread may need the interpreter.
+                Err(TryLockError::WouldBlock) => py.detach(|| std::thread::sleep(PAUSE)),
+            }
+        }
+    }
+
+    fn require_outside(&self, py: Python<'_>) -> PyResult<()> {
+        match WITHIN.with_borrow(|within| within.contains(&self.address())) {
+            false => Ok(()),
+            true => Err(refuse(
+                py,
+                "",
+                "the simulation is within a step, and a function of its model wants to have it",
+                "give the function what it reads as arguments",
+            )),
+        }
+    }
+
+    fn address(&self) -> usize {
+        std::ptr::from_ref(self).addr()
+    }
+
+    /// Does something in which functions of Python may be called.
+    fn within<T>(&self, running: &mut Running, work: impl FnOnce(&mut Running) -> T) -> T {
+        WITHIN.with_borrow_mut(|within| within.push(self.address()));
+        let done = work(running);
+        WITHIN.with_borrow_mut(Vec::pop);
+        done
+    }
+
+    /// Raises what a function has raised.
+    fn raise(&self) -> PyResult<()> {
+        self.trouble.take().map_or(Ok(()), Err)
+    }
+}
+
+#[pymethods]
+impl Simulator {
+    /// Puts a model at its start, with some keys of it set to other values.
+    #[new]
+    fn new(py: Python<'_>, draft: &Draft, changes: &Bound<'_, PyDict>, method: Option<&str>) -> PyResult<Self> {
+        let trouble = Trouble::default();
+        let loaded = draft.load_with(py, &read_changes(py, changes)?, &trouble)?;
+        let model = &loaded.model;
+        let begin = || {
+            let method = Method::resolve(&model.choice(method))?;
+            let mut simulation = Simulation::new(model.system.clone(), method, model.step()?)?;
+            if model.output.constraints() != Constraints::Nothing || !model.channels.efforts.is_empty() {
+                model.find_reactions(&mut simulation);
+            }
+            Ok(simulation)
+        };
+        let begun = py.detach(begin);
+        if let Some(raised) = trouble.take() {
+            return Err(raised);
+        }
+        let simulation = begun.map_err(|error: RunError| run_error(py, error))?;
+        // The start is the only row that it keeps.
+        let recorder = Recorder::new(&model.channels, &model.system, u64::MAX, model.output.constraints()).into_owned();
+        let sees_all = model.channels.measures.iter().any(|measure| measure.is_running());
+        let mut running =
+            Running { simulation, recorder, sees_all, row: Vec::new(), is_row_new: false, is_short: false, ended: None, event: None };
+        running.arrive();
+        trouble.take().map_or(Ok(Self { running: Mutex::new(running), loaded, trouble }), Err)
+    }
+
+    /// Takes nominal steps, and says whether the simulation goes on.
+    #[pyo3(signature = (count = 1))]
+    fn step(&self, py: Python<'_>, count: i64) -> PyResult<bool> {
+        if count < 0 {
+            return Err(refuse(py, "count", format!("`count` is {count}, and steps only go forward"), "give 0 or more"));
+        }
+        let mut running = self.running(py)?;
+        if count == 1 && running.is_short {
+            let goes_on = self.within(&mut running, |running| running.advance(1));
+            return self.raise().map(|()| goes_on);
+        }
+        drop(running);
+        let mut left = count;
+        loop {
+            let next = left.min(LOOK);
+            let goes_on = py.detach(|| {
+                let mut running = self.running.lock().unwrap_or_else(|broken| broken.into_inner());
+                self.within(&mut running, |running| running.advance(next))
+            });
+            self.raise()?;
+            left -= next;
+            if left == 0 || !goes_on {
+                return Ok(goes_on);
+            }
+            py.check_signals()?;
+        }
+    }
+
+    /// Time, s.
+    #[getter]
+    fn time(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(self.running(py)?.simulation.state().t)
+    }
+
+    /// Nominal step, s.
+    #[getter]
+    fn nominal_step(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(self.running(py)?.simulation.nominal_step())
+    }
+
+    /// Nominal steps taken.
+    #[getter]
+    fn steps(&self, py: Python<'_>) -> PyResult<u64> {
+        Ok(self.running(py)?.simulation.steps())
+    }
+
+    /// Why the last step was the last; None while the simulation goes on.
+    #[getter]
+    fn ended(&self, py: Python<'_>) -> PyResult<Option<String>> {
+        Ok(self.running(py)?.ended.clone())
+    }
+
+    /// Name of the event that made the last step the last.
+    #[getter]
+    fn event(&self, py: Python<'_>) -> PyResult<Option<String>> {
+        Ok(self.running(py)?.event.clone())
+    }
+
+    /// Heading of its model.
+    #[getter]
+    fn title(&self) -> &str {
+        self.loaded.title()
+    }
+
+    /// Name of its method.
+    #[getter]
+    fn method(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(self.running(py)?.simulation.method().name.clone())
+    }
+
+    /// Names of the columns.
+    fn names(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        Ok(self.running(py)?.recorder.recording().columns().iter().map(|column| column.heading.name.clone()).collect())
+    }
+
+    /// Where the column of a name stands among them.
+    fn place(&self, py: Python<'_>, name: &str) -> PyResult<usize> {
+        let running = self.running(py)?;
+        let recording = running.recorder.recording();
+        recording.place(name).ok_or_else(|| unknown(name, recording.columns().iter().map(|column| column.heading.name.as_str()).collect()))
+    }
+
+    /// Value of a column at the present state.
+    fn value(&self, py: Python<'_>, place: usize) -> PyResult<f64> {
+        let value = self.within(&mut *self.running(py)?, |running| running.look()[place]);
+        self.raise()?;
+        Ok(value)
+    }
+
+    /// Names of the inputs.
+    fn inputs(&self) -> Vec<String> {
+        self.loaded.model.channels.inputs.iter().map(|input| input.name.clone()).collect()
+    }
+
+    /// Value of an input.
+    fn input(&self, py: Python<'_>, name: &str) -> PyResult<f64> {
+        self.running(py)?.simulation.input(name).ok_or_else(|| self.no_input(name))
+    }
+
+    /// Sets an input, which counts from here on.
+    fn set_input(&self, py: Python<'_>, name: &str, value: f64) -> PyResult<()> {
+        if !value.is_finite() {
+            return Err(refuse(py, name, format!("the input `{name}` cannot be {value}"), "set it to a finite number"));
+        }
+        let mut running = self.running(py)?;
+        running.is_row_new = false;
+        self.within(&mut running, |running| running.simulation.set_input(name, value)).then_some(()).ok_or_else(|| self.no_input(name))
+    }
+
+    /// A copy of the present state.
+    fn state(&self, py: Python<'_>) -> PyResult<State> {
+        let running = self.running(py)?;
+        Ok(State { point: (running.simulation.checkpoint(), running.recorder.mark()) })
+    }
+
+    /// Goes on from a state of this model.
+    fn set_state(&self, py: Python<'_>, state: &State) -> PyResult<()> {
+        let (checkpoint, mark) = &state.point;
+        let model = &self.loaded.model;
+        let running = &mut *self.running(py)?;
+        let method = running.simulation.method().clone();
+        let resumed = Simulation::resume(model.system.clone(), method, running.simulation.nominal_step(), checkpoint.clone());
+        let Some(mut simulation) = resumed else {
+            return Err(refuse(
+                py,
+                "state",
+                "the state is that of another model or method",
+                "take one that state() of this simulation gave",
+            ));
+        };
+        if model.output.constraints() != Constraints::Nothing || !model.channels.efforts.is_empty() {
+            model.find_reactions(&mut simulation);
+        }
+        let recorder = Recorder::new(&model.channels, &model.system, u64::MAX, model.output.constraints()).into_owned().resume(mark);
+        (running.simulation, running.recorder, running.is_row_new) = (simulation, recorder, false);
+        (running.ended, running.event) = (None, None);
+        running.arrive();
+        self.raise()
+    }
+}
+
+impl Simulator {
+    fn no_input(&self, name: &str) -> PyErr {
+        let known = || self.loaded.model.channels.inputs.iter().map(|input| input.name.as_str());
+        let cure = match (nearest(name, known()), known().next()) {
+            (Some(near), _) => format!("did you mean `{near}`?"),
+            (None, Some(_)) => format!("there are: {}", known().collect::<Vec<_>>().join(", ")),
+            (None, None) => "add it with m.input(…) before".into(),
+        };
+        PyKeyError::new_err(format!("no input is called `{name}`: {cure}"))
+    }
+}
+
+#[pymethods]
+impl State {
+    /// Time, s.
+    #[getter]
+    fn time(&self) -> f64 {
+        self.point.0.state.t
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<state at {} s>", self.point.0.state.t)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let bytes = serde_json::to_vec(&slf.get().point).expect("a state is plain data");
+        Ok((slf.get_type().getattr("of_bytes")?, (PyBytes::new(slf.py(), &bytes),)))
+    }
+
+    /// What was pickled.
+    #[staticmethod]
+    fn of_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        let point =
+            serde_json::from_slice(bytes).map_err(|error| refuse(py, "state", error.to_string(), "give what a state was pickled to"))?;
+        Ok(Self { point })
+    }
+}

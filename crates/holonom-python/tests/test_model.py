@@ -1,0 +1,135 @@
+"""Models: builders, handles, copies, and where faults are."""
+
+import copy
+import inspect
+import pickle
+
+import numpy as np
+import pytest
+
+import holonom as hm
+from holonom._builders import DEFINITIONS, builder_name
+
+
+def door():
+    m = hm.Model(title="Door", gravity=[0, 0, -9.81])
+    leaf = m.body("door", mass=20, shape=hm.Box(1, 0.05, 2), position=[0.5, 0, 1], points={"handle": [0.4, 0, 0]})
+    hinge = m.revolute("hinge", m.ground, leaf, at=[0, 0, 1], axis=[0, 0, 1])
+    m.torsion("closer", joint=hinge, stiffness=5, angle=1.57)
+    return m
+
+
+def test_a_door_turns_as_its_equation_says():
+    run = door().simulate(end=1, step=1e-3)
+    # J φ̈ = c (1.57 − φ) with J = m (b² + t²)/12 + m b²/4.
+    exact = 1.57 * (1 - np.cos(np.sqrt(5 / 6.670833) * run.t))
+    assert np.abs(run["hinge"].angle - exact).max() < 1e-6
+    assert run["hinge"].force[0, 2] == pytest.approx(20 * 9.81, abs=1e-9)
+
+
+def test_every_kind_has_a_builder_with_its_own_name():
+    entries = [(section, kind) for section, kind, *_ in DEFINITIONS if section not in ("", "simulation", "output", "shape")]
+    names = [builder_name(*entry) for entry in entries]
+    assert len(set(names)) == len(names) > 40
+    others = {name for name in vars(hm.Model) if not name.startswith("_")} - set(names)
+    assert others == {"ground", "parameter", "simulation", "output", "set", "get", "entries", "title", "to_toml", "notes", "simulate", "copy", "function"}
+    for name in names:
+        builder = getattr(hm.Model, name)
+        assert name.isidentifier() and builder.__name__ == name
+        for parameter in list(inspect.signature(builder).parameters.values())[1:]:
+            if parameter.kind is inspect.Parameter.KEYWORD_ONLY:
+                assert f"\n{parameter.name}: " in builder.__doc__, (name, parameter)
+
+
+def test_arrays_lists_and_formulas_mean_the_same():
+    models = [hm.Model() for _ in range(4)]
+    models[3].parameter("h", 0.5)
+    for m, position in zip(models, [[1, 0, 0.5], (1.0, 0.0, 0.5), np.array([1, 0, 0.5]), ["2*h", 0, "h"]]):
+        m.point("p", mass=np.float32(2), position=position)
+    ends = [m.simulate(end=0.1, step=np.float64(0.01))["p"].position for m in models]
+    assert all((end == ends[0]).all() for end in ends)
+
+
+def test_handles_are_names():
+    m = door()
+    hinge = m["hinge"]
+    assert hinge == "hinge" and (hinge.section, hinge.kind) == ("joint", "revolute")
+    assert m["door"]["handle"] == "door.handle" and m["door"][3] == "door[3]"
+    assert pickle.loads(pickle.dumps(hinge)).kind == "revolute"
+    with pytest.raises(KeyError, match="hinge, closer"):
+        m["hing"]
+    del m["closer"]
+    assert "closer" not in m and len(m) == 2
+    m.torsion("closer", joint=hinge, stiffness=1)
+
+
+def test_an_entry_may_name_what_comes_later():
+    m = hm.Model()
+    m.revolute("hinge", m.ground, "door", at=[0, 0, 0], axis=[0, 0, 1])
+    m.body("door", mass=1, inertia=[1, 1, 1], position=[1, 0, 0])
+    assert m.simulate(end=0.1, step=0.01).completed
+
+
+@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, hm.Model.copy, lambda m: pickle.loads(pickle.dumps(m))])
+@pytest.mark.parametrize("original", [door, lambda: hm.load("example:four-bar"), hm.Model])
+def test_copies_are_models_of_their_own(original, again):
+    m = original()
+    other = again(m)
+    assert (other.to_toml(), repr(other)) == (m.to_toml(), repr(m))
+    other.point("new", position=[0, 0, 0])
+    assert "new" not in m and other.to_toml() != m.to_toml()
+
+
+def test_a_file_that_is_not_changed_keeps_its_text():
+    text = '# mine\n[point.p]\nmass = 1 # kg\nposition = [0, 0, 0]\n[simulation]\nend = 1\nstep = 0.1\n'
+    m = hm.loads(text)
+    assert m.to_toml() == text
+    m.set("point.p.mass", 2)
+    assert m.get("point.p.mass") == 2 and "# mine" not in m.to_toml()
+
+
+def test_what_is_set_for_a_run_is_set_for_that_run_only():
+    m = door()
+    stiff = m.simulate(end=1, step=0.01, set={"force.closer.stiffness": 50})
+    assert stiff["hinge.angle"][-1] != m.simulate(end=1, step=0.01)["hinge.angle"][-1]
+    m.set("force.closer.stiffness", 50)
+    assert stiff["hinge.angle"].tobytes() == m.simulate(end=1, step=0.01)["hinge.angle"].tobytes()
+
+
+def line_of_next():
+    return inspect.currentframe().f_back.f_lineno + 1
+
+
+def test_faults_have_the_line_of_the_entry():
+    m = door()
+    here = line_of_next()
+    m.spherical("ball", "door", "dor", at=[0, 0, 0])
+    m.torsion("spring", joint="hing", stiffness=1)
+    with pytest.raises(hm.ModelError) as error:
+        m.simulate(end=1, step=0.1)
+    first, second = error.value.faults
+    assert (first.place, first.path) == (f"{__file__}:{here}", "joint.ball.between[1]")
+    assert second.place == f"{__file__}:{here + 1}"
+    assert "`dor`" in first.message and "`door`" in first.cure
+    assert "2 faults" in str(error.value) and pickle.loads(pickle.dumps(error.value)).faults == error.value.faults
+
+
+def test_faults_of_a_file_have_its_line(tmp_path):
+    path = tmp_path / "model.toml"
+    path.write_text('[point.p]\nmass = 1\nposition = [0, 0, 0]\n[constraint.rod]\ntype = "distance"\nbetween = ["ground", "q"]\n')
+    m = hm.load(path)
+    with pytest.raises(hm.ModelError) as error:
+        m.notes()
+    assert error.value.faults[0].place == f"{path}:6:22"
+    here = line_of_next()
+    m.point("other", mass=-1, position=[1, 0, 0])
+    with pytest.raises(hm.ModelError) as error:
+        m.notes()
+    assert {fault.place for fault in error.value.faults} == {f"{path}:6:22", f"{__file__}:{here}"}
+
+
+def test_repeated_entries_have_columns_each():
+    m = hm.Model(gravity=[0, 0, 0])
+    p = m.point("p", repeat="i = 0 to 3", mass=1, position=["i", 0, 0])
+    run = m.simulate(end=0.1, step=0.01)
+    assert [run[p[k]].position[0, 0] for k in range(4)] == [0, 1, 2, 3]

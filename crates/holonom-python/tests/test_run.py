@@ -1,0 +1,211 @@
+"""Runs: what they leave, and how they end."""
+
+import copy
+import json
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import pytest
+
+import holonom as hm
+
+PENDULUM = "example:double-pendulum"
+
+
+@pytest.fixture(scope="module")
+def run():
+    return hm.load("example:free-body").simulate(end=0.1)
+
+
+def test_columns_and_vectors(run):
+    body = next(iter(hm.load("example:free-body")))
+    assert run.t[0] == 0 and run.t[-1] == 0.1 and len(run) == len(run.t)
+    assert run[body].position.shape == (len(run), 3) and run[body].orientation.shape == (len(run), 4)
+    assert (run[body].position[:, 1] == run[f"{body}.y"]).all()
+    assert np.allclose(np.linalg.norm(run[body].orientation, axis=1), 1)
+    assert (run.energy.total == run["energy"]).all() and (run.violation.velocity == run["phi_dot"]).all()
+    assert (run.unit(f"{body}.vx"), run.unit("energy")) == ("m/s", "J")
+    assert "velocity" in run.meaning(f"{body}.vx")
+    assert "position" in dir(run[body])
+    assert all(len(run[name]) == len(run) for name in run.columns)
+
+
+def test_arrays_cannot_be_changed_by_mistake(run):
+    with pytest.raises(ValueError, match="read-only"):
+        run.t[0] = 1
+
+
+def test_the_plane_has_two_coordinates():
+    run = hm.load(PENDULUM).simulate(end=0.1)
+    assert run["m1"].position.shape == (len(run), 2)
+
+
+def test_the_command_gives_the_same_run(tmp_path):
+    text = hm.load(PENDULUM).to_toml()
+    (tmp_path / "models").mkdir()
+    path = tmp_path / "models" / "pendulum.toml"
+    path.write_text(text)
+    command = [sys.executable, "-m", "holonom", "run", str(path), "--end", "0.5", "--no-report", "--format", "npz", "--out", "of-command"]
+    subprocess.run([*command, "--quiet"], cwd=tmp_path, check=True)
+    run = hm.load(path).simulate(end=0.5)
+    run.write(tmp_path / "of-python", formats=["npz"], report=False)
+    summaries = [json.loads((tmp_path / name / "summary.json").read_text()) for name in ("of-command", "of-python")]
+    tables = [np.load(tmp_path / name / "trajectory.npz") for name in ("of-command", "of-python")]
+    assert tables[0].files == tables[1].files == run.columns
+    for name in run.columns:
+        assert tables[0][name].tobytes() == tables[1][name].tobytes() == run[name].tobytes()
+    for summary in (*summaries, run.summary):
+        del summary["time"]
+        summary["provenance"] = {key: value for key, value in summary["provenance"].items() if key not in ("date", "command")}
+    assert summaries[0] == summaries[1] == run.summary
+
+
+def test_results_of_another_run_are_not_overwritten(tmp_path):
+    model = hm.load(PENDULUM)
+    model.simulate(end=0.1).write(tmp_path)
+    assert {"summary.json", "trajectory.csv", "columns.json", "report.html"} <= set(os.listdir(tmp_path))
+    model.simulate(end=0.1).write(tmp_path)
+    with pytest.raises(hm.ModelError, match="another run"):
+        model.simulate(end=0.2).write(tmp_path)
+    model.simulate(end=0.2).write(tmp_path, force=True)
+
+
+def test_the_report_is_a_page(tmp_path):
+    hm.load(PENDULUM).simulate(end=0.1).report(tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert page.startswith("<!DOCTYPE html>") and "Double pendulum" in page
+
+
+def test_a_run_that_stops_is_a_result():
+    m = hm.Model(gravity=[0, 0, 0])
+    m.point("p", mass=1, position=[1, 0, 0], velocity=[-1, 0, 0])
+    m.expression("pull", point="p", force=["-1/x^3", 0, 0])
+    run = m.simulate(end=10, step=0.01)
+    assert run.status == "stopped" and not run.completed and run.reason
+    # It falls into the centre at t = 0.5.
+    assert run.t[-1] <= run.summary["stopped_at"] <= 0.5 + 1e-3 and run.t[-1] > 0.4
+    assert "stopped at" in repr(run)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows sends no SIGINT to a thread")
+def test_ctrl_c_stops_and_keeps():
+    # Where the tests are started in the background, the signal is ignored from the start.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+        run = hm.load(PENDULUM).simulate(end=2e4, step=1e-3, every=1000)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert (run.status, run.reason) == ("stopped", "interrupted")
+    assert len(run) > 1 and run.t[-1] < 2e4
+
+
+def test_the_interpreter_goes_on_while_a_run_does():
+    counted, done = [], threading.Event()
+
+    def count():
+        while not done.wait(0.001):
+            counted.append(1)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    hm.load(PENDULUM).simulate(end=200, step=1e-3, every=1000)
+    seen = len(counted)
+    done.set()
+    thread.join()
+    assert seen > 10
+
+
+def test_runs_in_threads_have_the_same_bits():
+    model, runs = hm.load("example:four-bar"), [None] * 8
+
+    def simulate(k):
+        runs[k] = model.simulate(end=0.2)
+
+    threads = [threading.Thread(target=simulate, args=(k,)) for k in range(len(runs))]
+    [thread.start() for thread in threads]
+    [thread.join() for thread in threads]
+    alone = model.simulate(end=0.2)
+    assert all(run[name].tobytes() == alone[name].tobytes() for run in runs for name in alone.columns)
+
+
+def test_errors_of_files_are_those_of_the_system(run, tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OSError):
+        run.write(tmp_path / "file" / "folder")
+    with pytest.raises(FileNotFoundError):
+        hm.load(tmp_path / "none.toml")
+
+
+def test_a_dataframe_has_all_columns_over_the_times(run):
+    table = run.to_dataframe()
+    assert list(table.columns) == [name for name in run.columns if name != "t"]
+    assert (table.index.to_numpy() == run.t).all() and table.index.name == "t"
+    assert all((table[name].to_numpy() == run[name]).all() for name in ("energy", "phi"))
+    assert table.attrs["units"]["energy"] == "J"
+    assert list(run.to_dataframe(["energy", "work"]).columns) == ["energy", "work"]
+    with pytest.raises(KeyError, match="enrgy.*energy"):
+        run.to_dataframe(["enrgy"])
+
+
+def test_a_plot_has_axes_for_each_unit(run):
+    import matplotlib
+
+    matplotlib.use("agg")
+    from matplotlib import pyplot
+
+    first, second = run.plot("energy", "phi", "kinetic")
+    assert [line.get_label() for line in first.get_lines()] == ["energy", "kinetic"]
+    assert first.get_ylabel() == "[J]" and second.get_xlabel() == "t [s]"
+    assert (first.get_lines()[1].get_ydata() == run["kinetic"]).all()
+    assert run.plot("energy", "phi", ax=first) == [first] and len(first.get_lines()) == 4
+    with pytest.raises(TypeError, match="name one"):
+        run.plot()
+    with pytest.raises(KeyError, match="enrgy.*energy"):
+        run.plot("enrgy")
+    pyplot.close("all")
+
+
+def test_a_notebook_shows_the_report(run):
+    cell = run._repr_html_()
+    assert cell.startswith("<iframe") and cell.count("<iframe") == 1
+    import html
+
+    page = html.unescape(cell.split('srcdoc="')[1].split('" style=')[0])
+    assert page.startswith("<!DOCTYPE html>") or page.startswith("<!doctype html>")
+    assert 'id="holonom-data"' in page
+
+
+@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, lambda run: pickle.loads(pickle.dumps(run))])
+def test_a_run_is_copied_and_pickled(run, again, tmp_path):
+    other = again(run)
+    assert repr(other) == repr(run) and other.columns == run.columns and other.summary == run.summary
+    assert all(other[name].tobytes() == run[name].tobytes() for name in run.columns)
+    assert [(other.unit(name), other.meaning(name)) for name in run.columns] == [(run.unit(name), run.meaning(name)) for name in run.columns]
+    assert other._repr_html_() == run._repr_html_()
+    run.write(tmp_path / "one", report=False)
+    other.write(tmp_path / "one", report=False)
+
+
+def test_a_pickled_run_is_of_the_model_as_it_was():
+    m = hm.load(PENDULUM)
+    m.measure("height", value="m2.y", unit="m")
+    run = m.simulate(end=0.1, set={"point.m2.mass": 3}, method="radau")
+    m.set("point.m1.mass", 7)
+    del m["height"]
+    other = pickle.loads(pickle.dumps(run))
+    assert repr(other) == repr(run) and "radau" in repr(other) and (other["height"] == run["height"]).all()
+
+
+def test_a_stopped_run_is_pickled():
+    m = hm.Model(gravity=[0, 0, 0])
+    m.point("p", mass=1, position=[1, 0, 0], velocity=[-1, 0, 0])
+    m.expression("pull", point="p", force=["-1/x^3", 0, 0])
+    run = m.simulate(end=10, step=0.01)
+    other = pickle.loads(pickle.dumps(run))
+    assert (other.status, other.reason, len(other)) == (run.status, run.reason, len(run))

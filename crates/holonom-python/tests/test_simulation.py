@@ -1,0 +1,102 @@
+"""Simulations that a program steps."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import holonom as hm
+
+
+def trolley(**how):
+    """A mass on a rail, pushed by an input."""
+    m = hm.Model(gravity=[0, 0, 0])
+    m.input("push", default=0, unit="N")
+    m.point("p", mass=2, position=[0, 0, 0])
+    m.expression("push-force", point="p", force=["push", 0, 0])
+    m.measure("fastest", value="max(p.vx)", unit="m/s")
+    return hm.Simulation(m, step=0.1, **how)
+
+
+def test_stepping_gives_the_bits_of_a_run():
+    model = hm.load("example:four-bar")
+    run, sim = model.simulate(end=0.5, step=0.01), hm.Simulation(model, step=0.01)
+    assert sim.columns == run.columns
+    skipped = {"dE_integrator", "dE_projection"}
+    for k in range(len(run)):
+        assert all(sim[name] == run[name][k] or np.isnan(run[name][k]) for name in run.columns if name not in skipped)
+        sim.step()
+
+
+def test_inputs_count_from_the_next_step_on():
+    sim = trolley()
+    assert dict(sim.inputs) == {"push": 0}
+    for _ in range(10):
+        sim.step()
+    sim.inputs["push"] = 4
+    assert sim.step(5) and sim.time == pytest.approx(1.5) and sim.steps == 15
+    # a = F/m = 2 m/s² for half a second
+    assert sim["p.vx"] == pytest.approx(1) and sim["p.x"] == pytest.approx(0.25)
+    sim.inputs["push"] = -8
+    sim.step(5)
+    assert sim["p.vx"] == pytest.approx(-1) and sim["fastest"] == pytest.approx(1)
+    assert sim.inputs["push"] == sim["push"] == -8
+
+
+@pytest.mark.parametrize("method", [None, "generalized-alpha", "radau"])
+def test_a_state_goes_on_to_the_same_bits(method):
+    sim = hm.Simulation(hm.load("example:four-bar"), step=0.01, method=method)
+    sim.step(20)
+    state = sim.state()
+
+    def follow(sim):
+        rows = []
+        for _ in range(20):
+            assert sim.step()
+            rows.append([sim[name] for name in sim.columns])
+        return np.array(rows).tobytes()
+
+    first = follow(sim)
+    other = hm.Simulation(hm.load("example:four-bar"), step=0.01, method=method)
+    again = pickle.loads(pickle.dumps(state))
+    assert again == state and again.time == state.time == pytest.approx(0.2)
+    for simulation in (sim, other):
+        simulation.set_state(again)
+        assert simulation.time == state.time
+        assert follow(simulation) == first
+
+
+def test_running_measures_are_part_of_the_state():
+    sim = trolley()
+    sim.inputs["push"] = 2
+    sim.step(10)
+    state = sim.state()
+    sim.inputs["push"] = 20
+    sim.step(10)
+    assert sim["fastest"] > 5
+    sim.set_state(state)
+    sim.inputs["push"] = -2
+    sim.step(5)
+    assert sim["fastest"] == pytest.approx(1) and sim["p.vx"] == pytest.approx(0.5)
+
+
+def test_a_simulation_says_why_it_ended():
+    m = hm.Model(gravity=[0, 0, 0])
+    m.point("p", mass=1, position=[0, 0, 0], velocity=[1, 0, 0])
+    m.event("arrived", when="p.x - 0.25", stop=True)
+    sim = hm.Simulation(m, step=0.1)
+    steps = 0
+    while sim.step():
+        steps += 1
+    assert steps == 2 and sim.time == pytest.approx(0.25) and "`arrived`" in sim.ended
+    assert sim.step() and sim.ended is None
+
+
+def test_without_forces_of_joints_there_are_none():
+    m = hm.load("example:four-bar")
+    m.output(reactions=False)
+    sim = hm.Simulation(m)
+    sim.step()
+    assert sim.columns == m.simulate(end=0.1).columns
+    with pytest.raises(KeyError):
+        sim["no.column"]

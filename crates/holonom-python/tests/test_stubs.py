@@ -1,0 +1,33 @@
+"""What type checkers see is what there is."""
+
+import ast
+import pathlib
+import runpy
+
+import holonom
+from holonom import _engine
+
+FOLDER = pathlib.Path(__file__).parents[1]
+PACKAGE = FOLDER / "python" / "holonom"
+
+
+def test_the_stub_of_the_builders_is_that_of_the_definitions():
+    stub = runpy.run_path(str(FOLDER / "stubs.py"))["stub"]()
+    assert (PACKAGE / "_builders.pyi").read_text(encoding="utf-8") == stub, "run python crates/holonom-python/stubs.py"
+    ast.parse(stub)
+
+
+def test_the_stub_of_the_module_names_what_it_has():
+    tree = ast.parse((PACKAGE / "_engine.pyi").read_text(encoding="utf-8"))
+    functions = {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
+    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
+    assert functions | set(classes) == {name for name in dir(_engine) if not name.startswith("_")}
+    for name, node in classes.items():
+        targets = (part.target.id if isinstance(part, ast.AnnAssign) else part.name for part in node.body)
+        known = {part for part in targets if not part.startswith("_")}
+        assert known == {part for part in dir(getattr(_engine, name)) if not part.startswith("_")}, name
+
+
+def test_the_package_is_typed_where_it_is_installed():
+    installed = pathlib.Path(holonom.__file__).parent
+    assert (installed / "py.typed").exists() and (installed / "_builders.pyi").exists()

@@ -1,0 +1,164 @@
+//! Numbers of springs and ropes that follow time, inputs or what moves, and the loads that take the place of laws then: their work is no
+//! change of a potential, and is booked.
+
+use num_dual::Dual;
+use smallvec::SmallVec;
+
+use super::laws::SHORTEST;
+use crate::model::assembly::Assembly;
+use crate::model::entry::Entry;
+use crate::model::expression::Program;
+use crate::model::fault::Read;
+use crate::model::fields::Number;
+use crate::model::signals::{ROOM, Reader, Readings};
+use crate::system::{ForceFunction, Number as AnyNumber};
+
+/// The value of a key.
+pub(super) enum Follows {
+    /// A number.
+    Known(f64),
+    /// A formula of the time and of what is read.
+    Formula(Program),
+}
+
+impl Follows {
+    /// Reads a key: a number passes `check`, a formula may name what moves.
+    pub fn read(
+        assembly: &mut Assembly<'_>,
+        readings: &mut Readings,
+        (entry, key): (&Entry<'_>, &str),
+        number: &Number,
+        check: impl FnOnce(&Number, &Entry<'_>, &str) -> Read<f64>,
+    ) -> Read<Self> {
+        let program = number.formula_reading(entry, key, &["t"], &mut Reader::new(assembly, entry, readings))?;
+        match program.as_constant() {
+            Some(_) => check(number, entry, key).map(Self::Known),
+            None => Ok(Self::Formula(program)),
+        }
+    }
+
+    /// The number, where it is one.
+    pub fn known(&self) -> Option<f64> {
+        if let Self::Known(number) = self { Some(*number) } else { None }
+    }
+
+    pub fn is_formula(&self) -> bool {
+        self.known().is_none()
+    }
+
+    fn at<N: AnyNumber>(&self, read: &[N]) -> N {
+        match self {
+            Self::Known(number) => N::from(*number),
+            Self::Formula(program) => program.evaluate(read),
+        }
+    }
+}
+
+/// The time and what is read.
+fn read<N: AnyNumber>(readings: &Readings, x: &[N], v: &[N], t: N) -> SmallVec<[N; ROOM]> {
+    let mut read = SmallVec::from_slice(&[t]);
+    readings.append(x, v, &mut read);
+    read
+}
+
+/// A length and its rate from half its square and the rate of that.
+fn length<N: AnyNumber>(half_square: N, rate: N) -> [N; 2] {
+    let square = half_square * 2.0;
+    let r = if square.re() > SHORTEST * SHORTEST { square.sqrt() } else { N::from(SHORTEST) };
+    [r, rate / r]
+}
+
+/// A spring of which some numbers follow something, along half the square of a distance or along a coordinate. What it has not is zero.
+pub(super) struct SpringLoad {
+    /// Where the quantity that it acts on is among what it reads.
+    pub own: usize,
+    /// Whether that is half the square of the length, and not the length itself.
+    pub is_square: bool,
+    pub stiffness: Option<Follows>,
+    pub rest: Follows,
+    pub damping: Option<Follows>,
+    /// A formula of length, rate, time, rest, extension and what is read.
+    pub force: Option<Program>,
+    pub readings: Readings,
+}
+
+impl ForceFunction for SpringLoad {
+    fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
+        let read = read(&self.readings, x, v, t);
+        let [length, rate] = if self.is_square { length(x[self.own], v[self.own]) } else { [x[self.own], v[self.own]] };
+        let rest = self.rest.at(&read);
+        let mut tension = N::from(0.0);
+        if let Some(stiffness) = &self.stiffness {
+            tension += stiffness.at(&read) * (length - rest);
+        }
+        if let Some(damping) = &self.damping {
+            tension += damping.at(&read) * rate;
+        }
+        if let Some(formula) = &self.force {
+            let mut variables: SmallVec<[N; ROOM]> = SmallVec::from_slice(&[length, rate, t, rest, length - rest]);
+            variables.extend_from_slice(&read[1..]);
+            tension += formula.evaluate(&variables);
+        }
+        force.fill(N::from(0.0));
+        force[self.own] = -if self.is_square { tension / length } else { tension };
+    }
+}
+
+/// A rope of which some numbers follow something.
+pub(super) struct RopeLoad {
+    /// Where half the squares of its lengths begin among what it reads; the coordinate of the drum comes behind them.
+    pub own: usize,
+    /// How many stretches have each of the lengths.
+    pub factors: Vec<f64>,
+    /// R, where there is a drum.
+    pub radius: Option<f64>,
+    /// The sum of the stretches that never change, m.
+    pub fixed: f64,
+    pub length: Follows,
+    pub stiffness: Follows,
+    pub damping: Follows,
+    pub readings: Readings,
+}
+
+impl RopeLoad {
+    /// How far it is stretched, and the rate of that, in which the free length moves as what it follows does.
+    fn stretch<N: AnyNumber>(&self, x: &[N], v: &[N], t: N) -> [N; 2] {
+        let along = |x: &N, rate: &N| Dual::new(*x, *rate);
+        let moving: SmallVec<[Dual<N>; ROOM]> = x.iter().zip(v).map(|(x, v)| along(x, v)).collect();
+        // Lengths that follow velocities are refused.
+        let still: SmallVec<[Dual<N>; ROOM]> = v.iter().map(|v| along(v, &N::from(0.0))).collect();
+        let free = self.length.at(&read(&self.readings, &moving, &still, along(&t, &N::from(1.0))));
+        let mut sum = [N::from(self.fixed) - free.re, -free.eps];
+        for (k, factor) in self.factors.iter().enumerate() {
+            let own = length(x[self.own + k], v[self.own + k]);
+            (0..2).for_each(|i| sum[i] += own[i] * *factor);
+        }
+        if let Some(radius) = self.radius {
+            let drum = self.own + self.factors.len();
+            sum = [sum[0] - x[drum] * radius, sum[1] - v[drum] * radius];
+        }
+        sum
+    }
+}
+
+impl ForceFunction for RopeLoad {
+    fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
+        force.fill(N::from(0.0));
+        let [stretch, speed] = self.stretch(x, v, t);
+        if stretch.re() <= 0.0 {
+            return;
+        }
+        let read = read(&self.readings, x, v, t);
+        let tension = self.stiffness.at(&read) * stretch + self.damping.at(&read) * speed;
+        if tension.re() <= 0.0 {
+            return;
+        }
+        for (k, factor) in self.factors.iter().enumerate() {
+            let [r, _] = length(x[self.own + k], v[self.own + k]);
+            force[self.own + k] = -tension * *factor / r;
+        }
+        if let Some(radius) = self.radius {
+            force[self.own + self.factors.len()] = tension * radius;
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! A nominal step: in parts where it fails as a whole, each audited, projected and judged before it becomes the state.
+
+use super::{Audit, Simulation};
+use crate::formulation::{Failure, Iteration};
+use crate::integrator::Step;
+
+/// Halvings of a step before a run gives up.
+const MOST_HALVINGS: u32 = 12;
+
+/// Units that the parts of a nominal step are counted in: what is left may be three quarters of it, and halved as often.
+const PARTS: u32 = 1 << 24;
+
+impl Simulation {
+    /// Takes the nominal step to `target`.
+    pub(super) fn advance(&mut self, target: f64, reacts: bool) -> Result<(), Failure> {
+        let from = self.state.t;
+        self.audit.begin_step();
+        match self.pilot.take() {
+            None => self.halve(target)?,
+            Some(mut pilot) => {
+                let outcome = match self.method.integrator.dense {
+                    true => self.cruise(target, &mut pilot),
+                    false => self.land(target, &mut pilot),
+                };
+                self.pilot = Some(pilot);
+                outcome?;
+            }
+        }
+        let h = self.state.t - from;
+        self.judge.whole(&self.system, h, &self.audit, &self.work)?;
+        let known = self.pilot.as_ref().map_or(0.0, |pilot| pilot.supply());
+        self.judge.supply(h, known, &self.audit, &self.work)?;
+        self.steps += 1;
+        self.audit.end_step(&self.system, &mut self.work, &self.state, self.steps);
+        if reacts {
+            self.react();
+        }
+        Ok(())
+    }
+
+    /// In parts where it fails as a whole. Parts are counted, and their ends reckoned from the start: the sum of their rounded
+    /// lengths may miss the target by a rounding of time, and over so short a part a rounding of positions is any velocity.
+    fn halve(&mut self, target: f64) -> Result<(), Failure> {
+        let from = self.state.t;
+        let whole = target - from;
+        let (mut done, mut part) = (0, PARTS);
+        while done < PARTS {
+            part = part.min(PARTS - done);
+            let end = done + part;
+            let until = if end == PARTS { target } else { from + whole * f64::from(end) / f64::from(PARTS) };
+            match self.substep(whole * f64::from(part) / f64::from(PARTS), until) {
+                Ok(_) => (done, part) = (end, 2 * part),
+                Err(failure) if !self.method.subdivide || part <= PARTS >> MOST_HALVINGS => return Err(failure),
+                Err(_) => {
+                    part /= 2;
+                    self.audit.reject(&self.newton);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// One step of the method. Where its result breaks a promise it is iterated until nothing but round-off is left.
+    pub(super) fn substep(&mut self, step: f64, target: f64) -> Result<Step, Failure> {
+        let mut outcome = self.try_step(step, target);
+        if let Err(Failure::Broken { .. }) = outcome {
+            let tolerance = std::mem::take(&mut self.newton.settings.tolerance);
+            outcome = self.try_step(step, target);
+            self.newton.settings.tolerance = tolerance;
+        }
+        outcome
+    }
+
+    /// Integrates and finishes a step.
+    fn try_step(&mut self, step: f64, target: f64) -> Result<Step, Failure> {
+        let (system, work) = (&*self.system, &mut self.work);
+        self.state.load(work);
+        system.constraint_values(&work.start.at, self.state.t, &mut work.phi_start);
+        let taken = self.integrator.step(system, self.state.t, step, &mut self.newton, work)?;
+        self.finish(taken, step, target)
+    }
+
+    /// Audits, projects and judges what the integrator left in the workspace; it becomes the present state only then.
+    pub(super) fn finish(&mut self, taken: Step, step: f64, target: f64) -> Result<Step, Failure> {
+        let (system, work, method) = (&*self.system, &mut self.work, &self.method);
+        for i in 0..system.coordinates() {
+            work.end.x[i] = work.start.x[i] + work.d[i];
+        }
+        system.evaluate(&work.end.x, target, &work.start.at, &mut work.end.at);
+        let mut audit = self.audit.clone();
+        let accounts = audit.integrated(system, &taken, target, work);
+        self.judge.positions(system, target, work)?;
+        audit.violate_acceleration(system, method, &taken, target, work);
+        self.found_v.copy_from_slice(&work.end.v);
+        self.found_a.copy_from_slice(&work.a);
+        method.projection.apply(system, target, step, &mut self.newton, work)?;
+        audit.projected(system, method, &self.found_v, accounts, target, work);
+        self.judge.velocities(system, target, step, work)?;
+        audit.closed(system, method, target, &self.newton, work);
+        self.judge.accelerations(step, work)?;
+        self.judge.energy(system, step, &self.audit, &audit, work)?;
+        // A part that takes the nominal step out of its bound can be taken again.
+        self.judge.whole(system, step, &audit, work)?;
+        self.next_gauges.copy_from(&self.gauges);
+        system.measure(&work.end.x, &work.end.v, &mut self.next_gauges);
+        self.judge.turns(system, step, &self.gauges, &self.next_gauges)?;
+        self.commit(audit, step, target);
+        Ok(taken)
+    }
+
+    /// Makes the end of a step in the workspace the present state.
+    fn commit(&mut self, audit: Audit, step: f64, target: f64) {
+        let work = &mut self.work;
+        self.audit = audit;
+        // The paper's loops start from the paper's prediction.
+        if self.method.settings.iteration == Iteration::Newton {
+            self.state.remember(step, &self.found_a, work);
+        }
+        self.state.land(target, &self.found_a, work);
+        self.shown_v.copy_from_slice(&work.end.v);
+        self.shown_a.copy_from_slice(&work.a);
+        let goes_on = !self.method.projection.shadow;
+        self.state.v.copy_from_slice(if goes_on { &work.end.v } else { &self.found_v });
+        if goes_on {
+            self.state.a.copy_from_slice(&work.a);
+        }
+        std::mem::swap(&mut work.start.at, &mut work.end.at);
+        std::mem::swap(&mut self.gauges, &mut self.next_gauges);
+        self.state.measured.copy_from_slice(self.gauges.counted());
+        self.hints.keep(&self.newton, &*self.integrator);
+    }
+}
