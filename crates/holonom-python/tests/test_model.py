@@ -32,7 +32,8 @@ def test_every_kind_has_a_builder_with_its_own_name():
     names = [builder_name(*entry) for entry in entries]
     assert len(set(names)) == len(names) > 40
     others = {name for name in vars(hm.Model) if not name.startswith("_")} - set(names)
-    assert others == {"ground", "parameter", "simulation", "output", "set", "get", "entries", "title", "to_toml", "notes", "simulate", "copy", "function"}
+    parts = {"ground", "parameter", "simulation", "output", "set", "get", "entries", "title", "to_toml", "notes", "copy", "function"}
+    assert others == parts | {"simulate", "check", "stability", "compare"}
     for name in names:
         builder = getattr(hm.Model, name)
         assert name.isidentifier() and builder.__name__ == name
