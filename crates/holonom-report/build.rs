@@ -1,4 +1,5 @@
-//! Bundles the browser viewer (`viewer/`, TypeScript) into `OUT_DIR/bundle/viewer.{js,css}`, which `src/page.rs` embeds.
+//! Bundles the browser viewer (`viewer/`, TypeScript) into `OUT_DIR/bundle/viewer.{js,css}`, which `src/page.rs` embeds, and into
+//! `OUT_DIR/bundle/live.js`, which `src/live.rs` does.
 //!
 //! Everything happens on a copy inside `OUT_DIR`: the source tree never sees `node_modules` or a generated file. Without the
 //! feature `viewer` there is nothing to do.
@@ -42,8 +43,10 @@ fn bundle(source: &Path, copy: &Path, bundle: &Path) -> Result<(), String> {
         let flags = ["ci", "--omit=dev", "--ignore-scripts", "--no-audit", "--no-fund", "--loglevel=error"];
         run(Command::new(npm()).args(flags).current_dir(copy), "npm ci")?;
     }
-    let outfile = format!("--outfile={}", bundle.join("viewer.js").display());
-    run(Command::new(npm()).args(["run", "--silent", "bundle", "--", &outfile]).current_dir(copy), "esbuild")?;
+    for (script, file) in [("bundle", "viewer.js"), ("bundle-live", "live.js")] {
+        let outfile = format!("--outfile={}", bundle.join(file).display());
+        run(Command::new(npm()).args(["run", "--silent", script, "--", &outfile]).current_dir(copy), "esbuild")?;
+    }
     let script = fs::read_to_string(bundle.join("viewer.js")).map_err(|e| format!("reading the bundle: {e}"))?;
     // Either would end or derail the <script> element that the bundle is put into.
     match ["</script", "<!--"].iter().find(|mark| script.contains(**mark)) {

@@ -8,8 +8,19 @@ use std::process::{Command, ExitCode};
 use crate::book::root;
 
 /// What the package is built and tested with. The checkers of types come with what they know of others, and need nothing else.
-const TOOLS: [&str; 10] =
-    ["maturin>=1.9,<2", "numpy", "pytest", "pandas", "pandas-stubs", "matplotlib", "gymnasium", "scipy", "mypy", "pyright>=1.1.414"];
+const TOOLS: [&str; 11] = [
+    "maturin>=1.9,<2",
+    "numpy",
+    "pytest",
+    "pandas",
+    "pandas-stubs",
+    "matplotlib",
+    "gymnasium",
+    "scipy",
+    "anywidget",
+    "mypy",
+    "pyright>=1.1.414",
+];
 
 /// Compiled as `cargo build` does it, as little is gained by more.
 const BUILD: &str = "--config-settings=build-args=--profile dev";

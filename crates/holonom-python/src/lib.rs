@@ -32,7 +32,7 @@ mod _engine {
     #[pymodule_export]
     use crate::study::Sweep;
     #[pymodule_export]
-    use crate::{command, example};
+    use crate::{command, example, live};
 }
 
 /// Does what was typed, of which the first word is the program, and gives the exit status.
@@ -46,4 +46,10 @@ fn command(py: Python<'_>, words: Vec<OsString>) -> u8 {
 #[pyfunction]
 fn example(py: Python<'_>, name: &str) -> PyResult<&'static str> {
     holonom_cli::example(name).map_err(|fault| fault::failure(py, fault))
+}
+
+/// Script and style sheet of the widget that shows a simulation in a notebook; nothing where the viewer was left out.
+#[pyfunction]
+fn live() -> Option<(&'static str, &'static str)> {
+    holonom_report::LIVE
 }

@@ -9,6 +9,7 @@ use holonom::record::{Constraints, Recorder, RecorderMark};
 use holonom::run::RunError;
 use holonom::simulation::{Checkpoint, Method, Observer, Simulation, Status};
 use holonom_cli::Loaded;
+use holonom_report::Frames;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -270,9 +271,28 @@ impl Simulator {
         Ok(value)
     }
 
-    /// Names of the inputs.
-    fn inputs(&self) -> Vec<String> {
-        self.loaded.model.channels.inputs.iter().map(|input| input.name.clone()).collect()
+    /// What frames are made of, as the viewer reads it, and the places of their columns.
+    fn layout(&self, py: Python<'_>) -> PyResult<(String, Vec<usize>)> {
+        let running = self.running(py)?;
+        let recording = running.recorder.recording();
+        let frames = Frames::new(&self.loaded.model.scene, |name| recording.place(name).is_some());
+        let places = frames.columns().iter().filter_map(|name| recording.place(name)).collect();
+        Ok((serde_json::to_string(&frames).expect("a scene is plain data"), places))
+    }
+
+    /// Values of some columns at the present state, as 64-bit floats.
+    fn frame<'py>(&self, py: Python<'py>, places: Vec<usize>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes: Vec<u8> = self.within(&mut *self.running(py)?, |running| {
+            let row = running.look();
+            places.iter().flat_map(|&place| row[place].to_le_bytes()).collect()
+        });
+        self.raise()?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// Name, unit and meaning of each input.
+    fn inputs(&self) -> Vec<[&str; 3]> {
+        self.loaded.model.channels.inputs.iter().map(|input| [&*input.name, &*input.unit, &*input.meaning]).collect()
     }
 
     /// Value of an input.

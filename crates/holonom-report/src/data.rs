@@ -73,8 +73,7 @@ impl<'a> RunData<'a> {
     /// `first` is the first run of the report.
     pub fn new(run: &Run<'a>, first: &Run<'a>, outcome: Outcome) -> Self {
         let (recording, scene) = (run.recording, run.scene);
-        let place: Vec<&str> = (0..scene.axes.len()).map(|i| &scene.axes[i..=i]).collect();
-        let pose: Vec<&str> = place.iter().chain(orientation(scene)).copied().collect();
+        let [place, pose] = coordinates(scene);
         let thinning = Thinning::new(recording.rows(), scene.points.len() * place.len() + scene.bodies.len() * pose.len());
         let is_first = std::ptr::eq(run, first);
         Self {
@@ -91,9 +90,12 @@ impl<'a> RunData<'a> {
     }
 }
 
-/// Columns of the orientation of a body.
-fn orientation(scene: &Scene) -> &'static [&'static str] {
-    if scene.axes.len() == 3 { &["qw", "qx", "qy", "qz"] } else { &["angle"] }
+/// Endings of the columns of a point, and of the centre of mass and the orientation of a body.
+pub fn coordinates(scene: &Scene) -> [Vec<&str>; 2] {
+    let place: Vec<&str> = (0..scene.axes.len()).map(|i| &scene.axes[i..=i]).collect();
+    let orientation: &[&str] = if scene.axes.len() == 3 { &["qw", "qx", "qy", "qz"] } else { &["angle"] };
+    let pose = place.iter().chain(orientation).copied().collect();
+    [place, pose]
 }
 
 fn columns(recording: &Recording, thinning: &Thinning) -> BTreeMap<&'static str, String> {

@@ -10,6 +10,7 @@ mod data;
 mod escape;
 mod figures;
 mod format;
+mod live;
 mod outcome;
 mod page;
 mod provenance;
@@ -23,6 +24,7 @@ mod thin;
 use holonom::record::{Recording, Scene};
 use std::io;
 
+pub use live::{Frames, LIVE};
 pub use stability::{Search, StabilityReport};
 pub use sweep::{SweepColumn, SweepKey, SweepReport, SweepRun};
 

@@ -14,7 +14,7 @@ const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 
 const ICON: &str = "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 16 16'%3E\
     %3Cpath d='M3 2h10M8 2l4 9' stroke='%23888' stroke-width='1.5'/%3E%3Ccircle cx='12' cy='12' r='3' fill='%230072b2'/%3E%3C/svg%3E";
 
-const STYLE: &str = include_str!("style.css");
+pub const STYLE: &str = include_str!("style.css");
 
 /// Style sheet and script of the viewer, if it is part of this build.
 #[cfg(feature = "viewer")]

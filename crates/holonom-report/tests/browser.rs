@@ -4,14 +4,15 @@
 //! pages yourself, name a folder in `HOLONOM_KEEP_PAGES`.
 #![cfg(feature = "viewer")]
 
+mod chromium;
 mod sample;
 
+use chromium::{checks_in, dump_dom};
 use holonom_report::{Report, Run};
 use sample::Sample;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 const ERRORS: &str = include_str!("checks/errors.js");
 const CHECKS: &str = include_str!("checks/checks.js");
@@ -261,32 +262,4 @@ fn open_with(name: &str, samples: &[Sample], columns: &[String]) -> Value {
     let file = folder.path().join("page.html");
     fs::write(&file, format!("{body}<script>{CHECKS}</script></body>{tail}")).unwrap();
     checks_in(&dump_dom(&file, folder.path()))
-}
-
-fn checks_in(dom: &str) -> Value {
-    let found = dom.split_once(r#"id="checks">"#).and_then(|(_, rest)| rest.split_once("</script>"));
-    let (json, _) = found.unwrap_or_else(|| panic!("the checks did not finish; the page ends with:\n{}", tail(dom, 2000)));
-    serde_json::from_str(json).unwrap()
-}
-
-fn dump_dom(file: &Path, folder: &Path) -> String {
-    let browser = std::env::var("CHROMIUM").unwrap_or_else(|_| "chromium".to_owned());
-    let quiet = "--headless --no-sandbox --no-first-run --disable-background-networking --disable-component-update --disable-sync";
-    // WebGL in software: a machine that runs tests has no graphics card.
-    let software = "--disable-gpu --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader --disable-dev-shm-usage";
-    let output = Command::new(&browser)
-        .args(quiet.split(' ').chain(software.split(' ')))
-        .arg(format!("--user-data-dir={}", folder.join("profile").display()))
-        .args(["--window-size=1400,1000", "--virtual-time-budget=20000", "--dump-dom"])
-        .arg(format!("file://{}", file.display()))
-        .output()
-        .unwrap_or_else(|e| panic!("cannot start `{browser}`: {e}\nThis test needs Chromium: apt install chromium"));
-    let dom = String::from_utf8_lossy(&output.stdout).into_owned();
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success() && !dom.is_empty(), "`{browser}` failed ({}):\n{}", output.status, tail(&errors, 4000));
-    dom
-}
-
-fn tail(text: &str, length: usize) -> &str {
-    &text[text.ceil_char_boundary(text.len().saturating_sub(length))..]
 }

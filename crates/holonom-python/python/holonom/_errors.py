@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, Sequence
 
 if TYPE_CHECKING:
     from ._run import Run
@@ -57,3 +57,14 @@ class FunctionError(RuntimeError):
 def refuse(path: str, message: str, cure: str) -> ModelError:
     """The error of one argument."""
     return ModelError([Fault(message, "", path, cure)])
+
+
+def limits_of(path: str, given: Any) -> tuple[float, float]:
+    """The least and the greatest value of something."""
+    try:
+        low, high = map(float, given)
+    except (TypeError, ValueError) as error:
+        raise refuse(path, f"`{path}` is {given!r}, and two numbers are wanted", "give the least and the greatest value: (-10, 10)") from error
+    if not low < high:
+        raise refuse(path, f"`{path}` is {given!r}, where the first is not below the second", "give the least value first")
+    return low, high

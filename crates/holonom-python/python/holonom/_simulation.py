@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, MutableMapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _engine
 from ._errors import refuse
 from ._builders import text_of
 from ._model import Model, changes_of
+
+if TYPE_CHECKING:
+    from ._live import Live
 
 State = _engine.State
 
@@ -34,7 +37,7 @@ class Inputs(MutableMapping[str, float]):
         raise TypeError("an input cannot be taken away: set it to a number")
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._simulator.inputs())
+        return (name for name, _, _ in self._simulator.inputs())
 
     def __len__(self) -> int:
         return len(self._simulator.inputs())
@@ -112,6 +115,14 @@ class Simulation:
         if not isinstance(state, State):
             raise refuse("state", f"`state` is of type {type(state).__name__}, and a state is wanted", "give what state() gave")
         self._simulator.set_state(state)
+
+    def live(self, *, limits: Mapping[str, tuple[float, float]] | None = None, speed: float = 1.0) -> Live:
+        """A widget of a notebook that shows the mechanism while it moves, with a slider for each input: `limits` are the ends of sliders,
+        such as ``{"torque": (-10, 10)}``, and `speed` is how many simulated seconds a second has. Other cells may read, set and step the
+        simulation meanwhile. Needs anywidget."""
+        from ._live import Live
+
+        return Live(self, {} if limits is None else limits, speed)
 
     def __repr__(self) -> str:
         ended = f"; {self.ended}" if self.ended else ""

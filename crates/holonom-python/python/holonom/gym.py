@@ -10,7 +10,7 @@ import gymnasium
 import numpy as np
 import numpy.typing as npt
 
-from ._errors import refuse
+from ._errors import limits_of, refuse
 from ._model import Model
 from ._simulation import Simulation
 
@@ -73,10 +73,10 @@ class Environment(gymnasium.Env[Array, Array]):
         self._substeps = substeps
         self._end = math.inf if end is None else _number("end", end)
         self._start = start
-        self._inputs = {name: _limits(f"actions.{name}", limits) for name, limits in actions.items()}
+        self._inputs = {name: limits_of(f"actions.{name}", limits) for name, limits in actions.items()}
         self.action_space = _box("actions", self._inputs)
         limits = observations if isinstance(observations, Mapping) else dict.fromkeys(observations, FREE)
-        columns = {str(name): _limits(f"observations.{name}", of) for name, of in limits.items()}
+        columns = {str(name): limits_of(f"observations.{name}", of) for name, of in limits.items()}
         self.observation_space = _box("observations", columns)
         self._columns = list(columns)
         self._reward = _question("reward", reward)
@@ -124,16 +124,6 @@ def _number(path: str, given: Any) -> float:
         return float(given)
     except (TypeError, ValueError) as error:
         raise refuse(path, f"`{path}` is of type {type(given).__name__}, and a number is wanted", "give a float") from error
-
-
-def _limits(path: str, given: Any) -> tuple[float, float]:
-    try:
-        low, high = map(float, given)
-    except (TypeError, ValueError) as error:
-        raise refuse(path, f"`{path}` is {given!r}, and two numbers are wanted", "give the least and the greatest value: (-10, 10)") from error
-    if not low < high:
-        raise refuse(path, f"`{path}` is {given!r}, where the first is not below the second", "give the least value first")
-    return low, high
 
 
 def _box(path: str, limits: Mapping[str, tuple[float, float]]) -> gymnasium.Space[Array]:

@@ -39,7 +39,11 @@ export class Motion {
   /** Which world axis (0–2) each recorded coordinate belongs to. */
   private readonly axes: number[];
 
-  constructor(readonly run: Run) {
+  /** How far back the trails of this run go, s. */
+  readonly trail: number;
+
+  constructor(readonly run: Run, trail?: number) {
+    this.trail = trail ?? (this.end - (run.times[0] ?? 0)) / 8;
     this.axes = [...run.scene.axes].map((axis) => "xyz".indexOf(axis));
     if (!this.planar) return;
     const [first, second] = this.axes.map((axis) => new Vector3().setComponent(axis, 1));

@@ -8,7 +8,9 @@ const PLAY = "M4 2.5v11l9.5-5.5z";
 const PAUSE = "M3.5 2.5h3v11h-3zM9.5 2.5h3v11h-3z";
 
 export function buildTransport(clock: Clock): HTMLElement {
-  const button = playButton(clock);
+  const { button, refresh } = playButton(() => clock.toggle(), " (space bar); arrow keys step");
+  clock.onPlaying(refresh);
+  refresh(false);
   const slider = timeSlider(clock);
   const readout = element("output", { for: "time" });
   const digits = decimals(clock.end - clock.start);
@@ -20,17 +22,16 @@ export function buildTransport(clock: Clock): HTMLElement {
   return element("div", { class: "transport" }, button, slider, readout, speedSelect(clock));
 }
 
-function playButton(clock: Clock): HTMLElement {
+/** A button that shows what a click does; `keys` are told with it. */
+export function playButton(toggle: () => void, keys: string): { button: HTMLElement; refresh: (playing: boolean) => void } {
   const button = element("button", { type: "button", class: "play" });
   const refresh = (playing: boolean): void => {
     button.setAttribute("aria-label", playing ? "Pause" : "Play");
-    button.title = `${playing ? "pause" : "play"} (space bar); arrow keys step`;
+    button.title = `${playing ? "pause" : "play"}${keys}`;
     button.innerHTML = `<svg viewBox="0 0 16 16" aria-hidden="true"><path d="${playing ? PAUSE : PLAY}"/></svg>`;
   };
-  button.addEventListener("click", () => clock.toggle());
-  clock.onPlaying(refresh);
-  refresh(false);
-  return button;
+  button.addEventListener("click", toggle);
+  return { button, refresh };
 }
 
 function timeSlider(clock: Clock): HTMLElement {

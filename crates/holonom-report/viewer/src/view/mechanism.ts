@@ -193,9 +193,7 @@ export class Mechanism {
   }
 
   private addTrail(at: (t: number) => Vec3 | undefined, colour: () => string): Trail {
-    const { times } = this.motion.run;
-    const first = times[0] ?? 0;
-    const trail = new Trail(at, first, ((times.at(-1) ?? 0) - first) / 8);
+    const trail = new Trail(at, this.motion.run.times[0] ?? 0, this.motion.trail);
     this.group.add(trail.object);
     this.updates.push((t) => trail.update(t));
     this.paints.push((colours) => trail.setColours(new Color(this.runColour?.() ?? colour()), new Color(colours.page)));

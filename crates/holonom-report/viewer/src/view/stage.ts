@@ -38,7 +38,7 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
   const renderer = new WebGLRenderer({ canvas, context: gl, antialias: true, preserveDrawingBuffer: true });
   const scene = new Scene();
   const view = viewpoint(motions[0].run.scene.axes);
-  const box = boundingBox(measured(motions));
+  let box = boundingBox(measured(motions));
   const camera = buildCamera(view);
   const mechanisms = motions.map((motion, i) => new Mechanism(motion, diagonal(box), i, motions.length));
   const grid = buildGrid(view, box);
@@ -55,6 +55,8 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
     arrows.place(camera, container.clientWidth, container.clientHeight);
   });
   const home = (): void => {
+    // A run that goes on has been elsewhere since.
+    box = boundingBox(measured(motions));
     frame(camera, view, box, shape(container));
     fitLens(camera, view, box, shape(container));
     box.getCenter(controls.target);
