@@ -12,8 +12,9 @@ use crate::natural;
 /// Largest energy, momentum or violation of a row that no promise allows, over what it is measured by.
 pub const BROKEN: f64 = 1e-9;
 
-/// Share of the weight times its distance from the origin that rounding may give or take as energy in a run.
-const ROUNDED: f64 = 1e-13;
+/// Share of the weight times its distance from the origin, and of the largest potential energy, that rounding may give or take as energy
+/// in a run.
+const ROUNDED: f64 = 1e-12;
 
 /// Share of the kinetic energy of all mass at the speed of the mechanism that rounding of increments may give or take.
 const STIRRED: f64 = 1e-20;
@@ -209,7 +210,8 @@ impl Watch<'_> {
         let audit = simulation.audit();
         let mass: f64 = model.bodies.iter().map(|body| body.mass).chain(model.points.iter().map(|point| point.mass)).sum();
         let nominal = mechanism.size * mechanism.rate;
-        let rounded = ROUNDED * mechanism.weight + STIRRED * mass * nominal * nominal;
+        let stored = self.potential[0].abs().max(self.potential[1].abs());
+        let rounded = ROUNDED * (mechanism.weight + stored) + STIRRED * mass * nominal * nominal;
         let exchanged = self.kinetic + (self.potential[1] - self.potential[0]) + self.work;
         let speed = self.speed.max(SLOWEST * nominal);
         let units = [exchanged + rounded / BROKEN, mass * speed, mechanism.size, speed];

@@ -116,6 +116,27 @@ fn check_says_what_a_model_is_made_of() {
 }
 
 #[test]
+fn a_drive_of_what_cannot_move_is_named() {
+    let folder = folder();
+    // The strut makes a triangle of it, which does not move; the motor begins at rest.
+    let head = "plane = \"xy\"\n[body.link]\nmass = 1\ninertia = 0.1\nposition = [0.5, 0]\npoints = { tip = [0.5, 0] }\n\
+                [joint.pin]\ntype = \"revolute\"\nbetween = [\"ground\", \"link\"]\nat = [0, 0]\n\
+                [drive.motor]\ntype = \"angle\"\njoint = \"pin\"\nprofile = \"0.1*t^2\"\n[simulation]\nstep = 0.01\nend = 1\n";
+    let strut = "[constraint.strut]\ntype = \"distance\"\nbetween = [[0.3, 0.8], \"link.tip\"]\n";
+    fs::write(folder.path().join("held.toml"), format!("{head}{strut}")).unwrap();
+    let said = "`motor` asks for a motion that the other constraints do not allow";
+    let found = prints(&folder, "check held.toml", 0);
+    assert!(found.contains(said) && !found.contains("may stay"), "{found}");
+    assert_eq!(json(&folder, "check held.toml --json")["conflict"], "motor");
+    let stopped = prints(&folder, "run held.toml", 3);
+    assert!(stopped.contains(said) && stopped.contains("at t = 0.000000 s"), "{stopped}");
+    assert!(json(&folder, &format!("check {PAPER} --json"))["conflict"].is_null());
+    // The same motor without the strut.
+    fs::write(folder.path().join("free.toml"), head).unwrap();
+    assert!(!prints(&folder, "check free.toml", 0).contains("conflict"));
+}
+
+#[test]
 fn parameters_that_nothing_uses_are_named() {
     let folder = folder();
     // `b` is used by `a` only, which nothing uses; `c` by a list, `n` by a reference and `d` through `c`.

@@ -426,3 +426,23 @@ fn a_wavy_surface_keeps_energy_at_both_levels() {
         assert!((1.9..2.2).contains(&order), "{moving}: {order}");
     }
 }
+
+/// A formula that follows the time and does not push along an axis, or not as a whole, leaves that momentum alone.
+#[test]
+fn linear_momentum_is_kept_beside_a_formula() {
+    let parts = "[body.b]\nmass = 2\ninertia = [0.1, 0.2, 0.15]\nposition = [1, 0.2, 0.1]\nvelocity = [0.1, 2, 1]\n\
+        angular_velocity = [1, 2, 3]\n[point.p]\nmass = 1\nposition = [2, 0, 0]\nvelocity = [0, -1, 1]\n";
+    let moved = "[constraint.c]\ntype = \"expression\"\nvalue = \"b.x - 1 - 0.03*sin(29*t)\"\n";
+    let apart = "[constraint.c]\ntype = \"expression\"\n\
+        value = \"sqrt((b.x-p.x)^2 + (b.y-p.y)^2 + (b.z-p.z)^2) - sqrt(1.05) - 0.2*sin(3*t)^2\"\n";
+    for constraint in [moved, apart] {
+        let model = Source::read("own.toml", format!("{parts}{constraint}").as_bytes()).unwrap().model().unwrap();
+        for method in ["conserving", "conserving-ggl"] {
+            let method = Method::resolve(&Choice::default().named(method)).unwrap();
+            let mut simulation = Simulation::new(model.system.clone(), method, 0.01).unwrap();
+            assert_eq!(simulation.step_to(2.0), Status::Completed);
+            let drift = simulation.audit().momentum_summary().linear_drift;
+            assert!(drift < 1e-13, "{constraint}: {drift} kg·m/s");
+        }
+    }
+}

@@ -75,7 +75,7 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
         "model": loaded.name, "method": name, "coordinates": size.coordinates, "constraints": size.constraints,
         "rank": size.rank, "redundant": size.redundant, "dof": size.dof, "redundant_rows": found.redundant,
         "rows_in_redundancies": held.involved, "reactions_not_unique": held.not_unique, "notes": held.notes,
-        "near_singular": near, "moved": start.moved, "start_changes": changed,
+        "conflict": held.conflict, "near_singular": near, "moved": start.moved, "start_changes": changed,
         "residual": { "position": audit.phi, "velocity": audit.phi_dot, "acceleration": audit.phi_ddot },
         "energy": { "kinetic": audit.kinetic, "potential": audit.potential + audit.lift },
     });
@@ -85,9 +85,10 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
             "condition": form.condition, "growth_bound": form.growth_bound,
         });
     }
-    let redundant = match found.redundant.is_empty() {
-        true => "none".to_string(),
-        false => format!("{}: these follow from the others and may stay", found.redundant.join(", ")),
+    let redundant = match (found.redundant.is_empty(), &held.conflict) {
+        (true, _) => "none".to_string(),
+        (false, None) => format!("{}: these follow from the others and may stay", found.redundant.join(", ")),
+        (false, Some(_)) => format!("{}: these follow from the others", found.redundant.join(", ")),
     };
     let reactions = match (found.redundant.is_empty(), held.not_unique.is_empty()) {
         (true, _) => "all are unique".to_string(),
@@ -101,7 +102,7 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
     };
     let velocities = if changes.is_empty() { "none".to_string() } else { changes_in_words(&changes) };
     let corrected = format!("positions by {} m; velocities: {velocities}", short(start.moved));
-    let items = [
+    let mut items = vec![
         ("size", sizes(&size, &held.size)),
         ("freedom", format!("{} degrees of freedom", size.dof)),
         ("redundant", redundant),
@@ -113,6 +114,10 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
         ("gravity", loaded.gravity()),
         ("method", name),
     ];
+    if let Some(row) = &held.conflict {
+        let words = format!("`{row}` asks for a motion that the other constraints do not allow, in the first step");
+        items.insert(3, ("conflict", words));
+    }
     let mut text = format!("{}\n{}", loaded.title(), list(&items));
     held.notes.iter().for_each(|note| text.push_str(&format!("\nnote: {note}")));
     if let Some(form) = form {
@@ -155,6 +160,8 @@ struct Held {
     involved: Vec<String>,
     /// Components of forces and moments of joints that redundancies leave undetermined.
     not_unique: Vec<String>,
+    /// A row that asks for what the others do not allow.
+    conflict: Option<String>,
     /// What looks like a slip.
     notes: Vec<String>,
 }
@@ -162,7 +169,8 @@ struct Held {
 impl Held {
     fn new(plain: &Loaded, method: Method, step: f64) -> Result<Self, Failure> {
         let model = &plain.model;
-        let simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
+        let mut simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
+        let conflict = simulation.conflict().map(str::to_string);
         let (system, x) = (&model.system, &simulation.state().x);
         let world = system.in_world(x);
         let rank = rank_of(&simulation);
@@ -179,7 +187,7 @@ impl Held {
                 }
             }
         }
-        Ok(Self { rank, size, involved, not_unique, notes: notes(model) })
+        Ok(Self { rank, size, involved, not_unique, conflict, notes: notes(model) })
     }
 }
 

@@ -1,10 +1,12 @@
 //! Sizes that belong to a mechanism, from its start: what numbers of different nodes and rows are compared by.
 
+use nalgebra::{Complex, DMatrix};
+
 use super::independence::{extent, natural_sizes};
 use crate::linalg::largest;
 use crate::system::System;
 
-/// A node is light when its mass is below this share of the heaviest of its mechanism. What its rows add is then lost beside what
+/// A node is light when its mass, with all others yielding, is below this share of the heaviest of its mechanism. What its rows add is then lost beside what
 /// heavier nodes add: the rows enter its part of the matrix (methods §13).
 const LIGHT: f64 = 1e-4;
 
@@ -16,6 +18,12 @@ const SHORT: f64 = 1e-6;
 
 /// Share of what a gradient becomes when the mechanism moves by its own size that it counts with where it is less.
 const LEAST: f64 = 1e-3;
+
+/// More nodes that a node has mass in common with are not looked at: bodies without number share it, and it is not light.
+const MOST_AROUND: usize = 32;
+
+/// Share of a node's mass that is round-off.
+const ROUNDED: f64 = 1e-14;
 
 /// Sizes of a mechanism, its nodes and its rows.
 #[derive(Clone, Debug)]
@@ -51,7 +59,8 @@ impl Scales {
         let own: Vec<f64> = (0..free).map(|node| system.mass.diagonal(node)).collect();
         let heaviest = own.iter().copied().fold(0.0, f64::max);
         let around = around(system, &own);
-        let is_light = |node: usize| own[node] < LIGHT * around[node];
+        let yielding: Vec<f64> = (0..free).map(|node| yielding(system, node)).collect();
+        let is_light = |node: usize| yielding[node] < LIGHT * around[node];
         let filled = |node: usize, mass: f64| 1.0 / if mass > 0.0 { mass } else { around[node].max(f64::MIN_POSITIVE) };
         let mut scales = Self {
             length: extent(system),
@@ -127,6 +136,35 @@ fn around(system: &System, own: &[f64]) -> Vec<f64> {
     let around = |node: usize| Some(heaviest[node]).filter(|mass| *mass > 0.0).unwrap_or(any);
     let most = |own: f64| if own > 0.0 { own / LEAST_SHARE } else { f64::INFINITY };
     (0..own.len()).map(|node| around(find(&mut root, node)).min(most(own[node]))).collect()
+}
+
+/// The mass of a free node where all others that it has mass in common with yield, kg: of a body that is small beside its distance from its
+/// nodes none can stay where it is and let one of them move but by turning about its centre.
+fn yielding(system: &System, node: usize) -> f64 {
+    let mut nodes: Vec<usize> =
+        system.mass.row(node).map(|(other, _)| other).filter(|&other| other < system.free && other != node).collect();
+    if nodes.is_empty() || nodes.len() > MOST_AROUND {
+        return system.mass.diagonal(node);
+    }
+    nodes.push(node);
+    let last = nodes.len() - 1;
+    let entry =
+        |a: usize, b: usize| system.mass.row(a).find(|&(other, _)| other == b).map_or(Complex::ZERO, |(_, m)| Complex::new(m.m, m.s));
+    let mut mass = DMatrix::from_fn(last + 1, last + 1, |i, j| entry(nodes[i], nodes[j]));
+    for k in 0..last {
+        let pivot = mass[(k, k)].re;
+        // What rounding leaves of nothing yields all the same.
+        if pivot <= ROUNDED * system.mass.diagonal(nodes[k]) {
+            continue;
+        }
+        for i in k + 1..=last {
+            let factor = mass[(i, k)] / pivot;
+            for j in k + 1..=last {
+                mass[(i, j)] = mass[(i, j)] - factor * mass[(k, j)];
+            }
+        }
+    }
+    mass[(last, last)].re.max(0.0)
 }
 
 fn find(root: &mut [usize], mut node: usize) -> usize {

@@ -5,6 +5,7 @@ mod advance;
 pub(crate) mod any_number;
 mod audit;
 mod checkpoint;
+mod conflict;
 mod control;
 mod events;
 mod method;
@@ -270,7 +271,12 @@ impl Simulation {
         // A row at round-off is not to blame.
         let worst = worst.filter(|(_, missed)| missed.is_nan() || *missed >= BLAMED);
         let row = worst.map_or(String::new(), |(k, _)| format!("; the worst row is `{}` with {:.1e}", self.system.row_names[k], phi[k]));
-        format!("{} at t = {:.6} s{row}", failure.describe(&self.system), self.state.t)
+        let what = format!("{} at t = {:.6} s{row}", failure.describe(&self.system), self.state.t);
+        let is_of_rows = matches!(failure, Failure::NotConverged { .. } | Failure::Broken { .. } | Failure::Singular(_));
+        match is_of_rows.then(|| self.conflict()).flatten() {
+            Some(row) => format!("`{row}` asks for a motion that the other constraints do not allow: {what}"),
+            None => what,
+        }
     }
 
     /// The system that is simulated.

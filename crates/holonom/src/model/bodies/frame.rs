@@ -94,7 +94,12 @@ impl Frame {
 
     fn combine(&self, one: f64, x: Vec3) -> Vec<Term> {
         let Self::Body { dim, basis, inverse } = self else { unreachable!("only bodies combine nodes") };
-        let size = inverse.iter().flatten().flatten().fold(0.0_f64, |m, c| m.max(c.abs())) * (one + geometry::norm(x));
+        let largest = |factors: &mut dyn Iterator<Item = &Factor>| factors.flatten().fold(0.0_f64, |m, c| m.max(c.abs()));
+        let size = largest(&mut inverse.iter().flatten()) * (one + geometry::norm(x));
+        // Edges between points are differences of rounded places.
+        let places = basis.iter().filter(|node| node.is_point).map(|node| geometry::norm(node.at));
+        let rounded = 2.0 * f64::EPSILON * places.fold(0.0, f64::max) * largest(&mut inverse.iter().flat_map(|row| &row[1..]));
+        let nothing = rounded.max(1e-15) * size;
         let terms = basis.iter().zip(inverse).map(|(basis, row)| {
             let (mut factor, mut turn) = (row[0][0] * one, row[0][1] * one);
             if *dim == 2 {
@@ -105,7 +110,7 @@ impl Frame {
             } else {
                 factor += (0..3).map(|c| row[c + 1][0] * x[c]).sum::<f64>();
             }
-            let clean = |value: f64| if value.abs() <= 1e-15 * size { 0.0 } else { value };
+            let clean = |value: f64| if value.abs() <= nothing { 0.0 } else { value };
             Term { place: basis.place, factor: clean(factor), turn: clean(turn) }
         });
         terms.filter(|term| term.factor != 0.0 || term.turn != 0.0).collect()
