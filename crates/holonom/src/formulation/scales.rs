@@ -6,8 +6,8 @@ use super::independence::{extent, natural_sizes};
 use crate::linalg::largest;
 use crate::system::System;
 
-/// A node is light when its mass, with all others yielding, is below this share of the heaviest of its mechanism. What its rows add is then lost beside what
-/// heavier nodes add: the rows enter its part of the matrix (methods §13).
+/// A node is light when its mass, with all others yielding, is below this share of the heaviest of its mechanism. What its rows add is then
+/// lost beside what heavier nodes add: the rows enter its part of the matrix (methods §13).
 const LIGHT: f64 = 1e-4;
 
 /// Smallest share of what a light node counts as that its own mass may be.
@@ -19,7 +19,7 @@ const SHORT: f64 = 1e-6;
 /// Share of what a gradient becomes when the mechanism moves by its own size that it counts with where it is less.
 const LEAST: f64 = 1e-3;
 
-/// More nodes that a node has mass in common with are not looked at: bodies without number share it, and it is not light.
+/// Of a node that has mass in common with more others these are not looked at: bodies without number share it, and it is not light.
 const MOST_AROUND: usize = 32;
 
 /// Share of a node's mass that is round-off.

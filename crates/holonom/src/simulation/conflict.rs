@@ -12,8 +12,8 @@ const CONTRADICTS: f64 = 1e-3;
 const NOTHING: f64 = 1e-10;
 
 impl Simulation {
-    /// The row, by name, that asks for a motion in the step to come which all rows together do not allow, to first order, at the present state: no
-    /// increment d has G d = −Φ(q, t + h). Nothing of the simulation changes.
+    /// The row, by name, that asks for a motion in the step to come which all rows together do not allow, to first order, at the present
+    /// state: no increment d has G d = −Φ(q, t + h). Nothing of the simulation changes.
     pub fn conflict(&mut self) -> Option<&str> {
         let counters = (self.newton.iterations, self.newton.factorizations);
         let row = self.conflicting_row();
