@@ -112,6 +112,13 @@ def test_what_a_function_raises_is_told():
     assert "late" in live.ended and not live.playing
 
 
+def test_without_an_event_loop_it_does_not_play():
+    live = hm.Simulation(arm(), step=1e-3).live()
+    with pytest.raises(RuntimeError, match="as in a notebook"):
+        live.playing = True
+    assert not live.playing
+
+
 @pytest.mark.parametrize(
     ("keys", "said"),
     [

@@ -88,8 +88,14 @@ class Live(anywidget.AnyWidget):
 
     @traitlets.observe("playing")
     def _play(self, change: Any) -> None:
-        if change["new"] and self._task is None:
-            self._task = asyncio.get_running_loop().create_task(self._go_on())
+        if not change["new"] or self._task is not None:
+            return
+        try:
+            loop = asyncio.get_running_loop()
+        except RuntimeError as error:
+            self.playing = False
+            raise RuntimeError("a simulation plays where an event loop runs, as in a notebook: elsewhere take steps with step()") from error
+        self._task = loop.create_task(self._go_on())
 
     async def _go_on(self) -> None:
         """Takes the steps that are due, frame by frame, or as many as there is time for."""

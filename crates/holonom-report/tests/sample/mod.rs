@@ -1,4 +1,5 @@
 //! Synthetic runs: the spherical compound pendulum, integrated here in the plainest way, with made-up errors.
+#![allow(dead_code)] // each test uses its share
 
 pub mod bodies;
 

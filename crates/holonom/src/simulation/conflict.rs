@@ -33,7 +33,7 @@ impl Simulation {
         system.constraint_values(&work.end.at, t, &mut work.phi);
         let asked = work.phi.clone();
         let most = work.scaled_violation();
-        if !(most > NOTHING) || !newton.factor_inertia(work) {
+        if most.is_nan() || most <= NOTHING || !newton.factor_inertia(work) {
             return None;
         }
         let mut left = work.phi.clone();
