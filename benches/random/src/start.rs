@@ -12,7 +12,8 @@ use crate::random::Random;
 use crate::rank::Agreement;
 
 /// Difference of velocities over those written that is round-off, in the metric of the mass: the root of a kinetic energy. It is
-/// of parts that are alike; that of light or thin parts grows with the root of the ratio.
+/// of parts that are alike and rows that are far from redundant; that of light or thin parts grows with the root of the ratio, and where
+/// a row adds little to the others as much as that is little.
 const ROUND_OFF: f64 = 1e-12;
 
 /// Singular value over the largest below which rows leave a motion free.
@@ -33,7 +34,8 @@ pub fn compare(seed: u64, mechanism: &Mechanism, model: &Model) -> Agreement {
     if energy == 0.0 {
         return Agreement::Unclear;
     }
-    let bound = ROUND_OFF * spread(mechanism, model).sqrt();
+    let weakest = analysis::rank(&model.system, model.system.start_position(), 0.0).weakest;
+    let bound = ROUND_OFF * (spread(mechanism, model) / weakest.map_or(1.0, |(_, share)| share)).sqrt();
     let mut plain = mechanism.clone();
     plain.reactions = true;
     let source = holonom_io::Source::read("model.toml", plain.toml().as_bytes()).and_then(|source| source.model());
