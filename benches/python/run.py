@@ -127,14 +127,13 @@ def calls_of_forces(repeats, few=1, many=21, count=2000):
         calls[0] = 0
         pendulum(counted, terms).step(count)
         numbers.append(calls[0])
-    of_callable = cost_of_callable(repeats)
     compiled = numba.cfunc("float64(float64, float64)")(force)
-    for name, function, limit in (("Python", force, 1500), ("Numba", compiled, 50)):
+    sorts = (("Python", force, cost_of_callable(repeats), 1500), ("Numba", compiled, cost_of_compiled(repeats), 50))
+    for name, function, itself, limit in sorts:
         times = []
         for terms in (few, many):
             sims = [pendulum(function, terms) for _ in range(repeats)]
             times.append(min(least(lambda sim=sim: sim.step(count), 1) for sim in sims))
-        itself = of_callable if name == "Python" else 0.0
         call = (times[1] - times[0]) / (numbers[1] - numbers[0])
         print(
             f"a force of {name}: {call * 1e9:.0f} ns a call with all around it, the callable itself {itself * 1e9:.0f} ns, "
@@ -152,6 +151,21 @@ def cost_of_callable(repeats, count=100_000):
             pass
 
     return (least(loop, repeats) - least(empty, repeats)) / count
+
+
+def cost_of_compiled(repeats, count=1_000_000):
+    """The same of the compiled force; each call waits for the one before."""
+    inner = numba.njit(force)
+
+    @numba.njit
+    def loop(count):
+        value = 0.2
+        for _ in range(count):
+            value = inner(value, value)
+        return value
+
+    loop(1)
+    return least(lambda: loop(count), repeats) / count
 
 
 def columns_of(run):
