@@ -75,15 +75,15 @@ class Live(anywidget.AnyWidget):
         return speed
 
     @traitlets.observe("values")
-    def _set_values(self, change: Any) -> None:
-        for name, value in change["new"].items():
+    def _set_values(self, _: Any = None) -> None:
+        for name, value in self.values.items():
             if self._simulation.inputs[name] != value:
                 self._simulation.inputs[name] = value
 
     @traitlets.observe("_restarts")
     def _restart(self, _: Any) -> None:
         self._simulation.set_state(self._begin)
-        self._set_values({"new": self.values})
+        self._set_values()
         self._show()
 
     @traitlets.observe("playing")
