@@ -40,12 +40,14 @@ pub struct Point {
     pub run: Checkpoint,
     pub recorder: RecorderMark,
     pub rows: usize,
+    /// What was said at the start.
+    pub notes: Vec<String>,
 }
 
 impl Point {
     /// Where a simulation is.
-    pub fn of(simulation: &Simulation, recorder: &Recorder<'_>) -> Self {
-        Self { run: simulation.checkpoint(), recorder: recorder.mark(), rows: recorder.recording().rows() }
+    pub fn of(simulation: &Simulation, recorder: &Recorder<'_>, notes: &[String]) -> Self {
+        Self { run: simulation.checkpoint(), recorder: recorder.mark(), rows: recorder.recording().rows(), notes: notes.into() }
     }
 }
 

@@ -27,12 +27,13 @@ use clap::Parser;
 
 pub use commands::check::checked;
 pub use commands::compare::{side_by_side, write_side_by_side};
+pub use commands::run::describe;
 pub use commands::stability::largest_steps;
 pub use failure::Failure;
 pub use found::Found;
 pub use load::{Loaded, example, require_key, run_failure};
 use options::{Cli, Command};
-pub use output::{Finished, Order, simulate, table_writers};
+pub use output::{Finished, Order, notes, simulate, table_writers};
 pub use sweep::{Complaint, Ending, Line, Plan, Store, Study, Vary};
 
 /// Does what was typed, of which the first word is the program, and says how that ended.

@@ -21,7 +21,7 @@ use crate::failure::Failure;
 use crate::folder::{Folder, holds};
 use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
-use crate::message::{listed, note};
+use crate::message::{listed, note, unused_parameters};
 use crate::options::Destination;
 use crate::progress::Watched;
 use crate::provenance::Provenance;
@@ -127,15 +127,23 @@ pub(crate) fn simulate_kept(
     let Order { method, provenance, quiet, resume } = order;
     let Provenance { step, end, every, .. } = provenance;
     let name = method.name.clone();
-    let (resume, before) = resume.map_or((None, None), |(point, rows)| (Some(point.run), Some((point.recorder, rows))));
-    let mut simulation = match resume {
-        Some(run) => Simulation::resume(model.system.clone(), method, step, run)
-            .ok_or_else(|| Failure::usage("the checkpoint is of another model", "run from the start, without --resume"))?,
-        None => Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?,
+    let (resume, before) = match resume {
+        Some((Point { run, recorder, notes, .. }, rows)) => (Some((run, notes)), Some((recorder, rows))),
+        None => (None, None),
     };
-    if !quiet && before.is_none() {
-        announce_corrections(model, &simulation);
-    }
+    let (mut simulation, notes) = match resume {
+        Some((run, notes)) => Simulation::resume(model.system.clone(), method, step, run)
+            .map(|simulation| (simulation, notes))
+            .ok_or_else(|| Failure::usage("the checkpoint is of another model", "run from the start, without --resume"))?,
+        None => {
+            let simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
+            let notes = notes(loaded, &simulation);
+            if !quiet {
+                notes.iter().for_each(|text| note(text));
+            }
+            (simulation, notes)
+        }
+    };
     let rank = analysis::rank_of(&simulation);
     if model.output.constraints() != Constraints::Nothing || !model.channels.efforts.is_empty() {
         model.find_reactions(&mut simulation);
@@ -145,7 +153,7 @@ pub(crate) fn simulate_kept(
         Some((mark, rows)) => recorder.resume(&mark).after(rows),
         None => recorder,
     };
-    let mut watched = Watched::new(recorder, step, end, quiet, interrupted.clone()).kept(keeper);
+    let mut watched = Watched::new(recorder, step, end, quiet, interrupted.clone()).kept(keeper, &notes);
     let (first_step, first_time) = (simulation.steps(), simulation.state().t);
     let (wall, cpu) = (std::time::Instant::now(), ProcessTime::now());
     let (status, step_us) = match simulation.method().settings.iterations {
@@ -167,7 +175,8 @@ pub(crate) fn simulate_kept(
         value["time"]["step_us"] = step_us;
     }
     value["provenance"] = serde_json::to_value(&provenance).expect("a provenance is plain data");
-    let last = Point::of(&simulation, &watched.recorder);
+    value["notes"] = json!(notes);
+    let last = Point::of(&simulation, &watched.recorder, &notes);
     let before_end = watched.before_end.take().filter(|_| !last.run.goes_on_unbroken());
     let recording = watched.finish();
     value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording)).expect("peaks are plain data");
@@ -175,19 +184,21 @@ pub(crate) fn simulate_kept(
     Ok((finished, Reached { last, before_end }))
 }
 
-/// Says on standard error what looks like a slip, and what was put right before the start.
-fn announce_corrections(model: &Model, simulation: &Simulation) {
-    model.notes.iter().for_each(|text| note(&text.to_string()));
+/// What looks like a slip, and what was put right before the start.
+pub fn notes(loaded: &Loaded, simulation: &Simulation) -> Vec<String> {
+    let model = &loaded.model;
+    let mut notes: Vec<String> = unused_parameters(&loaded.source).into_iter().chain(model.notes.clone()).collect();
     let start = simulation.start();
     if start.moved > 1e-12 {
-        note(&format!("positions were moved by up to {:.2e} m onto their constraints", start.moved));
+        notes.push(format!("positions were moved by up to {:.2e} m onto their constraints", start.moved));
     }
     let mut changes = model.start_changes(&simulation.state().x, simulation.velocities());
     // That parts start moving for which no velocity was written is what a drive is for.
     changes.retain(|change| !change.was_at_rest);
     if !changes.is_empty() {
-        note(&format!("to meet the constraints, start velocities were changed: {}", changes_in_words(&changes)));
+        notes.push(format!("to meet the constraints, start velocities were changed: {}", changes_in_words(&changes)));
     }
+    notes
 }
 
 /// Bodies and points with the change of their velocities at the start.

@@ -33,6 +33,9 @@ mod _engine {
     use crate::study::Sweep;
     #[pymodule_export]
     use crate::{command, example, live};
+
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
 }
 
 /// Does what was typed, of which the first word is the program, and gives the exit status.

@@ -147,9 +147,9 @@ impl Recorded {
         self.loaded.title()
     }
 
-    /// What looks like a slip in the model.
-    fn notes(&self) -> Vec<String> {
-        self.loaded.model.notes.clone()
+    /// The summary as the command prints it.
+    fn describe(&self) -> String {
+        holonom_cli::describe(&self.loaded, &self.finished.summary)
     }
 
     /// All that it is made of.

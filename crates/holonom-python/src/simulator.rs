@@ -38,6 +38,7 @@ thread_local! {
 pub struct Simulator {
     loaded: Loaded,
     running: Mutex<Running>,
+    notes: Vec<String>,
     trouble: Trouble,
 }
 
@@ -49,6 +50,8 @@ struct Running {
     /// The columns at the present state, and whether they are those.
     row: Vec<f64>,
     is_row_new: bool,
+    /// Whether forces of joints and accelerations are those of the present state: they take time, and are found when they are looked at.
+    are_forces_new: bool,
     /// Whether the last step that was taken alone was a short one.
     is_short: bool,
     /// Why the last step was the last, and the event that it was.
@@ -67,6 +70,7 @@ impl Running {
     /// Looks at the state that was just reached.
     fn arrive(&mut self) {
         self.is_row_new = false;
+        self.are_forces_new = self.sees_all;
         if self.sees_all {
             // A recorder wants no run to stop.
             let _ = self.recorder.after_step(&self.simulation);
@@ -90,7 +94,10 @@ impl Running {
     fn advance(&mut self, count: i64) -> bool {
         let begun = Instant::now();
         let goes_on = (0..count).all(|_| {
-            let status = self.simulation.step();
+            let status = match self.sees_all {
+                true => self.simulation.step(),
+                false => self.simulation.step_without_reactions(),
+            };
             self.arrive();
             self.judge(status)
         });
@@ -98,8 +105,15 @@ impl Running {
         goes_on
     }
 
+    fn find_forces(&mut self) {
+        if !std::mem::replace(&mut self.are_forces_new, true) {
+            self.simulation.update_reactions();
+        }
+    }
+
     fn look(&mut self) -> &[f64] {
         if !self.is_row_new {
+            self.find_forces();
             self.row.clear();
             self.row.extend_from_slice(self.recorder.look(&self.simulation));
             self.is_row_new = true;
@@ -176,10 +190,27 @@ impl Simulator {
         // The start is the only row that it keeps.
         let recorder = Recorder::new(&model.channels, &model.system, u64::MAX, model.output.constraints()).into_owned();
         let sees_all = model.channels.measures.iter().any(|measure| measure.is_running());
-        let mut running =
-            Running { simulation, recorder, sees_all, row: Vec::new(), is_row_new: false, is_short: false, ended: None, event: None };
+        let mut running = Running {
+            simulation,
+            recorder,
+            sees_all,
+            row: Vec::new(),
+            is_row_new: false,
+            are_forces_new: true,
+            is_short: false,
+            ended: None,
+            event: None,
+        };
         running.arrive();
-        trouble.take().map_or(Ok(Self { running: Mutex::new(running), loaded, trouble }), Err)
+        running.are_forces_new = true;
+        let notes = holonom_cli::notes(&loaded, &running.simulation);
+        trouble.take().map_or(Ok(Self { running: Mutex::new(running), notes, loaded, trouble }), Err)
+    }
+
+    /// What looks like a slip, and what was put right before the start.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.notes.clone()
     }
 
     /// Takes nominal steps, and says whether the simulation goes on.
@@ -306,13 +337,15 @@ impl Simulator {
             return Err(refuse(py, name, format!("the input `{name}` cannot be {value}"), "set it to a finite number"));
         }
         let mut running = self.running(py)?;
-        running.is_row_new = false;
+        (running.is_row_new, running.are_forces_new) = (false, false);
         self.within(&mut running, |running| running.simulation.set_input(name, value)).then_some(()).ok_or_else(|| self.no_input(name))
     }
 
     /// A copy of the present state.
     fn state(&self, py: Python<'_>) -> PyResult<State> {
-        let running = self.running(py)?;
+        let mut running = self.running(py)?;
+        self.within(&mut running, Running::find_forces);
+        self.raise()?;
         Ok(State { point: (running.simulation.checkpoint(), running.recorder.mark()) })
     }
 
@@ -338,6 +371,7 @@ impl Simulator {
         (running.simulation, running.recorder, running.is_row_new) = (simulation, recorder, false);
         (running.ended, running.event) = (None, None);
         running.arrive();
+        running.are_forces_new = true;
         self.raise()
     }
 }

@@ -209,3 +209,24 @@ def test_a_stopped_run_is_pickled():
     run = m.simulate(end=10, step=0.01)
     other = pickle.loads(pickle.dumps(run))
     assert (other.status, other.reason, len(other)) == (run.status, run.reason, len(run))
+
+
+def test_what_was_put_right_before_the_start_is_said():
+    m = hm.load("example:four-bar")
+    m.set("point.P.velocity", [1, 0.3])
+    m.parameter("spare", 4)
+    with pytest.warns(hm.ModelWarning) as warned:
+        run = m.simulate(end=0.1, step=0.01)
+    assert [str(one.message) for one in warned] == run.notes == run.summary["notes"]
+    assert run.notes[0] == "nothing uses the parameter `spare`"
+    assert run.notes[1].endswith("start velocities were changed: `P[0]` by 0.3 m/s, `P[1]` by 0.3 m/s")
+    assert all(one.filename == __file__ for one in warned)
+    text = str(run)
+    assert text.startswith("note: nothing uses") and "1 degrees of freedom" in text
+    with pytest.warns(hm.ModelWarning):
+        assert hm.Simulation(m, step=0.01).notes == run.notes
+
+
+def test_the_package_has_the_version_of_the_command():
+    run = hm.load("example:four-bar").simulate(end=0.1, step=0.01)
+    assert run.summary["provenance"]["version"] == hm.__version__

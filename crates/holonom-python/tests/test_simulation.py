@@ -100,3 +100,28 @@ def test_without_forces_of_joints_there_are_none():
     assert sim.columns == m.simulate(end=0.1).columns
     with pytest.raises(KeyError):
         sim["no.column"]
+
+
+def test_forces_are_found_when_they_are_looked_at():
+    model = hm.load("example:slider-crank")
+    run, sim = model.simulate(end=0.5, step=0.005), hm.Simulation(model, step=0.005)
+    forces = [name for name in run.columns if name.rsplit(".")[-1] in ("fx", "fy", "fz", "ax", "ay")]
+    largest = max(abs(run[name]).max() for name in forces)
+    for k in range(0, len(run), 10):
+        motion = [name for name in run.columns if name.rsplit(".")[-1] in ("x", "y", "vx", "vy")]
+        assert [sim[name] for name in motion] == [run[name][k] for name in motion]
+        assert max(abs(sim[name] - run[name][k]) for name in forces) < 1e-11 * largest
+        sim.step(10)
+
+
+def test_an_input_counts_at_once_for_forces():
+    m = hm.Model(gravity=[0, 0, 0])
+    m.input("push", unit="N")
+    cart = m.body("cart", mass=2, inertia=[1, 1, 1], position=[0, 0, 0], points={"middle": [0, 0, 0]})
+    m.prismatic("rail", m.ground, cart, at=[0, 0, 0], axis=[1, 0, 0])
+    m.expression("across", point=cart["middle"], force=[0, "push", 0])
+    sim = hm.Simulation(m, step=0.1)
+    sim.step()
+    assert sim["rail.fy"] == pytest.approx(0, abs=1e-12)
+    sim.inputs["push"] = 3
+    assert sim["rail.fy"] == pytest.approx(-3)

@@ -21,7 +21,8 @@ def test_the_stub_of_the_module_names_what_it_has():
     tree = ast.parse((PACKAGE / "_engine.pyi").read_text(encoding="utf-8"))
     functions = {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
     classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
-    assert functions | set(classes) == {name for name in dir(_engine) if not name.startswith("_")}
+    constants = {node.target.id for node in tree.body if isinstance(node, ast.AnnAssign)}
+    assert functions | constants | set(classes) == {name for name in dir(_engine) if not name.startswith("_")}
     for name, node in classes.items():
         targets = (part.target.id if isinstance(part, ast.AnnAssign) else part.name for part in node.body)
         known = {part for part in targets if not part.startswith("_")}

@@ -9,7 +9,7 @@ use crate::failure::{Failure, STOPPED};
 use crate::folder::{Folder, file_stem, holds};
 use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
-use crate::message::{note, unused_parameters};
+use crate::message::note;
 use crate::options::{OutputArguments, RunArguments};
 use crate::output::{Order, recorder, simulate_kept, writers};
 use crate::progress::interrupt_flag;
@@ -26,9 +26,6 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     overrides.number("simulation.end", arguments.method.end.as_deref());
     let loaded = load::load_to_run(&arguments.model.model, overrides)?;
     let output = &arguments.output;
-    if !output.to.quiet {
-        unused_parameters(&loaded.source).iter().for_each(|text| note(text));
-    }
     let writers = writers(&output.formats)?;
     let mut order = Order::new(&loaded, arguments.method.name.as_deref(), output.every, output.to.quiet)?;
     let (folder, on_disk) = place(arguments, &loaded, &mut order)?;
@@ -153,7 +150,7 @@ fn status(summary: &Value) -> String {
 }
 
 /// The summary as people read it.
-fn describe(loaded: &Loaded, summary: &Value) -> String {
+pub fn describe(loaded: &Loaded, summary: &Value) -> String {
     let number = |group: &str, key: &str| short(summary[group][key].as_f64().unwrap_or(f64::NAN));
     let time = |key: &str| summary["time"][key].as_f64().map_or("–".into(), measured);
     let mut items = vec![("method", summary["method"]["name"].as_str().unwrap_or("").to_string()), ("status", status(summary))];

@@ -16,7 +16,8 @@ from ._builders import *
 from ._builders import Entry
 from ._analysis import Check, Comparison, Stability, compare
 from ._builders import __all__ as _shapes
-from ._errors import Fault, FunctionError, ModelError
+from ._engine import VERSION as __version__
+from ._errors import Fault, FunctionError, ModelError, ModelWarning
 from ._functions import Function
 from ._model import Model, load, loads, simulate
 from ._run import Run
@@ -27,7 +28,7 @@ from ._study import Failed, Study, sweep
 if TYPE_CHECKING:
     from . import gym as gym
 
-__all__ = ["Entry", "Fault", "Function", "FunctionError", "Model", "ModelError", "Run", "Simulation", "State", "load", "loads", "simulate"]
+__all__ = ["Entry", "Fault", "Function", "FunctionError", "Model", "ModelError", "ModelWarning", "Run", "Simulation", "State", "load", "loads", "simulate"]
 __all__ += ["Check", "Comparison", "Failed", "Normal", "Stability", "Study", "Table", "Uniform"]
 __all__ += ["compare", "grid", "latin_hypercube", "random", "sobol", "sweep"]
 __all__ += _shapes

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+import warnings
+from types import FrameType
 from typing import TYPE_CHECKING, Any, NamedTuple, Sequence
 
 if TYPE_CHECKING:
@@ -52,6 +55,21 @@ class FunctionError(RuntimeError):
     some."""
 
     run: Run | None = None
+
+
+class ModelWarning(UserWarning):
+    """What looks like a slip in a model, or was put right before its start: velocities that its joints do not allow, a parameter that nothing
+    uses. The ``notes`` of runs and simulations have the same."""
+
+
+def warn(notes: Sequence[str]) -> None:
+    """Warns at the line of the program that called the package."""
+    level = 2
+    frame: FrameType | None = sys._getframe(1)
+    while frame is not None and frame.f_globals.get("__name__", "").split(".")[0] == "holonom":
+        level, frame = level + 1, frame.f_back
+    for note in notes:
+        warnings.warn(note, ModelWarning, stacklevel=level)
 
 
 def refuse(path: str, message: str, cure: str) -> ModelError:

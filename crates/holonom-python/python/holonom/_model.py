@@ -9,7 +9,7 @@ from typing import Any
 
 from . import _analysis, _engine
 from ._builders import KEYS, Builders, Entry, line, text_of
-from ._errors import refuse
+from ._errors import refuse, warn
 from ._functions import Function, make
 from ._run import Run
 from ._types import Number, Numbers
@@ -151,6 +151,7 @@ class Model(Builders):
         if raised is not None:
             raised.run = run
             raise raised
+        warn(run.notes)
         return run
 
     def check(self, *, projection: bool = False, set: Mapping[str, Any] | None = None) -> _analysis.Check:

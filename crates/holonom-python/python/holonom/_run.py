@@ -145,8 +145,9 @@ class Run:
 
     @property
     def notes(self) -> list[str]:
-        """What looks like a slip in the model."""
-        return self._recorded.notes()
+        """What looks like a slip in the model, and what was put right before the start."""
+        notes: list[str] = self.summary["notes"]
+        return notes
 
     def unit(self, name: str) -> str:
         """Unit of a column."""
@@ -219,6 +220,10 @@ class Run:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (_unpickle, (self._recorded.parts(),))
+
+    def __str__(self) -> str:
+        """What the command prints about it, notes first."""
+        return "\n".join([*(f"note: {note}" for note in self.notes), self._recorded.describe()])
 
     def __repr__(self) -> str:
         summary = self.summary

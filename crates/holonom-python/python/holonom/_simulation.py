@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, MutableMapping
 from typing import TYPE_CHECKING, Any
 
 from . import _engine
-from ._errors import refuse
+from ._errors import refuse, warn
 from ._builders import text_of
 from ._model import Model, changes_of
 
@@ -63,6 +63,9 @@ class Simulation:
             raise refuse("model", f"`model` is of type {type(model).__name__}, and a model is wanted", "give what load or Model() gave")
         method = None if method is None else text_of("method", method)
         self._simulator = _engine.Simulator(model._draft, changes_of({"step": step, **keys}, set), method)
+        self.notes: list[str] = self._simulator.notes
+        """What looks like a slip in the model, and what was put right before the start."""
+        warn(self.notes)
         self._places: dict[str, int] = {}
         self.inputs = Inputs(self._simulator)
         """Numbers from outside, by their names."""

@@ -33,7 +33,7 @@ impl Simulation {
         self.steps += 1;
         self.audit.end_step(&self.system, &mut self.work, &self.state, self.steps);
         if reacts {
-            self.react();
+            self.update_reactions();
         }
         Ok(())
     }

@@ -218,6 +218,22 @@ impl Simulation {
         self.step_to(self.grid.following(self.state.t))
     }
 
+    /// The same without [forces of the constraints](Self::find_reactions), which take time. They stay those of an earlier state until they
+    /// are [found](Self::update_reactions).
+    pub fn step_without_reactions(&mut self) -> Status {
+        struct Blind;
+        impl Observer for Blind {
+            fn after_step(&mut self, _: &Simulation) -> Verdict {
+                Verdict::GoOn
+            }
+
+            fn wants_forces(&self) -> bool {
+                false
+            }
+        }
+        self.run(self.grid.following(self.state.t), &mut Blind)
+    }
+
     /// Runs to the time `t` (s), with the accuracy asked for up to there.
     pub fn step_to(&mut self, t: f64) -> Status {
         self.run(t, &mut |_: &Self| Verdict::GoOn)

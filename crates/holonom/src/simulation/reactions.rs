@@ -116,7 +116,7 @@ impl Simulation {
     pub fn find_reactions(&mut self) {
         if self.reactions.is_none() {
             self.reactions = Some(Reactions::new(&self.system));
-            self.react();
+            self.update_reactions();
         }
     }
 
@@ -166,8 +166,8 @@ impl Simulation {
         Some(wrench(system, rows, &reactions.lambda, &at.gradient, nodes, system.of_world(about), self.reacting_x()))
     }
 
-    /// Finds the forces of the constraints at the present state, where they are wanted.
-    pub(super) fn react(&mut self) {
+    /// Finds the forces of the constraints at the present state, where they were asked for.
+    pub fn update_reactions(&mut self) {
         let Some(reactions) = &mut self.reactions else { return };
         if let Some(elsewhere) = &mut self.apart {
             elsewhere.react(&self.system, &self.state, &self.shown_v, &self.work.start.at, reactions);
