@@ -25,6 +25,10 @@ const GAP: f64 = 1e3;
 /// Gradient of a row over its natural size that may be round-off.
 const VANISHING: f64 = 1e-9;
 
+/// Singular value below which the engine may leave a row out: one counts when it adds more than 1e-9 of itself, squared, to those before
+/// it, which is at least the square of what its singular value is to the others.
+const COUNTED: f64 = 3.2e-5;
+
 /// Singular value from which on its square is clear, too: what rows leave undetermined is found from their products.
 const SQUARED: f64 = 1e-6;
 
@@ -47,6 +51,9 @@ pub fn compare(model: &Model, size: f64) -> Agreement {
     let (rank, [weakest, below]) = (dense.rank, dense.gap);
     let (rows, found) = (system.constraints(), analysis::rank(system, x, 0.0));
     let redundant = rows - rank;
+    if found.rank != rank && weakest < COUNTED {
+        return Agreement::Unclear;
+    }
     if found.rank != rank || found.redundant.len() != redundant {
         let names = found.redundant.join(", ");
         let values = format!("{rank} by the gap of singular values from {weakest:.0e} to {below:.0e}");

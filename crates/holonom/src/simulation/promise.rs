@@ -96,8 +96,11 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 /// Rounding of a difference of sums, over these.
 const SUMMED: f64 = 2.0 * f64::EPSILON;
 
-/// Share of the energies of the mechanism that a nominal step may be off by, however many parts it was taken in.
-const WHOLE: f64 = 1e-10;
+/// Share of the kinetic energy and of the work that a nominal step may be off by, however many parts it was taken in.
+const WHOLE: f64 = 2e-11;
+
+/// The same of the potential energy and of the weight times the size of the mechanism, which may be far more than what moves.
+const WEIGHED: f64 = 1e-12;
 
 /// Energy of nothing over all there was to move from which on nothing is left of a motion: as much as there is.
 const SUPPLY: f64 = 1.0;
@@ -150,7 +153,7 @@ impl Judge {
     /// Looks at the energy after a nominal step, or so far, of length `h` (s): parts of it may each be round-off and add up to more.
     pub(super) fn whole(&self, system: &System, h: f64, after: &Audit, work: &Workspace) -> Result<(), Failure> {
         let before = after.start_of_step();
-        let nothing = || self.nothing(h, before[0].abs() + (after.work - before[1]).abs(), after, work);
+        let nothing = || self.nothing(h, (after.work - before[1]).abs(), after, work) + WEIGHED * before[0].abs();
         // The forces of stiff laws are rounded, too, which is seldom asked for.
         let held = self.hold_energy(before, after, nothing);
         held.or_else(|_| self.hold_energy(before, after, || nothing() + ROUND_OFF * energy::size(system, work, &work.end.x)))
@@ -172,7 +175,7 @@ impl Judge {
     fn nothing(&self, h: f64, more: f64, after: &Audit, work: &Workspace) -> f64 {
         let length = work.scales.length;
         let trembling = self.mass * (ROUNDED * length * 2.0 / h).powi(2);
-        WHOLE * (after.kinetic + after.potential.abs() + self.weight * length + more) + trembling
+        WHOLE * (after.kinetic + more) + WEIGHED * (after.potential.abs() + self.weight * length) + trembling
     }
 
     /// Looks at how far the angles turn that are measured at both ends of a step of length `h` (s).
