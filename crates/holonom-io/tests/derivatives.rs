@@ -371,4 +371,11 @@ stiffness = 40
 damping = 2
 drum = "shoulder"
 radius = 0.3
+
+[force.hinge]
+type = "torsion"
+joint = "shoulder"
+stiffness = "3 + bob.x^2"
+angle = "0.2*height + sin(t)"
+damping = "0.5 + 0.1*bob.vy^2"
 "#;

@@ -37,9 +37,11 @@ fn springs_and_ropes_that_follow_what_moves_keep_order_and_balance() {
         "type = \"rope\"\nlength = 4.92\nstiffness = \"200 + 20*sin(t)\"\ndamping = \"5 + shaft.angle_rate^2\"",
         "type = \"spring\"\nrest_length = \"4.92 + 0.2*shaft.angle\"\nstiffness = 200\ndamping = \"2 + t\"",
         "type = \"spring\"\nrest_length = 4.92\nstiffness = \"200 + 50*shaft.angle\"\nforce = \"-3*bob.vx + rate\"",
+        "type = \"torsion\"\nstiffness = \"20 + 5*sin(t)\"\nangle = \"0.2*bob.x\"\ndamping = \"1 + 0.1*bob.vz^2\"",
     ];
     for keys in forces {
-        let model = model(&format!("{WINCH}\n[force.line]\nbetween = [\"ground\", \"bob\"]\n{keys}\n"));
+        let ends = if keys.contains("torsion") { "joint = \"shaft\"" } else { "between = [\"ground\", \"bob\"]" };
+        let model = model(&format!("{WINCH}\n[force.line]\n{ends}\n{keys}\n"));
         let truth = run_every(&model, "radau", 2e-3, 1.0, 1).0;
         for method in ["conserving-ggl", "conserving", "generalized-alpha"] {
             let errors = [0.02, 0.01].map(|step| distance(&run_every(&model, method, step, 1.0, 1).0, &truth));
@@ -50,6 +52,43 @@ fn springs_and_ropes_that_follow_what_moves_keep_order_and_balance() {
         let energy = simulation.audit().energy_summary();
         let throughput: f64 = recording.column("line.power").unwrap().iter().map(|power| power.abs() * 0.01).sum();
         assert!(energy.max_drift < 1e-10 * throughput, "{keys}\n{} of {throughput}", energy.max_drift);
+    }
+}
+
+/// A torsion spring whose numbers follow something, along a rail that is led: q = t.
+#[test]
+fn a_torsion_spring_that_follows_what_moves_is_recorded_along_its_coordinate() {
+    let text = r#"
+gravity = [0, 0, 0]
+[body.block]
+mass = 2
+shape = { box = [0.1, 0.1, 0.1] }
+position = [2, 0, 0]
+[joint.rail]
+type = "prismatic"
+between = ["ground", "block"]
+axis = [1, 0, 0]
+[drive.feed]
+type = "displacement"
+joint = "rail"
+profile = "t"
+[input.factor]
+default = 2
+[force.f]
+type = "torsion"
+joint = "rail"
+stiffness = "10*factor"
+angle = "block.x^2 - 4"
+damping = "1 + t"
+"#;
+    let (_, recording) = run_every(&model(text), "radau", 0.01, 1.0, 1);
+    let column = |name: &str| recording.column(name).unwrap();
+    for k in 0..recording.rows() {
+        let t = column("t")[k];
+        let effort = -20.0 * (t - ((2.0 + t).powi(2) - 4.0)) - (1.0 + t);
+        for (name, value) in [("f.effort", effort), ("f.power", effort), ("feed.effort", -effort)] {
+            assert!((column(name)[k] - value).abs() < 1e-8, "{name} at {t}: {} and not {value}", column(name)[k]);
+        }
     }
 }
 

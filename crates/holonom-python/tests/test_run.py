@@ -230,3 +230,10 @@ def test_what_was_put_right_before_the_start_is_said():
 def test_the_package_has_the_version_of_the_command():
     run = hm.load("example:four-bar").simulate(end=0.1, step=0.01)
     assert run.summary["provenance"]["version"] == hm.__version__
+
+
+@pytest.mark.parametrize("call, package", [(lambda run: run.plot("energy"), "matplotlib"), (lambda run: run.to_dataframe(), "pandas")])
+def test_a_package_that_is_missing_is_named_with_its_extra(run, call, package, monkeypatch):
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(ImportError, match=f"needs {package}: install it with pip install"):
+        call(run)

@@ -18,6 +18,7 @@ from ._analysis import Check, Comparison, Stability, compare
 from ._builders import __all__ as _shapes
 from ._engine import VERSION as __version__
 from ._errors import Fault, FunctionError, ModelError, ModelWarning
+from ._errors import needed as _needed
 from ._functions import Function
 from ._model import Model, load, loads, simulate
 from ._run import Run
@@ -39,5 +40,6 @@ def __getattr__(name: str) -> Any:
     if name == "gym":
         from importlib import import_module
 
-        return import_module("holonom.gym")
+        with _needed("hm.gym", "Gymnasium", "gymnasium"):
+            return import_module("holonom.gym")
     raise AttributeError(f"holonom has no `{name}`")

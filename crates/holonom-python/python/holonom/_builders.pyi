@@ -820,9 +820,9 @@ class Builders:
         Equations: V = ½ k (q − q₀)², effort −c q̇ against the motion, q counted over any number of turns
 
         joint: the joint, or its coordinate as "JOINT.angle" or "JOINT.displacement"
-        stiffness: k [N·m/rad or N/m]; default: none
-        angle: q₀, the coordinate without effort, counted from the start [rad or m]; default: 0
-        damping: c; what it takes is booked as work [N·m·s/rad or N·s/m]; default: none
+        stiffness: k; as a formula of t, of inputs, measures and what moves, by the names of columns, its work is booked [N·m/rad or N/m]; default: none
+        angle: q₀, the coordinate without effort, counted from the start; as k it may be a formula [rad or m]; default: 0
+        damping: c, which may be a formula; what it takes is booked as work [N·m·s/rad or N·s/m]; default: none
         repeat: makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"; default: one entry
         """
 

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from . import _engine
+from ._errors import needed
 
 #: Times that a piece is tried again when its worker dies.
 RETRIES = 5
@@ -50,10 +51,8 @@ def pieces(sweep: _engine.Sweep, workers: int) -> list[tuple[int, int]]:
 
 def ray(sweep: _engine.Sweep, given: tuple[Any, ...], ended: Callable[[str], None]) -> None:
     """Makes the runs by Ray: on the cluster that the program is connected to, or one that is started here."""
-    try:
+    with needed('engine="ray"', "Ray", "ray"):
         import ray
-    except ImportError as error:
-        raise ImportError('engine="ray" needs Ray: install it with pip install ".[ray]"') from error
     if not ray.is_initialized():
         ray.init(log_to_driver=False)
     workers = max(1, int(ray.cluster_resources().get("CPU", 1)))
@@ -73,11 +72,9 @@ def ray(sweep: _engine.Sweep, given: tuple[Any, ...], ended: Callable[[str], Non
 
 def dask(sweep: _engine.Sweep, given: tuple[Any, ...], ended: Callable[[str], None]) -> None:
     """Makes the runs by Dask: on the cluster of the present client, or on processes that are started here."""
-    try:
+    with needed('engine="dask"', "Dask", "dask"):
         import cloudpickle
         import distributed
-    except ImportError as error:
-        raise ImportError('engine="dask" needs Dask: install it with pip install ".[dask]"') from error
     try:
         client, own = distributed.get_client(), None
     except ValueError:

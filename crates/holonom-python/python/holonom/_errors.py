@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import warnings
+from collections.abc import Iterator, Sequence
 from types import FrameType
-from typing import TYPE_CHECKING, Any, NamedTuple, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from ._run import Run
@@ -70,6 +72,15 @@ def warn(notes: Sequence[str]) -> None:
         level, frame = level + 1, frame.f_back
     for note in notes:
         warnings.warn(note, ModelWarning, stacklevel=level)
+
+
+@contextlib.contextmanager
+def needed(by: str, package: str, extra: str, instead: str = "") -> Iterator[None]:
+    """Around an import of a package that comes with an extra: says who needs it, and how it is installed."""
+    try:
+        yield
+    except ImportError as error:
+        raise ImportError(f'{by} needs {package}: install it with pip install ".[{extra}]"{instead}') from error
 
 
 def refuse(path: str, message: str, cure: str) -> ModelError:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _engine
+from ._errors import needed
 
 if TYPE_CHECKING:
     import pandas
@@ -177,7 +178,8 @@ class Run:
 
     def to_dataframe(self, columns: Sequence[str] | None = None) -> pandas.DataFrame:
         """Columns, all without `columns`, as a pandas table over the times; ``attrs["units"]`` has their units. Needs pandas."""
-        import pandas
+        with needed("to_dataframe", "pandas", "pandas"):
+            import pandas
 
         names = [name for name in self.columns if name != "t"] if columns is None else [str(name) for name in columns]
         index = pandas.Index(self.t, name="t")
@@ -192,7 +194,8 @@ class Run:
         curves = [(str(name), self._whole(name), self.unit(name)) for name in names]
         units = list(dict.fromkeys(unit for _, _, unit in curves))
         if ax is None:
-            from matplotlib import pyplot
+            with needed("plot", "matplotlib", "plot"):
+                from matplotlib import pyplot
 
             _, grid = pyplot.subplots(len(units), sharex=True, squeeze=False, layout="constrained")
             axes: dict[str, Axes] = dict(zip(units, grid[:, 0]))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 import numpy as np
 
-from ._errors import refuse
+from ._errors import needed, refuse
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -74,10 +74,8 @@ def sobol(vary: Mapping[str, Values], count: int, *, seed: int = 0) -> Table:
 
 
 def _qmc(name: str) -> Any:
-    try:
+    with needed(f"hm.{name}", "SciPy", "scipy", ", or take hm.random"):
         from scipy.stats import qmc
-    except ImportError as error:
-        raise ImportError(f'hm.{name} needs SciPy: install it with pip install ".[scipy]", or take hm.random') from error
     return qmc
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, MutableMapping
 from typing import TYPE_CHECKING, Any
 
 from . import _engine
-from ._errors import refuse, warn
+from ._errors import needed, refuse, warn
 from ._builders import text_of
 from ._model import Model, changes_of
 
@@ -123,7 +123,8 @@ class Simulation:
         """A widget of a notebook that shows the mechanism while it moves, with a slider for each input: `limits` are the ends of sliders,
         such as ``{"torque": (-10, 10)}``, and `speed` is how many simulated seconds a second has. Other cells may read, set and step the
         simulation meanwhile. Needs anywidget."""
-        from ._live import Live
+        with needed("live", "anywidget", "notebook"):
+            from ._live import Live
 
         return Live(self, {} if limits is None else limits, speed)
 

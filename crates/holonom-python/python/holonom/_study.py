@@ -13,7 +13,7 @@ import numpy as np
 from . import _engine
 from ._builders import text_of
 from ._engines import ENGINES
-from ._errors import refuse
+from ._errors import needed, refuse
 from ._model import Model, changes_of
 from ._run import Run
 from ._samplers import Table, mapping, values_of, whole
@@ -113,19 +113,22 @@ class Study:
 
     def to_dataframe(self) -> pandas.DataFrame:
         """The table for pandas."""
-        import pandas
+        with needed("to_dataframe", "pandas", "pandas"):
+            import pandas
 
         return pandas.DataFrame(self.table)
 
     def to_polars(self) -> polars.DataFrame:
         """The table for polars."""
-        import polars
+        with needed("to_polars", "polars", "polars"):
+            import polars
 
         return polars.DataFrame({name: cells.tolist() if cells.dtype == object else cells for name, cells in self.table.items()})
 
     def to_xarray(self) -> xarray.Dataset:
         """The columns of a grid over its keys, for xarray; of other studies over the rows."""
-        import xarray
+        with needed("to_xarray", "xarray", "xarray"):
+            import xarray
 
         keys = self._given["keys"]
         if not (self._given["grid"] and self.whole):
@@ -226,10 +229,8 @@ class _Bar:
     def __init__(self, made: _engine.Sweep, is_shown: bool) -> None:
         self._bar: Any = None
         if is_shown:
-            try:
+            with needed("progress=True", "tqdm", "progress"):
                 from tqdm.auto import tqdm
-            except ImportError as error:
-                raise ImportError('progress=True needs tqdm: install it with pip install ".[progress]"') from error
             missing = sum(last - first + 1 for first, last in made.missing(made.runs()))
             self._bar = tqdm(total=made.runs(), initial=made.runs() - missing, unit=" runs")
 

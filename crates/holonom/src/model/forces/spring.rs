@@ -110,19 +110,8 @@ impl Element for Spring {
             None => assembly.builder.square(&from_a_to_b).into(),
             Some(axis) => assembly.builder.dot(&from_a_to_b, &axis.terms).into(),
         };
-        let (parts, followed) = Parts { stiffness, damping, energy, force }.split(&rest);
-        // Where the rest length follows something, no law has it.
-        let known = rest.known().unwrap_or(start);
-        parts.check(entry, shortest, known)?;
-        for law in parts.laws(known, axis.is_some()) {
-            assembly.builder.law(entry.name, &[length], law);
-        }
-        if let Some(Parts { stiffness, damping, force, .. }) = followed {
-            let own = readings.own(length);
-            let reading = readings.reading.clone();
-            let load = SpringLoad { own, is_square: axis.is_none(), stiffness, rest, damping, force, readings };
-            assembly.builder.load_reading(entry.name, reading, Arc::new(Differentiated(load)));
-        }
+        let acting = Acting { quantity: length, is_along: axis.is_some(), start, shortest };
+        acting.build(assembly, entry, Parts { stiffness, damping, energy, force }, rest, readings)?;
         let lengths = if axis.is_some() { Lengths::Along } else { Lengths::Distances { factors: vec![1.0], fixed: 0.0, drum: None } };
         assembly.show(Shows::Tension { quantities: vec![length], lengths });
         assembly.draw_along(entry, drawn, &a, &b, axis.map(|axis| axis.drawn));
@@ -130,13 +119,44 @@ impl Element for Spring {
     }
 }
 
+/// What a spring acts on.
+pub(super) struct Acting {
+    /// Half the square of a distance, or a coordinate.
+    pub quantity: Quantity,
+    /// Whether it is a coordinate.
+    pub is_along: bool,
+    /// The length or the coordinate at the start, and the length at which formulas are tried, m or rad.
+    pub start: f64,
+    pub shortest: f64,
+}
+
+impl Acting {
+    /// Adds the laws of a spring, and the load that its numbers make which follow something else.
+    pub fn build(self, assembly: &mut Assembly<'_>, entry: &Entry<'_>, parts: Parts, rest: Follows, mut readings: Readings) -> Read<()> {
+        let (parts, followed) = parts.split(&rest);
+        // Where the rest length follows something, no law has it.
+        let known = rest.known().unwrap_or(self.start);
+        parts.check(entry, self.shortest, known)?;
+        for law in parts.laws(known, self.is_along) {
+            assembly.builder.law(entry.name, &[self.quantity], law);
+        }
+        if let Some(Parts { stiffness, damping, force, .. }) = followed {
+            let own = readings.own(self.quantity);
+            let reading = readings.reading.clone();
+            let load = SpringLoad { own, is_square: !self.is_along, stiffness, rest, damping, force, readings };
+            assembly.builder.load_reading(entry.name, reading, Arc::new(Differentiated(load)));
+        }
+        Ok(())
+    }
+}
+
 /// What a spring consists of.
 #[derive(Default)]
-struct Parts {
-    stiffness: Option<Follows>,
-    damping: Option<Follows>,
-    energy: Option<Program>,
-    force: Option<Program>,
+pub(super) struct Parts {
+    pub stiffness: Option<Follows>,
+    pub damping: Option<Follows>,
+    pub energy: Option<Program>,
+    pub force: Option<Program>,
 }
 
 impl Parts {

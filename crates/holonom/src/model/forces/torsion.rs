@@ -1,14 +1,15 @@
-use std::sync::Arc;
-
-use super::coordinate_laws::{Resisting, Spring, Viscous};
+use super::following::Follows;
 use super::joint::acted_on;
+use super::spring::{Acting, Parts};
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, Number};
 use crate::model::joints::coordinate;
-use crate::system::Law;
+use crate::model::key::Shape;
+use crate::model::signals::Readings;
+use crate::system::Reading;
 
 /// a spring, a damper, or both, along the coordinate of a joint: about a hinge, or along a rail
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -40,23 +41,28 @@ damping = 0.5
 pub struct Torsion {
     /// the joint, or its coordinate as "JOINT.angle" or "JOINT.displacement"
     pub joint: String,
-    /// k
-    #[key(unit = "N·m/rad or N/m", default = "none")]
+    /// k; as a formula of t, of inputs, measures and what moves, by the names of columns, its work is booked
+    #[key(unit = "N·m/rad or N/m", default = "none", shape = Shape::Formula(&["t"]))]
     pub stiffness: Option<Number>,
-    /// q₀, the coordinate without effort, counted from the start
-    #[key(unit = "rad or m", default = "0")]
+    /// q₀, the coordinate without effort, counted from the start; as k it may be a formula
+    #[key(unit = "rad or m", default = "0", shape = Shape::Formula(&["t"]))]
     pub angle: Option<Number>,
-    /// c; what it takes is booked as work
-    #[key(unit = "N·m·s/rad or N·s/m", default = "none")]
+    /// c, which may be a formula; what it takes is booked as work
+    #[key(unit = "N·m·s/rad or N·s/m", default = "none", shape = Shape::Formula(&["t"]))]
     pub damping: Option<Number>,
 }
 
 impl Element for Torsion {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let coordinate = coordinate(assembly, entry, "joint".into(), &self.joint);
-        let stiffness = entry.optional("stiffness", &self.stiffness, Number::not_negative);
-        let rest = entry.optional("angle", &self.angle, Number::number);
-        let damping = entry.optional("damping", &self.damping, Number::not_negative);
+        let mut readings = Readings::new(assembly.dimension(), Reading::default());
+        let mut number = |key, number: &Option<Number>, check: fn(&Number, &Entry<'_>, &str) -> Read<f64>| {
+            entry.optional(key, number, |number, entry, key| Follows::read(assembly, &mut readings, (entry, key), number, check))
+        };
+        let not_negative = |number: &Number, entry: &Entry<'_>, key: &str| number.not_negative(entry, key);
+        let stiffness = number("stiffness", &self.stiffness, not_negative);
+        let rest = number("angle", &self.angle, |number, entry, key| number.number(entry, key));
+        let damping = number("damping", &self.damping, not_negative);
         if self.stiffness.is_none() && self.damping.is_none() {
             entry.refuse_all(format!("the torsion spring `{}` does nothing", entry.name), "add stiffness, or damping");
         }
@@ -64,15 +70,8 @@ impl Element for Torsion {
             entry.refuse("angle", "an angle without effort means nothing without a stiffness", "add stiffness");
         }
         let (coordinate, stiffness, rest, damping) = (coordinate?, stiffness?, rest?, damping?);
-        let mut laws: Vec<Arc<dyn Law>> = Vec::new();
-        if let Some(stiffness) = stiffness {
-            laws.push(Arc::new(Spring { stiffness, rest: rest.unwrap_or(0.0) }));
-        }
-        if let Some(damping) = damping {
-            laws.push(Arc::new(Resisting(Viscous(damping))));
-        }
-        let q = acted_on(assembly, &coordinate);
-        laws.into_iter().for_each(|law| assembly.builder.law(entry.name, &[q], law));
-        Ok(())
+        let acting = Acting { quantity: acted_on(assembly, &coordinate).into(), is_along: true, start: 0.0, shortest: 0.0 };
+        let parts = Parts { stiffness, damping, ..Parts::default() };
+        acting.build(assembly, entry, parts, rest.unwrap_or(Follows::Known(0.0)), readings)
     }
 }
