@@ -50,6 +50,9 @@ struct Running {
     /// The columns at the present state, and whether they are those.
     row: Vec<f64>,
     is_row_new: bool,
+    /// Those of the motion alone, which need no forces, and whether they are of the present state.
+    motion: Vec<f64>,
+    is_motion_new: bool,
     /// Whether forces of joints and accelerations are those of the present state: they take time, and are found when they are looked at.
     are_forces_new: bool,
     /// Whether the last step that was taken alone was a short one.
@@ -69,7 +72,7 @@ pub struct State {
 impl Running {
     /// Looks at the state that was just reached.
     fn arrive(&mut self) {
-        self.is_row_new = false;
+        (self.is_row_new, self.is_motion_new) = (false, false);
         self.are_forces_new = self.sees_all;
         if self.sees_all {
             // A recorder wants no run to stop.
@@ -79,11 +82,10 @@ impl Running {
 
     /// Whether the run goes on after a step.
     fn judge(&mut self, status: Status) -> bool {
-        let t = self.simulation.state().t;
         (self.ended, self.event) = match status {
             Status::Stopped { reason, .. } => (Some(reason), None),
             Status::Completed => {
-                let event = self.simulation.events().last().filter(|last| last.stopped && last.t == t).map(|last| last.event.clone());
+                let event = self.simulation.ended_by().map(|last| last.event.clone());
                 (event.as_ref().map(|event| format!("ended by the event `{event}`")), event)
             }
         };
@@ -119,6 +121,19 @@ impl Running {
             self.is_row_new = true;
         }
         &self.row
+    }
+
+    /// The value of a column.
+    fn value(&mut self, place: usize) -> f64 {
+        if self.is_row_new || !self.recorder.is_of_motion(place) {
+            return self.look()[place];
+        }
+        if !self.is_motion_new {
+            self.motion.clear();
+            self.motion.extend_from_slice(self.recorder.look_at_motion(&self.simulation));
+            self.is_motion_new = true;
+        }
+        self.motion[place]
     }
 }
 
@@ -196,6 +211,8 @@ impl Simulator {
             sees_all,
             row: Vec::new(),
             is_row_new: false,
+            motion: Vec::new(),
+            is_motion_new: false,
             are_forces_new: true,
             is_short: false,
             ended: None,
@@ -297,7 +314,7 @@ impl Simulator {
 
     /// Value of a column at the present state.
     fn value(&self, py: Python<'_>, place: usize) -> PyResult<f64> {
-        let value = self.within(&mut *self.running(py)?, |running| running.look()[place]);
+        let value = self.within(&mut *self.running(py)?, |running| running.value(place));
         self.raise()?;
         Ok(value)
     }
@@ -313,10 +330,8 @@ impl Simulator {
 
     /// Values of some columns at the present state, as 64-bit floats.
     fn frame<'py>(&self, py: Python<'py>, places: Vec<usize>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes: Vec<u8> = self.within(&mut *self.running(py)?, |running| {
-            let row = running.look();
-            places.iter().flat_map(|&place| row[place].to_le_bytes()).collect()
-        });
+        let bytes: Vec<u8> =
+            self.within(&mut *self.running(py)?, |running| places.iter().flat_map(|&place| running.value(place).to_le_bytes()).collect());
         self.raise()?;
         Ok(PyBytes::new(py, &bytes))
     }

@@ -237,3 +237,33 @@ def test_a_package_that_is_missing_is_named_with_its_extra(run, call, package, m
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(ImportError, match=f"needs {package}: install it with pip install"):
         call(run)
+
+
+def test_a_torque_and_its_reaction_keep_the_angular_momentum():
+    m = hm.Model(gravity=[0, 0, 0])
+    a = m.body("a", mass=2, inertia=[0.3, 0.4, 0.5], position=[0, 0, 0], angular_velocity=[0.3, 1, -0.5])
+    b = m.body("b", mass=1, inertia=[0.1, 0.12, 0.15], position=[1.2, 0.2, 0.1], velocity=[0.1, -0.2, 0.3], angular_velocity=[1, 0, 2])
+    m.torque("f", body=a, reaction=b, torque=[0.4, 0.2, "sin(t)"])
+    run = m.simulate(end=2, step=0.01, method="conserving-ggl")
+
+    def momentum(body, mass, inertia):
+        w, *v = run[body].orientation.T
+        v = np.array(v)
+        k = np.zeros((len(w), 3, 3))
+        k[:, 0, 1], k[:, 0, 2], k[:, 1, 2] = -v[2], v[1], -v[0]
+        k -= np.swapaxes(k, 1, 2)
+        turned = np.eye(3) + 2 * w[:, None, None] * k + 2 * k @ k
+        spin = np.einsum("nij,j,nkj,nk->ni", turned, inertia, turned, run[body].angular_velocity)
+        return spin + mass * np.cross(run[body].position, run[body].velocity)
+
+    total = momentum(a, 2, [0.3, 0.4, 0.5]) + momentum(b, 1, [0.1, 0.12, 0.15])
+    assert np.abs(total - total[0]).max() < 1e-12
+
+
+def test_an_input_that_is_called_as_a_variable_is_refused():
+    m = hm.Model(plane="xy", gravity=[0, 0])
+    m.input("x", default=5)
+    point = m.point("p", mass=1, position=[1, 0])
+    m.expression("f", point=point, force=["x", 0])
+    with pytest.raises(hm.ModelError, match="could be the variable of this expression"):
+        m.simulate(end=1, step=0.1)

@@ -125,3 +125,90 @@ def test_an_input_counts_at_once_for_forces():
     assert sim["rail.fy"] == pytest.approx(0, abs=1e-12)
     sim.inputs["push"] = 3
     assert sim["rail.fy"] == pytest.approx(-3)
+
+
+LANDING = """
+plane = "xz"
+gravity = [0, -10]
+[point.p]
+mass = 1
+position = [0, 5]
+[input.F]
+[event.land]
+when = "p.z"
+stop = true
+[event.mark]
+when = "p.z"
+set = { F = 2 }
+"""
+
+
+@pytest.mark.parametrize("step", [0.01, 0.013, 0.1, 0.3])
+def test_an_event_ends_a_simulation_that_is_stepped(step):
+    sim = hm.Simulation(hm.loads(LANDING), step=step)
+    for _ in range(1000):
+        if not sim.step():
+            break
+    assert (sim.event, sim.ended) == ("land", "ended by the event `land`")
+    assert sim.time == pytest.approx(1, abs=1e-9)
+
+
+TRIP = """
+plane = "xz"
+[body.arm]
+mass = 2
+inertia = 0.1
+position = [0.3, 0]
+[joint.shoulder]
+type = "revolute"
+between = ["ground", "arm"]
+at = [0, 0]
+[input.torque]
+[input.tripped]
+[event.controller]
+every = 0.01
+set = { torque = "40*(0.5*sin(t) - shoulder.angle) - 6*shoulder.angle_rate" }
+[event.overload]
+when = "torque - 1"
+direction = "rising"
+set = { tripped = "tripped + 1" }
+[event.second]
+when = "tripped - 0.5"
+stop = true
+[force.motor]
+type = "effort"
+joint = "shoulder"
+effort = "torque"
+"""
+
+
+@pytest.mark.parametrize("step", [0.003, 0.005, 0.01, 0.02])
+@pytest.mark.parametrize("method", ["conserving-ggl", "radau"])
+def test_an_event_sees_an_input_that_jumps_between_steps(step, method):
+    run = hm.loads(TRIP).simulate(end=1, step=step, method=method)
+    assert [event["event"] for event in run.summary["events"]] == ["overload", "second"]
+    assert all(event["t"] == pytest.approx(0.01, abs=1e-9) for event in run.summary["events"])
+    assert run["torque"][-1] == pytest.approx(1.503, abs=1e-3) and run["tripped"][-1] == 1
+
+
+def test_an_event_sees_an_input_that_a_program_sets():
+    m = hm.Model(gravity=[0, 0, 0])
+    m.input("u")
+    m.point("p", mass=1, position=[0, 0, 0])
+    m.event("on", when="u - 0.5", stop=True)
+    sim = hm.Simulation(m, step=0.1)
+    assert sim.step(3)
+    sim.inputs["u"] = 1
+    assert not sim.step() and sim.event == "on" and sim.time == pytest.approx(0.3)
+
+
+def test_the_row_of_an_event_that_ends_a_run_is_there_whatever_is_left_out():
+    run = hm.loads(LANDING).simulate(end=3, step=0.3, every=5)
+    assert run.t.tolist() == pytest.approx([0, 1], abs=1e-9) and run["p.az"][-1] == pytest.approx(-10)
+
+
+def test_repeated_events_set_repeated_inputs():
+    m = hm.loads("plane = 'xz'\n[point.p]\nmass = 1\nposition = [0, 0]\n[input.a]\nrepeat = 'i = 1 to 3'\n"
+                 "[event.e]\nrepeat = 'i = 1 to 3'\nevery = 0.5\nset = { 'a[i]' = 'a[i] + i' }\n")  # fmt: skip
+    run = m.simulate(end=1.2, step=0.1)
+    assert [run[f"a[{i}]"][-1] for i in (1, 2, 3)] == [3, 6, 9]

@@ -7,6 +7,7 @@ use smallvec::SmallVec;
 use super::assembly::Assembly;
 use super::entry::{Entry, all};
 use super::expression::Program;
+use super::expression::indexed;
 use super::fault::{Read, suggest};
 use super::fields::{Keys, Map, Number};
 use super::key::Shape;
@@ -43,10 +44,11 @@ impl Event {
         let set = entry.optional("set", &self.set, |set, entry, key| {
             let inputs: Vec<String> = assembly.signals.inputs.iter().map(|input| input.name.clone()).collect();
             let mut one = |(name, value): &(String, Number), entry: &Entry<'_>| {
-                let input = inputs.iter().position(|known| known == name).ok_or_else(|| {
+                let full = indexed(name, &entry.scope).map_err(|mistake| entry.mistaken(name.as_str().into(), mistake))?;
+                let input = inputs.iter().position(|known| *known == full).ok_or_else(|| {
                     let cure =
-                        if inputs.is_empty() { format!("add [input.{name}]") } else { suggest(name, inputs.iter().map(String::as_str)) };
-                    entry.refuse_key(name, format!("there is no input `{name}`"), cure)
+                        if inputs.is_empty() { format!("add [input.{full}]") } else { suggest(&full, inputs.iter().map(String::as_str)) };
+                    entry.refuse_key(name, format!("there is no input `{full}`"), cure)
                 })?;
                 let mut reader = Reader::new(assembly, entry, &mut readings);
                 Ok((input, value.formula_reading(entry, name.as_str(), &["t"], &mut reader)?))

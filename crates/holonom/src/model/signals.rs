@@ -317,6 +317,11 @@ impl Names for Reader<'_, '_> {
         Some(self.assembly.axes.name)
     }
 
+    fn has(&self, name: &str) -> bool {
+        let signals = &self.assembly.signals;
+        signals.measures.contains_key(name) || signals.inputs.iter().any(|input| input.name == name)
+    }
+
     fn known(&self) -> Vec<String> {
         self.names()
     }

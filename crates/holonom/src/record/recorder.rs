@@ -1,6 +1,7 @@
 //! An observer that records a run: the columns of `trajectory.csv`.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use nalgebra::{Quaternion, UnitQuaternion};
 use serde::{Deserialize, Serialize};
@@ -68,6 +69,9 @@ pub struct Recorder<'a> {
     constraints: Constraints,
     measures: Measures,
     orientations: Vec<UnitQuaternion<f64>>,
+    /// Where the columns of accelerations and those of coordinates of joints are.
+    accelerations: Range<usize>,
+    coordinates: Range<usize>,
     row: Vec<f64>,
     recording: Recording,
 }
@@ -82,6 +86,9 @@ impl<'a> Recorder<'a> {
         let mut headings = channels.headings(system, constraints);
         let measures = Measures::new(&channels.measures, headings.iter().map(|heading| heading.name.as_str()));
         headings.extend(channels.measures.iter().map(|measure| Heading::new(&measure.name, measure.unit.clone(), &measure.meaning)));
+        let motion = COLUMNS.len() + channels.motion_headings().len();
+        let accelerations = motion..motion + if constraints == Constraints::Nothing { 0 } else { channels.acceleration_headings().len() };
+        let coordinates = accelerations.end..accelerations.end + 2 * system.gauges().len();
         let recording = Recording::new(headings);
         Self {
             row: Vec::with_capacity(recording.columns().len()),
@@ -94,6 +101,8 @@ impl<'a> Recorder<'a> {
             resumed: false,
             constraints,
             measures,
+            accelerations,
+            coordinates,
             recording,
         }
     }
@@ -146,8 +155,23 @@ impl<'a> Recorder<'a> {
         &self.row
     }
 
-    /// Puts together what is to be recorded of the present state.
-    fn fill(&mut self, simulation: &Simulation) {
+    /// Whether a column is of the motion alone: energies, positions, velocities, coordinates of joints and their rates.
+    pub fn is_of_motion(&self, place: usize) -> bool {
+        place < self.accelerations.start || self.coordinates.contains(&place)
+    }
+
+    /// The columns that are [of the motion](Self::is_of_motion) in their places of the row, for which no forces need be found; the others
+    /// are no numbers.
+    pub fn look_at_motion(&mut self, simulation: &Simulation) -> &[f64] {
+        self.last = [simulation.audit().integrator, simulation.audit().projection];
+        self.fill_motion(simulation);
+        self.row.resize(self.accelerations.end, f64::NAN);
+        self.fill_coordinates(simulation);
+        self.row.resize(self.recording.columns().len(), f64::NAN);
+        &self.row
+    }
+
+    fn fill_motion(&mut self, simulation: &Simulation) {
         let (audit, state) = (simulation.audit(), simulation.state());
         self.row.clear();
         let lift = audit.lift;
@@ -155,13 +179,22 @@ impl<'a> Recorder<'a> {
         self.row.extend([state.t, audit.energy() + lift, audit.kinetic, audit.potential + lift, audit.work, integrator, projection]);
         self.row.extend([audit.phi, audit.phi_dot, audit.phi_ddot, audit.iterations as f64]);
         self.channels.motion(simulation, &mut self.orientations, &mut self.row);
+    }
+
+    fn fill_coordinates(&mut self, simulation: &Simulation) {
+        let gauges = simulation.gauges();
+        gauges.value.iter().zip(&gauges.rate).for_each(|(&value, &rate)| self.row.extend([value, rate]));
+    }
+
+    /// Puts together what is to be recorded of the present state.
+    fn fill(&mut self, simulation: &Simulation) {
+        self.fill_motion(simulation);
         if self.constraints != Constraints::Nothing {
             self.channels.accelerations(simulation, &mut self.row);
         }
-        let gauges = simulation.gauges();
-        gauges.value.iter().zip(&gauges.rate).for_each(|(&value, &rate)| self.row.extend([value, rate]));
+        self.fill_coordinates(simulation);
         self.channels.forces(simulation, &mut self.row);
-        self.row.extend_from_slice(&state.inputs);
+        self.row.extend_from_slice(&simulation.state().inputs);
         if self.constraints != Constraints::Nothing {
             self.channels.joint_forces(simulation, &mut self.row);
         }
@@ -188,7 +221,7 @@ impl Observer for Recorder<'_> {
         }
         self.since[0] += simulation.audit().integrator;
         self.since[1] += simulation.audit().projection;
-        let is_kept = self.seen.is_multiple_of(self.every);
+        let is_kept = self.seen.is_multiple_of(self.every) || simulation.ended_by().is_some();
         if is_kept {
             self.last = std::mem::take(&mut self.since);
         }

@@ -34,8 +34,8 @@ impl Simulation {
         &self.happenings
     }
 
-    /// The event that ended the last run.
-    pub(super) fn ending(&self) -> Option<&Happening> {
+    /// The event that ended the last run, or the last step.
+    pub fn ended_by(&self) -> Option<&Happening> {
         self.happenings.iter().rev().find(|event| self.has_ended && event.stopped)
     }
 
@@ -74,17 +74,21 @@ impl Simulation {
         let system = self.system.clone();
         let shortest = SHORTEST * (target - self.state.t);
         let first = (self.audit.clone(), self.steps);
-        // Indicators where the part begins; zero of events that happened there, also at the end of the step before.
-        let mut from = self.indicate()?;
+        // Indicators where the part begins, before inputs were set there; zero of events that happened there, also at the end of the step
+        // before.
+        let known = self.watched.take().filter(|(t, _)| *t == self.state.t);
+        let mut from = known.map_or_else(|| self.indicate(), |(_, from)| Ok(from))?;
         for last in self.happenings.iter().rev().take_while(|last| (self.state.t - last.t).abs() <= 2.0 * shortest) {
             let same = system.events.iter().zip(&mut from).filter(|(event, _)| event.name == last.event);
             same.for_each(|(_, from)| *from = 0.0);
         }
         loop {
             self.sample(shortest)?;
-            if self.state.t == target {
+            let stops = self.jump(&mut from)?;
+            if stops || self.state.t == target {
+                self.watched = Some((self.state.t, from));
                 self.join_parts(&first);
-                return Ok(false);
+                return Ok(stops);
             }
             let before = self.moment();
             let until = self.next_sample().filter(|next| *next < target - shortest).unwrap_or(target);
@@ -104,19 +108,41 @@ impl Simulation {
             if self.state.t > before.t() {
                 from = now;
             }
-            let mut stops = false;
-            for k in happening {
-                let event = &system.events[k];
-                from[k] = 0.0;
-                self.set_by(k)?;
-                stops |= event.stops;
-                self.happenings.push(Happening { event: event.name.clone(), t, stopped: event.stops });
-            }
-            if stops {
+            if self.happen(&happening, t, &mut from)? {
                 self.join_parts(&first);
                 return Ok(true);
             }
         }
+    }
+
+    /// Lets events happen at a time, and says whether one ends the run.
+    fn happen(&mut self, events: &[usize], t: f64, from: &mut [f64]) -> Result<bool, Failure> {
+        let mut stops = false;
+        for &k in events {
+            from[k] = 0.0;
+            self.set_by(k)?;
+            let event = &self.system.events[k];
+            stops |= event.stops;
+            self.happenings.push(Happening { event: event.name.clone(), t, stopped: event.stops });
+        }
+        Ok(stops)
+    }
+
+    /// Lets the events happen whose indicators jumped through zero when inputs were set, one after the other and each once, and says whether
+    /// one ends the run.
+    fn jump(&mut self, from: &mut [f64]) -> Result<bool, Failure> {
+        for _ in 0..=from.len() {
+            let now = self.indicate()?;
+            let jumped: Vec<usize> = (0..now.len()).filter(|&k| self.system.events[k].trigger.is_between(from[k], now[k])).collect();
+            from.iter_mut().zip(now).filter(|(from, _)| **from != 0.0).for_each(|(from, now)| *from = now);
+            if jumped.is_empty() {
+                break;
+            }
+            if self.happen(&jumped, self.state.t, from)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// Sets inputs as an event says.
@@ -171,6 +197,9 @@ impl Simulation {
 
     /// Lets what happens at the beginning of a run happen.
     pub(super) fn begin_sampling(&mut self) -> Result<(), Failure> {
+        if self.watched.as_ref().is_none_or(|(t, _)| *t != self.state.t) {
+            self.watched = Some((self.state.t, self.indicate()?));
+        }
         self.sample(SHORTEST * self.step)
     }
 

@@ -117,6 +117,8 @@ pub struct Simulation {
     hints: Hints,
     /// Events so far.
     happenings: Vec<Happening>,
+    /// Indicators of the events at the end of the last step, and its time, s.
+    watched: Option<(f64, Vec<f64>)>,
     /// How often each event with a period has happened.
     samples: Vec<u64>,
     /// Whether the last of them ended the last run.
@@ -206,6 +208,7 @@ impl Simulation {
             reactions: None,
             apart: None,
             happenings: Vec::new(),
+            watched: None,
             samples: Vec::new(),
             has_ended: false,
         };
@@ -241,6 +244,7 @@ impl Simulation {
 
     /// Runs to time `end` (s), or to an event that ends the run, and shows the start and every nominal step to the observer.
     pub fn run(&mut self, end: f64, observer: &mut dyn Observer) -> Status {
+        self.has_ended = false;
         if let Err(failure) = self.begin_sampling() {
             return Status::Stopped { at: self.state.t, reason: self.reason(failure) };
         }
@@ -248,11 +252,11 @@ impl Simulation {
             return self.interrupted();
         }
         self.begin_adapting(end);
-        self.has_ended = false;
         while self.state.t < end {
             let before = self.state.t;
             let target = self.grid.next(before, end);
-            self.has_ended = match self.advance_through_events(target, observer.wants_forces()) {
+            let wants_forces = observer.wants_forces();
+            self.has_ended = match self.advance_through_events(target, wants_forces) {
                 Ok(has_ended) => has_ended,
                 Err(failure) => {
                     self.grid.back();
@@ -265,6 +269,10 @@ impl Simulation {
                 // An event stopped the run as it began the step: what is there was shown.
                 self.grid.back();
                 break;
+            }
+            if self.has_ended && !wants_forces {
+                // The last row of a run that an event ends is wanted by all.
+                self.update_reactions();
             }
             if observer.after_step(self) == Verdict::Stop {
                 return self.interrupted();
@@ -365,7 +373,7 @@ impl Simulation {
             reason,
             step: self.step,
             end,
-            ended_by: self.ending().map(|event| event.event.clone()),
+            ended_by: self.ended_by().map(|event| event.event.clone()),
             events: self.happenings.clone(),
             steps: self.steps,
             size,

@@ -88,7 +88,7 @@ impl Elsewhere {
         work.inputs.copy_from_slice(&state.inputs);
         system.evaluate_again(&work.end.x, state.t, &mut work.start.at);
         work.end.at.copy_from(&work.start.at);
-        work.lambda.copy_from_slice(&reactions.lambda);
+        work.lambda.fill(0.0);
         let outcome = newton.react_as_evaluated(system, state.t, work);
         reactions.take(system, outcome.is_ok(), work);
     }
@@ -183,7 +183,7 @@ impl Simulation {
         work.end.x.copy_from_slice(&state.x);
         work.end.v.copy_from_slice(&self.shown_v);
         work.a.copy_from_slice(&state.a);
-        work.lambda.copy_from_slice(&reactions.lambda);
+        work.lambda.fill(0.0);
         system.place_known(state.t, &mut work.end.x, &mut work.end.v, &mut work.a);
         // A penalty's force is its own; that of every other formulation errs, and the constraints' is meant.
         let outcome = match self.method.formulation.soft {

@@ -179,7 +179,8 @@ impl Program {
     }
 
     /// The expressions of the variable `t` alone, and of nothing else, at whose zeros this one jumps or has a kink, as programs of
-    /// one variable: the arguments of `step`, `sign` and `abs`, and the difference of those of `min` and `max`.
+    /// one variable: the arguments of `step`, `sign` and `abs`, the difference of those of `min` and `max`, the first of `atan2`, and the cosine of
+    /// that of `tan`.
     pub fn switches(&self, t: usize) -> Vec<Self> {
         let mut found = Vec::new();
         // Where the operations of each number on the stack begin.
@@ -190,6 +191,9 @@ impl Program {
                 Op::OfOne(Function::Step | Function::Sign | Function::Abs) => {
                     found.extend(self.of_time(t, &self.ops[begins[begins.len() - 1]..k], &[]));
                 }
+                Op::OfOne(Function::Tan) => {
+                    found.extend(self.of_time(t, &self.ops[begins[begins.len() - 1]..k], &[Op::OfOne(Function::Cos)]));
+                }
                 Op::OfTable(curve) => {
                     let argument = &self.ops[begins[begins.len() - 1]..k];
                     found.extend(curve.kinks().filter_map(|kink| self.of_time(t, argument, &kink)));
@@ -198,9 +202,12 @@ impl Program {
                 // What it jumps at is not known.
                 Op::OfMany(function, _) => begins.truncate(begins.len() + 1 - function.arguments()),
                 _ => {
-                    begins.pop();
-                    if let Op::OfTwo(Function::Min | Function::Max) = op {
-                        found.extend(self.of_time(t, &self.ops[begins[begins.len() - 1]..k], &[Op::Sub]));
+                    let second = begins.pop().expect("two numbers are on the stack");
+                    let first = begins[begins.len() - 1];
+                    match op {
+                        Op::OfTwo(Function::Min | Function::Max) => found.extend(self.of_time(t, &self.ops[first..k], &[Op::Sub])),
+                        Op::OfTwo(Function::Atan2) => found.extend(self.of_time(t, &self.ops[first..second], &[])),
+                        _ => (),
                     }
                 }
             }

@@ -29,6 +29,11 @@ pub trait Names {
         None
     }
 
+    /// Whether an input or a measure has this name.
+    fn has(&self, _name: &str) -> bool {
+        false
+    }
+
     /// All names, for suggestions.
     fn known(&self) -> Vec<String> {
         Vec::new()

@@ -363,6 +363,10 @@ impl Parser<'_> {
                 let message = format!("`{name}` could be the variable of this expression or what the model calls `{name}`");
                 Err(self.mistake(message, "give the parameter or index another name"))
             }
+            (Some(_), None) if self.names.has(name) => {
+                let message = format!("`{name}` could be the variable of this expression or what the model calls `{name}`");
+                Err(self.mistake(message, "give the input or measure another name"))
+            }
             (Some(k), None) => Ok(Some(Op::Variable(k))),
             (None, Some(Value::Known(value))) => Ok(Some(Op::Constant(value))),
             (None, Some(Value::Faulty)) => Err(Mistake::known()),

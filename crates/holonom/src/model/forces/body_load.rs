@@ -1,7 +1,7 @@
 //! Forces and torques on bodies, as formulas of time and of the motion of the body.
 //!
-//! A force at a place goes to the nodes that the place is made of; a torque n is ½ n × e_k on each of the three axes of
-//! the body, and these go to their nodes: work and moment are exact (methods §6).
+//! A force at a place goes to the nodes that the place is made of; a torque n is c × e_k on each of the three axes of the body, with c so that
+//! their moment is n, and these go to their nodes: moments are exact, at means of two positions too (methods §6).
 
 use std::sync::Arc;
 
@@ -96,6 +96,25 @@ impl BodyLoad {
     }
 }
 
+/// The c whose c × e_k on the axes e_k have the torque n: Σ (|e|² 1 − e eᵀ) c = n. That is n/2 for axes of length 1 across each other, which the means of
+/// two positions are not.
+fn turning<N: AnyNumber>(torque: [N; 3], axes: &[[N; 3]], dim: usize) -> [N; 3] {
+    let zero = N::from(0.0);
+    let mut m = [[zero; 3]; 3];
+    for e in axes {
+        for i in 0..3 {
+            m[i][i] += e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
+            (0..3).for_each(|j| m[i][j] -= e[i] * e[j]);
+        }
+    }
+    if dim == 2 {
+        return axes.first().map_or([zero; 3], |_| [zero, zero, torque[2] / m[2][2]]);
+    }
+    let columns: [[N; 3]; 3] = std::array::from_fn(|k| cross(m[(k + 1) % 3], m[(k + 2) % 3]));
+    let determinant = m[0][0] * columns[0][0] + m[0][1] * columns[0][1] + m[0][2] * columns[0][2];
+    std::array::from_fn(|c| (columns[0][c] * torque[0] + columns[1][c] * torque[1] + columns[2][c] * torque[2]) / determinant)
+}
+
 impl Exerts for BodyLoad {
     fn exerted(&self, x: &[f64], v: &[f64], t: f64) -> [f64; 3] {
         self.exerted(x, v, t)
@@ -110,10 +129,11 @@ impl ForceFunction for BodyLoad {
             self.point.spread(exerted, dim, force);
             return;
         }
-        let share = if dim == 2 { 1.0 } else { 0.5 };
-        for (sums, sign) in [(&self.axes, share), (&self.other, -share)] {
-            for sum in sums {
-                sum.spread(cross(exerted, sum.at(x, dim, 1.0)).map(|c| c * sign), dim, force);
+        for (sums, sign) in [(&self.axes, 1.0), (&self.other, -1.0)] {
+            let axes: SmallVec<[[N; 3]; 3]> = sums.iter().map(|sum| sum.at(x, dim, 1.0)).collect();
+            let turning = turning(exerted, &axes, dim);
+            for (sum, axis) in sums.iter().zip(axes) {
+                sum.spread(cross(turning, axis).map(|c| c * sign), dim, force);
             }
         }
     }
