@@ -42,4 +42,12 @@ impl<O: Observer> Observer for Clock<'_, O> {
     fn wants_forces(&self) -> bool {
         self.watched.wants_forces()
     }
+
+    fn sees_divisions(&self) -> bool {
+        self.watched.sees_divisions()
+    }
+
+    fn at_division(&mut self, simulation: &Simulation) {
+        self.watched.at_division(simulation);
+    }
 }

@@ -80,6 +80,14 @@ impl Observer for Watched<'_, '_> {
     fn wants_forces(&self) -> bool {
         self.recorder.wants_forces()
     }
+
+    fn sees_divisions(&self) -> bool {
+        self.recorder.sees_divisions()
+    }
+
+    fn at_division(&mut self, simulation: &Simulation) {
+        self.recorder.at_division(simulation);
+    }
 }
 
 /// A bar that counts runs, of which some are done already.

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use holonom::model::nearest;
 use holonom::record::{Constraints, Recorder, RecorderMark};
 use holonom::run::RunError;
-use holonom::simulation::{Checkpoint, Method, Observer, Simulation, Status};
+use holonom::simulation::{Checkpoint, Method, Observer, Simulation, Status, Verdict};
 use holonom_cli::Loaded;
 use holonom_report::Frames;
 use pyo3::exceptions::PyKeyError;
@@ -62,6 +62,30 @@ struct Running {
     event: Option<String>,
 }
 
+/// Looks at what a recorder must see of a step.
+struct Watch<'a> {
+    recorder: &'a mut Recorder<'static>,
+    sees_all: bool,
+}
+
+impl Observer for Watch<'_> {
+    fn after_step(&mut self, _: &Simulation) -> Verdict {
+        Verdict::GoOn
+    }
+
+    fn wants_forces(&self) -> bool {
+        self.sees_all
+    }
+
+    fn sees_divisions(&self) -> bool {
+        self.sees_all
+    }
+
+    fn at_division(&mut self, simulation: &Simulation) {
+        self.recorder.at_division(simulation);
+    }
+}
+
 /// All that a simulation goes on from.
 #[pyclass(frozen, eq, module = "holonom._engine")]
 #[derive(PartialEq)]
@@ -96,10 +120,8 @@ impl Running {
     fn advance(&mut self, count: i64) -> bool {
         let begun = Instant::now();
         let goes_on = (0..count).all(|_| {
-            let status = match self.sees_all {
-                true => self.simulation.step(),
-                false => self.simulation.step_without_reactions(),
-            };
+            let mut watch = Watch { recorder: &mut self.recorder, sees_all: self.sees_all };
+            let status = self.simulation.step_observed(&mut watch);
             self.arrive();
             self.judge(status)
         });

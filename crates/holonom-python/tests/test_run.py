@@ -267,3 +267,64 @@ def test_an_input_that_is_called_as_a_variable_is_refused():
     m.expression("f", point=point, force=["x", 0])
     with pytest.raises(hm.ModelError, match="could be the variable of this expression"):
         m.simulate(end=1, step=0.1)
+
+
+HELD = """
+plane = "xy"
+gravity = [0, 0]
+[input.u]
+[input.s]
+[point.p]
+mass = 2
+position = [1, 0]
+[force.f]
+type = "expression"
+point = "p"
+force = ["u - 3*x", 0]
+[event.c]
+every = 0.07
+set = { u = "-4*p.x - 1.5*p.vx - 0.5*s", s = "s + 0.07*p.x" }
+[measure.iu]
+value = "integral(u)"
+[measure.done]
+value = "integral(u*p.vx)"
+[measure.least]
+value = "min(u)"
+"""
+
+
+def held_between_samples(end):
+    """Integrals of u and of u ẋ, and the least u: between samples x = u/3 + a cos(wt) + b sin(wt)/w with w² = 1.5."""
+    w, x, v, s, t, integral, work, least = np.sqrt(1.5), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(int(end / 0.07 + 1e-9) + 1):
+        u, s = -4 * x - 1.5 * v - 0.5 * s, s + 0.07 * x
+        step = min(0.07 * (k + 1), end) - t
+        a, c, sn = x - u / 3, np.cos(w * step), np.sin(w * step)
+        after, v = u / 3 + a * c + v * sn / w, v * c - a * w * sn
+        integral, work, least, x, t = integral + u * step, work + u * (after - x), min(least, u), after, t + step
+    return np.array([integral, work, least])
+
+
+def test_running_values_of_what_a_sampled_controller_sets_are_those_between_samples():
+    exact = held_between_samples(3.0)
+    errors = []
+    for step in (0.02, 0.01):
+        run = hm.loads(HELD).simulate(end=3, step=step)
+        errors.append(np.abs([run["iu"][-1], run["done"][-1], run["least"][-1]] - exact).max())
+        study = hm.sweep(hm.loads(HELD), {"point.p.mass": [2]}, columns=["min(u)", "last(iu)"], end=3, step=step)
+        assert [study["min(u)"][0], study["last(iu)"][0]] == [run["least"][-1], run["iu"][-1]]
+        sim = hm.Simulation(hm.loads(HELD), step=step)
+        sim.step(round(3 / step))
+        assert [sim["iu"], sim["done"], sim["least"]] == [run["iu"][-1], run["done"][-1], run["least"][-1]]
+    assert errors[1] < 1e-3 and np.log2(errors[0] / errors[1]) > 1.7, errors
+
+
+def test_forces_at_a_sample_are_those_of_the_inputs_there():
+    m = hm.Model(gravity=[0, 0, 0])
+    m.input("push", unit="N")
+    cart = m.body("cart", mass=2, inertia=[1, 1, 1], position=[0, 0, 0], points={"middle": [0, 0, 0]})
+    m.prismatic("rail", m.ground, cart, at=[0, 0, 0], axis=[1, 0, 0])
+    m.expression("across", point=cart["middle"], force=[0, "push", 0])
+    m.event("controller", every=0.1, set={"push": "1 + t"})
+    run = m.simulate(end=1, step=0.05)
+    assert run["rail.fy"] == pytest.approx(-run["push"], abs=1e-12)

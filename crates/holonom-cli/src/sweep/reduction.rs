@@ -51,6 +51,13 @@ impl Gathered {
         }
     }
 
+    /// Sees the value where a step is divided, before and after inputs are set: a value at a time is that of its step.
+    pub fn see_division(&mut self, t: f64, value: f64) {
+        if let Self::Running(..) = self {
+            self.see(t, value);
+        }
+    }
+
     /// What the function makes of what was seen; nothing where it has no value.
     pub fn value(&self) -> Option<f64> {
         match self {

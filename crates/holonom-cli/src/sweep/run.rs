@@ -153,6 +153,14 @@ impl Observer for Interruptible<'_> {
     fn wants_forces(&self) -> bool {
         self.watch.wants_forces()
     }
+
+    fn sees_divisions(&self) -> bool {
+        self.watch.sees_divisions()
+    }
+
+    fn at_division(&mut self, simulation: &Simulation) {
+        self.watch.at_division(simulation);
+    }
 }
 
 /// How a model is to be run.

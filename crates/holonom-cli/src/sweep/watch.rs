@@ -81,17 +81,32 @@ impl<'a> Watch<'a> {
     }
 }
 
-impl Observer for Watch<'_> {
-    fn after_step(&mut self, simulation: &Simulation) -> Verdict {
+impl Watch<'_> {
+    /// Lets the columns that are of all steps see the present state.
+    fn see(&mut self, simulation: &Simulation, see: fn(&mut Gathered, f64, f64)) {
         if self.needs_steps {
             let (t, row) = (simulation.state().t, self.recorder.look(simulation));
             for Column { place, is_absolute, gathered } in self.columns.iter_mut().flatten() {
                 if let Some(gathered) = gathered {
-                    gathered.see(t, signed(row[*place], *is_absolute));
+                    see(gathered, t, signed(row[*place], *is_absolute));
                 }
             }
         }
+    }
+}
+
+impl Observer for Watch<'_> {
+    fn after_step(&mut self, simulation: &Simulation) -> Verdict {
+        self.see(simulation, Gathered::see);
         Verdict::GoOn
+    }
+
+    fn sees_divisions(&self) -> bool {
+        self.needs_steps
+    }
+
+    fn at_division(&mut self, simulation: &Simulation) {
+        self.see(simulation, Gathered::see_division);
     }
 
     fn wants_forces(&self) -> bool {

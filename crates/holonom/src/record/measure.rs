@@ -102,7 +102,8 @@ impl RunningValue {
         let [since, before] = if self.has_begun { self.times } else { [t, t] };
         let (step, [last, sum]) = (t - before, self.values);
         let sum = match running {
-            Running::Max | Running::Min if !self.has_begun => value,
+            // What is set at the start counts from there.
+            Running::Max | Running::Min if t == since => value,
             _ if !self.has_begun => 0.0,
             Running::Max if value <= sum || sum.is_nan() => sum,
             Running::Min if value >= sum || sum.is_nan() => sum,

@@ -210,6 +210,16 @@ impl Observer for Recorder<'_> {
         self.measures.are_running() || self.seen.is_multiple_of(self.every)
     }
 
+    fn sees_divisions(&self) -> bool {
+        self.measures.are_running()
+    }
+
+    fn at_division(&mut self, simulation: &Simulation) {
+        if self.sees_divisions() {
+            self.fill(simulation);
+        }
+    }
+
     fn after_step(&mut self, simulation: &Simulation) -> Verdict {
         if std::mem::take(&mut self.resumed) {
             // Where the run was left, that row is the first once more, unless it is there.

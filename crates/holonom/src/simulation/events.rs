@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::checkpoint::Moment;
-use super::{Audit, Simulation};
+use super::{Audit, Observer, Simulation};
 use crate::formulation::Failure;
 use crate::system::{Look, Trigger};
 
@@ -67,7 +67,8 @@ impl Simulation {
     }
 
     /// Advances to `target`, or to the first event on the way that ends the run: whether there was one.
-    pub(super) fn advance_through_events(&mut self, target: f64, wants_forces: bool) -> Result<bool, Failure> {
+    pub(super) fn advance_through_events(&mut self, target: f64, observer: &mut dyn Observer) -> Result<bool, Failure> {
+        let wants_forces = observer.wants_forces();
         if self.system.events.is_empty() {
             return self.advance(target, wants_forces).map(|()| false);
         }
@@ -83,16 +84,28 @@ impl Simulation {
             same.for_each(|(_, from)| *from = 0.0);
         }
         loop {
-            self.sample(shortest)?;
-            let stops = self.jump(&mut from)?;
+            let due = self.due(shortest);
+            let samples = !due.is_empty();
+            if samples {
+                observer.at_division(self);
+                self.sample(&due, shortest)?;
+            }
+            let jumped = self.jump(&mut from)?;
+            let stops = jumped == Some(true);
+            if samples || jumped.is_some() {
+                self.show_division(observer);
+            }
             if stops || self.state.t == target {
                 self.watched = Some((self.state.t, from));
                 self.join_parts(&first);
                 return Ok(stops);
             }
             let before = self.moment();
-            let until = self.next_sample().filter(|next| *next < target - shortest).unwrap_or(target);
-            self.advance(until, wants_forces)?;
+            let next = self.next_sample().unwrap_or(f64::INFINITY);
+            let until = if next < target - shortest { next } else { target };
+            // Where a sample follows, forces are found when it is taken, unless somebody looks at those before it.
+            let reacts = wants_forces && (observer.sees_divisions() || next > until + shortest);
+            self.advance(until, reacts)?;
             let to = self.indicate().inspect_err(|_| self.restore(&before))?;
             let crossed = |to: &[f64]| (0..to.len()).find(|&k| system.events[k].trigger.is_between(from[k], to[k]));
             let (t, k) = match crossed(&to) {
@@ -108,7 +121,12 @@ impl Simulation {
             if self.state.t > before.t() {
                 from = now;
             }
-            if self.happen(&happening, t, &mut from)? {
+            if observer.sees_divisions() {
+                self.show_division(observer);
+            }
+            let stops = self.happen(&happening, t, &mut from)?;
+            self.show_division(observer);
+            if stops {
                 self.join_parts(&first);
                 return Ok(true);
             }
@@ -128,9 +146,18 @@ impl Simulation {
         Ok(stops)
     }
 
+    /// Shows the present state where a step is divided, with the forces of its inputs.
+    pub(super) fn show_division(&mut self, observer: &mut dyn Observer) {
+        if observer.wants_forces() {
+            self.update_reactions();
+        }
+        observer.at_division(self);
+    }
+
     /// Lets the events happen whose indicators jumped through zero when inputs were set, one after the other and each once, and says whether
-    /// one ends the run.
-    fn jump(&mut self, from: &mut [f64]) -> Result<bool, Failure> {
+    /// one ends the run; nothing where there were none.
+    fn jump(&mut self, from: &mut [f64]) -> Result<Option<bool>, Failure> {
+        let mut jumps = None;
         for _ in 0..=from.len() {
             let now = self.indicate()?;
             let jumped: Vec<usize> = (0..now.len()).filter(|&k| self.system.events[k].trigger.is_between(from[k], now[k])).collect();
@@ -138,11 +165,12 @@ impl Simulation {
             if jumped.is_empty() {
                 break;
             }
-            if self.happen(&jumped, self.state.t, from)? {
-                return Ok(true);
+            jumps = Some(self.happen(&jumped, self.state.t, from)?);
+            if jumps == Some(true) {
+                break;
             }
         }
-        Ok(false)
+        Ok(jumps)
     }
 
     /// Sets inputs as an event says.
@@ -170,11 +198,14 @@ impl Simulation {
         self.periods().map(|(_, period, taken)| taken as f64 * period).reduce(f64::min)
     }
 
-    /// Lets the events happen whose periods are over, up to so much later.
-    pub(super) fn sample(&mut self, within: f64) -> Result<(), Failure> {
-        let due: Vec<usize> =
-            self.periods().filter(|(_, period, taken)| *taken as f64 * period <= self.state.t + within).map(|(k, ..)| k).collect();
-        for k in due {
+    /// Events whose periods are over, up to so much later.
+    fn due(&self, within: f64) -> Vec<usize> {
+        self.periods().filter(|(_, period, taken)| *taken as f64 * period <= self.state.t + within).map(|(k, ..)| k).collect()
+    }
+
+    /// Lets these happen.
+    fn sample(&mut self, due: &[usize], within: f64) -> Result<(), Failure> {
+        for &k in due {
             self.set_by(k)?;
             self.samples[k] = self.taken(k, within);
         }
@@ -195,12 +226,14 @@ impl Simulation {
         self.samples = (0..self.system.events.len()).map(|k| if self.state.t > 0.0 { self.taken(k, before) } else { 0 }).collect();
     }
 
-    /// Lets what happens at the beginning of a run happen.
-    pub(super) fn begin_sampling(&mut self) -> Result<(), Failure> {
+    /// Lets what happens at the beginning of a run happen, and says whether there was anything.
+    pub(super) fn begin_sampling(&mut self) -> Result<bool, Failure> {
         if self.watched.as_ref().is_none_or(|(t, _)| *t != self.state.t) {
             self.watched = Some((self.state.t, self.indicate()?));
         }
-        self.sample(SHORTEST * self.step)
+        let within = SHORTEST * self.step;
+        let due = self.due(within);
+        self.sample(&due, within).map(|()| !due.is_empty())
     }
 
     fn look(&self) -> Look<'_> {

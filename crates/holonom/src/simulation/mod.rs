@@ -73,6 +73,14 @@ pub trait Observer {
     fn wants_forces(&self) -> bool {
         true
     }
+
+    /// Looks at the simulation where a step is divided: before inputs are set there, and after.
+    fn at_division(&mut self, _simulation: &Simulation) {}
+
+    /// Whether it looks there.
+    fn sees_divisions(&self) -> bool {
+        false
+    }
 }
 
 impl<F: FnMut(&Simulation) -> Verdict> Observer for F {
@@ -221,20 +229,9 @@ impl Simulation {
         self.step_to(self.grid.following(self.state.t))
     }
 
-    /// The same without [forces of the constraints](Self::find_reactions), which take time. They stay those of an earlier state until they
-    /// are [found](Self::update_reactions).
-    pub fn step_without_reactions(&mut self) -> Status {
-        struct Blind;
-        impl Observer for Blind {
-            fn after_step(&mut self, _: &Simulation) -> Verdict {
-                Verdict::GoOn
-            }
-
-            fn wants_forces(&self) -> bool {
-                false
-            }
-        }
-        self.run(self.grid.following(self.state.t), &mut Blind)
+    /// The same, shown to an observer.
+    pub fn step_observed(&mut self, observer: &mut dyn Observer) -> Status {
+        self.run(self.grid.following(self.state.t), observer)
     }
 
     /// Runs to the time `t` (s), with the accuracy asked for up to there.
@@ -245,8 +242,10 @@ impl Simulation {
     /// Runs to time `end` (s), or to an event that ends the run, and shows the start and every nominal step to the observer.
     pub fn run(&mut self, end: f64, observer: &mut dyn Observer) -> Status {
         self.has_ended = false;
-        if let Err(failure) = self.begin_sampling() {
-            return Status::Stopped { at: self.state.t, reason: self.reason(failure) };
+        match self.begin_sampling() {
+            Ok(true) => self.show_division(observer),
+            Ok(false) => (),
+            Err(failure) => return Status::Stopped { at: self.state.t, reason: self.reason(failure) },
         }
         if observer.after_step(self) == Verdict::Stop {
             return self.interrupted();
@@ -256,7 +255,7 @@ impl Simulation {
             let before = self.state.t;
             let target = self.grid.next(before, end);
             let wants_forces = observer.wants_forces();
-            self.has_ended = match self.advance_through_events(target, wants_forces) {
+            self.has_ended = match self.advance_through_events(target, observer) {
                 Ok(has_ended) => has_ended,
                 Err(failure) => {
                     self.grid.back();
