@@ -40,14 +40,14 @@ pub struct Point {
     pub run: Checkpoint,
     pub recorder: RecorderMark,
     pub rows: usize,
-    /// What was said at the start.
-    pub notes: Vec<String>,
+    /// What was put right before the start, in words.
+    pub corrections: Vec<String>,
 }
 
 impl Point {
     /// Where a simulation is.
-    pub fn of(simulation: &Simulation, recorder: &Recorder<'_>, notes: &[String]) -> Self {
-        Self { run: simulation.checkpoint(), recorder: recorder.mark(), rows: recorder.recording().rows(), notes: notes.into() }
+    pub fn of(simulation: &Simulation, recorder: &Recorder<'_>, corrections: &[String]) -> Self {
+        Self { run: simulation.checkpoint(), recorder: recorder.mark(), rows: recorder.recording().rows(), corrections: corrections.into() }
     }
 }
 

@@ -61,12 +61,12 @@ impl<'a> Keeper<'a> {
     }
 
     /// Saves the run if it is time to.
-    pub fn look(&mut self, simulation: &Simulation, recorder: &Recorder<'_>, notes: &[String]) {
+    pub fn look(&mut self, simulation: &Simulation, recorder: &Recorder<'_>, corrections: &[String]) {
         let begun = Instant::now();
         if begun < self.next || simulation.state().t <= self.beyond {
             return;
         }
-        let last = Point::of(simulation, recorder, notes);
+        let last = Point::of(simulation, recorder, corrections);
         match self.save(recorder.recording(), last, None) {
             Ok(()) => self.next = Instant::now() + PAUSE.max(COST * begun.elapsed()),
             Err(failure) => {

@@ -128,20 +128,20 @@ pub(crate) fn simulate_kept(
     let Provenance { step, end, every, .. } = provenance;
     let name = method.name.clone();
     let (resume, before) = match resume {
-        Some((Point { run, recorder, notes, .. }, rows)) => (Some((run, notes)), Some((recorder, rows))),
+        Some((Point { run, recorder, corrections, .. }, rows)) => (Some((run, corrections)), Some((recorder, rows))),
         None => (None, None),
     };
-    let (mut simulation, notes) = match resume {
-        Some((run, notes)) => Simulation::resume(model.system.clone(), method, step, run)
-            .map(|simulation| (simulation, notes))
+    let (mut simulation, corrections) = match resume {
+        Some((run, corrections)) => Simulation::resume(model.system.clone(), method, step, run)
+            .map(|simulation| (simulation, corrections))
             .ok_or_else(|| Failure::usage("the checkpoint is of another model", "run from the start, without --resume"))?,
         None => {
             let simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
-            let notes = notes(loaded, &simulation);
+            let corrections = corrections(model, &simulation);
             if !quiet {
-                notes.iter().for_each(|text| note(text));
+                slips(loaded).chain(corrections.clone()).for_each(|text| note(&text));
             }
-            (simulation, notes)
+            (simulation, corrections)
         }
     };
     let rank = analysis::rank_of(&simulation);
@@ -153,7 +153,7 @@ pub(crate) fn simulate_kept(
         Some((mark, rows)) => recorder.resume(&mark).after(rows),
         None => recorder,
     };
-    let mut watched = Watched::new(recorder, step, end, quiet, interrupted.clone()).kept(keeper, &notes);
+    let mut watched = Watched::new(recorder, step, end, quiet, interrupted.clone()).kept(keeper, &corrections);
     let (first_step, first_time) = (simulation.steps(), simulation.state().t);
     let (wall, cpu) = (std::time::Instant::now(), ProcessTime::now());
     let (status, step_us) = match simulation.method().settings.iterations {
@@ -175,8 +175,8 @@ pub(crate) fn simulate_kept(
         value["time"]["step_us"] = step_us;
     }
     value["provenance"] = serde_json::to_value(&provenance).expect("a provenance is plain data");
-    value["notes"] = json!(notes);
-    let last = Point::of(&simulation, &watched.recorder, &notes);
+    value["notes"] = slips(loaded).chain(corrections.clone()).collect();
+    let last = Point::of(&simulation, &watched.recorder, &corrections);
     let before_end = watched.before_end.take().filter(|_| !last.run.goes_on_unbroken());
     let recording = watched.finish();
     value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording)).expect("peaks are plain data");
@@ -186,8 +186,17 @@ pub(crate) fn simulate_kept(
 
 /// What looks like a slip, and what was put right before the start.
 pub fn notes(loaded: &Loaded, simulation: &Simulation) -> Vec<String> {
-    let model = &loaded.model;
-    let mut notes: Vec<String> = unused_parameters(&loaded.source).into_iter().chain(model.notes.clone()).collect();
+    slips(loaded).chain(corrections(&loaded.model, simulation)).collect()
+}
+
+/// What looks like a slip in a model, or in how it is run.
+fn slips(loaded: &Loaded) -> impl Iterator<Item = String> {
+    unused_parameters(&loaded.source).into_iter().chain(loaded.model.notes.clone())
+}
+
+/// What was put right before the start.
+fn corrections(model: &Model, simulation: &Simulation) -> Vec<String> {
+    let mut notes = Vec::new();
     let start = simulation.start();
     if start.moved > 1e-12 {
         notes.push(format!("positions were moved by up to {:.2e} m onto their constraints", start.moved));

@@ -20,8 +20,8 @@ pub struct Watched<'a, 'f> {
     /// Where the run was before a step that may be its last.
     pub before_end: Option<Point>,
     keeper: Option<&'a mut Keeper<'f>>,
-    /// What was said at the start.
-    notes: Vec<String>,
+    /// What was put right before the start, in words.
+    corrections: Vec<String>,
     bar: ProgressBar,
     step: f64,
     end: f64,
@@ -33,12 +33,12 @@ impl<'a, 'f> Watched<'a, 'f> {
     /// Watches a run in steps of `step` to `end` (s).
     pub fn new(recorder: Recorder<'a>, step: f64, end: f64, quiet: bool, interrupted: Arc<AtomicBool>) -> Self {
         let bar = bar(1000, "{bar:30} {percent:>3} %  {eta} left  {msg}", quiet);
-        Self { recorder, before_end: None, keeper: None, notes: Vec::new(), bar, step, end, seen: 0, interrupted }
+        Self { recorder, before_end: None, keeper: None, corrections: Vec::new(), bar, step, end, seen: 0, interrupted }
     }
 
-    /// The same run, saved while it goes on, with what was said at its start.
-    pub fn kept(mut self, keeper: Option<&'a mut Keeper<'f>>, notes: &[String]) -> Self {
-        (self.keeper, self.notes) = (keeper, notes.into());
+    /// The same run, saved while it goes on, with what was put right before its start.
+    pub fn kept(mut self, keeper: Option<&'a mut Keeper<'f>>, corrections: &[String]) -> Self {
+        (self.keeper, self.corrections) = (keeper, corrections.into());
         self
     }
 
@@ -61,7 +61,7 @@ impl Observer for Watched<'_, '_> {
         self.seen += 1;
         if (self.end - 1.5 * self.step..self.end).contains(&simulation.state().t) {
             // An event before the end may end the run within a step.
-            let point = Point::of(simulation, &self.recorder, &self.notes);
+            let point = Point::of(simulation, &self.recorder, &self.corrections);
             if point.run.goes_on_unbroken() {
                 self.before_end = Some(point);
             }
@@ -71,7 +71,7 @@ impl Observer for Watched<'_, '_> {
                 self.show(simulation);
             }
             if let Some(keeper) = &mut self.keeper {
-                keeper.look(simulation, &self.recorder, &self.notes);
+                keeper.look(simulation, &self.recorder, &self.corrections);
             }
         }
         if self.interrupted.load(Ordering::Relaxed) { Verdict::Stop } else { Verdict::GoOn }

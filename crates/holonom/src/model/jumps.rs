@@ -46,9 +46,9 @@ mod tests {
             ("step(t - 1)*(1 - cos(t - 1)) + 1e9", 2.0, None),
             ("max(t, -1)", 2.0, None),
             ("sin(t)", 2.0, None),
-            ("atan2(sin(5*t), cos(5*t))", 1.0, Some("it jumps by -6.283185 at 0.628319 s")),
+            ("atan2(sin(5*t), cos(5*t))", 1.0, Some("it jumps by -6.28")),
             ("atan2(t - 0.5, 1)", 1.0, None),
-            ("atan(tan(5*t))", 0.5, Some("it jumps by -3.141593 at 0.314159 s")),
+            ("atan(tan(5*t))", 0.5, Some("it jumps by -3.14")),
         ] {
             let found = jump(Program::parse(text, &["t"], &Scope::default()).unwrap(), end);
             assert_eq!(found.is_some(), words.is_some(), "{text}: {found:?}");

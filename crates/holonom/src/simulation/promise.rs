@@ -97,7 +97,7 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 const SUMMED: f64 = 2.0 * f64::EPSILON;
 
 /// Share of the kinetic energy and of the work that a nominal step may be off by, however many parts it was taken in.
-const WHOLE: f64 = 2e-11;
+const WHOLE: f64 = 2e-10;
 
 /// The same of the potential energy and of the weight times the size of the mechanism, which may be far more than what moves.
 const WEIGHED: f64 = 1e-12;
