@@ -105,8 +105,7 @@ def dask_cluster():
     import distributed
 
     with distributed.Client(n_workers=WORKERS, threads_per_worker=1, dashboard_address=None) as client:
-        pids = lambda: {worker["pid"] for worker in client.run(lambda: {"pid": os.getpid()}).values()}
-        first = pids()
+        first = set(client.run(os.getpid).values())
         yield lambda process: process.pid in first or "spawn_main" in " ".join(process.cmdline())
 
 

@@ -38,6 +38,8 @@ struct Dense {
     rank: usize,
     /// The last singular value that counts and the first that does not.
     gap: [f64; 2],
+    /// How many are above [`COUNTED`]: so many rows the engine has to count.
+    certain: usize,
 }
 
 /// Compares the rank at the start.
@@ -51,7 +53,7 @@ pub fn compare(model: &Model, size: f64) -> Agreement {
     let (rank, [weakest, below]) = (dense.rank, dense.gap);
     let (rows, found) = (system.constraints(), analysis::rank(system, x, 0.0));
     let redundant = rows - rank;
-    if found.rank != rank && weakest < COUNTED {
+    if (dense.certain..rank).contains(&found.rank) {
         return Agreement::Unclear;
     }
     if found.rank != rank || found.redundant.len() != redundant {
@@ -84,16 +86,17 @@ fn dense_rank(mut rows: Vec<Vec<f64>>, natural: &[f64], columns: usize) -> Optio
         row.iter_mut().for_each(|g| *g /= length);
     }
     if rows.is_empty() || columns == 0 {
-        return Some(Dense { rank: 0, gap: [1.0, 0.0] });
+        return Some(Dense { rank: 0, gap: [1.0, 0.0], certain: 0 });
     }
     let values = Mat::from_fn(rows.len(), columns, |i, j| rows[i][j]).singular_values().ok()?;
     let rank = values.iter().filter(|&&value| value > THRESHOLD * values[0]).count();
     let below = values.get(rank).copied().unwrap_or(0.0);
     if rank == 0 {
-        return Some(Dense { rank, gap: [1.0, 0.0] });
+        return Some(Dense { rank, gap: [1.0, 0.0], certain: 0 });
     }
     let gap = [values[rank - 1], below];
-    (gap[1] * GAP <= gap[0]).then_some(Dense { rank, gap })
+    let certain = values.iter().filter(|&&value| value > COUNTED).count();
+    (gap[1] * GAP <= gap[0]).then_some(Dense { rank, gap, certain })
 }
 
 #[cfg(test)]
@@ -106,5 +109,7 @@ mod tests {
         let rank = |rows| dense_rank(rows, &[1.0; 3], 3).map(|dense| dense.rank);
         assert_eq!((rank(rows(0.0)), rank(rows(1.0)), rank(rows(1e-6))), (Some(2), Some(3), Some(3)));
         assert_eq!((rank(vec![vec![0.0; 3]]), rank(rows(1e-12))), (None, Some(2)));
+        let certain = |rows| dense_rank(rows, &[1.0; 3], 3).map(|dense| dense.certain);
+        assert_eq!((certain(rows(0.0)), certain(rows(1.0)), certain(rows(1e-6))), (Some(2), Some(3), Some(2)));
     }
 }

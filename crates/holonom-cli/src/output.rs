@@ -27,6 +27,9 @@ use crate::progress::Watched;
 use crate::provenance::Provenance;
 use crate::table::short;
 
+/// Positions over the size of the mechanism that round-off moves at the start.
+const ROUNDED: f64 = 1e-12;
+
 /// Name of the column of time.
 const TIME: &str = COLUMNS[0];
 
@@ -198,7 +201,8 @@ fn slips(loaded: &Loaded) -> impl Iterator<Item = String> {
 fn corrections(model: &Model, simulation: &Simulation) -> Vec<String> {
     let mut notes = Vec::new();
     let start = simulation.start();
-    if start.moved > 1e-12 {
+    let size = simulation.state().x.iter().fold(0.0, |most: f64, x| x.abs().max(most));
+    if start.moved > ROUNDED * size {
         notes.push(format!("positions were moved by up to {:.2e} m onto their constraints", start.moved));
     }
     let mut changes = model.start_changes(&simulation.state().x, simulation.velocities());

@@ -45,8 +45,6 @@ pub struct Simulator {
 struct Running {
     simulation: Simulation,
     recorder: Recorder<'static>,
-    /// Whether measures are of the whole run, so that the recorder has to see every step.
-    sees_all: bool,
     /// The columns at the present state, and whether they are those.
     row: Vec<f64>,
     is_row_new: bool,
@@ -62,11 +60,8 @@ struct Running {
     event: Option<String>,
 }
 
-/// Looks at what a recorder must see of a step.
-struct Watch<'a> {
-    recorder: &'a mut Recorder<'static>,
-    sees_all: bool,
-}
+/// Lets a recorder see where a step is divided. Where measures are of the whole run, it sees every step, too.
+struct Watch<'a>(&'a mut Recorder<'static>);
 
 impl Observer for Watch<'_> {
     fn after_step(&mut self, _: &Simulation) -> Verdict {
@@ -74,15 +69,15 @@ impl Observer for Watch<'_> {
     }
 
     fn wants_forces(&self) -> bool {
-        self.sees_all
+        self.0.sees_divisions()
     }
 
     fn sees_divisions(&self) -> bool {
-        self.sees_all
+        self.0.sees_divisions()
     }
 
     fn at_division(&mut self, simulation: &Simulation) {
-        self.recorder.at_division(simulation);
+        self.0.at_division(simulation);
     }
 }
 
@@ -94,11 +89,10 @@ pub struct State {
 }
 
 impl Running {
-    /// Looks at the state that was just reached.
-    fn arrive(&mut self) {
-        (self.is_row_new, self.is_motion_new) = (false, false);
-        self.are_forces_new = self.sees_all;
-        if self.sees_all {
+    /// Looks at the state that was just reached, of which forces were found or not.
+    fn arrive(&mut self, are_forces_new: bool) {
+        (self.is_row_new, self.is_motion_new, self.are_forces_new) = (false, false, are_forces_new);
+        if self.recorder.sees_divisions() {
             // A recorder wants no run to stop.
             let _ = self.recorder.after_step(&self.simulation);
         }
@@ -120,21 +114,22 @@ impl Running {
     fn advance(&mut self, count: i64) -> bool {
         let begun = Instant::now();
         let goes_on = (0..count).all(|_| {
-            let mut watch = Watch { recorder: &mut self.recorder, sees_all: self.sees_all };
-            let status = self.simulation.step_observed(&mut watch);
-            self.arrive();
+            let status = self.simulation.step_observed(&mut Watch(&mut self.recorder));
+            self.arrive(self.recorder.sees_divisions());
             self.judge(status)
         });
         self.is_short = count == 1 && begun.elapsed() < SHORT;
         goes_on
     }
 
+    /// Finds the forces at the present state, where they are not known.
     fn find_forces(&mut self) {
         if !std::mem::replace(&mut self.are_forces_new, true) {
             self.simulation.update_reactions();
         }
     }
 
+    /// All columns.
     fn look(&mut self) -> &[f64] {
         if !self.is_row_new {
             self.find_forces();
@@ -226,22 +221,19 @@ impl Simulator {
         let simulation = begun.map_err(|error: RunError| run_error(py, error))?;
         // The start is the only row that it keeps.
         let recorder = Recorder::new(&model.channels, &model.system, u64::MAX, model.output.constraints()).into_owned();
-        let sees_all = model.channels.measures.iter().any(|measure| measure.is_running());
         let mut running = Running {
             simulation,
             recorder,
-            sees_all,
             row: Vec::new(),
             is_row_new: false,
             motion: Vec::new(),
             is_motion_new: false,
-            are_forces_new: true,
+            are_forces_new: false,
             is_short: false,
             ended: None,
             event: None,
         };
-        running.arrive();
-        running.are_forces_new = true;
+        running.arrive(true);
         let notes = holonom_cli::notes(&loaded, &running.simulation);
         trouble.take().map_or(Ok(Self { running: Mutex::new(running), notes, loaded, trouble }), Err)
     }
@@ -407,8 +399,7 @@ impl Simulator {
         let recorder = Recorder::new(&model.channels, &model.system, u64::MAX, model.output.constraints()).into_owned().resume(mark);
         (running.simulation, running.recorder, running.is_row_new) = (simulation, recorder, false);
         (running.ended, running.event) = (None, None);
-        running.arrive();
-        running.are_forces_new = true;
+        running.arrive(true);
         self.raise()
     }
 }

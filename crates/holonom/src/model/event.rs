@@ -6,8 +6,7 @@ use smallvec::SmallVec;
 
 use super::assembly::Assembly;
 use super::entry::{Entry, all};
-use super::expression::Program;
-use super::expression::indexed;
+use super::expression::{Program, indexed};
 use super::fault::{Read, suggest};
 use super::fields::{Keys, Map, Number};
 use super::key::Shape;

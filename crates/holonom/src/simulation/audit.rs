@@ -63,6 +63,7 @@ pub struct Audit {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Mark {
     energy: f64,
+    kinetic: f64,
     work: f64,
     integrator: f64,
     projection: f64,
@@ -145,6 +146,7 @@ impl Audit {
     fn mark(&self) -> Mark {
         Mark {
             energy: self.energy(),
+            kinetic: self.kinetic,
             work: self.work,
             integrator: self.integrator_total,
             projection: self.projection_total,
@@ -167,6 +169,11 @@ impl Audit {
     /// Energy and work at the start of the nominal step, J.
     pub(super) fn start_of_step(&self) -> [f64; 2] {
         [self.before.energy, self.before.work]
+    }
+
+    /// Kinetic energy there, J.
+    pub(super) fn kinetic_at_start_of_step(&self) -> f64 {
+        self.before.kinetic
     }
 
     /// Takes over from what was booked up to the last nominal time what a step that passed it does not know.

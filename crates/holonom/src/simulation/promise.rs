@@ -96,8 +96,8 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 /// Rounding of a difference of sums, over these.
 const SUMMED: f64 = 2.0 * f64::EPSILON;
 
-/// Share of the kinetic energy and of the work that a nominal step may be off by, however many parts it was taken in.
-const WHOLE: f64 = 2e-10;
+/// Share of the kinetic energies at its ends and of the work that a nominal step may be off by, however many parts it was taken in.
+const WHOLE: f64 = 1e-10;
 
 /// The same of the potential energy and of the weight times the size of the mechanism, which may be far more than what moves.
 const WEIGHED: f64 = 1e-12;
@@ -153,7 +153,8 @@ impl Judge {
     /// Looks at the energy after a nominal step, or so far, of length `h` (s): parts of it may each be round-off and add up to more.
     pub(super) fn whole(&self, system: &System, h: f64, after: &Audit, work: &Workspace) -> Result<(), Failure> {
         let before = after.start_of_step();
-        let nothing = || self.nothing(h, (after.work - before[1]).abs(), after, work) + WEIGHED * before[0].abs();
+        let moved = after.kinetic_at_start_of_step() + (after.work - before[1]).abs();
+        let nothing = || self.nothing(h, moved, after, work);
         // The forces of stiff laws are rounded, too, which is seldom asked for.
         let held = self.hold_energy(before, after, nothing);
         held.or_else(|_| self.hold_energy(before, after, || nothing() + ROUND_OFF * energy::size(system, work, &work.end.x)))

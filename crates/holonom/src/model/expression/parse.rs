@@ -359,15 +359,12 @@ impl Parser<'_> {
         let variable = self.variables.iter().position(|&variable| variable == name);
         let value = self.scope.value(name);
         match (variable, value) {
-            (Some(_), Some(_)) => {
+            (Some(_), value) if value.is_some() || self.names.has(name) => {
+                let what = if value.is_some() { "parameter or index" } else { "input or measure" };
                 let message = format!("`{name}` could be the variable of this expression or what the model calls `{name}`");
-                Err(self.mistake(message, "give the parameter or index another name"))
+                Err(self.mistake(message, format!("give the {what} another name")))
             }
-            (Some(_), None) if self.names.has(name) => {
-                let message = format!("`{name}` could be the variable of this expression or what the model calls `{name}`");
-                Err(self.mistake(message, "give the input or measure another name"))
-            }
-            (Some(k), None) => Ok(Some(Op::Variable(k))),
+            (Some(k), _) => Ok(Some(Op::Variable(k))),
             (None, Some(Value::Known(value))) => Ok(Some(Op::Constant(value))),
             (None, Some(Value::Faulty)) => Err(Mistake::known()),
             (None, None) => Ok(CONSTANTS.iter().find(|constant| constant.0 == name).map(|&(_, value)| Op::Constant(value))),

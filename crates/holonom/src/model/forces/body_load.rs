@@ -96,8 +96,8 @@ impl BodyLoad {
     }
 }
 
-/// The c whose c × e_k on the axes e_k have the torque n: Σ (|e|² 1 − e eᵀ) c = n. That is n/2 for axes of length 1 across each other, which the means of
-/// two positions are not.
+/// The c whose c × e_k on the axes e_k have the torque n: Σ (|e_k|² 1 − e_k e_kᵀ) c = n. That is n/2 for axes of length 1 across each other,
+/// which the means of two positions are not.
 fn turning<N: AnyNumber>(torque: [N; 3], axes: &[[N; 3]], dim: usize) -> [N; 3] {
     let zero = N::from(0.0);
     let mut m = [[zero; 3]; 3];
@@ -108,7 +108,7 @@ fn turning<N: AnyNumber>(torque: [N; 3], axes: &[[N; 3]], dim: usize) -> [N; 3] 
         }
     }
     if dim == 2 {
-        return axes.first().map_or([zero; 3], |_| [zero, zero, torque[2] / m[2][2]]);
+        return [zero, zero, torque[2] / m[2][2]];
     }
     let columns: [[N; 3]; 3] = std::array::from_fn(|k| cross(m[(k + 1) % 3], m[(k + 2) % 3]));
     let determinant = m[0][0] * columns[0][0] + m[0][1] * columns[0][1] + m[0][2] * columns[0][2];
@@ -129,11 +129,11 @@ impl ForceFunction for BodyLoad {
             self.point.spread(exerted, dim, force);
             return;
         }
-        for (sums, sign) in [(&self.axes, 1.0), (&self.other, -1.0)] {
+        for (sums, sign) in [(&self.axes, 1.0), (&self.other, -1.0)].into_iter().filter(|(sums, _)| !sums.is_empty()) {
             let axes: SmallVec<[[N; 3]; 3]> = sums.iter().map(|sum| sum.at(x, dim, 1.0)).collect();
-            let turning = turning(exerted, &axes, dim);
+            let c = turning(exerted, &axes, dim);
             for (sum, axis) in sums.iter().zip(axes) {
-                sum.spread(cross(turning, axis).map(|c| c * sign), dim, force);
+                sum.spread(cross(c, axis).map(|c| c * sign), dim, force);
             }
         }
     }

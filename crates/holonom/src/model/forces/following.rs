@@ -37,6 +37,17 @@ impl Follows {
         }
     }
 
+    /// The same of a key that may be left out.
+    pub fn optional(
+        assembly: &mut Assembly<'_>,
+        readings: &mut Readings,
+        (entry, key): (&Entry<'_>, &str),
+        number: &Option<Number>,
+        check: impl FnOnce(&Number, &Entry<'_>, &str) -> Read<f64>,
+    ) -> Read<Option<Self>> {
+        entry.optional(key, number, |number, entry, key| Self::read(assembly, readings, (entry, key), number, check))
+    }
+
     /// The number, where it is one.
     pub fn known(&self) -> Option<f64> {
         if let Self::Known(number) = self { Some(*number) } else { None }
@@ -52,6 +63,16 @@ impl Follows {
             Self::Formula(program) => program.evaluate(read),
         }
     }
+}
+
+/// A number that is not negative.
+pub(super) fn not_negative(number: &Number, entry: &Entry<'_>, key: &str) -> Read<f64> {
+    number.not_negative(entry, key)
+}
+
+/// Any number.
+pub(super) fn any(number: &Number, entry: &Entry<'_>, key: &str) -> Read<f64> {
+    number.number(entry, key)
 }
 
 /// The time and what is read.

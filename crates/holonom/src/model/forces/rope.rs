@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use super::following::{Follows, RopeLoad};
+use super::following::{Follows, RopeLoad, not_negative};
 use super::joint::along;
 use super::rope_laws::{Damping, Elastic, Strands, Taut};
 use crate::model::assembly::Assembly;
@@ -123,9 +123,7 @@ impl Rope {
             }
         });
         let stiffness = Follows::read(assembly, readings, (entry, "stiffness"), &self.stiffness, positive);
-        let damping = entry.optional("damping", &self.damping, |number, entry, key| {
-            Follows::read(assembly, readings, (entry, key), number, |number, entry, key| number.not_negative(entry, key))
-        });
+        let damping = Follows::optional(assembly, readings, (entry, "damping"), &self.damping, not_negative);
         Ok([length?, Some(stiffness?), damping?])
     }
 

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use super::along_laws::Along;
 use super::coordinate_laws::{self, Resisting, Viscous};
-use super::following::{Follows, SpringLoad};
+use super::following::{Follows, SpringLoad, any, not_negative};
 use super::laws::{Damper, ENERGY_VARIABLES, Energy, FORCE_VARIABLES, Force, LinearSpring, SHORTEST};
 use crate::model::assembly::Assembly;
 use crate::model::bodies::nodes::Member;
@@ -75,14 +75,10 @@ impl Element for Spring {
         let ends = assembly.moving_pair(entry, "between", &self.between);
         let axis = entry.optional("along", &self.along, |along, entry, key| axis(assembly, entry, key, along));
         let mut readings = Readings::new(assembly.dimension(), Reading::default());
-        let mut number = |key, number: &Option<Number>, check: fn(&Number, &Entry<'_>, &str) -> Read<f64>| {
-            entry.optional(key, number, |number, entry, key| Follows::read(assembly, &mut readings, (entry, key), number, check))
-        };
-        let not_negative = |number: &Number, entry: &Entry<'_>, key: &str| number.not_negative(entry, key);
-        let any = |number: &Number, entry: &Entry<'_>, key: &str| number.number(entry, key);
-        let stiffness = number("stiffness", &self.stiffness, not_negative);
-        let rest = number("rest_length", &self.rest_length, if self.along.is_some() { any } else { not_negative });
-        let damping = number("damping", &self.damping, not_negative);
+        let stiffness = Follows::optional(assembly, &mut readings, (entry, "stiffness"), &self.stiffness, not_negative);
+        let length = if self.along.is_some() { any } else { not_negative };
+        let rest = Follows::optional(assembly, &mut readings, (entry, "rest_length"), &self.rest_length, length);
+        let damping = Follows::optional(assembly, &mut readings, (entry, "damping"), &self.damping, not_negative);
         let energy =
             entry.optional("energy", &self.energy, |formula, entry, key| formula.formula(entry, key, &not_taken(entry, ENERGY_VARIABLES)));
         let force = entry.optional("force", &self.force, |formula, entry, key| {

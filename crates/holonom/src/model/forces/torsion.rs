@@ -1,4 +1,4 @@
-use super::following::Follows;
+use super::following::{Follows, any, not_negative};
 use super::joint::acted_on;
 use super::spring::{Acting, Parts};
 use crate::model::assembly::Assembly;
@@ -56,13 +56,9 @@ impl Element for Torsion {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let coordinate = coordinate(assembly, entry, "joint".into(), &self.joint);
         let mut readings = Readings::new(assembly.dimension(), Reading::default());
-        let mut number = |key, number: &Option<Number>, check: fn(&Number, &Entry<'_>, &str) -> Read<f64>| {
-            entry.optional(key, number, |number, entry, key| Follows::read(assembly, &mut readings, (entry, key), number, check))
-        };
-        let not_negative = |number: &Number, entry: &Entry<'_>, key: &str| number.not_negative(entry, key);
-        let stiffness = number("stiffness", &self.stiffness, not_negative);
-        let rest = number("angle", &self.angle, |number, entry, key| number.number(entry, key));
-        let damping = number("damping", &self.damping, not_negative);
+        let stiffness = Follows::optional(assembly, &mut readings, (entry, "stiffness"), &self.stiffness, not_negative);
+        let rest = Follows::optional(assembly, &mut readings, (entry, "angle"), &self.angle, any);
+        let damping = Follows::optional(assembly, &mut readings, (entry, "damping"), &self.damping, not_negative);
         if self.stiffness.is_none() && self.damping.is_none() {
             entry.refuse_all(format!("the torsion spring `{}` does nothing", entry.name), "add stiffness, or damping");
         }
