@@ -187,3 +187,62 @@ fn steps_by_accuracy_pass_singular_positions() {
         }
     }
 }
+
+/// A point that goes straight until an event pushes it, with what is asked of it; t, x and the integrals of x and of the power at the end.
+const PUSHED: &str = r#"
+gravity = [0, 0, 0]
+[input.push]
+[input.passes]
+[point.p]
+mass = 1
+position = [0.1, 0, 0]
+velocity = [1, 0, 0]
+[force.f]
+type = "expression"
+point = "p"
+force = ["push*cos(3*t)", 0, 0]
+[event.touched]
+when = "p.x - 1.1"
+set = { push = 2 }
+[event.passed]
+when = "sin(4*t) - 0.5*p.vx/p.vx"
+set = { passes = "passes + 1" }
+[measure.way]
+value = "integral(p.x)"
+[measure.farthest]
+value = "max(p.vx)"
+"#;
+
+#[test]
+fn what_happens_between_nominal_times_is_seen() {
+    // Pushed from t = 1 on, by 2 cos 3t: a closed form.
+    let end = 4.0_f64;
+    let x = |t: f64| {
+        if t < 1.0 { 0.1 + t } else { 0.1 + t + 2.0 / 9.0 * (3.0_f64.cos() - (3.0 * t).cos()) - 2.0 / 3.0 * 3.0_f64.sin() * (t - 1.0) }
+    };
+    let way = {
+        let after = end - 1.0;
+        let pushed = 2.0 / 9.0 * (3.0_f64.cos() * after - ((3.0 * end).sin() - 3.0_f64.sin()) / 3.0);
+        0.1 * end + 0.5 * end * end + pushed - 3.0_f64.sin() / 3.0 * after * after
+    };
+    let fastest = 1.0 + 2.0 / 3.0 * (1.0 - 3.0_f64.sin());
+    let model = model(PUSHED);
+    for method in ["conserving", "conserving-ggl", "trapezoidal-projected", "generalized-alpha", "radau", "bdf", "dopri5", "dop853"] {
+        // One nominal step, and many.
+        for step in [end, 0.1, 0.01] {
+            let choice = Choice { accuracy: Some(1e-8), ..Choice::default().named(method) };
+            let (simulation, recording) = common::run(&model, choice, step, end);
+            let last = recording.rows() - 1;
+            let at = |name: &str| recording.column(name).unwrap()[last];
+            let (place, done) = (at("p.x"), at("work"));
+            assert!((place - x(end)).abs() < 1e-7, "{method}, {step}: {place}");
+            // Trapezoids between times that are no farther apart than an eighth of a step.
+            assert!((at("way") - way).abs() < 1e-4, "{method}, {step}: {} and {way}", at("way"));
+            assert!((at("farthest") - fastest).abs() < 1e-3, "{method}, {step}: {} and {fastest}", at("farthest"));
+            // sin 4t is ½ twice in each turn.
+            assert_eq!(at("passes"), 6.0, "{method}, {step}: {:?}", simulation.events());
+            let balance = at("energy") - 0.5 - done;
+            assert!(balance.abs() < 1e-7, "{method}, {step}: {balance}");
+        }
+    }
+}

@@ -4,11 +4,15 @@
 
 use super::runge_kutta::{RungeKutta, Tableau};
 use super::{Integrator, Step, Work};
+use crate::energy;
 use crate::formulation::{Collocation, Failure, Newton, RowsAt, Sampling, SolveSettings, Stage, Timing, Workspace};
 use crate::system::System;
 
 /// States before the present one that are kept: what order 5 and its error estimate need.
 const KEPT: usize = 6;
+
+/// Numbers of the memory before those of the states.
+const HEAD: usize = 3;
 
 pub(super) struct Bdf {
     order: usize,
@@ -18,8 +22,11 @@ pub(super) struct Bdf {
     stage: Collocation,
 }
 
-/// The memory: how many states there are, the order in use, then for each state its time, positions and velocities, the
-/// latest first.
+/// Gauss points on 0 … 1 and their weights, exact for powers through that many states.
+const GAUSS: [[f64; 2]; 3] = [[0.112_701_665_379_258_31, 5.0 / 18.0], [0.5, 4.0 / 9.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
+
+/// The memory: how many states there are, the order in use, the power where the last step ended, then for each state its time, the power
+/// there, positions and velocities, the latest first. The power at the first state is not known.
 struct History<'a> {
     n: usize,
     numbers: &'a mut [f64],
@@ -30,23 +37,49 @@ impl History<'_> {
         self.numbers[0] as usize
     }
 
+    /// Time, power, positions and velocities of state `k`.
+    fn entry(&self, k: usize) -> &[f64] {
+        let first = HEAD + k * (2 * self.n + 2);
+        &self.numbers[first..first + 2 * self.n + 2]
+    }
+
     fn time(&self, k: usize) -> f64 {
-        self.numbers[2 + k * (2 * self.n + 1)]
+        self.entry(k)[0]
+    }
+
+    fn power(&self, k: usize) -> f64 {
+        self.entry(k)[1]
     }
 
     /// Positions, then velocities, of state `k`.
     fn state(&self, k: usize) -> &[f64] {
-        let first = 3 + k * (2 * self.n + 1);
-        &self.numbers[first..first + 2 * self.n]
+        &self.entry(k)[2..]
     }
 
     fn push(&mut self, t: f64, x: &[f64], v: &[f64]) {
-        let width = 2 * self.n + 1;
-        self.numbers[2..].rotate_right(width);
-        self.numbers[2] = t;
-        self.numbers[3..3 + self.n].copy_from_slice(&x[..self.n]);
-        self.numbers[3 + self.n..2 + width].copy_from_slice(&v[..self.n]);
-        self.numbers[0] = (self.numbers[0] + 1.0).min(KEPT as f64);
+        let n = self.n;
+        let (head, states) = self.numbers.split_at_mut(HEAD);
+        states.rotate_right(2 * n + 2);
+        (states[0], states[1]) = (t, head[2]);
+        states[2..2 + n].copy_from_slice(&x[..n]);
+        states[2 + n..2 + 2 * n].copy_from_slice(&v[..n]);
+        head[0] = (head[0] + 1.0).min(KEPT as f64);
+    }
+
+    /// The work of a step of an order to the time `t`, where the power is `power`: the integral of the polynomial through the power there and
+    /// at as many states before, as far as it is known.
+    fn work(&self, order: usize, t: f64, power: f64) -> f64 {
+        let known = order.min(self.count() - 1);
+        let at = |k: usize| if k == 0 { (t, power) } else { (self.time(k - 1), self.power(k - 1)) };
+        let polynomial = |s: f64| -> f64 {
+            let term = |k: usize| {
+                let (own, power) = at(k);
+                (0..=known).filter(|&i| i != k).fold(power, |term, i| term * (s - at(i).0) / (own - at(i).0))
+            };
+            (0..=known).map(term).sum()
+        };
+        let (start, step) = (self.time(0), t - self.time(0));
+        GAUSS.iter().map(|[node, weight]| step * weight * polynomial(start + node * step)).sum()
     }
 }
 
@@ -87,7 +120,7 @@ impl Integrator for Bdf {
     }
 
     fn memory(&self, system: &System) -> usize {
-        2 + KEPT * (2 * system.coordinates() + 1)
+        HEAD + KEPT * (2 * system.coordinates() + 2)
     }
 
     fn step(&mut self, system: &System, start: f64, h: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
@@ -114,7 +147,9 @@ impl Bdf {
         let n = system.coordinates();
         let order = self.order_in_use(history);
         if history.count() < self.order + usize::from(self.varies) {
-            return self.starter.step(system, start, h, newton, work);
+            let step = self.starter.step(system, start, h, newton, work)?;
+            history.numbers[2] = if work.is_worked_on() { energy::power(system, start + h, &work.end.v, &work.a, work) } else { 0.0 };
+            return Ok(step);
         }
         let t = start + h;
         let weights = Self::weights(history, t, order);
@@ -134,8 +169,12 @@ impl Bdf {
         let timing = Timing { start, step: h, nodes: &[1.0] };
         self.stage.solve(system, timing, newton, work)?;
         self.stage.place(system, timing, 0, work);
+        let mut done = 0.0;
         if work.is_worked_on() {
             work.sample(system, t);
+            let power = energy::power(system, t, &work.sampled.v, &work.a, work);
+            done = history.work(order, t, power);
+            history.numbers[2] = power;
         }
         work.end.x[n..].copy_from_slice(&work.sampled.x[n..]);
         work.end.v.copy_from_slice(&work.sampled.v);
@@ -144,7 +183,7 @@ impl Bdf {
             self.choose(order, t, history, work);
         }
         let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start, step: h, inertia: h * h, rate: 1.0 / h };
-        Ok(Step { stage, work: Work::AtEnds, estimate: Some([order as u8; 2]) })
+        Ok(Step { stage, work: Work::Sum(done), estimate: Some([order as u8; 2]) })
     }
 
     fn order_in_use(&self, history: &History<'_>) -> usize {

@@ -87,6 +87,8 @@ pub(super) struct Explicit {
     /// v_i and a_i of the stages and the end of the step, n numbers each.
     rates: Vec<f64>,
     slopes: Vec<f64>,
+    /// The power of what does work there, W.
+    powers: Vec<f64>,
     /// Whether the further stages of the dense output are those of the last step.
     extended: bool,
     /// Multipliers at the start (r).
@@ -96,12 +98,20 @@ pub(super) struct Explicit {
 impl Explicit {
     pub(super) fn new(system: &System, tableau: Tableau) -> Self {
         let further = if let Dense::Stages { nodes, .. } = tableau.dense { nodes.len() } else { 0 };
-        let room = vec![0.0; (tableau.nodes.len() + 1 + further) * system.coordinates()];
-        Self { tableau, rates: room.clone(), slopes: room, extended: false, lambda: vec![0.0; system.constraints()] }
+        let stages = tableau.nodes.len() + 1 + further;
+        let room = vec![0.0; stages * system.coordinates()];
+        Self {
+            tableau,
+            rates: room.clone(),
+            slopes: room,
+            powers: vec![0.0; stages],
+            extended: false,
+            lambda: vec![0.0; system.constraints()],
+        }
     }
 
     /// Puts the workspace at stage `i` (the one after the last is the end of the step), with the weights `row` of the
-    /// stages before, and keeps its velocity and acceleration. Says the power of what does work there.
+    /// stages before, and keeps its velocity, acceleration and power.
     fn take(
         &mut self,
         system: &System,
@@ -110,7 +120,7 @@ impl Explicit {
         h: f64,
         newton: &mut Newton,
         work: &mut Workspace,
-    ) -> Result<f64, Failure> {
+    ) -> Result<(), Failure> {
         let n = system.coordinates();
         let Workspace { end, a, .. } = work;
         system.place_known(t, &mut end.x, &mut end.v, a);
@@ -127,10 +137,8 @@ impl Explicit {
         newton.accelerate(system, t, work)?;
         self.rates[i * n..(i + 1) * n].copy_from_slice(&work.end.v[..n]);
         self.slopes[i * n..(i + 1) * n].copy_from_slice(&work.a[..n]);
-        match work.is_worked_on() {
-            true => Ok(energy::power(system, t, &work.end.v, &work.a, work)),
-            false => Ok(0.0),
-        }
+        self.powers[i] = if work.is_worked_on() { energy::power(system, t, &work.end.v, &work.a, work) } else { 0.0 };
+        Ok(())
     }
 
     /// Σ e_i k_i of coordinate `k`, times h: errors of position and velocity.
@@ -139,7 +147,7 @@ impl Explicit {
         [sum(&self.rates), sum(&self.slopes)]
     }
 
-    /// The integral from the start to the share `x` of the step of what the stages hold of coordinate `k`, over the step.
+    /// The integral from the start to the share `x` of the step of what the stages hold of number `k` of `n`, over the step.
     fn through(&self, values: &[f64], n: usize, k: usize, x: f64) -> f64 {
         let at = |i: usize| values[i * n + k];
         match self.tableau.dense {
@@ -193,11 +201,10 @@ impl Integrator for Explicit {
 
     fn step(&mut self, system: &System, start: f64, h: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
         let (n, stages) = (system.coordinates(), self.tableau.nodes.len());
-        let mut done = 0.0;
         for i in 0..stages {
-            let power = self.take(system, (i, self.tableau.rows[i]), start + self.tableau.nodes[i] * h, h, newton, work)?;
-            done += h * self.tableau.rows[stages].get(i).unwrap_or(&0.0) * power;
+            self.take(system, (i, self.tableau.rows[i]), start + self.tableau.nodes[i] * h, h, newton, work)?;
         }
+        let done = self.tableau.rows[stages].iter().zip(&self.powers).map(|(weight, power)| h * weight * power).sum();
         self.take(system, (stages, self.tableau.rows[stages]), start + h, h, newton, work)?;
         self.extended = false;
         newton.iterations += stages as u64 + 1;
@@ -214,7 +221,7 @@ impl Integrator for Explicit {
         share: f64,
         newton: &mut Newton,
         work: &mut Workspace,
-    ) -> Result<(), Failure> {
+    ) -> Result<f64, Failure> {
         let n = system.coordinates();
         if let Dense::Stages { nodes, rows, .. } = self.tableau.dense
             && !self.extended
@@ -234,6 +241,7 @@ impl Integrator for Explicit {
             work.end.x[k] = work.start.x[k] + work.d[k];
             work.end.v[k] = work.start.v[k] + h * self.through(&self.slopes, n, k, share);
         }
-        newton.accelerate(system, start + share * h, work)
+        newton.accelerate(system, start + share * h, work)?;
+        Ok(h * self.through(&self.powers, 1, 0, share))
     }
 }

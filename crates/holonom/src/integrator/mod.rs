@@ -38,7 +38,7 @@ pub trait Integrator: Send {
     fn step(&mut self, system: &System, start: f64, step: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure>;
 
     /// Dense output: leaves in the workspace, put at the start of the last step again, what a step would leave that ended
-    /// after the share `share` of it. Only called where the table says that there is one.
+    /// after the share `share` of it; says the work done up to there, J. Only called where the table says that there is one.
     fn interpolate(
         &mut self,
         _system: &System,
@@ -47,7 +47,7 @@ pub trait Integrator: Send {
         _share: f64,
         _newton: &mut Newton,
         _work: &mut Workspace,
-    ) -> Result<(), Failure> {
+    ) -> Result<f64, Failure> {
         unreachable!("the table promises no dense output")
     }
 }

@@ -3,6 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::advance::Inside;
 use super::control::Control;
 use super::{Audit, Method, Simulation, State, start};
 use crate::formulation::{Failure, Independence, Newton};
@@ -100,6 +101,9 @@ const CRAWL: f64 = 1e-9;
 const SLOW: f64 = 1e-8;
 const SLOW_LOOKS: u32 = 10;
 
+/// Places at which the inside of a step with dense output is looked at: a step of order 8 may be a turn long.
+const INSIDE: f64 = 8.0;
+
 /// Steps between two times at which something changes abruptly: a pulse that is nothing at both is seen.
 const BETWEEN: f64 = 4.0;
 
@@ -184,6 +188,19 @@ impl Pilot {
         self.redundant = self.redundant.min(self.independence.count_redundant(system, &state.x, state.t));
     }
 
+    /// Begins anew at the present state, where inputs were set: what was found beyond it was of others.
+    pub(super) fn begin_anew(&mut self, simulation: &Simulation) {
+        self.v.copy_from_slice(&simulation.shown_v);
+        self.control.begin_anew(&simulation.state, &self.v);
+        self.turn(simulation);
+    }
+
+    /// Goes on from the present state.
+    fn turn(&mut self, simulation: &Simulation) {
+        self.front.keep(simulation);
+        self.last = None;
+    }
+
     /// All energy there was to move up to where integration has come, J.
     pub(super) fn supply(&self) -> f64 {
         self.front.audit.supply()[1]
@@ -261,28 +278,35 @@ impl Simulation {
         pilot.end = end;
         pilot.v.copy_from_slice(&self.shown_v);
         pilot.control.begin(&self.state, &pilot.v, end - self.state.t, self.work.scales.length);
-        pilot.front.keep(self);
+        pilot.turn(self);
         self.work.estimate.allowed = pilot.control.allowed();
         self.pilot = Some(pilot);
     }
 
     /// Goes to `target` in equal steps no longer than the accuracy allows.
-    pub(super) fn land(&mut self, target: f64, pilot: &mut Pilot) -> Result<(), Failure> {
+    pub(super) fn land(&mut self, target: f64, pilot: &mut Pilot, mut look: Option<&mut Inside<'_>>) -> Result<(), Failure> {
         while self.state.t < target {
             let (stop, longest) = pilot.reach(self.state.t, target);
             let left = stop - self.state.t;
             let parts = (left / longest - 1e-9).ceil().max(1.0);
             let step = left / parts;
-            self.attempt(step, if parts == 1.0 { stop } else { self.state.t + step }, pilot)?;
+            let is_taken = self.attempt(step, if parts == 1.0 { stop } else { self.state.t + step }, pilot)?;
+            if is_taken && self.state.t < target && self.ends_here(&mut look)? {
+                return Ok(());
+            }
         }
         self.state.t = target;
         Ok(())
     }
 
     /// Goes on in steps as long as the accuracy allows, and reads what is at `target` between the ends of the last one.
-    pub(super) fn cruise(&mut self, target: f64, pilot: &mut Pilot) -> Result<(), Failure> {
+    pub(super) fn cruise(&mut self, target: f64, pilot: &mut Pilot, mut look: Option<&mut Inside<'_>>) -> Result<(), Failure> {
         let shown = self.audit.clone();
+        let from = self.state.t;
         pilot.front.restore(self);
+        if self.look_inside([from, target], pilot, &shown, &mut look)? {
+            return Ok(());
+        }
         let mut outcome = Ok(());
         while self.state.t < target && outcome.is_ok() {
             // The last two steps are alike.
@@ -290,7 +314,14 @@ impl Simulation {
             let left = stop - self.state.t;
             let parts = (left / longest - 1e-9).ceil().max(1.0);
             let step = if parts <= 2.0 { left / parts } else { longest };
-            outcome = self.attempt(step, if parts == 1.0 { stop } else { self.state.t + step }, pilot);
+            match self.attempt(step, if parts == 1.0 { stop } else { self.state.t + step }, pilot) {
+                Ok(is_taken) => {
+                    if is_taken && self.look_inside([from, target], pilot, &shown, &mut look)? {
+                        return Ok(());
+                    }
+                }
+                Err(failure) => outcome = Err(failure),
+            }
         }
         pilot.front.keep(self);
         if self.state.t > target
@@ -303,21 +334,55 @@ impl Simulation {
         outcome
     }
 
+    /// Shows what is inside the last step and between two times, and says whether the nominal step ends there; if not, goes back to where
+    /// integration has come. Where something changes abruptly at the end of the step, that is shown before it changes and after.
+    fn look_inside(
+        &mut self,
+        [from, target]: [f64; 2],
+        pilot: &mut Pilot,
+        shown: &Audit,
+        look: &mut Option<&mut Inside<'_>>,
+    ) -> Result<bool, Failure> {
+        let (Some((taken, length)), true) = (pilot.last, look.is_some()) else { return Ok(false) };
+        let begin = pilot.before.state.t;
+        let (low, high) = (from.max(begin), target.min(begin + length));
+        if low >= high {
+            return Ok(false);
+        }
+        pilot.front.keep(self);
+        let front = self.state.t;
+        let parts = (INSIDE * (high - low) / length - 1e-9).ceil();
+        let inside = (1..parts as u32).map(|k| low + f64::from(k) * (high - low) / parts);
+        let has_switch = pilot.switches.contains(&front.next_down().next_down());
+        let last = [(has_switch, (begin + length).next_down().next_down()), (true, front)];
+        let last = last.into_iter().filter_map(|(is_there, t)| (is_there && t > from && t < target).then_some(t));
+        for t in inside.chain(last) {
+            if t == front {
+                pilot.front.restore(self);
+            } else {
+                pilot.before.restore(self);
+                self.interpolate(t, taken, length)?;
+            }
+            self.audit.follow(shown);
+            if self.ends_here(look)? {
+                return Ok(true);
+            }
+        }
+        pilot.front.restore(self);
+        Ok(false)
+    }
+
     /// Puts the state at a time inside the last step, which took `length` s.
     fn interpolate(&mut self, target: f64, taken: Step, length: f64) -> Result<(), Failure> {
         let (system, start) = (&*self.system, self.state.t);
         let share = (target - start) / length;
         self.state.load(&mut self.work);
-        self.integrator.interpolate(system, start, length, share, &mut self.newton, &mut self.work)?;
-        let work = match taken.work {
-            Work::Sum(done) => Work::Sum(share * done),
-            other => other,
-        };
-        self.finish(Step { work, ..taken }, share * length, target).map(|_| ())
+        let done = self.integrator.interpolate(system, start, length, share, &mut self.newton, &mut self.work)?;
+        self.finish(Step { work: Work::Sum(done), ..taken }, share * length, target).map(|_| ())
     }
 
-    /// One attempt at a step; a step whose error is too large, or that fails, is taken back and the next one shorter.
-    fn attempt(&mut self, step: f64, target: f64, pilot: &mut Pilot) -> Result<(), Failure> {
+    /// One attempt at a step, and whether it is taken; a step whose error is too large, or that fails, is taken back and the next one shorter.
+    fn attempt(&mut self, step: f64, target: f64, pilot: &mut Pilot) -> Result<bool, Failure> {
         if step < SMALLEST_SHARE * pilot.control.span || pilot.crawls(self.state.t) {
             return Err(Failure::TooSmall);
         }
@@ -339,7 +404,7 @@ impl Simulation {
                 self.pass_switch();
                 pilot.control.begin_anew(&self.state, &pilot.v);
             }
-            return Ok(());
+            return Ok(true);
         }
         pilot.before.restore(self);
         self.audit.reject(&self.newton);
@@ -348,7 +413,7 @@ impl Simulation {
         if pilot.patience.rejected == RESTART {
             self.state.memory.fill(0.0);
         }
-        Ok(())
+        Ok(false)
     }
 
     /// Goes to just behind a time where something changes abruptly, and on from there.

@@ -10,17 +10,20 @@ const MOST_HALVINGS: u32 = 12;
 /// Units that the parts of a nominal step are counted in: what is left may be three quarters of it, and halved as often.
 const PARTS: u32 = 1 << 24;
 
+/// Looks at the simulation inside a nominal step, and says whether the step ends there.
+pub(super) type Inside<'a> = dyn FnMut(&mut Simulation) -> Result<bool, Failure> + 'a;
+
 impl Simulation {
-    /// Takes the nominal step to `target`.
-    pub(super) fn advance(&mut self, target: f64, reacts: bool) -> Result<(), Failure> {
+    /// Takes the nominal step to `target`. Where it is taken in parts, `look` is shown where they end.
+    pub(super) fn advance(&mut self, target: f64, reacts: bool, look: Option<&mut Inside<'_>>) -> Result<(), Failure> {
         let from = self.state.t;
         self.audit.begin_step();
         match self.pilot.take() {
-            None => self.halve(target)?,
+            None => self.halve(target, look)?,
             Some(mut pilot) => {
                 let outcome = match self.method.integrator.dense {
-                    true => self.cruise(target, &mut pilot),
-                    false => self.land(target, &mut pilot),
+                    true => self.cruise(target, &mut pilot, look),
+                    false => self.land(target, &mut pilot, look),
                 };
                 self.pilot = Some(pilot);
                 outcome?;
@@ -40,7 +43,7 @@ impl Simulation {
 
     /// In parts where it fails as a whole. Parts are counted, and their ends reckoned from the start: the sum of their rounded
     /// lengths may miss the target by a rounding of time, and over so short a part a rounding of positions is any velocity.
-    fn halve(&mut self, target: f64) -> Result<(), Failure> {
+    fn halve(&mut self, target: f64, mut look: Option<&mut Inside<'_>>) -> Result<(), Failure> {
         let from = self.state.t;
         let whole = target - from;
         let (mut done, mut part) = (0, PARTS);
@@ -49,7 +52,12 @@ impl Simulation {
             let end = done + part;
             let until = if end == PARTS { target } else { from + whole * f64::from(end) / f64::from(PARTS) };
             match self.substep(whole * f64::from(part) / f64::from(PARTS), until) {
-                Ok(_) => (done, part) = (end, 2 * part),
+                Ok(_) => {
+                    (done, part) = (end, 2 * part);
+                    if done < PARTS && self.ends_here(&mut look)? {
+                        break;
+                    }
+                }
                 Err(failure) if !self.method.subdivide || part <= PARTS >> MOST_HALVINGS => return Err(failure),
                 Err(_) => {
                     part /= 2;
@@ -58,6 +66,11 @@ impl Simulation {
             }
         }
         Ok(())
+    }
+
+    /// Whether the nominal step ends at the present state.
+    pub(super) fn ends_here(&mut self, look: &mut Option<&mut Inside<'_>>) -> Result<bool, Failure> {
+        look.as_mut().map_or(Ok(false), |look| look(self))
     }
 
     /// One step of the method. Where its result breaks a promise it is iterated until nothing but round-off is left.

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::advance::Inside;
 use super::checkpoint::Moment;
 use super::{Audit, Observer, Simulation};
 use crate::formulation::Failure;
@@ -63,14 +64,23 @@ impl Simulation {
         // The conserving schemes carry no accelerations on.
         if has_changed && !self.method.integrator.conserves {
             self.begin_anew();
+            if let Some(mut pilot) = self.pilot.take() {
+                pilot.begin_anew(self);
+                self.pilot = Some(pilot);
+            }
         }
     }
 
     /// Advances to `target`, or to the first event on the way that ends the run: whether there was one.
     pub(super) fn advance_through_events(&mut self, target: f64, observer: &mut dyn Observer) -> Result<bool, Failure> {
-        let wants_forces = observer.wants_forces();
+        let (wants_forces, sees_divisions) = (observer.wants_forces(), observer.sees_divisions());
         if self.system.events.is_empty() {
-            return self.advance(target, wants_forces).map(|()| false);
+            let mut show = |simulation: &mut Self| {
+                simulation.show_division(observer);
+                Ok(false)
+            };
+            let show: Option<&mut Inside<'_>> = if sees_divisions { Some(&mut show) } else { None };
+            return self.advance(target, wants_forces, show).map(|()| false);
         }
         let system = self.system.clone();
         let shortest = SHORTEST * (target - self.state.t);
@@ -104,12 +114,25 @@ impl Simulation {
             let next = self.next_sample().unwrap_or(f64::INFINITY);
             let until = if next < target - shortest { next } else { target };
             // Where a sample follows, forces are found when it is taken, unless somebody looks at those before it.
-            let reacts = wants_forces && (observer.sees_divisions() || next > until + shortest);
-            self.advance(until, reacts)?;
+            let reacts = wants_forces && (sees_divisions || next > until + shortest);
+            let crossed = |from: &[f64], to: &[f64]| (0..to.len()).find(|&k| system.events[k].trigger.is_between(from[k], to[k]));
+            // Where the step is taken in parts it ends with the part in which something happens.
+            let mut low = self.state.t;
+            let mut look = |simulation: &mut Self| {
+                let now = simulation.indicate()?;
+                if crossed(&from, &now).is_some() {
+                    return Ok(true);
+                }
+                (low, from) = (simulation.state.t, now);
+                if sees_divisions {
+                    simulation.show_division(observer);
+                }
+                Ok(false)
+            };
+            self.advance(until, reacts, Some(&mut look))?;
             let to = self.indicate().inspect_err(|_| self.restore(&before))?;
-            let crossed = |to: &[f64]| (0..to.len()).find(|&k| system.events[k].trigger.is_between(from[k], to[k]));
-            let (t, k) = match crossed(&to) {
-                Some(k) => self.locate(&before, k, &from, shortest, wants_forces, &crossed)?,
+            let (t, k) = match crossed(&from, &to) {
+                Some(k) => self.locate(&before, low, k, &from, shortest, wants_forces, &|to: &[f64]| crossed(&from, to))?,
                 None => {
                     from = to;
                     continue;
@@ -121,7 +144,7 @@ impl Simulation {
             if self.state.t > before.t() {
                 from = now;
             }
-            if observer.sees_divisions() {
+            if sees_divisions {
                 self.show_division(observer);
             }
             let stops = self.happen(&happening, t, &mut from)?;
@@ -248,11 +271,12 @@ impl Simulation {
         self.steps = self.steps.min(first.1 + 1);
     }
 
-    /// Goes to where the first event happens in the part that began at `before` and in which the k-th has happened, and says when that is
-    /// and which it is.
+    /// Goes to where the first event happens in the part that began at `before` and in which the k-th has happened after the time `low`, and
+    /// says when that is and which it is.
     fn locate(
         &mut self,
         before: &Moment,
+        mut low: f64,
         mut k: usize,
         from: &[f64],
         shortest: f64,
@@ -261,8 +285,8 @@ impl Simulation {
     ) -> Result<(f64, usize), Failure> {
         let (begin, end) = (before.t(), self.state.t);
         // None has happened at `low`, and the k-th has at `high`.
-        let (mut low, mut high) = (begin, end);
-        let width = (LOCATED * (high - low)).max(f64::EPSILON * high.abs());
+        let mut high = end;
+        let width = (LOCATED * (high - begin)).max(f64::EPSILON * high.abs());
         let (mut at_low, mut at_high) = (from[k], self.indicate()?[k]);
         let (mut here, mut bisects) = (high, false);
         for _ in 0..MOST_TRIES {
@@ -281,7 +305,7 @@ impl Simulation {
             let next = next.max(begin + shortest).min(high);
             let whole = high - low;
             self.restore(before);
-            self.advance(next, wants_forces)?;
+            self.advance(next, wants_forces, None)?;
             here = next;
             let now = self.indicate().inspect_err(|_| self.restore(before))?;
             match crossed(&now) {
@@ -296,7 +320,7 @@ impl Simulation {
         let lands = if end - high < shortest { end } else { high };
         if here != lands {
             self.restore(before);
-            self.advance(lands, wants_forces)?;
+            self.advance(lands, wants_forces, None)?;
         }
         Ok((high, k))
     }
