@@ -18,9 +18,6 @@ use crate::options::CheckArguments;
 use crate::output::changes_in_words;
 use crate::table::{list, short};
 
-/// Independence of a row below which the model is said to be near a singular configuration.
-const NEAR_SINGULAR: f64 = 1e-4;
-
 /// Validates a model and says what it is made of.
 pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let (source, name) = load::open(&arguments.model.model, &load::overrides(&arguments.model.set))?;
@@ -55,7 +52,7 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
     let mut held = Held::new(&plain, load::method(&plain.model, None)?, step)?;
     held.notes.extend(unused_parameters(&loaded.source));
     let found = &held.rank;
-    let near = found.weakest.as_ref().filter(|(_, independence)| *independence < NEAR_SINGULAR);
+    let near = found.near_singular(&plain.model.system);
     let form = match with_projection {
         true => {
             let alpha = if let Solve::Penalty(alpha) = projection.solve { alpha } else { PENALTY };
@@ -87,13 +84,13 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
     }
     let redundant = match (found.redundant.is_empty(), &held.conflict) {
         (true, _) => "none".to_string(),
-        (false, None) => format!("{}: these follow from the others and may stay", found.redundant.join(", ")),
-        (false, Some(_)) => format!("{}: these follow from the others", found.redundant.join(", ")),
+        (false, None) => format!("{}: these follow from the others and may stay", named(&found.redundant)),
+        (false, Some(_)) => format!("{}: these follow from the others", named(&found.redundant)),
     };
     let reactions = match (found.redundant.is_empty(), held.not_unique.is_empty()) {
         (true, _) => "all are unique".to_string(),
         (false, true) => "those of all joints are unique; multipliers of single rows are not".to_string(),
-        (false, false) => format!("not unique: {}; all others are", held.not_unique.join(", ")),
+        (false, false) => format!("not unique: {}; all others are", named(&held.not_unique)),
     };
     let singular = match (near, &found.weakest) {
         (Some((row, independence)), _) => format!("yes: `{row}` adds only {} of itself to the others", short(*independence)),
@@ -152,6 +149,17 @@ fn sizes(solved: &ModelSize, plain: &ModelSize) -> String {
     }
 }
 
+/// Rows that are named on the screen; all are in the JSON.
+const NAMED: usize = 12;
+
+/// The first names of a list, and how many more there are.
+fn named(rows: &[String]) -> String {
+    match rows.len().saturating_sub(NAMED) {
+        0 => rows.join(", "),
+        more => format!("{} and {more} more", rows[..NAMED].join(", ")),
+    }
+}
+
 /// What holds a model, row by row.
 struct Held {
     rank: Rank,
@@ -176,7 +184,8 @@ impl Held {
         let rank = rank_of(&simulation);
         let size = rank.size(&model.system);
         let (mut involved, mut not_unique) = (Vec::new(), Vec::new());
-        if let Some(free) = undetermined(&model.system, x, 0.0).filter(|_| !rank.redundant.is_empty()) {
+        let free = if rank.redundant.is_empty() { None } else { undetermined(&model.system, x, 0.0) };
+        if let Some(free) = free {
             involved = free.rows().into_iter().map(|row| model.system.row_names()[row].clone()).collect();
             for joint in &model.channels.joints {
                 let unique = free.are_unique(&joint.rows, &joint.nodes, system.of_world(joint.place(&world, model.dimension)));

@@ -1,6 +1,6 @@
 //! Rank of the constraints: which rows are redundant, and how near the others are to being so.
 
-use crate::formulation::{INDEPENDENT, independence};
+use crate::formulation::{independence, independent};
 use crate::simulation::{ModelSize, Simulation};
 use crate::system::System;
 
@@ -27,8 +27,9 @@ pub fn rank_of(simulation: &Simulation) -> Rank {
 
 fn counted(system: &System, shares: &[f64]) -> Rank {
     let mut found = Rank { rank: 0, redundant: Vec::new(), weakest: None };
+    let least = independent(system.coordinates());
     for (name, &independence) in system.row_names().iter().zip(shares) {
-        if independence < INDEPENDENT {
+        if independence < least {
             found.redundant.push(name.clone());
             continue;
         }
@@ -40,7 +41,18 @@ fn counted(system: &System, shares: &[f64]) -> Rank {
     found
 }
 
+/// Independence of a row below which a mechanism is near a singular position, where it has no more coordinates than `FEW`. At the base of
+/// open chains rows add less, as the inverse cube of the number of links, and hold all the same.
+const NEAR_SINGULAR: f64 = 1e-4;
+const FEW: f64 = 100.0;
+
 impl Rank {
+    /// The weakest row where the mechanism is near a singular position.
+    pub fn near_singular(&self, system: &System) -> Option<&(String, f64)> {
+        let bound = NEAR_SINGULAR * (FEW / system.coordinates() as f64).min(1.0).powi(3);
+        self.weakest.as_ref().filter(|(_, independence)| *independence < bound)
+    }
+
     /// The numbers of the summary.
     pub fn size(&self, system: &System) -> ModelSize {
         ModelSize {

@@ -7,7 +7,7 @@
 //! does, leaves (G M⁻¹Gᵀ) λ = … of the paper's (4), which redundant rows do not upset.
 
 use super::failure::Failure;
-use super::independence::{INDEPENDENT, independence};
+use super::independence::{independence, independent};
 use super::iteration::Multipliers;
 use super::kkt::Block;
 use super::level::Level;
@@ -33,7 +33,8 @@ impl Newton {
 
     /// The same with hardly any δ for rows that are independent by their geometry.
     pub fn factor_inertia_of_independent(&mut self, system: &System, t: f64, work: &Workspace) -> bool {
-        self.rank.set(independence(system, &work.end.x, t).into_iter().map(|share| share > INDEPENDENT));
+        let least = independent(system.coordinates());
+        self.rank.set(independence(system, &work.end.x, t).into_iter().map(|share| share > least));
         self.proximal_of_redundant(&work.scales);
         self.assemble_inertia(work);
         self.factor(&work.scales).is_ok()

@@ -6,14 +6,23 @@ use crate::system::{Evaluation, System};
 
 /// What a row must add to those before it, squared and over its own size, to count: well above round-off, well below any row
 /// that holds something.
-pub const INDEPENDENT: f64 = 1e-9;
+const INDEPENDENT: f64 = 1e-9;
 
-/// What a row must add for the pivots of the rows after it to be known better than [`INDEPENDENT`]. What adds less is measured
+/// Coordinates of a mechanism for which that is so. The farther a row is from the ends of what it holds, the less it adds: at the first hinge of an
+/// open chain the inverse cube of the number of links.
+const MANY: f64 = 1000.0;
+
+/// What a row must add to those before it, squared and over its own size, to count in a system of so many coordinates.
+pub fn independent(coordinates: usize) -> f64 {
+    INDEPENDENT * (MANY / coordinates as f64).min(1.0).powi(3)
+}
+
+/// What a row must add for the pivots of the rows after it to be known better than `INDEPENDENT`. What adds less is measured
 /// again, after all others.
 const PLAIN: f64 = 1e-5;
 
-/// Pivots below this are nothing beside [`INDEPENDENT`], after rows that are plain.
-const NOTHING: f64 = 0.1 * INDEPENDENT;
+/// Pivots below this share of what must be added are nothing, after rows that are plain.
+const NOTHING: f64 = 0.1;
 
 /// Rows that are measured again without room being made for them.
 const FEW: usize = 4;
@@ -33,6 +42,8 @@ pub fn independence(system: &System, x: &[f64], t: f64) -> Vec<f64> {
 /// Room for finding that at many positions.
 pub struct Independence {
     kkt: Kkt,
+    /// What a row must add to count.
+    least: f64,
     at: Evaluation,
     natural: Vec<f64>,
     /// Of each row (r), when last measured.
@@ -56,7 +67,8 @@ impl Independence {
         let natural = natural_sizes(system, &at);
         let kkt = kkt.of_ones();
         let others = Vec::with_capacity(FEW * kkt.free * kkt.dim);
-        Self { left: vec![0.0; kkt.size()], kkt, at, natural, shares: vec![0.0; rows], others }
+        let least = independent(kkt.free * kkt.dim);
+        Self { left: vec![0.0; kkt.size()], kkt, least, at, natural, shares: vec![0.0; rows], others }
     }
 
     /// What [`independence`] gives at the positions `x` and the time `t`.
@@ -68,12 +80,12 @@ impl Independence {
     /// How many rows follow from others at the positions `x` and the time `t`.
     pub fn count_redundant(&mut self, system: &System, x: &[f64], t: f64) -> usize {
         self.measure(system, x, t);
-        self.shares.iter().filter(|share| **share <= INDEPENDENT).count()
+        self.shares.iter().filter(|share| **share <= self.least).count()
     }
 
     /// Measures at the positions `x` and the time `t`.
     fn measure(&mut self, system: &System, x: &[f64], t: f64) {
-        let Self { kkt, at, natural, shares, left, others } = self;
+        let Self { kkt, at, natural, shares, left, others, least } = self;
         system.evaluate_again(x, t, at);
         for (row, natural) in natural.iter().enumerate() {
             let free = system.slots.rows[row].clone().filter(|&slot| kkt.is_free(slot));
@@ -96,7 +108,7 @@ impl Independence {
         for (row, share) in shares.iter_mut().enumerate() {
             *share = kkt.solver.pivot(kkt.multiplier(row, 0));
             if kkt.solver.is_dropped(kkt.multiplier(row, 0)) {
-                *share = if *share < NOTHING { 0.0 } else { beside_others(kkt, &at.gradient, row, left, others) };
+                *share = if *share < NOTHING * *least { 0.0 } else { beside_others(kkt, &at.gradient, row, *least, left, others) };
             }
         }
     }
@@ -110,7 +122,7 @@ impl Independence {
 }
 
 /// What a row adds to the plain ones and to the `others` that were measured before, squared. Becomes one of them where it counts.
-fn beside_others(kkt: &mut Kkt, gradient: &[f64], row: usize, left: &mut [f64], others: &mut Vec<f64>) -> f64 {
+fn beside_others(kkt: &mut Kkt, gradient: &[f64], row: usize, least: f64, left: &mut [f64], others: &mut Vec<f64>) -> f64 {
     let coordinates = kkt.free * kkt.dim;
     left.fill(0.0);
     for slot in kkt.slots.rows[row].clone().filter(|&slot| kkt.is_free(slot)) {
@@ -128,7 +140,7 @@ fn beside_others(kkt: &mut Kkt, gradient: &[f64], row: usize, left: &mut [f64], 
     }
     let left = &left[..coordinates];
     let share: f64 = left.iter().map(|left| left * left).sum();
-    if share > INDEPENDENT {
+    if share > least {
         others.extend(left.iter().map(|left| left / share.sqrt()));
     }
     share

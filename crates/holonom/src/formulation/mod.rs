@@ -37,7 +37,7 @@ pub use collocation::{Collocation, Timing};
 pub use dampers::Fit;
 pub use failure::{Failure, Unknown};
 pub(crate) use independence::extent;
-pub use independence::{INDEPENDENT, Independence, VANISHED, independence, natural_sizes};
+pub use independence::{Independence, VANISHED, independence, independent, natural_sizes};
 pub use iteration::{ITERATIONS, Iteration, Multipliers, SolveSettings, predict, solve};
 pub use kkt::{ALL, Block, Kkt, LawFactors};
 pub use level::Level;

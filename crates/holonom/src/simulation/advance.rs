@@ -7,6 +7,9 @@ use crate::integrator::Step;
 /// Halvings of a step before a run gives up.
 const MOST_HALVINGS: u32 = 12;
 
+/// Most parts of a length before longer ones are tried again.
+const MOST_WANTED: u32 = 16;
+
 /// Units that the parts of a nominal step are counted in: what is left may be three quarters of it, and halved as often.
 const PARTS: u32 = 1 << 24;
 
@@ -47,20 +50,27 @@ impl Simulation {
         let from = self.state.t;
         let whole = target - from;
         let (mut done, mut part) = (0, PARTS);
+        // Parts of this length so far, and how many there are to be before longer ones are tried again.
+        let (mut taken, mut wanted) = (0, 1);
         while done < PARTS {
             part = part.min(PARTS - done);
             let end = done + part;
             let until = if end == PARTS { target } else { from + whole * f64::from(end) / f64::from(PARTS) };
             match self.substep(whole * f64::from(part) / f64::from(PARTS), until) {
                 Ok(_) => {
-                    (done, part) = (end, 2 * part);
+                    (done, taken) = (end, taken + 1);
+                    if taken >= wanted {
+                        (part, taken) = (2 * part, 0);
+                    }
                     if done < PARTS && self.ends_here(&mut look)? {
                         break;
                     }
                 }
                 Err(failure) if !self.method.subdivide || part <= PARTS >> MOST_HALVINGS => return Err(failure),
                 Err(_) => {
-                    part /= 2;
+                    // An attempt that fails costs more than several that do not.
+                    wanted = if taken == 0 && done > 0 { (2 * wanted).min(MOST_WANTED) } else { 1 };
+                    (part, taken) = (part / 2, 0);
                     self.audit.reject(&self.newton);
                 }
             }
