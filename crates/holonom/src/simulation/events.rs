@@ -132,7 +132,7 @@ impl Simulation {
             self.advance(until, reacts, Some(&mut look))?;
             let to = self.indicate().inspect_err(|_| self.restore(&before))?;
             let (t, k) = match crossed(&from, &to) {
-                Some(k) => self.locate(&before, low, k, &from, shortest, wants_forces, &|to: &[f64]| crossed(&from, to))?,
+                Some(k) => self.locate(&before, (low, k), &from, shortest, wants_forces, &|to: &[f64]| crossed(&from, to))?,
                 None => {
                     from = to;
                     continue;
@@ -276,8 +276,7 @@ impl Simulation {
     fn locate(
         &mut self,
         before: &Moment,
-        mut low: f64,
-        mut k: usize,
+        (mut low, mut k): (f64, usize),
         from: &[f64],
         shortest: f64,
         wants_forces: bool,
