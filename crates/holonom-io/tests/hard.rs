@@ -1,9 +1,9 @@
 //! Hard mechanisms, that runs once completed with wrong: light parts between heavy ones, redundant rows through a dead centre,
-//! many bodies and other units, thin rods. `benches/hard` runs more of them beside solutions of its own.
+//! thin rods, places far away. `benches/hard` runs more of them beside solutions of its own.
 
 mod common;
 
-use common::model;
+use common::{freedom, model};
 use holonom::analysis::rank;
 use holonom::model::Model;
 use holonom::simulation::{Choice, Method, Promise, Simulation, Status, Summary, Verdict};
@@ -19,13 +19,6 @@ fn run(name: &str, model: &Model, of: &str, step: f64, end: f64) -> Summary {
     assert_eq!(status, Status::Completed, "{name}, {of}");
     let size = rank(&model.system, &simulation.state().x, end).size(&model.system);
     simulation.summary(name, end, &status, size)
-}
-
-/// Degrees of freedom and redundant rows at the start.
-fn freedom(model: &Model) -> [usize; 2] {
-    let simulation = Simulation::new(model.system.clone(), method("conserving"), 1e-3).unwrap_or_else(|error| panic!("{error}"));
-    let size = rank(&model.system, &simulation.state().x, 0.0).size(&model.system);
-    [size.dof, size.redundant]
 }
 
 const CONSERVING: [&str; 2] = ["conserving-ggl", "conserving"];
@@ -91,44 +84,6 @@ fn parallelograms_go_through_their_dead_centres() {
     }
 }
 
-/// Boxes in a row, each hinged to the one before about an axis across.
-fn boxes(count: usize, alternates: bool, [mass, length]: [f64; 2], reactions: bool) -> String {
-    let mut text = format!("gravity = [0, 0, {}]\n[output]\nreactions = {reactions}\n", -9.81 * length / 0.5);
-    for k in 0..count {
-        let (x, place) = (length * (k as f64 + 0.5), length * k as f64);
-        let before = if k == 0 { "ground".into() } else { format!("b{}", k - 1) };
-        let axis = if alternates && k % 2 == 1 { "[0, 0, 1]" } else { "[0, 1, 0]" };
-        let size = format!("[{length}, {}, {}]", 0.2 * length, 0.1 * length);
-        text += &format!("[body.b{k}]\nmass = {mass}\nshape = {{ box = {size} }}\nposition = [{x}, 0, 0]\n");
-        text += &format!("[joint.j{k}]\ntype = \"revolute\"\nbetween = [\"{before}\", \"b{k}\"]\nat = [{place}, 0, 0]\naxis = {axis}\n");
-    }
-    text
-}
-
-#[test]
-fn freedom_does_not_depend_on_size_or_units() {
-    for reactions in [false, true] {
-        for alternates in [false, true] {
-            for count in [250, 2000] {
-                let many = model(&boxes(count, alternates, [2.0, 0.5], reactions));
-                assert_eq!(freedom(&many), [count, 0], "{count} boxes, alternating {alternates}, reactions {reactions}");
-                let found = rank(&many.system, many.system.start_position(), 0.0);
-                assert_eq!(found.near_singular(&many.system), None, "{count} boxes, alternating {alternates}, reactions {reactions}");
-            }
-            // In kg and m; in t and mm; 1 mg and 10 mm; in g and km.
-            for unit in [[2.0, 0.5], [0.002, 500.0], [1e-6, 0.01], [2e3, 5e-4], [1e-9, 1e3]] {
-                let two = model(&boxes(2, alternates, unit, reactions));
-                assert_eq!(freedom(&two), [2, 0], "{unit:?}, alternating {alternates}, reactions {reactions}");
-                for of in CONSERVING {
-                    let summary = run(&format!("{unit:?}"), &two, of, 0.01, 0.5);
-                    let scale = 9.81 * unit[0] * unit[1] * unit[1];
-                    assert!(summary.energy.max_drift <= 1e-10 * scale, "{unit:?}, {of}: {:e}", summary.energy.max_drift);
-                }
-            }
-        }
-    }
-}
-
 /// Two hinged rods with so much of their inertia about themselves: the motion is that of rods without any.
 #[test]
 fn thin_rods_move_like_rods_without_thickness() {
@@ -153,17 +108,6 @@ fn thin_rods_move_like_rods_without_thickness() {
             let first = *limit.get_or_insert(kinetic);
             assert!((kinetic - first).abs() <= 1e-9 * first, "{share:e}, {of}: kinetic energy {kinetic} J beside {first} J");
         }
-    }
-}
-
-/// Light wheels are no singular positions.
-#[test]
-fn healthy_mechanisms_are_not_near_singular() {
-    for name in ["robot-arm", "slider-crank", "stewart-platform"] {
-        let path = format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-        let model = model(&std::fs::read_to_string(path).unwrap());
-        let found = rank(&model.system, model.system.start_position(), 0.0);
-        assert_eq!(found.near_singular(&model.system), None, "{name}");
     }
 }
 
@@ -321,66 +265,6 @@ fn methods_say_what_they_keep() {
     assert_eq!(kept("trapezoidal"), "Φ");
     assert_eq!(kept("radau"), "energy that something supplies, Φ, Φ̇");
     assert_eq!(kept("penalty/conserving"), "energy that something supplies");
-}
-
-/// Redundant rows leave round-off, which must not be divided by round-off in the rows after them.
-#[test]
-fn rows_after_redundant_ones_add_what_they_add() {
-    let text = r#"
-gravity = [0.0, 0.0, -9.81]
-[body.b0]
-mass = 0.0002816755966356792
-position = [0.33667123997382375, -0.18499437244172967, 0.8288160847355875]
-orientation = { quat_wxyz = [-0.6480273583010607, 0.44730832693735, 0.49145866106416375, -0.37208088906967096] }
-inertia = [3.3543408314045745e-6, 4.0937406825527726e-7, 3.763714899659852e-6]
-[body.b1]
-mass = 1.0112973191410906
-position = [0.5775089514357208, -0.468274712204371, 0.2513398866384495]
-orientation = { quat_wxyz = [-0.6620406997332541, 0.5346649795816834, -0.5249307019839993, 0.01682942720972189] }
-shape = { rod = 0.17280645294972674 }
-[joint.j1]
-type = "spherical"
-between = ["b0", "b1"]
-at = [0.4530248631218594, -0.6153436321034402, 0.3363067472898725]
-[joint.j2]
-type = "revolute"
-between = ["b0", "b1"]
-at = [0.6577111645927314, -0.41759564009139105, 0.30046087292163426]
-axis = [-0.32605455438414743, 0.8999948938672173, -0.28930540710171887]
-[output]
-reactions = true
-"#;
-    assert_eq!(freedom(&model(text)), [6, 2]);
-}
-
-/// The distance row adds 1e-6 of itself, squared, to those before it, and one row after it nothing.
-#[test]
-fn rows_after_weak_ones_are_seen_as_redundant() {
-    let text = r#"
-gravity = [7.842308168755432, -5.63682501458379, -1.720612199548257]
-[body.b0]
-mass = 1.2311608553357236
-position = [0.013713757691406387, 0.008441657042866377, 0.011693190463562668]
-velocity = [-0.32366206286084903, 1.1234299826728646, 1.3334627692832974]
-angular_velocity = [-47.48557639470845, 35.00857691192027, 30.59493843193126]
-inertia = [1.8709373569126255e-5, 3.449895416941714e-5, 5.320832773854339e-5]
-[joint.j0]
-type = "point-on-line"
-between = ["ground", "b0"]
-at = [-0.006112506909286355, 0.008905917449979216, 0.008106983497911375]
-axis = [0.10990197216794875, 0.9287986998277413, -0.35391316973502535]
-[joint.j1]
-type = "distance"
-between = ["ground", "b0"]
-at = [[-0.006112506909286355, 0.008905917449979216, 0.008106983497911375], [-0.02481615272028311, -0.00295728682749361, -0.0050377307212893015]]
-[joint.j2]
-type = "generic"
-between = ["ground", "b0"]
-at = [0.015624331473324453, 0.020403594801397487, 0.0029681058615208707]
-axes = [[0.10990197216794875, 0.9287986998277413, -0.35391316973502535], [-0.041264356628367124, -0.3514994695929109, -0.9352782344029765]]
-locks = ["x", "z", "ry", "rz"]
-"#;
-    assert_eq!(freedom(&model(text)), [0, 1]);
 }
 
 /// An arm and a slider on a rod, all in a line and moving across it as neither way out of it does: they bounce, with forces that grow as

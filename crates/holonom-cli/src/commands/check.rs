@@ -149,14 +149,14 @@ fn sizes(solved: &ModelSize, plain: &ModelSize) -> String {
     }
 }
 
-/// Rows that are named on the screen; all are in the JSON.
+/// Most names in a line on the screen; all are in the JSON.
 const NAMED: usize = 12;
 
 /// The first names of a list, and how many more there are.
-fn named(rows: &[String]) -> String {
-    match rows.len().saturating_sub(NAMED) {
-        0 => rows.join(", "),
-        more => format!("{} and {more} more", rows[..NAMED].join(", ")),
+fn named(names: &[String]) -> String {
+    match names.len().saturating_sub(NAMED) {
+        0 => names.join(", "),
+        more => format!("{} and {more} more", names[..NAMED].join(", ")),
     }
 }
 

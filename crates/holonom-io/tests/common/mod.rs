@@ -1,6 +1,7 @@
 //! Models of the gallery, and those that are written in a test; and their runs.
 #![allow(dead_code)] // each test uses its share
 
+use holonom::analysis::rank;
 use holonom::model::Model;
 use holonom::record::{Constraints, Recorder, Recording};
 use holonom::simulation::{Choice, Method, Simulation, Status};
@@ -56,6 +57,15 @@ pub fn run_every(model: &Model, method: &str, step: f64, end: f64, every: u64) -
     let mut recorder = Recorder::new(&model.channels, &model.system, every, Constraints::Joints);
     assert_eq!(simulation.run(end, &mut recorder), Status::Completed);
     (simulation, recorder.finish())
+}
+
+/// Degrees of freedom and redundant rows at the start.
+#[track_caller]
+pub fn freedom(model: &Model) -> [usize; 2] {
+    let method = Method::resolve(&Choice::default().named("conserving")).unwrap();
+    let simulation = Simulation::new(model.system.clone(), method, 1e-3).unwrap_or_else(|error| panic!("{error}"));
+    let size = rank(&model.system, &simulation.state().x, 0.0).size(&model.system);
+    [size.dof, size.redundant]
 }
 
 /// ‖difference‖ of the final state, seen against the same run with another step.

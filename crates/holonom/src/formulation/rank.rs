@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::failure::Failure;
-use super::independence::independent;
 use super::kkt::Kkt;
 use super::newton::Newton;
 use super::scales::Scales;
@@ -30,8 +29,6 @@ pub struct Rank {
     /// How many they leave, if any were counted, and whether that has changed then.
     redundant: Option<usize>,
     changes: bool,
-    /// How many rows are redundant by geometry, where that was asked last.
-    known: Option<usize>,
     /// Attempts to come that are near a singular position.
     singular: u32,
     /// Whether rows that were regular have hardly any proximal term in this attempt.
@@ -42,7 +39,7 @@ pub struct Rank {
 
 impl Rank {
     pub(super) fn new(rows: usize) -> Self {
-        Self { regular: vec![false; rows], redundant: None, changes: false, known: None, singular: 0, spares_regular: false, weakest: 1.0 }
+        Self { regular: vec![false; rows], redundant: None, changes: false, singular: 0, spares_regular: false, weakest: 1.0 }
     }
 
     /// Whether a row was no redundant one when last factored.
@@ -57,16 +54,15 @@ impl Rank {
 
     /// Becomes the same without any allocation.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { regular, redundant, changes, known, singular, spares_regular, weakest } = other;
+        let Self { regular, redundant, changes, singular, spares_regular, weakest } = other;
         self.regular.copy_from_slice(regular);
-        (self.redundant, self.changes, self.known, self.singular) = (*redundant, *changes, *known, *singular);
+        (self.redundant, self.changes, self.singular) = (*redundant, *changes, *singular);
         (self.spares_regular, self.weakest) = (*spares_regular, *weakest);
     }
 
     /// Has the rows as they are known to be, whatever the last factorisations said.
     pub(super) fn set(&mut self, regular: impl Iterator<Item = bool>) {
         self.regular.iter_mut().zip(regular).for_each(|(own, regular)| *own = regular);
-        self.known = Some(self.regular.iter().filter(|regular| !**regular).count());
         self.singular = 0;
     }
 
@@ -78,23 +74,14 @@ impl Rank {
         }
         let mut redundant = 0;
         self.weakest = 1.0;
-        let share = |row: usize| (kkt.solver.pivot(kkt.multiplier(row, 0)) - delta[row]) / scales.softness[row];
         for (row, regular) in self.regular.iter_mut().enumerate() {
-            let share = share(row);
+            let share = (kkt.solver.pivot(kkt.multiplier(row, 0)) - delta[row]) / scales.softness[row];
             *regular = share > REDUNDANT;
             if *regular {
                 self.weakest = self.weakest.min(share);
             } else {
                 redundant += 1;
             }
-        }
-        // In large mechanisms rows that hold something may add less. They are those that are too many.
-        while self.known.is_some_and(|known| known < redundant) {
-            let left = (0..self.regular.len()).filter(|&row| !self.regular[row]);
-            let most = left.map(|row| (row, share(row))).max_by(|a, b| a.1.total_cmp(&b.1));
-            let Some((row, share)) = most.filter(|(_, share)| *share > independent(kkt.free * kkt.dim)) else { break };
-            (self.regular[row], self.weakest) = (true, self.weakest.min(share));
-            redundant -= 1;
         }
         self.changes = self.redundant.replace(redundant).is_some_and(|before| before != redundant);
         if self.changes {

@@ -51,6 +51,11 @@ impl History<'_> {
         self.entry(k)[1]
     }
 
+    /// Takes note of the power where a step ends, for when that state is pushed.
+    fn set_power(&mut self, power: f64) {
+        self.numbers[2] = power;
+    }
+
     /// Positions, then velocities, of state `k`.
     fn state(&self, k: usize) -> &[f64] {
         &self.entry(k)[2..]
@@ -148,7 +153,7 @@ impl Bdf {
         let order = self.order_in_use(history);
         if history.count() < self.order + usize::from(self.varies) {
             let step = self.starter.step(system, start, h, newton, work)?;
-            history.numbers[2] = if work.is_worked_on() { energy::power(system, start + h, &work.end.v, &work.a, work) } else { 0.0 };
+            history.set_power(if work.is_worked_on() { energy::power(system, start + h, &work.end.v, &work.a, work) } else { 0.0 });
             return Ok(step);
         }
         let t = start + h;
@@ -174,7 +179,7 @@ impl Bdf {
             work.sample(system, t);
             let power = energy::power(system, t, &work.sampled.v, &work.a, work);
             done = history.work(order, t, power);
-            history.numbers[2] = power;
+            history.set_power(power);
         }
         work.end.x[n..].copy_from_slice(&work.sampled.x[n..]);
         work.end.v.copy_from_slice(&work.sampled.v);

@@ -314,14 +314,15 @@ impl Simulation {
             let left = stop - self.state.t;
             let parts = (left / longest - 1e-9).ceil().max(1.0);
             let step = if parts <= 2.0 { left / parts } else { longest };
-            match self.attempt(step, if parts == 1.0 { stop } else { self.state.t + step }, pilot) {
-                Ok(is_taken) => {
-                    if is_taken && self.look_inside([from, target], pilot, &shown, &mut look)? {
-                        return Ok(());
-                    }
-                }
-                Err(failure) => outcome = Err(failure),
+            let taken = self.attempt(step, if parts == 1.0 { stop } else { self.state.t + step }, pilot);
+            if matches!(taken, Ok(true)) && self.look_inside([from, target], pilot, &shown, &mut look)? {
+                return Ok(());
             }
+            outcome = taken.map(|_| ());
+        }
+        if outcome.is_err() {
+            // Where attempts that failed began is no start of the last step.
+            pilot.last = None;
         }
         pilot.front.keep(self);
         if self.state.t > target

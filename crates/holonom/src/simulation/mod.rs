@@ -74,7 +74,7 @@ pub trait Observer {
         true
     }
 
-    /// Looks at the simulation where a step is divided: before inputs are set there, and after.
+    /// Looks at the simulation inside a nominal step: where it is taken in parts or parts are long, and before inputs are set there and after.
     fn at_division(&mut self, _simulation: &Simulation) {}
 
     /// Whether it looks there.
