@@ -45,6 +45,18 @@ fn freedom_does_not_depend_on_size_or_units() {
     }
 }
 
+/// What the last of so many rows adds is far below what counts in a short chain.
+#[test]
+fn long_chains_are_solved_in_few_iterations() {
+    let many = model(&boxes(4000, false, [2.0, 0.5], true));
+    for of in ["conserving-ggl", "conserving"] {
+        let (simulation, _) = run(&many, Choice::default().named(of), 1e-3, 4e-3);
+        let iterations = simulation.audit().work_summary(simulation.steps()).iterations_per_step;
+        let drift = simulation.audit().energy_summary().max_drift;
+        assert!(iterations <= 3.0 && drift <= 1e-10 * 4000.0, "{of}: {iterations} iterations, {drift:e} J");
+    }
+}
+
 /// Light wheels are no singular positions.
 #[test]
 fn healthy_mechanisms_are_not_near_singular() {

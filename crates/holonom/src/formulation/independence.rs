@@ -24,6 +24,11 @@ const PLAIN: f64 = 1e-5;
 /// Pivots below this share of what must be added are nothing, after rows that are plain.
 const NOTHING: f64 = 0.1;
 
+/// Round-off of pivots, and the most rows that are measured again for adding no more than that: where there are more, they follow from
+/// others.
+const ROUND_OFF: f64 = 1e-13;
+const MOST: usize = 100;
+
 /// Rows that are measured again without room being made for them.
 const FEW: usize = 4;
 
@@ -105,10 +110,14 @@ impl Independence {
             return;
         }
         others.clear();
+        shares.iter_mut().enumerate().for_each(|(row, share)| *share = kkt.solver.pivot(kkt.multiplier(row, 0)));
+        let mut nothing = NOTHING * *least;
+        if shares.iter().filter(|share| (nothing..ROUND_OFF).contains(share)).count() > MOST {
+            nothing = ROUND_OFF;
+        }
         for (row, share) in shares.iter_mut().enumerate() {
-            *share = kkt.solver.pivot(kkt.multiplier(row, 0));
             if kkt.solver.is_dropped(kkt.multiplier(row, 0)) {
-                *share = if *share < NOTHING * *least { 0.0 } else { beside_others(kkt, &at.gradient, row, *least, left, others) };
+                *share = if *share < nothing { 0.0 } else { beside_others(kkt, &at.gradient, row, *least, left, others) };
             }
         }
     }

@@ -40,7 +40,7 @@ impl Newton {
             settings,
             unknowns: vec![0.0; kkt.size()],
             delta: vec![0.0; system.constraints()],
-            rank: Rank::new(system.constraints()),
+            rank: Rank::new(system.constraints(), system.coordinates()),
             fit: Fit::default(),
             kept: Kept::new(system, kkt.is_changed_by_rows()),
             kkt,

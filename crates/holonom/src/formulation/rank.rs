@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::failure::Failure;
+use super::independence::independent;
 use super::kkt::Kkt;
 use super::newton::Newton;
 use super::scales::Scales;
@@ -14,12 +15,15 @@ pub const RHO: f64 = 1e10;
 /// Attempts after a change of the rank that are near a singular position.
 pub(super) const SINGULAR: u32 = 32;
 
-/// The same of rows that are not redundant. What they miss in an iteration falls with ρ; it comes to N²/ρ in a chain of N
-/// links.
-const RHO_REGULAR: f64 = 1e16;
+/// The same of rows that are not redundant, over what they must add to be so. What they miss in an iteration falls with it; it comes to N²
+/// times that in a chain of N links, and redundant rows after N of them seem to add N times that.
+const SPARE: f64 = 1e-7;
 
 /// Pivots of rows that are smaller over the rows' own stiffness belong to redundant ones.
 const REDUNDANT: f64 = 1e-9;
+
+/// Pivots of rows with hardly any δ that are nothing but round-off, likewise.
+const ROUND_OFF: f64 = 100.0 * f64::EPSILON;
 
 /// What the last factorisations said of the rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,6 +35,8 @@ pub struct Rank {
     changes: bool,
     /// Attempts to come that are near a singular position.
     singular: u32,
+    /// What a row with hardly any proximal term must add to be regular.
+    least: f64,
     /// Whether rows that were regular have hardly any proximal term in this attempt.
     pub(super) spares_regular: bool,
     /// The least that a regular row adds to those before it, over what it would add alone.
@@ -38,8 +44,9 @@ pub struct Rank {
 }
 
 impl Rank {
-    pub(super) fn new(rows: usize) -> Self {
-        Self { regular: vec![false; rows], redundant: None, changes: false, singular: 0, spares_regular: false, weakest: 1.0 }
+    pub(super) fn new(rows: usize, coordinates: usize) -> Self {
+        let least = independent(coordinates).max(ROUND_OFF);
+        Self { regular: vec![false; rows], redundant: None, changes: false, singular: 0, least, spares_regular: false, weakest: 1.0 }
     }
 
     /// Whether a row was no redundant one when last factored.
@@ -54,7 +61,7 @@ impl Rank {
 
     /// Becomes the same without any allocation.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { regular, redundant, changes, singular, spares_regular, weakest } = other;
+        let Self { regular, redundant, changes, singular, least: _, spares_regular, weakest } = other;
         self.regular.copy_from_slice(regular);
         (self.redundant, self.changes, self.singular) = (*redundant, *changes, *singular);
         (self.spares_regular, self.weakest) = (*spares_regular, *weakest);
@@ -75,8 +82,10 @@ impl Rank {
         let mut redundant = 0;
         self.weakest = 1.0;
         for (row, regular) in self.regular.iter_mut().enumerate() {
-            let share = (kkt.solver.pivot(kkt.multiplier(row, 0)) - delta[row]) / scales.softness[row];
-            *regular = share > REDUNDANT;
+            let softness = scales.softness[row];
+            let share = (kkt.solver.pivot(kkt.multiplier(row, 0)) - delta[row]) / softness;
+            let is_spared = delta[row] * RHO < 0.5 * softness;
+            *regular = share > if is_spared { self.least } else { REDUNDANT };
             if *regular {
                 self.weakest = self.weakest.min(share);
             } else {
@@ -110,7 +119,7 @@ impl Newton {
         let is_singular = rank.singular > 0;
         rank.singular = rank.singular.saturating_sub(1);
         for ((delta, &softness), &regular) in self.delta.iter_mut().zip(&scales.softness).zip(&rank.regular) {
-            *delta = softness / if regular && !is_singular { RHO_REGULAR } else { RHO };
+            *delta = softness * if regular && !is_singular { SPARE * rank.least } else { 1.0 / RHO };
         }
     }
 
