@@ -12,6 +12,10 @@ use super::scales::Scales;
 /// rows round-off grows with ρ to multipliers that mean nothing.
 pub const RHO: f64 = 1e10;
 
+/// The same of redundant rows away from singular positions, where rows are at position level alone: rounded positions over δ are multipliers
+/// that mean nothing, and the more rows follow from such as hardly hold anything the larger.
+pub(super) const RHO_OF_REDUNDANT: f64 = 1e6;
+
 /// Attempts after a change of the rank that are near a singular position.
 pub(super) const SINGULAR: u32 = 32;
 
@@ -84,7 +88,7 @@ impl Rank {
         for (row, regular) in self.regular.iter_mut().enumerate() {
             let softness = scales.softness[row];
             let share = (kkt.solver.pivot(kkt.multiplier(row, 0)) - delta[row]) / softness;
-            let is_spared = delta[row] * RHO < 0.5 * softness;
+            let is_spared = delta[row] < 0.5 * softness / RHO;
             *regular = share > if is_spared { self.least } else { REDUNDANT };
             if *regular {
                 self.weakest = self.weakest.min(share);
@@ -111,15 +115,19 @@ impl Newton {
         }
     }
 
-    /// The same for iterations that begin without multipliers: hardly any δ for rows that were regular when last factored. Near a
-    /// singular position, where the rank changes, redundancy passes from row to row and all have the δ of redundant ones.
-    pub(super) fn proximal_of_redundant(&mut self, scales: &Scales) {
+    /// The same for iterations that begin without multipliers: hardly any δ for rows that were regular when last factored, and ρ = `rho` for
+    /// the others. Near a singular position, where the rank changes, redundancy passes from row to row and all have ρ = [`RHO`].
+    pub(super) fn proximal_of_redundant(&mut self, rho: f64, scales: &Scales) {
         let rank = &mut self.rank;
         rank.spares_regular = true;
         let is_singular = rank.singular > 0;
         rank.singular = rank.singular.saturating_sub(1);
         for ((delta, &softness), &regular) in self.delta.iter_mut().zip(&scales.softness).zip(&rank.regular) {
-            *delta = softness * if regular && !is_singular { SPARE * rank.least } else { 1.0 / RHO };
+            *delta = match (is_singular, regular) {
+                (true, _) => softness / RHO,
+                (false, true) => softness * SPARE * rank.least,
+                (false, false) => softness / rho,
+            };
         }
     }
 
@@ -127,7 +135,7 @@ impl Newton {
     pub(super) fn guards_rank(&mut self, scales: &Scales) -> bool {
         let guards = std::mem::take(&mut self.rank.changes) && self.rank.spares_regular;
         if guards {
-            self.proximal_of_redundant(scales);
+            self.proximal_of_redundant(RHO, scales);
         }
         guards
     }

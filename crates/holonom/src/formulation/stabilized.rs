@@ -16,6 +16,7 @@ use super::failure::Failure;
 use super::iteration::{Multipliers, OneStage, predict, restart};
 use super::kkt::{Block, Kkt};
 use super::newton::{Change, Equations, Newton, RESTARTS, attempt, iterate};
+use super::rank::RHO;
 use super::round_off::are_forces_round_off;
 use super::stage::Stage;
 use super::sweep::Sweeps;
@@ -326,7 +327,7 @@ impl BothLevels<'_> {
 
 impl Equations for BothLevels<'_> {
     fn begin(&mut self, newton: &mut Newton, work: &mut Workspace) {
-        newton.proximal_of_redundant(&work.scales);
+        newton.proximal_of_redundant(RHO, &work.scales);
         work.expect_multipliers();
     }
 
