@@ -24,8 +24,8 @@ const PLAIN: f64 = 1e-5;
 /// Pivots below this share of what must be added are nothing, after rows that are plain.
 const NOTHING: f64 = 0.1;
 
-/// Round-off of pivots, and the most rows that are measured again for adding no more than that: where there are more, they follow from
-/// others.
+/// Pivots up to this may be round-off. At most so many of these rows are measured again, each of which costs a solution of the whole
+/// system; where there are more, all are redundant ones.
 const ROUND_OFF: f64 = 1e-13;
 const MOST: usize = 100;
 

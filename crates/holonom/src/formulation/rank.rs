@@ -12,21 +12,21 @@ use super::scales::Scales;
 /// rows round-off grows with ρ to multipliers that mean nothing.
 pub const RHO: f64 = 1e10;
 
-/// The same of redundant rows away from singular positions, where rows are at position level alone: rounded positions over δ are multipliers
-/// that mean nothing, and the more rows follow from such as hardly hold anything the larger.
+/// ρ of redundant rows away from singular positions, where rows are at position level alone. The rounding of positions over δ is a
+/// multiplier that means nothing. It is largest where a row follows from others that hardly hold anything, as beside a dead centre.
 pub(super) const RHO_OF_REDUNDANT: f64 = 1e6;
 
 /// Attempts after a change of the rank that are near a singular position.
 pub(super) const SINGULAR: u32 = 32;
 
-/// The same of rows that are not redundant, over what they must add to be so. What they miss in an iteration falls with it; it comes to N²
-/// times that in a chain of N links, and redundant rows after N of them seem to add N times that.
+/// δ of a regular row over the least that such a row must add. With N rows in a chain an iteration leaves up to N² times that, and
+/// a redundant row after them seems to add N times that.
 const SPARE: f64 = 1e-7;
 
-/// Pivots of rows that are smaller over the rows' own stiffness belong to redundant ones.
+/// Where a row has δ of [`RHO`] or more it is redundant when its pivot, over its own stiffness, is smaller than this.
 const REDUNDANT: f64 = 1e-9;
 
-/// Pivots of rows with hardly any δ that are nothing but round-off, likewise.
+/// Smaller pivots, over the rows' own stiffness, are round-off in rows with hardly any δ.
 const ROUND_OFF: f64 = 100.0 * f64::EPSILON;
 
 /// What the last factorisations said of the rows.
