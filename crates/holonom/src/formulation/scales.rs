@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix};
 
 use super::independence::{extent, natural_sizes};
 use crate::linalg::largest;
-use crate::system::System;
+use crate::system::{Quantity, System};
 
 /// A node is light when its mass, with all others yielding, is below this share of the heaviest of its mechanism. What its rows add is then
 /// lost beside what heavier nodes add: the rows enter its part of the matrix (methods §13).
@@ -32,7 +32,7 @@ pub struct Scales {
     pub length: f64,
     /// Largest diagonal entry of the mass matrix, kg.
     pub heaviest: f64,
-    /// Length of the shortest row, the gradient of an invariant, over `length`, at most 1.
+    /// Length of the shortest row that turns, the gradient of an invariant with curvature, over `length`, at most 1.
     pub shortest: f64,
     /// 1 over the mass of each free node, 1/kg; directions that are light count as the heaviest node, as their bodies hold them.
     pub agility: Vec<f64>,
@@ -99,8 +99,8 @@ impl Scales {
             longest[row] = longest[row].max(largest(gradient));
         }
         for (row, &size) in longest[..system.rows.len()].iter().enumerate() {
-            let is_invariant = system.slots_of(system.rows[row].quantity).end <= system.invariants.slots();
-            if is_invariant && size > SHORT * self.length {
+            let turns = matches!(system.rows[row].quantity, Quantity::Invariant(id) if system.invariants.bends(id, system.free));
+            if turns && size > SHORT * self.length {
                 self.shortest = self.shortest.min(size / self.length);
             }
         }

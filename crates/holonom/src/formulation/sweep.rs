@@ -11,8 +11,11 @@ use super::workspace::Workspace;
 use crate::linalg::largest;
 use crate::system::System;
 
-/// What the sweeps may leave, over the first increment of d: as much as kept factors leave.
-const SWEPT: f64 = 1e-4;
+/// What the sweeps may leave, over the first increment of d. They cost less than an iteration or new factors, which more than this calls for.
+const SWEPT: f64 = 1e-5;
+
+/// Share of the mechanism that γ' must turn a node by for the curvature of its rows to count.
+const CURVED: f64 = 1e-4;
 
 /// Most sweeps of an iteration; one matrix for both levels is cheaper than more.
 const SWEEPS: usize = 8;
@@ -48,7 +51,7 @@ impl Stabilized {
     ) -> Result<Option<f64>, Failure> {
         let n = system.coordinates();
         let gamma = self.gamma.iter().zip(&self.gamma_change).map(|(gamma, change)| gamma + change);
-        self.curves = work.scaled_multipliers(gamma) > SWEPT;
+        self.curves = work.scaled_multipliers(gamma) > CURVED;
         if self.curves {
             self.kkt.start_with_mass(0.0);
             self.kkt.add_row_hessians(&self.gamma, 1.0);
@@ -93,7 +96,7 @@ impl Stabilized {
             add(1.0, second, unknowns);
             self.pull(system, second);
             let left = work.farthest(system, &self.force);
-            let least = (SWEPT * whole).max(tolerance);
+            let least = (SWEPT * whole).max(0.1 * tolerance);
             if left <= least || (newton.settings.iterations.is_some() && sweep >= FEW) {
                 return Some(left / whole);
             }

@@ -1,7 +1,7 @@
 //! Symmetric compositions of a symmetric scheme of order 2: what it conserves stays exact (Hairer, Lubich and Wanner
 //! 2006, §V.3).
 
-use super::history::{History, is_same_length, take_over};
+use super::history::{History, MOTION, MULTIPLIERS, is_same_length};
 use super::{Integrator, Step, Work};
 use crate::energy;
 use crate::formulation::{Failure, Newton, Workspace};
@@ -30,18 +30,16 @@ pub(super) struct Composed {
 
 /// What is kept of each inner step for that of the next step, which comes nearer to it than the inner step before.
 struct Memory<'a> {
-    acceleration: History<'a>,
-    lambda: &'a mut [f64],
-    lambda_change: &'a mut [f64],
+    acceleration: History<'a, MOTION>,
+    lambda: History<'a, MULTIPLIERS>,
     inner: &'a mut [f64],
 }
 
 impl<'a> Memory<'a> {
     fn of(system: &System, memory: &'a mut [f64]) -> Self {
-        let (acceleration, rest) = memory.split_at_mut(History::SIZE * system.coordinates());
-        let (lambda, rest) = rest.split_at_mut(system.constraints());
-        let (lambda_change, inner) = rest.split_at_mut(system.constraints());
-        Self { acceleration: History::of(acceleration), lambda, lambda_change, inner }
+        let (acceleration, rest) = memory.split_at_mut(History::<MOTION>::SIZE * system.coordinates());
+        let (lambda, inner) = rest.split_at_mut(History::<MULTIPLIERS>::SIZE * system.constraints());
+        Self { acceleration: History::of(acceleration), lambda: History::of(lambda), inner }
     }
 }
 
@@ -60,7 +58,8 @@ impl Composed {
 
 impl Integrator for Composed {
     fn memory(&self, system: &System) -> usize {
-        1 + self.shares.len() * (History::SIZE * system.coordinates() + 2 * system.constraints() + self.memory.len())
+        1 + self.shares.len()
+            * (History::<MOTION>::SIZE * system.coordinates() + History::<MULTIPLIERS>::SIZE * system.constraints() + self.memory.len())
     }
 
     fn step(&mut self, system: &System, start: f64, h: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
@@ -107,8 +106,8 @@ impl Composed {
             if follows {
                 work.a[..n].copy_from_slice(memory.acceleration.value);
                 work.prediction.a_change[..n].copy_from_slice(memory.acceleration.change);
-                work.lambda.copy_from_slice(memory.lambda);
-                work.prediction.lambda_change.copy_from_slice(memory.lambda_change);
+                work.lambda.copy_from_slice(memory.lambda.value);
+                work.prediction.lambda_change.copy_from_slice(memory.lambda.change);
             }
             self.memory.copy_from_slice(memory.inner);
             std::mem::swap(&mut self.memory, &mut work.memory);
@@ -122,8 +121,8 @@ impl Composed {
                 }
             };
             memory.inner.copy_from_slice(&self.memory);
-            memory.acceleration.remember(follows, |i| work.a[i]);
-            take_over(memory.lambda, memory.lambda_change, follows, &work.lambda);
+            memory.acceleration.remember(follows, |i| work.a[i], |_| 1.0);
+            memory.lambda.remember(follows, |row| work.lambda[row], |row| work.scales.reach[row].powi(2));
             if let Work::Between(extra) = step.work {
                 done += energy::work_between(system, &step.stage, work) + extra;
             }

@@ -1,7 +1,7 @@
 //! The conserving scheme with the rows at both levels: energy, momentum, Φ and Φ̇ exact (methods §9).
 
 use super::conserving::midpoint_kinematics;
-use super::history::{History, is_same_length, take_over};
+use super::history::{History, MOTION, MULTIPLIERS, is_same_length};
 use super::{Integrator, Step, Work};
 use crate::formulation::{Failure, Newton, RowsAt, Sampling, Stabilized, Workspace};
 use crate::system::System;
@@ -23,24 +23,22 @@ struct Memory<'a> {
     /// Steps to come with both levels in one matrix.
     coupled: &'a mut f64,
     /// γ' of the last step and its change there (r each).
-    gamma: &'a mut [f64],
-    gamma_change: &'a mut [f64],
+    gamma: History<'a, MULTIPLIERS>,
     /// By how much γ' makes the increment of the free coordinates exceed that of the mean velocity, Δq − h v̄ = M⁻¹Ḡᵀγ', m.
-    slip: History<'a>,
+    slip: History<'a, MOTION>,
 }
 
 impl<'a> Memory<'a> {
     fn of(system: &System, memory: &'a mut [f64]) -> Self {
         let ([step, coupled], rest) = memory.split_first_chunk_mut().expect("there is room for a step");
-        let (gamma, rest) = rest.split_at_mut(system.constraints());
-        let (gamma_change, slip) = rest.split_at_mut(system.constraints());
-        Self { step, coupled, gamma, gamma_change, slip: History::of(slip) }
+        let (gamma, slip) = rest.split_at_mut(History::<MULTIPLIERS>::SIZE * system.constraints());
+        Self { step, coupled, gamma: History::of(gamma), slip: History::of(slip) }
     }
 }
 
 impl Integrator for ConservingGgl {
     fn memory(&self, system: &System) -> usize {
-        2 + 2 * system.constraints() + History::SIZE * system.coordinates()
+        2 + History::<MULTIPLIERS>::SIZE * system.constraints() + History::<MOTION>::SIZE * system.coordinates()
     }
 
     fn step(&mut self, system: &System, start: f64, step: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
@@ -63,7 +61,7 @@ impl Integrator for ConservingGgl {
         both.lambda_start.copy_from_slice(&work.lambda);
         // γ' and μ = ϖλ − γ' begin at zero; what they are expected to be is for the first iteration's matrices.
         for row in 0..both.mu.len() {
-            let expected = if follows { memory.gamma[row] + memory.gamma_change[row] } else { 0.0 };
+            let expected = if follows { memory.gamma.value[row] + memory.gamma.change[row] } else { 0.0 };
             (both.gamma[row], both.mu[row], both.gamma_change[row]) = (0.0, 0.0, expected);
             work.lambda[row] -= expected / stage.inertia;
         }
@@ -80,8 +78,8 @@ impl Integrator for ConservingGgl {
         let mut memory = Memory::of(system, &mut work.memory);
         *memory.step = h;
         *memory.coupled = f64::from(both.coupled_steps.saturating_sub(1));
-        memory.slip.remember(follows, |i| work.d[i] - both.u[i] - 0.5 * work.prediction.drift[i]);
-        take_over(memory.gamma, memory.gamma_change, follows, &both.gamma);
+        memory.slip.remember(follows, |i| work.d[i] - both.u[i] - 0.5 * work.prediction.drift[i], |_| 1.0);
+        memory.gamma.remember(follows, |row| both.gamma[row], |row| work.scales.reach[row].powi(2));
         let mut extra_work = 0.0;
         work.settle(system, &stage);
         if work.is_worked_on() {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::formulation::Workspace;
-use crate::integrator::{Differences, extrapolate, is_same_length};
+use crate::integrator::{Differences, MOTION, MULTIPLIERS, extrapolate, is_same_length};
 use crate::system::System;
 
 /// Numbers of a moment.
@@ -23,10 +23,12 @@ pub struct State {
     /// different lengths.
     pub a_change: Vec<f64>,
     /// Backward differences of the accelerations up to the last step (D × nodes), m/s², zero in the same cases.
-    pub a_differences: Vec<Differences>,
-    /// Change of the multipliers in the last step (r), zero in the same cases. Only a tangent is built with it: what redundant
-    /// rows leave undetermined of the multipliers would run away.
+    pub a_differences: Vec<Differences<MOTION>>,
+    /// Predicted change of the multipliers in the next step (r), zero in the same cases. Only a tangent is built with it: what
+    /// redundant rows leave undetermined of the multipliers would run away.
     pub lambda_change: Vec<f64>,
+    /// Backward differences of the multipliers up to the last step (r), zero in the same cases.
+    pub lambda_differences: Vec<Differences<MULTIPLIERS>>,
     /// Length of the last step, s.
     pub last_step: f64,
     /// What the integrator keeps from step to step.
@@ -52,6 +54,7 @@ impl State {
             a_change: vec![0.0; work.a.len()],
             a_differences: vec![Differences::default(); work.a.len()],
             lambda_change: vec![0.0; work.lambda.len()],
+            lambda_differences: vec![Differences::default(); work.lambda.len()],
             last_step: 0.0,
             memory: work.memory.clone(),
             angle: work.start.at.functions.angle.clone(),
@@ -66,6 +69,7 @@ impl State {
         [&self.x, &self.v, &self.a, &self.a_change].iter().all(|values| values.len() == all)
             && self.a_differences.len() == all
             && [&self.lambda, &self.lambda_change].iter().all(|values| values.len() == system.constraints())
+            && self.lambda_differences.len() == system.constraints()
             && self.angle.len() == system.evaluation().functions.angle.len()
             && self.inputs.len() == system.inputs.len()
             && self.measured.len() == system.gauge_values().counted().len()
@@ -75,6 +79,7 @@ impl State {
     pub(super) fn copy_from(&mut self, other: &Self) {
         (self.t, self.last_step) = (other.t, other.last_step);
         self.a_differences.copy_from_slice(&other.a_differences);
+        self.lambda_differences.copy_from_slice(&other.lambda_differences);
         let accelerations = [(&mut self.a, &other.a), (&mut self.a_change, &other.a_change)];
         let rest = [
             (&mut self.lambda, &other.lambda),
@@ -106,10 +111,9 @@ impl State {
     /// Remembers how accelerations, `a` at the end, and multipliers changed in a step, for the prediction of the next.
     pub(super) fn remember(&mut self, step: f64, a: &[f64], work: &Workspace) {
         let follows = is_same_length(step, self.last_step);
-        extrapolate(&mut self.a_differences, &mut self.a_change, follows, |k| a[k] - self.a[k]);
-        for ((change, new), old) in self.lambda_change.iter_mut().zip(&work.lambda).zip(&self.lambda) {
-            *change = if follows { new - old } else { 0.0 };
-        }
+        extrapolate(&mut self.a_differences, &mut self.a_change, follows, |k| a[k] - self.a[k], |_| 1.0);
+        let (lambda, reach) = (|k: usize| work.lambda[k] - self.lambda[k], |k: usize| work.scales.reach[k].powi(2));
+        extrapolate(&mut self.lambda_differences, &mut self.lambda_change, follows, lambda, reach);
         self.last_step = step;
     }
 
