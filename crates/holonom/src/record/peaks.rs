@@ -19,7 +19,7 @@ pub struct Peak {
     pub value: f64,
     /// N or N·m.
     pub unit: Cow<'static, str>,
-    /// When it acts, s.
+    /// When it acts first, s.
     pub at: f64,
 }
 
@@ -32,11 +32,11 @@ pub struct Extremes {
     pub unit: Cow<'static, str>,
     /// Its smallest value, and when, s.
     pub min: f64,
-    /// s
+    /// When first, s.
     pub min_at: f64,
     /// Its largest value, and when, s.
     pub max: f64,
-    /// s
+    /// When first, s.
     pub max_at: f64,
     /// Its last value.
     pub last: f64,
@@ -58,7 +58,7 @@ pub struct Peaks {
 /// Peaks of a sort that are kept.
 const MOST: usize = 10;
 
-/// Share of the largest of its sort that is round-off.
+/// Share of the largest of its sort that is round-off: of values that differ by no more the first counts.
 const ROUND_OFF: f64 = 1e-9;
 
 /// The same of the largest of all sorts, moments and forces together.
@@ -132,14 +132,12 @@ fn span(axes: &str, recording: &Recording) -> f64 {
 fn extremes(name: &str, times: &[f64], recording: &Recording) -> Option<Extremes> {
     let column = recording.find(name)?;
     let rows = || column.values.iter().copied().zip(times.iter().copied()).filter(|(value, _)| !value.is_nan());
-    // Of equal values the first.
-    let [mut lowest, mut highest] = [rows().next()?; 2];
-    for row in rows() {
-        lowest = if row.0 < lowest.0 { row } else { lowest };
-        highest = if row.0 > highest.0 { row } else { highest };
-    }
+    let (lowest, highest) = rows().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (value, _)| (value.min(low), value.max(high)));
+    let equal = ROUND_OFF * lowest.abs().max(highest.abs());
+    let first = |of: f64| rows().find(|(value, _)| *value == of || (value - of).abs() <= equal).map(|(_, t)| t);
+    let (min_at, max_at) = (first(lowest)?, first(highest)?);
     let (unit, last) = (column.heading.unit.clone(), *column.values.last()?);
-    Some(Extremes { name: name.into(), unit, min: lowest.0, min_at: lowest.1, max: highest.0, max_at: highest.1, last })
+    Some(Extremes { name: name.into(), unit, min: lowest, min_at, max: highest, max_at, last })
 }
 
 /// The row in which some columns of a unit are largest together; none where that is nothing.
@@ -147,7 +145,8 @@ fn peak(name: &str, columns: &[String], times: &[f64], recording: &Recording) ->
     let columns: Vec<&Column> = columns.iter().filter_map(|column| recording.find(column)).collect();
     let unit = columns.first()?.heading.unit.clone();
     let size = |row: usize| columns.iter().map(|column| column.values[row] * column.values[row]).sum::<f64>();
-    let (row, square) = (0..times.len()).map(|row| (row, size(row))).filter(|(_, size)| *size > 0.0).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let most = (0..times.len()).map(size).fold(0.0, f64::max);
+    let (row, square) = (0..times.len()).map(|row| (row, size(row))).find(|(_, size)| *size > 0.0 && *size >= (1.0 - ROUND_OFF) * most)?;
     let value = if let [column] = columns[..] { column.values[row] } else { square.sqrt() };
     Some(Peak { name: name.into(), what: if unit == "N" { "force" } else { "moment" }, value, unit, at: times[row] })
 }
