@@ -26,9 +26,6 @@ pub const EXCEPTIONS: &[Exception] = &[
     Exception { model: "joint:rolling", columns: TURNED, bound: 5e-9, iterations: 1.0, keeps_rows: true },
     // Why is not known.
     Exception { model: "joint:point-on-curve", columns: TURNED, bound: 1e-9, iterations: 1.0, keeps_rows: true },
-    // Their velocities at the start do not fit the joint, and which part of them is kept depends on the nodes.
-    Exception { model: "joint:revolute", columns: &["reactions = true"], bound: 2.0, iterations: 4.0, keeps_rows: false },
-    Exception { model: "joint:universal", columns: &["reactions = true"], bound: 2.0, iterations: 1.0, keeps_rows: false },
     // Iterations: supposedly because places of bodies of 0.1 mm are held to those of 1 m beside them by rows.
     Exception { model: "small-on-large", columns: &["reactions = true"], bound: 1e-8, iterations: 5.0, keeps_rows: false },
 ];
