@@ -96,7 +96,7 @@ impl Stabilized {
             add(1.0, second, unknowns);
             self.pull(system, second);
             let left = work.farthest(system, &self.force);
-            let least = (SWEPT * whole).max(0.1 * tolerance);
+            let least = (SWEPT * whole).max(tolerance);
             if left <= least || (newton.settings.iterations.is_some() && sweep >= FEW) {
                 return Some(left / whole);
             }
