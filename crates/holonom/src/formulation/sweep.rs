@@ -11,7 +11,8 @@ use super::workspace::Workspace;
 use crate::linalg::largest;
 use crate::system::System;
 
-/// What the sweeps may leave, over the first increment of d. They cost less than an iteration or new factors, which more than this calls for.
+/// What the sweeps may leave, over the first increment of d. More would call for another iteration or for new factors, which cost more
+/// than a sweep.
 const SWEPT: f64 = 1e-5;
 
 /// Share of the mechanism that γ' must turn a node by for the curvature of its rows to count.

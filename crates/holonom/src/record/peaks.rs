@@ -133,7 +133,9 @@ fn extremes(name: &str, times: &[f64], recording: &Recording) -> Option<Extremes
     let column = recording.find(name)?;
     let rows = || column.values.iter().copied().zip(times.iter().copied()).filter(|(value, _)| !value.is_nan());
     let (lowest, highest) = rows().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (value, _)| (value.min(low), value.max(high)));
-    let equal = ROUND_OFF * lowest.abs().max(highest.abs());
+    // Not of the size: far from the origin a place changes by a small share of itself.
+    let range = highest - lowest;
+    let equal = if range.is_finite() { ROUND_OFF * range } else { 0.0 };
     let first = |of: f64| rows().find(|(value, _)| *value == of || (value - of).abs() <= equal).map(|(_, t)| t);
     let (min_at, max_at) = (first(lowest)?, first(highest)?);
     let (unit, last) = (column.heading.unit.clone(), *column.values.last()?);
