@@ -34,9 +34,6 @@ const REFERENCE: [f64; 3] = [-1.27229634990966, -0.953716555813986, -1.213130961
 /// Below this an error is round-off and the digits of [`REFERENCE`], m.
 const SMALLEST_ERROR: f64 = 2e-12;
 
-/// A step that takes so many times the iterations of most others was taken in halves.
-const IN_HALVES: f64 = 4.0;
-
 /// Distance of m2 from [`REFERENCE`] at 2 s, m.
 pub fn error(results: &Results, method: &str, step: &str) -> f64 {
     let run = results.of_step("accuracy", method, step);
@@ -44,17 +41,10 @@ pub fn error(results: &Results, method: &str, step: &str) -> f64 {
     difference.map(|d| d * d).sum::<f64>().sqrt()
 }
 
-/// Step and error, where the error is more than round-off and the steps are all of that length: beside the singular position that the
-/// pendulum goes by at 1.5 s one may be halved.
+/// Step and error, where the error is more than round-off.
 pub fn errors(results: &Results, method: &str) -> Vec<(f64, f64)> {
-    let is_of_one_step = |step: &str| {
-        let mut iterations = results.of_step("accuracy", method, step).column("iterations").to_vec();
-        iterations.sort_by(f64::total_cmp);
-        iterations[iterations.len() - 1] <= IN_HALVES * iterations[iterations.len() / 2]
-    };
-    let steps = STEPS.iter().filter(|step| is_of_one_step(step));
-    let errors = steps.map(|step| (step.parse().expect("a step is a number"), error(results, method, step)));
-    errors.filter(|(_, error)| *error > SMALLEST_ERROR).collect()
+    let size = |step: &str| step.parse().expect("a step is a number");
+    STEPS.iter().map(|step| (size(step), error(results, method, step))).filter(|(_, error)| *error > SMALLEST_ERROR).collect()
 }
 
 /// Measured order, from the two smallest steps whose errors are more than round-off.
