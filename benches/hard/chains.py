@@ -57,7 +57,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--links", type=int, action="append", help="only chains of so many links")
     sizes = parser.parse_args().links or SIZES
-    print(f"{'':40} {'step':>6} {'method':15} {'iterations':>10} {'halved':>6} {'drift/scale':>11} {'|Φ̇|, m/s':>9} {'CPU/equal':>9}")
+    print(f"{'':42} {'step':>6} {'method':15} {'iterations':>10} {'halved':>6} {'drift/scale':>11} {'|Φ̇|, m/s':>9} {'CPU/equal':>9}")
     with tempfile.TemporaryDirectory() as folder:
         for links, in_space in ((links, in_space) for links in sizes for in_space in (False, True)):
             for step, method in ((step, method) for step in STEPS for method in ("conserving", "conserving-ggl")):
@@ -70,7 +70,7 @@ def main():
                     work, time = found["work"], found["time"]["us_per_step"] / equal["time"]["us_per_step"]
                     status = "" if found["status"] == "completed" else found["status"]
                     numbers = f"{work['iterations_per_step']:10.1f} {work['rejected_steps']:6} {drift:11.1e} {found['violation']['velocity']:9.1e} {time:9.1f}"
-                    print(f"{name:40} {step:6} {method:15} {numbers} {status}", flush=True)
+                    print(f"{name:42} {step:6} {method:15} {numbers} {status}", flush=True)
 
 
 if __name__ == "__main__":
