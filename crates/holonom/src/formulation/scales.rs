@@ -99,7 +99,8 @@ impl Scales {
             longest[row] = longest[row].max(largest(gradient));
         }
         for (row, &size) in longest[..system.rows.len()].iter().enumerate() {
-            let turns = matches!(system.rows[row].quantity, Quantity::Invariant(id) if system.invariants.bends(id, system.free));
+            let Quantity::Invariant(id) = system.rows[row].quantity else { continue };
+            let turns = system.invariants.hessian(id).iter().any(|&(a, b, _)| (a.max(b) as usize) < system.free);
             if turns && size > SHORT * self.length {
                 self.shortest = self.shortest.min(size / self.length);
             }

@@ -129,13 +129,6 @@ impl Invariants {
         })
     }
 
-    /// Whether the gradient of an invariant turns as free nodes, the first ones, move: each of the two sums has some of them.
-    pub(crate) fn bends(&self, id: InvariantId, free: usize) -> bool {
-        let Invariant { product, u, w, .. } = &self.items[id.0 as usize];
-        let moves = |sum: &Sum| self.term_node[sum.start as usize..sum.end as usize].iter().any(|&node| (node as usize) < free);
-        moves(u) && (*product == Product::Square || moves(w))
-    }
-
     /// What a sum moves by when all points move by one.
     fn of_points(&self, sum: &Sum, is_point: &[bool]) -> [f64; 2] {
         let slots = (sum.start as usize..sum.end as usize).filter(|&s| is_point[self.term_node[s] as usize]);
