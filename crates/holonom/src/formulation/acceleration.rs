@@ -12,7 +12,6 @@ use super::iteration::Multipliers;
 use super::kkt::Block;
 use super::level::Level;
 use super::newton::Newton;
-use super::rank::RHO;
 use super::workspace::Workspace;
 use crate::linalg::largest;
 use crate::system::System;
@@ -35,8 +34,7 @@ impl Newton {
     /// The same with hardly any δ for rows that are independent by their geometry.
     pub fn factor_inertia_of_independent(&mut self, system: &System, t: f64, work: &Workspace) -> bool {
         let least = independent(system.coordinates());
-        self.rank.set(independence(system, &work.end.x, t).into_iter().map(|share| share > least));
-        self.proximal_of_redundant(RHO, &work.scales);
+        self.proximal_of_others(independence(system, &work.end.x, t).into_iter().map(|share| share > least), &work.scales);
         self.assemble_inertia(work);
         self.factor(&work.scales).is_ok()
     }

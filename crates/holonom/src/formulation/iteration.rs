@@ -3,7 +3,6 @@
 use super::failure::Failure;
 use super::level::Level;
 use super::newton::{Change, Equations, KEPT, Newton, RESTARTS, iterate};
-use super::rank::RHO_OF_REDUNDANT;
 use super::stage::{RowsAt, Sampling, Stage};
 use super::workspace::Workspace;
 use crate::linalg::largest;
@@ -90,7 +89,7 @@ impl Equations for OneStage<'_> {
             Multipliers::Penalty(alpha) => newton.delta.fill(work.level.scale(rate, inertia) / (inertia * alpha)),
             // Where violations are held, redundant rows that miss each other would not let their multipliers settle.
             Multipliers::Augmented(None) if work.level == Level::POSITION && rows != RowsAt::Mean => {
-                newton.proximal_of_redundant(RHO_OF_REDUNDANT, &work.scales);
+                newton.proximal_by_rank(&work.scales);
                 work.expect_multipliers();
             }
             Multipliers::Augmented(penalty) => newton.proximal(inertia, penalty, &work.scales),

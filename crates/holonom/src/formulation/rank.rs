@@ -12,10 +12,6 @@ use super::scales::Scales;
 /// rows round-off grows with ρ to multipliers that mean nothing.
 pub const RHO: f64 = 1e10;
 
-/// ρ of redundant rows away from singular positions, where rows are at position level alone. The rounding of positions over δ is a
-/// multiplier that means nothing. It is largest where a row follows from others that hardly hold anything, as beside a dead centre.
-pub(super) const RHO_OF_REDUNDANT: f64 = 1e6;
-
 /// Attempts after a change of the rank that are near a singular position.
 pub(super) const SINGULAR: u32 = 32;
 
@@ -71,12 +67,6 @@ impl Rank {
         (self.spares_regular, self.weakest) = (*spares_regular, *weakest);
     }
 
-    /// Has the rows as they are known to be, whatever the last factorisations said.
-    pub(super) fn set(&mut self, regular: impl Iterator<Item = bool>) {
-        self.regular.iter_mut().zip(regular).for_each(|(own, regular)| *own = regular);
-        self.singular = 0;
-    }
-
     /// Takes note of which rows are redundant by their pivots in the first field, and whether that are as many as before.
     pub(super) fn classify(&mut self, outcome: &Result<(), Failure>, kkt: &Kkt, delta: &[f64], scales: &Scales) {
         if outcome.is_err() {
@@ -115,19 +105,26 @@ impl Newton {
         }
     }
 
-    /// The same for iterations that begin without multipliers: hardly any δ for rows that were regular when last factored, and ρ = `rho` for
-    /// the others. Near a singular position, where the rank changes, redundancy passes from row to row and all have ρ = [`RHO`].
-    pub(super) fn proximal_of_redundant(&mut self, rho: f64, scales: &Scales) {
+    /// The same for iterations that begin without multipliers, and hardly any δ where no row was redundant when last factored. If any is,
+    /// all have the same ρ = [`RHO`]. Otherwise the redundant ones would be those that the order of elimination makes so. Beside a dead
+    /// centre these may be rows that hold much, after others that hold hardly anything: the rounding of these is much of them, and nothing
+    /// holds it. The same goes for where the rank changes.
+    pub(super) fn proximal_by_rank(&mut self, scales: &Scales) {
         let rank = &mut self.rank;
-        rank.spares_regular = true;
-        let is_singular = rank.singular > 0;
+        let shares = rank.singular > 0 || rank.redundant.is_some_and(|redundant| redundant > 0);
+        rank.spares_regular = !shares;
         rank.singular = rank.singular.saturating_sub(1);
-        for ((delta, &softness), &regular) in self.delta.iter_mut().zip(&scales.softness).zip(&rank.regular) {
-            *delta = match (is_singular, regular) {
-                (true, _) => softness / RHO,
-                (false, true) => softness * SPARE * rank.least,
-                (false, false) => softness / rho,
-            };
+        if shares {
+            return self.proximal(1.0, None, scales);
+        }
+        let part = SPARE * rank.least;
+        self.delta.iter_mut().zip(&scales.softness).for_each(|(delta, softness)| *delta = part * softness);
+    }
+
+    /// Hardly any δ for the rows that are regular, and ρ = [`RHO`] for the others.
+    pub(super) fn proximal_of_others(&mut self, is_regular: impl Iterator<Item = bool>, scales: &Scales) {
+        for ((delta, softness), is_regular) in self.delta.iter_mut().zip(&scales.softness).zip(is_regular) {
+            *delta = softness * if is_regular { SPARE * self.rank.least } else { 1.0 / RHO };
         }
     }
 
@@ -135,7 +132,7 @@ impl Newton {
     pub(super) fn guards_rank(&mut self, scales: &Scales) -> bool {
         let guards = std::mem::take(&mut self.rank.changes) && self.rank.spares_regular;
         if guards {
-            self.proximal_of_redundant(RHO, scales);
+            self.proximal_by_rank(scales);
         }
         guards
     }

@@ -16,7 +16,6 @@ use super::failure::Failure;
 use super::iteration::{Multipliers, OneStage, predict, restart};
 use super::kkt::{Block, Kkt};
 use super::newton::{Change, Equations, Newton, RESTARTS, attempt, iterate};
-use super::rank::RHO;
 use super::round_off::are_forces_round_off;
 use super::stage::Stage;
 use super::sweep::Sweeps;
@@ -327,7 +326,7 @@ impl BothLevels<'_> {
 
 impl Equations for BothLevels<'_> {
     fn begin(&mut self, newton: &mut Newton, work: &mut Workspace) {
-        newton.proximal_of_redundant(RHO, &work.scales);
+        newton.proximal_by_rank(&work.scales);
         work.expect_multipliers();
     }
 
