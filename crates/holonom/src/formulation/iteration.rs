@@ -82,15 +82,22 @@ pub(super) struct OneStage<'a> {
 /// Iterations with kept factors that are cheaper than new ones of a part of the matrix.
 const KEPT_IN_PART: i32 = 2;
 
+impl OneStage<'_> {
+    /// Whether proximal terms follow from the rank. Where violations are held, redundant rows that miss each other would not let their
+    /// multipliers settle.
+    fn is_by_rank(&self, work: &Workspace) -> bool {
+        self.multipliers == Multipliers::Augmented(None) && work.level == Level::POSITION && self.stage.rows != RowsAt::Mean
+    }
+}
+
 impl Equations for OneStage<'_> {
     fn begin(&mut self, newton: &mut Newton, work: &mut Workspace) {
-        let Stage { rate, inertia, rows, .. } = *self.stage;
+        let Stage { rate, inertia, .. } = *self.stage;
         match self.multipliers {
             Multipliers::Penalty(alpha) => newton.delta.fill(work.level.scale(rate, inertia) / (inertia * alpha)),
-            // Where violations are held, redundant rows that miss each other would not let their multipliers settle.
-            Multipliers::Augmented(None) if work.level == Level::POSITION && rows != RowsAt::Mean => {
+            _ if self.is_by_rank(work) => {
                 newton.proximal_by_rank(&work.scales);
-                work.expect_multipliers();
+                work.expect_multipliers(newton.rank.is_full());
             }
             Multipliers::Augmented(penalty) => newton.proximal(inertia, penalty, &work.scales),
         }
@@ -145,13 +152,24 @@ impl Equations for OneStage<'_> {
         newton.guards_rank(&work.scales)
     }
 
-    fn advance(&mut self, _is_first: bool, newton: &mut Newton, work: &mut Workspace) -> Result<Change, Failure> {
+    fn advance(&mut self, is_first: bool, newton: &mut Newton, work: &mut Workspace) -> Result<Change, Failure> {
         let inertia = self.stage.inertia;
-        newton.solve()?;
+        if is_first && self.is_by_rank(work) {
+            newton.solve_from_zero()?
+        } else {
+            newton.solve()?
+        };
         let (increments, mu) = newton.unknowns.split_at(self.system.coordinates());
         let increment = advance(increments, work);
         work.lambda.iter_mut().zip(mu).for_each(|(lambda, mu)| *lambda += mu / inertia);
         Ok(Change { increment, multipliers: work.turned(inertia, mu), left: 0.0 })
+    }
+
+    fn rest_of_first(&self, change: &Change, newton: &Newton, work: &Workspace) -> f64 {
+        match self.stage.sampling {
+            Sampling::Between if self.is_by_rank(work) => newton.rest_of_first(change.increment, change.multipliers, work),
+            _ => 1.0,
+        }
     }
 
     fn kept(&self, newton: &Newton, work: &Workspace) -> i32 {

@@ -18,6 +18,8 @@ pub struct Newton {
     pub kkt: Kkt,
     /// Right side of the linear system, and its solution.
     pub unknowns: Vec<f64>,
+    /// What a proximal term left of them.
+    rest: Vec<f64>,
     /// δ of the proximal term (r).
     pub delta: Vec<f64>,
     /// Which rows are redundant.
@@ -39,6 +41,7 @@ impl Newton {
         Self {
             settings,
             unknowns: vec![0.0; kkt.size()],
+            rest: vec![0.0; kkt.size()],
             delta: vec![0.0; system.constraints()],
             rank: Rank::new(system.constraints(), system.coordinates()),
             fit: Fit::default(),
@@ -62,6 +65,39 @@ impl Newton {
     pub fn solve(&mut self) -> Result<(), Failure> {
         self.kkt.solve(&mut self.unknowns);
         if self.unknowns.iter().all(|u| u.is_finite()) { Ok(()) } else { Err(Failure::NotFinite) }
+    }
+
+    /// The same for multipliers that [begin at zero](Newton::proximal_by_rank) where some rows are redundant: all rows are left δ times the
+    /// multipliers off then, which is the right side of a second solution. Iterations leave as much again and again, with the same sign.
+    pub(super) fn solve_from_zero(&mut self) -> Result<(), Failure> {
+        self.solve()?;
+        if self.rank.is_full() {
+            return Ok(());
+        }
+        let (coordinates, rows) = self.rest.split_at_mut(self.kkt.multiplier(0, 0));
+        coordinates.fill(0.0);
+        let multipliers = &self.unknowns[coordinates.len()..];
+        rows.iter_mut().zip(&self.delta).zip(multipliers).for_each(|((row, delta), mu)| *row = -delta * mu);
+        self.kkt.solve(&mut self.rest);
+        self.unknowns.iter_mut().zip(&self.rest).for_each(|(unknown, rest)| *unknown += rest);
+        Ok(())
+    }
+}
+
+/// What quadratic equations leave of a first increment counts so many times, as it has the same sign in step after step.
+pub(super) const SAME_SIGN: f64 = 1e3;
+
+impl Newton {
+    /// Share of the first increment that is counted as left where rows have proximal terms [by rank](Newton::proximal_by_rank). Where nothing
+    /// but rows with constant second derivatives bends, new factors leave its share of the shortest of them, over the root of what the weakest
+    /// adds to the others, and the share `multipliers` of their steps.
+    pub(super) fn rest_of_first(&self, increment: f64, multipliers: f64, work: &Workspace) -> f64 {
+        match (self.rank.is_full(), work.are_rows_quadratic()) {
+            (true, true) => SAME_SIGN * (increment / (work.scales.shortest * self.rank.weakest.sqrt())).max(multipliers),
+            (true, false) => 1.0,
+            // The multipliers began at zero, and δ leaves a share of them that no increment shows.
+            (false, _) => f64::INFINITY,
+        }
     }
 }
 
@@ -94,6 +130,11 @@ pub(super) trait Equations {
     /// Whether the rank turned out to be another one in the last factorisation: rows without a proximal term to speak of may have
     /// become redundant, whose pivots are round-off. Gives them one.
     fn guards_rank(&mut self, newton: &mut Newton, work: &Workspace) -> bool;
+
+    /// Share of the first increment that may be left: all of it where nothing is known of it before there is a second.
+    fn rest_of_first(&self, _change: &Change, _newton: &Newton, _work: &Workspace) -> f64 {
+        1.0
+    }
 
     /// Iterations with kept factors that are cheaper than new ones.
     fn kept(&self, _newton: &Newton, _work: &Workspace) -> i32 {
@@ -160,7 +201,8 @@ pub(super) fn attempt(
         }
         let change = equations.advance(iteration == 1, newton, work)?;
         newton.iterations += 1;
-        if convergence.is_reached(&change) {
+        let rest_of_first = if iteration == 1 { equations.rest_of_first(&change, newton, work) } else { 1.0 };
+        if convergence.is_reached(&change, rest_of_first, newton.rank.leaves()) {
             return Ok(());
         }
         if convergence.is_lost() {
@@ -264,14 +306,19 @@ impl Convergence {
 
     /// Takes note of a change; says whether what remains is within tolerance. The remainder is as much smaller as the increment
     /// was than the one before, and no less than its product with that of the multipliers, which Newton's linearisation of Gᵀλ
-    /// leaves out.
-    fn is_reached(&mut self, change: &Change) -> bool {
+    /// leaves out. Of the first increment
+    /// `rest_of_first` may remain. Where the increment before was round-off, the ratio says nothing, and proximal terms leave the share `leaves`.
+    fn is_reached(&mut self, change: &Change, rest_of_first: f64, leaves: f64) -> bool {
         if let Some(left) = &mut self.left {
             *left -= 1;
             return *left == 0;
         }
         let (increment, multipliers) = (change.increment, change.multipliers.max(change.left));
-        let contraction = if self.increment.is_finite() { (increment / self.increment).min(1.0) } else { 1.0 };
+        let contraction = match self.increment {
+            before if before.is_infinite() => rest_of_first,
+            before if before <= NEAR_ROUNDED => leaves,
+            before => (increment / before).min(1.0),
+        };
         let remaining = increment * contraction.max(multipliers).max(self.stale);
         self.left_over = increment * multipliers.max(self.stale);
         self.contraction = if self.stale > 0.0 { self.contraction.max(contraction) } else { 0.0 };

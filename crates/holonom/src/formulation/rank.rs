@@ -54,6 +54,16 @@ impl Rank {
         self.regular[row]
     }
 
+    /// Whether no row was redundant when last factored, nor has a proximal term to speak of: multipliers have one solution then.
+    pub(super) fn is_full(&self) -> bool {
+        self.spares_regular && self.redundant == Some(0)
+    }
+
+    /// Share of what rows hold that an iteration with proximal terms may leave.
+    pub(super) fn leaves(&self) -> f64 {
+        if self.spares_regular { 0.0 } else { (1.0 / (RHO * self.weakest)).min(1.0) }
+    }
+
     /// Share of what the multipliers miss that a solution with the [proximal](Newton::proximal) δ may leave.
     pub(super) fn proximal_leaves(&self) -> f64 {
         if self.redundant == Some(0) { (1.0 / (RHO * self.weakest)).min(1.0) } else { 1.0 }

@@ -327,7 +327,13 @@ impl BothLevels<'_> {
 impl Equations for BothLevels<'_> {
     fn begin(&mut self, newton: &mut Newton, work: &mut Workspace) {
         newton.proximal_by_rank(&work.scales);
-        work.expect_multipliers();
+        let is_full = newton.rank.is_full();
+        work.expect_multipliers(is_full);
+        if is_full {
+            let Stabilized { mu, gamma, gamma_change, .. } = &mut *self.own;
+            mu.iter_mut().zip(&work.lambda).for_each(|(mu, lambda)| *mu = self.stage.inertia * lambda);
+            gamma.iter_mut().zip(gamma_change).for_each(|(gamma, change)| *gamma += std::mem::take(change));
+        }
     }
 
     /// From the solution without velocity rows. If that leads nowhere, the step is too long for rows at both levels, and shares of
@@ -375,6 +381,10 @@ impl Equations for BothLevels<'_> {
 
     fn guards_rank(&mut self, newton: &mut Newton, work: &Workspace) -> bool {
         newton.guards_rank(&work.scales)
+    }
+
+    fn rest_of_first(&self, change: &Change, newton: &Newton, work: &Workspace) -> f64 {
+        newton.rest_of_first(change.increment, change.multipliers.max(change.left), work)
     }
 
     fn advance(&mut self, is_first: bool, newton: &mut Newton, work: &mut Workspace) -> Result<Change, Failure> {

@@ -5,7 +5,7 @@
 //! both levels are solved in one matrix.
 
 use super::failure::Failure;
-use super::newton::Newton;
+use super::newton::{Newton, SAME_SIGN};
 use super::stabilized::Stabilized;
 use super::workspace::Workspace;
 use crate::linalg::largest;
@@ -52,7 +52,9 @@ impl Stabilized {
     ) -> Result<Option<f64>, Failure> {
         let n = system.coordinates();
         let gamma = self.gamma.iter().zip(&self.gamma_change).map(|(gamma, change)| gamma + change);
-        self.curves = work.scaled_multipliers(gamma) > CURVED;
+        let bend = work.scaled_multipliers(gamma);
+        self.curves = bend > CURVED;
+        let bend = if self.curves { 0.0 } else { bend };
         if self.curves {
             self.kkt.start_with_mass(0.0);
             self.kkt.add_row_hessians(&self.gamma, 1.0);
@@ -68,18 +70,25 @@ impl Stabilized {
             self.pull(system, &unknowns);
             add(-1.0, &self.force[..n], &mut newton.unknowns);
         }
-        let solved = newton.solve();
+        let solved = if starts { newton.solve_from_zero() } else { newton.solve() };
         sweeps.first.copy_from_slice(&newton.unknowns);
         newton.unknowns.fill(0.0);
-        let left = solved.map(|()| self.add_sweeps(system, &mut sweeps, &mut unknowns, newton, work));
+        let left = solved.map(|()| {
+            let increment = largest(&sweeps.first[..n]) / work.scales.length;
+            let multipliers = work.scaled_multipliers(sweeps.first[n..].iter().copied()).max(bend);
+            let rest = if starts { newton.rest_of_first(increment, multipliers, work) } else { 1.0 };
+            let ends = rest < 1.0 && increment * rest <= newton.settings.tolerance;
+            self.add_sweeps(system, ends, &mut sweeps, &mut unknowns, newton, work)
+        });
         (self.sweeps, self.unknowns) = (sweeps, unknowns);
-        left
+        Ok(left?.map(|left| left.max(bend)))
     }
 
-    /// Adds to both unknowns what the change in `first` leads to; the share of it that is left.
+    /// Adds to both unknowns what the change in `first` leads to; the share of it that is left, which is less where the iteration `ends` with it.
     fn add_sweeps(
         &mut self,
         system: &System,
+        ends: bool,
         sweeps: &mut Sweeps,
         unknowns: &mut [f64],
         newton: &mut Newton,
@@ -97,7 +106,7 @@ impl Stabilized {
             add(1.0, second, unknowns);
             self.pull(system, second);
             let left = work.farthest(system, &self.force);
-            let least = (SWEPT * whole).max(tolerance);
+            let least = if ends { tolerance / SAME_SIGN } else { (SWEPT * whole).max(tolerance) };
             if left <= least || (newton.settings.iterations.is_some() && sweep >= FEW) {
                 return Some(left / whole);
             }

@@ -241,12 +241,18 @@ impl Workspace {
         turned
     }
 
-    /// Has the multipliers at hand, as they are expected to change, for the first tangent only, and starts from none: what
-    /// redundant rows leave undetermined of them would add up from step to step.
-    pub(super) fn expect_multipliers(&mut self) {
+    /// Starts from the multipliers at hand, as they are expected to change, where they `have_one_solution`. Otherwise has those for
+    /// the first tangent only, and starts from none: what redundant rows leave undetermined of them would add up from step to step.
+    pub(super) fn expect_multipliers(&mut self, have_one_solution: bool) {
         for (lambda, change) in self.lambda.iter_mut().zip(&mut self.prediction.lambda_change) {
-            *change += std::mem::take(lambda);
+            let expected = std::mem::take(lambda) + std::mem::take(change);
+            *(if have_one_solution { lambda } else { change }) = expected;
         }
+    }
+
+    /// Whether rows are all that bends, each with constant second derivatives, and no part is light.
+    pub(super) fn are_rows_quadratic(&self) -> bool {
+        self.only_gradients && !self.scales.are_light
     }
 
     /// The tangent at the multipliers that are expected.
