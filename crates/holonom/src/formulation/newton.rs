@@ -34,6 +34,9 @@ pub struct Newton {
     pub factorizations: u64,
 }
 
+/// What quadratic equations leave of a first increment counts so many times, as it has the same sign in step after step.
+pub(super) const SAME_SIGN: f64 = 1e3;
+
 impl Newton {
     /// Plans the matrix of a system.
     pub fn new(system: &System, settings: SolveSettings) -> Self {
@@ -82,12 +85,7 @@ impl Newton {
         self.unknowns.iter_mut().zip(&self.rest).for_each(|(unknown, rest)| *unknown += rest);
         Ok(())
     }
-}
 
-/// What quadratic equations leave of a first increment counts so many times, as it has the same sign in step after step.
-pub(super) const SAME_SIGN: f64 = 1e3;
-
-impl Newton {
     /// Share of the first increment that is counted as left where rows have proximal terms [by rank](Newton::proximal_by_rank). Where nothing
     /// but rows with constant second derivatives bends, new factors leave its share of the shortest of them, over the root of what the weakest
     /// adds to the others, and the share `multipliers` of their steps.
@@ -306,8 +304,8 @@ impl Convergence {
 
     /// Takes note of a change; says whether what remains is within tolerance. The remainder is as much smaller as the increment
     /// was than the one before, and no less than its product with that of the multipliers, which Newton's linearisation of Gᵀλ
-    /// leaves out. Of the first increment
-    /// `rest_of_first` may remain. Where the increment before was round-off, the ratio says nothing, and proximal terms leave the share `leaves`.
+    /// leaves out. Of the first increment the share `rest_of_first` may remain. Where the increment before was round-off the ratio says
+    /// nothing, and proximal terms leave the share `leaves`.
     fn is_reached(&mut self, change: &Change, rest_of_first: f64, leaves: f64) -> bool {
         if let Some(left) = &mut self.left {
             *left -= 1;
