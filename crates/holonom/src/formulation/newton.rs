@@ -70,8 +70,9 @@ impl Newton {
         if self.unknowns.iter().all(|u| u.is_finite()) { Ok(()) } else { Err(Failure::NotFinite) }
     }
 
-    /// The same for multipliers that [begin at zero](Newton::proximal_by_rank) where some rows are redundant: all rows are left δ times the
-    /// multipliers off then, which is the right side of a second solution. Iterations leave as much again and again, with the same sign.
+    /// The same in the first iteration where proximal terms follow [from the rank](Newton::proximal_by_rank). Where they are more than
+    /// hardly any, multipliers begin at zero, and every row is left off by δ times its multiplier, with the same sign in step after step. That
+    /// is the right side of a second solution with the same factors.
     pub(super) fn solve_from_zero(&mut self) -> Result<(), Failure> {
         self.solve()?;
         if self.rank.is_full() {

@@ -61,12 +61,17 @@ impl Rank {
 
     /// Share of what rows hold that an iteration with proximal terms may leave.
     pub(super) fn leaves(&self) -> f64 {
-        if self.spares_regular { 0.0 } else { (1.0 / (RHO * self.weakest)).min(1.0) }
+        if self.spares_regular { 0.0 } else { self.rho_leaves() }
     }
 
     /// Share of what the multipliers miss that a solution with the [proximal](Newton::proximal) δ may leave.
     pub(super) fn proximal_leaves(&self) -> f64 {
-        if self.redundant == Some(0) { (1.0 / (RHO * self.weakest)).min(1.0) } else { 1.0 }
+        if self.redundant == Some(0) { self.rho_leaves() } else { 1.0 }
+    }
+
+    /// Share of what the weakest row holds that ρ = [`RHO`] leaves.
+    fn rho_leaves(&self) -> f64 {
+        (1.0 / (RHO * self.weakest)).min(1.0)
     }
 
     /// Becomes the same without any allocation.
@@ -115,10 +120,9 @@ impl Newton {
         }
     }
 
-    /// The same for iterations that begin without multipliers, and hardly any δ where no row was redundant when last factored. If any is,
-    /// all have the same ρ = [`RHO`]. Otherwise the redundant ones would be those that the order of elimination makes so. Beside a dead
-    /// centre these may be rows that hold much, after others that hold hardly anything: the rounding of these is much of them, and nothing
-    /// holds it. The same goes for where the rank changes.
+    /// Hardly any δ for all rows where none was redundant when last factored; ρ = [`RHO`] for all where any was, or where the rank has just
+    /// changed. With δ for the redundant rows alone these would be those that come last in the elimination. Beside a dead centre such a row may
+    /// hold much, after rows that hold hardly anything: what these are off by their rounding is much of that row, and no multiplier takes it back.
     pub(super) fn proximal_by_rank(&mut self, scales: &Scales) {
         let rank = &mut self.rank;
         let shares = rank.singular > 0 || rank.redundant.is_some_and(|redundant| redundant > 0);

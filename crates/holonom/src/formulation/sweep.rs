@@ -54,6 +54,7 @@ impl Stabilized {
         let gamma = self.gamma.iter().zip(&self.gamma_change).map(|(gamma, change)| gamma + change);
         let bend = work.scaled_multipliers(gamma);
         self.curves = bend > CURVED;
+        // What the sweeps leave out.
         let bend = if self.curves { 0.0 } else { bend };
         if self.curves {
             self.kkt.start_with_mass(0.0);
@@ -74,10 +75,11 @@ impl Stabilized {
         sweeps.first.copy_from_slice(&newton.unknowns);
         newton.unknowns.fill(0.0);
         let left = solved.map(|()| {
-            let increment = largest(&sweeps.first[..n]) / work.scales.length;
-            let multipliers = work.scaled_multipliers(sweeps.first[n..].iter().copied()).max(bend);
-            let rest = if starts { newton.rest_of_first(increment, multipliers, work) } else { 1.0 };
-            let ends = rest < 1.0 && increment * rest <= newton.settings.tolerance;
+            let ends = starts && work.are_rows_quadratic() && {
+                let increment = largest(&sweeps.first[..n]) / work.scales.length;
+                let multipliers = work.scaled_multipliers(sweeps.first[n..].iter().copied()).max(bend);
+                increment * newton.rest_of_first(increment, multipliers, work) <= newton.settings.tolerance
+            };
             self.add_sweeps(system, ends, &mut sweeps, &mut unknowns, newton, work)
         });
         (self.sweeps, self.unknowns) = (sweeps, unknowns);
