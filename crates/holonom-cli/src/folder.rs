@@ -5,7 +5,9 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use holonom_io::Writer;
-use serde_json::Value;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 use crate::checkpoint;
 use crate::failure::Failure;
@@ -106,8 +108,15 @@ impl Folder {
 
     /// The time of the checkpoint that is there, s.
     pub fn reached(&self) -> Option<f64> {
-        let value: Value = serde_json::from_slice(&std::fs::read(self.path.join(checkpoint::FILE)).ok()?).ok()?;
-        value["state"]["t"].as_f64()
+        #[derive(Deserialize)]
+        struct Reached {
+            state: Time,
+        }
+        #[derive(Deserialize)]
+        struct Time {
+            t: f64,
+        }
+        Some(in_checkpoint::<Reached>(&self.path)?.state.t)
     }
 
     /// Removes all results but some, so that none of them is taken for those that come.
@@ -129,7 +138,7 @@ impl Folder {
 
     /// Files that tables of compared runs may be in, from what the results say of themselves.
     fn tables(&self) -> Vec<String> {
-        let compared = summary(&self.path);
+        let compared: Value = read(&self.path.join("summary.json")).unwrap_or_default();
         let stems = compared.as_array().into_iter().flatten().filter_map(|run| Some(file_stem(run[TABLE].as_str()?)));
         stems.flat_map(|stem| holonom_io::WRITERS.iter().map(move |writer| table_name(&stem, writer))).collect()
     }
@@ -193,8 +202,22 @@ pub fn file_stems<'a>(labels: impl Iterator<Item = &'a str>) -> Vec<String> {
 
 /// What the results in a folder say of themselves; null where there are none that do.
 fn summary(folder: &Path) -> Value {
-    let read = |name: &str| serde_json::from_slice(&std::fs::read(folder.join(name)).ok()?).ok();
-    ["summary.json", "stability.json", "checkpoint.json"].into_iter().find_map(read).unwrap_or(Value::Null)
+    #[derive(Serialize, Deserialize)]
+    struct Origin {
+        provenance: Value,
+    }
+    let written = ["summary.json", "stability.json"].into_iter().find_map(|name| read(&folder.join(name)));
+    written.or_else(|| Some(json!(in_checkpoint::<Origin>(folder)?))).unwrap_or(Value::Null)
+}
+
+/// Parts of the checkpoint in a folder, whose whole is large.
+fn in_checkpoint<Part: DeserializeOwned>(folder: &Path) -> Option<Part> {
+    read(&folder.join(checkpoint::FILE))
+}
+
+/// What a file of JSON holds, where it does.
+fn read<Content: DeserializeOwned>(path: &Path) -> Option<Content> {
+    serde_json::from_slice(&std::fs::read(path).ok()?).ok()
 }
 
 /// Whether the results in a folder are those of a run with this summary, or of several with these, whenever they ran and however that was

@@ -80,11 +80,10 @@ impl<'a> Keeper<'a> {
     pub fn save(&mut self, recording: &Recording, last: Point, before_end: Option<Point>) -> Result<(), Failure> {
         self.append(recording)?;
         let kept = Kept { last, before_end, table: self.table.into(), provenance: self.provenance.clone() };
-        let kept = serde_json::to_value(&kept).expect("a checkpoint is plain data");
-        self.folder.write(FILE, |out| holonom_io::write_json(&kept, out))?;
+        self.folder.write(FILE, |out| Ok(serde_json::to_writer(out, &kept)?))?;
         if std::mem::take(&mut self.is_stale) {
             self.folder.remove_results(&[self.table, FILE])?;
-            self.folder.write("columns.json", |out| holonom_io::write_json(&holonom_io::headings(recording), out))?;
+            self.folder.write("columns.json", |out| holonom_io::write_json(&holonom_io::headings(recording.columns()), out))?;
         }
         Ok(())
     }

@@ -305,6 +305,6 @@ impl Folder {
         for writer in writers {
             self.write(&format!("{prefix}.{}", writer.extension), |out| (writer.write)(recording, out))?;
         }
-        self.write("columns.json", |out| holonom_io::write_json(&holonom_io::headings(recording), out))
+        self.write("columns.json", |out| holonom_io::write_json(&holonom_io::headings(recording.columns()), out))
     }
 }

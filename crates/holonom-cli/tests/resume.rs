@@ -140,10 +140,10 @@ fn another_run_is_refused_with_what_differs() {
         assert!(text.contains(from), "{from}");
         fs::write(folder.path().join(name), text.replacen(from, to, 1)).unwrap();
     };
-    let version = format!("\"version\": \"{}\"", env!("CARGO_PKG_VERSION"));
-    edit("version.json", &version, "\"version\": \"0.0.7\"");
-    edit("old.json", "\"provenance\": {", "\"origin\": {");
-    edit("rows.json", "\"rows\": 11", "\"rows\": 12");
+    let version = format!("\"version\":\"{}\"", env!("CARGO_PKG_VERSION"));
+    edit("version.json", &version, "\"version\":\"0.0.7\"");
+    edit("old.json", "\"provenance\":{", "\"origin\":{");
+    edit("rows.json", "\"rows\":11", "\"rows\":12");
     fs::copy(folder.path().join("a/trajectory.csv"), folder.path().join("trajectory.csv")).unwrap();
     fs::write(folder.path().join("heavy.toml"), model.replace("mass = 1", "mass = 3")).unwrap();
     for (words, told) in [

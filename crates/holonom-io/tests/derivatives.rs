@@ -143,7 +143,8 @@ fn check_both_levels(name: &str, text: &str) {
     let (n, r, step) = (system.coordinates(), system.constraints(), 0.1);
     let stage = Stage { sampling: Sampling::Between, rows: RowsAt::End, start: 0.3, step, inertia: 0.5 * step * step, rate: 1.0 / step };
     let settings = Method::resolve(&Choice::default()).expect("the default goes together").settings;
-    let (mut newton, mut work) = (Newton::new(system, settings), Workspace::new(system));
+    let mut work = Workspace::new(system);
+    let mut newton = Newton::new(system, &work.scales, settings);
     let mut both = Stabilized::new(system, &newton);
     let Workspace { start, end, a, .. } = &mut work;
     system.place_known(stage.start, &mut start.x, &mut start.v, a);

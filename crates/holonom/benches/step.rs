@@ -26,7 +26,7 @@ fn workspace(system: &System) -> (Workspace, Newton) {
         *d = STEP * v;
     }
     work.prediction.drift.copy_from_slice(&work.d);
-    let mut newton = Newton::new(system, method("conserving").settings);
+    let mut newton = Newton::new(system, &work.scales, method("conserving").settings);
     newton.proximal(STAGE.inertia, None, &work.scales);
     work.place(&STAGE);
     work.evaluate(system, &STAGE);

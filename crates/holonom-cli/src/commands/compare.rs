@@ -1,5 +1,6 @@
 //! `holonom compare`.
 
+use std::collections::HashSet;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
@@ -132,16 +133,14 @@ fn tell_differences(columns: &[String], compared: &mut [Compared]) {
 fn write(folder: &Folder, plan: &Plan, compared: &[Compared], writers: &[&Writer], no_report: bool) -> Result<(), Failure> {
     let summaries: Vec<&Value> = compared.iter().map(|one| &one.summary).collect();
     folder.write("summary.json", |out| holonom_io::write_json(&json!(summaries), out))?;
-    let mut headings = Map::new();
+    let (mut columns, mut names) = (Vec::new(), HashSet::new());
     for one in compared {
         let (Some(model), Some(stem)) = (one.model, one.summary[TABLE].as_str()) else { continue };
         folder.write_trajectory(stem, writers, &plan.models[model], &one.recording)?;
-        if let Value::Object(own) = holonom_io::headings(&one.recording) {
-            headings.extend(own);
-        }
+        columns.extend(one.recording.columns().iter().filter(|column| names.insert(column.heading.name.as_str())));
     }
     if plan.models.len() > 1 {
-        folder.write("columns.json", |out| holonom_io::write_json(&Value::Object(headings), out))?;
+        folder.write("columns.json", |out| holonom_io::write_json(&holonom_io::headings(columns), out))?;
     }
     if no_report {
         return Ok(());

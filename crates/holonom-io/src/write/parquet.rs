@@ -19,7 +19,7 @@ use super::{Cells, Table};
 /// Writes the columns of a recording, all of doubles.
 pub(super) fn write(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
     let fields = recording.columns().iter().map(|column| (column.heading.name.as_str(), Physical::DOUBLE, Repetition::REQUIRED));
-    let headings = KeyValue::new("columns".to_string(), headings(recording).to_string());
+    let headings = KeyValue::new("columns".to_string(), serde_json::to_string(&headings(recording.columns()))?);
     write_columns(fields, vec![headings], out, |group| {
         recording.columns().iter().try_for_each(|column| write_column::<DoubleType>(group, &column.values, None))
     })

@@ -38,9 +38,9 @@ pub struct Newton {
 pub(super) const SAME_SIGN: f64 = 1e3;
 
 impl Newton {
-    /// Plans the matrix of a system.
-    pub fn new(system: &System, settings: SolveSettings) -> Self {
-        let kkt = Kkt::new(system, &Scales::new(system), 1, ALL);
+    /// Plans the matrix of a system of these sizes.
+    pub fn new(system: &System, scales: &Scales, settings: SolveSettings) -> Self {
+        let kkt = Kkt::new(system, scales, 1, ALL);
         Self {
             settings,
             unknowns: vec![0.0; kkt.size()],

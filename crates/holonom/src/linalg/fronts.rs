@@ -1,6 +1,6 @@
 //! The fronts of the elimination tree, and where everything goes in them.
 
-use super::groups::{Groups, ONE_FRONT, fill_in};
+use super::groups::{Groups, Lists, ONE_FRONT, fill_in};
 use super::tile::{LANES, TILE};
 
 /// An order of elimination grouped into fronts, with every place worked out.
@@ -92,11 +92,11 @@ impl Fronts {
         };
         let tops = groups.children_first();
         for &top in &tops {
-            let (block, members) = (fronts.of_block.len(), &groups.best[top as usize].members);
+            let (block, members) = (fronts.of_block.len(), groups.members.of(top));
             for (k, &column) in members.iter().enumerate() {
                 fronts.place[order[column as usize] as usize] = (block * LANES + k) as u32;
             }
-            let (pivots, rows) = (members.len(), columns[top as usize].len());
+            let (pivots, rows) = (members.len(), columns.of(top).len());
             let head = pivots.div_ceil(LANES);
             let size = head + rows.div_ceil(LANES);
             fronts.of_block.extend(std::iter::repeat_n(fronts.fronts.len() as u32, head));
@@ -110,7 +110,7 @@ impl Fronts {
         fronts.place.iter().enumerate().for_each(|(row, &place)| fronts.row[place as usize] = row as u32);
         for (k, &top) in tops.iter().enumerate() {
             let first = fronts.below.len();
-            fronts.below.extend(columns[top as usize].iter().map(|&column| fronts.place[order[column as usize] as usize]));
+            fronts.below.extend(columns.of(top).iter().map(|&column| fronts.place[order[column as usize] as usize]));
             fronts.below[first..].sort_unstable();
             fronts.fronts[k].below = first;
             let parent = fronts.below.get(first).map(|&place| fronts.of_block[place as usize / LANES] as usize);
@@ -123,17 +123,13 @@ impl Fronts {
     }
 
     fn place_children(&mut self) {
-        let mut children = vec![Vec::new(); self.fronts.len()];
-        for (k, sources) in self.sources.iter().enumerate() {
-            if let Some(parent) = sources.parent {
-                children[parent].push(k as u32);
-            }
+        let of_parents = (0..).zip(&self.sources).filter_map(|(k, sources)| Some((sources.parent? as u32, k)));
+        let children = Lists::sorted_in(self.fronts.len(), of_parents);
+        for (k, sources) in self.sources.iter_mut().enumerate() {
+            let range = children.range(k);
+            sources.children = [range.start, range.end];
         }
-        for (sources, children) in self.sources.iter_mut().zip(children) {
-            let first = self.children.len();
-            self.children.extend(children);
-            sources.children = [first, self.children.len()];
-        }
+        self.children = children.numbers;
     }
 
     fn place_entries(&mut self, entries: &[(u32, u32)]) {

@@ -176,12 +176,12 @@ impl Simulation {
     pub fn resume(system: impl Into<Arc<System>>, method: Method, step: f64, checkpoint: impl Into<Checkpoint>) -> Option<Self> {
         let system = system.into();
         let Checkpoint { state, run } = checkpoint.into();
-        let newton = Newton::new(&system, method.settings);
+        let mut work = Workspace::new(&system);
+        let newton = Newton::new(&system, &work.scales, method.settings);
         let integrator = (method.integrator.make)(&system, &newton, method.parameters);
         if !state.fits(&system) || state.memory.len() != integrator.memory(&system) {
             return None;
         }
-        let mut work = Workspace::new(&system);
         work.level = method.settings.level;
         work.memory = state.memory.clone();
         state.load(&mut work);

@@ -166,7 +166,7 @@ impl Simulation {
     fn begin(system: Arc<System>, method: Method, step: f64, asked: &Asked<'_>) -> Result<Self, StartError> {
         let mut work = Workspace::new(&system);
         work.level = method.settings.level;
-        let mut newton = Newton::new(&system, method.settings);
+        let mut newton = Newton::new(&system, &work.scales, method.settings);
         let start = start::prepare(&system, &method, asked, &mut newton, &mut work)?;
         let integrator = (method.integrator.make)(&system, &newton, method.parameters);
         work.memory = vec![0.0; integrator.memory(&system)];

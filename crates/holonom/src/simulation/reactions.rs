@@ -56,8 +56,9 @@ pub(super) struct Elsewhere {
 
 impl Elsewhere {
     fn new(apart: Apart, method: &Method) -> Self {
-        let newton = Newton::new(&apart.system, method.settings);
-        Self { work: Workspace::new(&apart.system), newton, apart }
+        let work = Workspace::new(&apart.system);
+        let newton = Newton::new(&apart.system, &work.scales, method.settings);
+        Self { work, newton, apart }
     }
 
     /// Puts its nodes where those of `own` are and finds the forces.

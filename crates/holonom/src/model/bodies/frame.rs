@@ -4,7 +4,7 @@
 //! All geometry of a model is given where it is at the start, so that the *reference* coordinates of a point or a
 //! direction of a body are the world's at the start.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, Vector4};
 
 use crate::model::geometry::{self, Vec3};
 use crate::system::{NodeId, Place, Term};
@@ -175,7 +175,7 @@ pub fn mass_blocks(frame: &Frame, inertia: &PseudoInertia) -> Vec<(Place, Place,
             let (m, s) = match dim {
                 2 => planar_block(left, right, inertia),
                 _ => {
-                    let row = |row: &[Factor; 4]| DVector::from_fn(4, |c, _| row[c][0]);
+                    let row = |row: &[Factor; 4]| Vector4::from_fn(|c, _| row[c][0]);
                     ((row(left).transpose() * inertia * row(right))[0], 0.0)
                 }
             };
