@@ -289,6 +289,7 @@ pub fn start_failure(error: StartError) -> Failure {
         StartError::Acceleration => {
             "something that can turn or move has no inertia, such as a rod about itself: give it some, or hold it with a joint"
         }
+        StartError::NotFinite => "a formula may be outside its domain there, or a table outside its range",
         StartError::Nonholonomic { .. } => "take another formulation, such as the default",
         _ => "move what is named there, or take away or loosen one of the constraints",
     };

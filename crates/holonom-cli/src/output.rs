@@ -177,14 +177,29 @@ pub(crate) fn simulate_kept(
     if !step_us.is_null() {
         value["time"]["step_us"] = step_us;
     }
+    let unknown: Vec<String> = unknown_measures(model, watched.recorder.recording());
+    if !quiet {
+        unknown.iter().for_each(|text| note(text));
+    }
     value["provenance"] = serde_json::to_value(&provenance).expect("a provenance is plain data");
-    value["notes"] = slips(loaded).chain(corrections.clone()).collect();
+    value["notes"] = slips(loaded).chain(corrections.clone()).chain(unknown).collect();
     let last = Point::of(&simulation, &watched.recorder, &corrections);
     let before_end = watched.before_end.take().filter(|_| !last.run.goes_on_unbroken());
     let recording = watched.finish();
     value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording)).expect("peaks are plain data");
     let finished = Finished { method: name, recording, summary: value, completed: status == Status::Completed };
     Ok((finished, Reached { last, before_end }))
+}
+
+/// Measures that have no value in some rows.
+fn unknown_measures(model: &Model, recording: &Recording) -> Vec<String> {
+    let rows = recording.rows();
+    let count = |name: &String| recording.column(name).map_or(0, |values| values.iter().filter(|value| value.is_nan()).count());
+    let of_measures = model.channels.measures.iter().map(|measure| (&measure.name, count(&measure.name)));
+    let without = of_measures.filter(|(_, count)| *count > 0);
+    without
+        .map(|(name, count)| format!("the measure `{name}` has no value in {count} of {rows} rows: a formula is outside its domain there"))
+        .collect()
 }
 
 /// What looks like a slip, and what was put right before the start.

@@ -244,3 +244,49 @@ fn what_happens_between_nominal_times_is_seen() {
         }
     }
 }
+
+/// A stop that pushes from its first touch on, by a formula of the place alone: the mass comes back with the velocity that it came with, also
+/// where a step from a place before it would end far inside, and at a nominal time that is the moment of the touch.
+#[test]
+fn loads_that_jump_with_the_place_are_seen() {
+    let text = "gravity = [0, 0, 0]\n[point.p]\nmass = 1\nposition = [0, 0, 0]\nvelocity = [2, 0, 0]\n[force.stop]\ntype = \"expression\"\n\
+                point = \"p\"\nforce = [\"-(50 + 200*(x - 1))*step(x - 1)\", 0, 0]\n";
+    let model = model(text);
+    // x = 0.75 + a cos ωs + b sin ωs inside, from x = 1 and v = 2 on; out again at half the phase before and behind the farthest place.
+    let (omega, a, b) = (200_f64.sqrt(), 0.25, 2.0 / 200_f64.sqrt());
+    let inside = 2.0 * (b / a).atan() / omega;
+    let end = 1.0 - 2.0 * (3.0 - 0.5 - inside);
+    for method in ["conserving-ggl", "conserving", "conserving-projected", "trapezoidal-projected", "rattle", "generalized-alpha", "radau"]
+    {
+        for accuracy in [1e-3, 1e-5, 1e-6] {
+            for step in [3.0, 0.5, 0.37] {
+                let choice = Choice { method: Some(method.into()), accuracy: Some(accuracy), ..Choice::default() };
+                let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&choice).unwrap(), step).unwrap();
+                assert_eq!(simulation.run(3.0, &mut |_: &Simulation| Verdict::GoOn), Status::Completed);
+                let off = (simulation.state().x[0] - end).abs();
+                // A jump is found to round-off of a velocity over the step.
+                assert!(off <= 10.0 * accuracy + 3e-5, "{method}, {accuracy:e}, {step}: {off:e}");
+            }
+        }
+    }
+}
+
+/// Where positions have left their rows the energy is off at a rate that no step makes less: steps grow again after each sample all the same.
+#[test]
+fn steps_grow_again_after_samples() {
+    let text = "plane = \"xz\"\n[body.a]\nmass = 1\ninertia = 0.1\nposition = [0.5, 0]\n[body.b]\nmass = 1\ninertia = 0.1\nposition = [1.5, 0]\n\
+                [joint.j1]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0]\n\
+                [joint.j2]\ntype = \"revolute\"\nbetween = [\"a\", \"b\"]\nat = [1, 0]\n\
+                [force.s]\ntype = \"spring\"\nbetween = [\"ground\", \"b\"]\nstiffness = K\nrest_length = 1.4\n\
+                [input.n]\n[event.e]\nevery = 0.013\nset = { n = \"n + 1\" }\n";
+    for stiffness in ["100", "1080", "2060", "3040", "4020"] {
+        let model = model(&text.replace('K', stiffness));
+        let choice = Choice { method: Some("lagrange-1/dopri5".into()), accuracy: Some(1e-6), ..Choice::default() };
+        let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&choice).unwrap(), 0.01).unwrap();
+        let status = simulation.run(2.0, &mut |simulation: &Simulation| {
+            let taken = simulation.audit().work_summary(simulation.steps()).steps_taken;
+            if taken < 20_000 { Verdict::GoOn } else { Verdict::Stop }
+        });
+        assert_eq!(status, Status::Completed, "{stiffness} N/m");
+    }
+}

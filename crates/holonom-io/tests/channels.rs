@@ -10,10 +10,14 @@ use holonom::simulation::{Choice, Method, Simulation, Status};
 use holonom_io::Source;
 
 fn run(model: &Model, step: f64, end: f64) -> (Simulation, Recording) {
+    run_with(model, step, end, Constraints::Nothing)
+}
+
+fn run_with(model: &Model, step: f64, end: f64, constraints: Constraints) -> (Simulation, Recording) {
     let method = Method::resolve(&Choice::default().named("radau")).unwrap();
     let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
     simulation.find_reactions();
-    let mut recorder = Recorder::new(&model.channels, &model.system, 1, Constraints::Nothing);
+    let mut recorder = Recorder::new(&model.channels, &model.system, 1, constraints);
     assert_eq!(simulation.run(end, &mut recorder), Status::Completed);
     (simulation, recorder.finish())
 }
@@ -33,6 +37,13 @@ fn columns<'a, const N: usize>(recording: &'a Recording, names: [&str; N]) -> [&
 fn each<const N: usize>(recording: &Recording, names: [&str; N], mut check: impl FnMut([f64; N])) {
     let columns = columns(recording, names);
     (0..recording.rows()).for_each(|k| check(columns.map(|column| column[k])));
+}
+
+/// A vector turned by a quaternion, w first.
+fn turned(q: [f64; 4], u: [f64; 3]) -> [f64; 3] {
+    let q = nalgebra::UnitQuaternion::new_normalize(nalgebra::Quaternion::new(q[0], q[1], q[2], q[3]));
+    let u = q * nalgebra::Vector3::from(u);
+    [u.x, u.y, u.z]
 }
 
 fn close(name: &str, found: f64, expected: f64) {
@@ -219,11 +230,6 @@ fn loads_are_those_of_their_formulas() {
         [fx, fy, fz].into_iter().zip(expected).for_each(|(found, expected)| close("expression", found, expected));
         close("power", power, fx * vx + fy * vy + fz * vz);
     });
-    let turned = |q: [f64; 4], u: [f64; 3]| {
-        let q = nalgebra::UnitQuaternion::new_normalize(nalgebra::Quaternion::new(q[0], q[1], q[2], q[3]));
-        let u = q * nalgebra::Vector3::from(u);
-        [u.x, u.y, u.z]
-    };
     let names = ["t", "rocket.qw", "rocket.qx", "rocket.qy", "rocket.qz", "rocket.wy", "rocket.nozzle.x", "rocket.nozzle.vz"];
     let recording = of_example(forces::KINDS, "force");
     let (state, thrust) = (columns(&recording, names), columns(&recording, ["thrust.fx", "thrust.fy", "thrust.fz"]));
@@ -241,14 +247,14 @@ fn loads_are_those_of_their_formulas() {
 
 /// The first body is the ground, so that its axes are the world's.
 #[test]
-fn bushings_push_back_along_and_about_all_axes() {
+fn bushings_push_back_along_all_axes() {
     let recording = of_example(forces::KINDS, "bushing");
-    let [stiffness, damping] = [[2e3, 2e3, 5e3, 100.0, 120.0, 90.0], [20.0, 20.0, 50.0, 1.0, 1.0, 1.0]];
-    let values = columns(&recording, ["mount.dx", "mount.dy", "mount.dz", "mount.rx", "mount.ry", "mount.rz"]);
-    let efforts = columns(&recording, ["mount.fx", "mount.fy", "mount.fz", "mount.tx", "mount.ty", "mount.tz"]);
+    let [stiffness, damping] = [[2e3, 2e3, 5e3], [20.0, 20.0, 50.0]];
+    let values = columns(&recording, ["mount.dx", "mount.dy", "mount.dz"]);
+    let efforts = columns(&recording, ["mount.fx", "mount.fy", "mount.fz"]);
     let [t] = columns(&recording, ["t"]);
     for k in 1..recording.rows() - 1 {
-        for c in 0..6 {
+        for c in 0..3 {
             let rate = (values[c][k + 1] - values[c][k - 1]) / (t[k + 1] - t[k - 1]);
             let expected = -stiffness[c] * values[c][k] - damping[c] * rate;
             // The rate is a difference, which h² spoils.
@@ -256,6 +262,41 @@ fn bushings_push_back_along_and_about_all_axes() {
             assert!(off < 0.05 * (1.0 + efforts[c].iter().fold(0.0, |most: f64, effort| most.max(effort.abs()))), "{c}: {off}");
         }
     }
+}
+
+/// What turns a free body is the moment of its bushing: Iα + ω × Iω, far from small angles and about three axes at once, and about the normal of a
+/// plane.
+#[test]
+fn bushings_exert_the_moments_that_they_show() {
+    let text = |plane: &str, inertia: &str, spin: &str, stiffness: &str| {
+        format!(
+            "{plane}[body.b]\nmass = 1\ninertia = {inertia}\nposition = {at}\nangular_velocity = {spin}\n[force.k]\ntype = \"bushing\"\n\
+             between = [\"ground\", \"b\"]\nat = {at}\nstiffness = {stiffness}\ndamping = {stiffness}\n",
+            at = if plane.contains("plane") { "[0, 0]" } else { "[0, 0, 0]" }
+        )
+    };
+    let planar = run_with(&model(&text("plane = \"xy\"\n", "0.5", "3", "[0, 0, 10]")), 0.001, 0.3, Constraints::Joints).1;
+    each(&planar, ["b.alpha", "k.t"], |[alpha, moment]| close("planar moment", moment, 0.5 * alpha));
+    let inertia = [0.5, 0.6, 0.7];
+    let spatial = run_with(
+        &model(&text("gravity = [0, 0, 0]\n", "[0.5, 0.6, 0.7]", "[1.5, 1, 0.5]", "[0, 0, 0, 10, 20, 40]")),
+        0.001,
+        0.3,
+        Constraints::Joints,
+    )
+    .1;
+    let names = ["qw", "qx", "qy", "qz", "wx", "wy", "wz", "alphax", "alphay", "alphaz"].map(|name| format!("b.{name}"));
+    let names = names.iter().map(String::as_str).chain(["k.tx", "k.ty", "k.tz"]).collect::<Vec<_>>();
+    let names: [&str; 13] = names.try_into().unwrap();
+    each(&spatial, names, |[qw, qx, qy, qz, wx, wy, wz, ax, ay, az, tx, ty, tz]| {
+        // In the axes of the body.
+        let back = |v: [f64; 3]| turned([qw, -qx, -qy, -qz], v);
+        let (w, a, t) = (back([wx, wy, wz]), back([ax, ay, az]), back([tx, ty, tz]));
+        for k in 0..3 {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            close("spatial moment", t[k], inertia[k] * a[k] + (inertia[j] - inertia[i]) * w[i] * w[j]);
+        }
+    });
 }
 
 #[test]
@@ -354,5 +395,30 @@ fn driven_distances_have_their_length() {
                 close("power", power, effort * rate);
             },
         );
+    }
+}
+
+/// With the normal along z a puck's x and y are those of the model; of other normals x is the world's axis farthest from them, and y is u × x.
+#[test]
+fn displacements_in_a_plane_go_where_they_say() {
+    for kind in ["planar", "point-on-plane"] {
+        for (axis, x, y) in [
+            ([0, 0, 1], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]),
+            ([0, 0, -1], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0]),
+            ([1, 0, 0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]),
+            ([0, 1, 0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]),
+        ] {
+            for (name, expected) in [("x", x), ("y", y)] {
+                let text = format!(
+                    "gravity = [0, 0, 0]\n[body.puck]\nmass = 1\ninertia = [1, 1, 1]\nposition = [0, 0, 0]\n[joint.table]\ntype = \"{kind}\"\n\
+                     between = [\"ground\", \"puck\"]\nat = [0, 0, 0]\naxis = {axis:?}\n\
+                     [drive.d]\ntype = \"displacement\"\njoint = \"table.{name}\"\nprofile = \"t^2\"\n"
+                );
+                let (_, recording) = run(&model(&text), 0.1, 1.0);
+                let found = ["puck.x", "puck.y", "puck.z"].map(|column| *recording.column(column).unwrap().last().unwrap());
+                let off = found.iter().zip(expected).map(|(found, expected)| (found - expected).abs()).fold(0.0, f64::max);
+                assert!(off < 1e-12, "{kind}, axis {axis:?}, {name}: {found:?}");
+            }
+        }
     }
 }

@@ -14,11 +14,14 @@ fn text(damping: f64, stiffness: f64) -> String {
     )
 }
 
+fn named(method: &str) -> Method {
+    Method::resolve(&Choice::default().named(method)).unwrap()
+}
+
 /// Way, velocity and booked work after a second, and the largest velocity against the first on the way.
 fn run(text: &str, method: &str, step: f64) -> [f64; 4] {
     let model = model(text);
-    let method = Method::resolve(&Choice::default().named(method)).unwrap();
-    let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
+    let mut simulation = Simulation::new(model.system.clone(), named(method), step).unwrap();
     let mut back = 0.0_f64;
     let mut see = |simulation: &Simulation| {
         back = back.max(-simulation.velocities()[0]);
@@ -55,6 +58,35 @@ fn what_is_overdamped_stands_still() {
                 assert!((work + 0.5 * (100.0 - velocity * velocity)).abs() < 1e-9 + 2e-14 * c, "{method}, c = {c}: {work}");
             }
         }
+    }
+}
+
+/// Schemes that take the rate of a damper at the mean of a step, whatever it is, would turn what is overdamped round for ever. Their steps are
+/// divided until it stops, but for what has less energy than the damper would take in a step; where no part is short enough the run stops.
+#[test]
+fn no_scheme_turns_a_motion_round_for_ever() {
+    let h = 0.01;
+    for method in ["trapezoidal-projected", "trapezoidal", "newmark", "midpoint", "rattle", "gauss"] {
+        let mut stopped = 0;
+        for decade in -3..=9 {
+            let c = 10.0_f64.powi(decade);
+            let mut simulation = Simulation::new(model(&text(c, 0.0)).system, named(method), h).unwrap();
+            let status = simulation.run(1.0, &mut |_: &Simulation| Verdict::GoOn);
+            let [way, velocity] = [simulation.state().x[0] - 5.0, simulation.velocities()[0]];
+            println!("{method:22} c = {c:7.0e} way {way:9.6} ({:9.6}), velocity {velocity:9.2e}, {status:?}", 10.0 / c);
+            match status {
+                Status::Stopped { reason, .. } => {
+                    assert!(reason.contains("turns round what `d` brakes") && c > 1e6, "{method}, c = {c}: {reason}");
+                    stopped += 1;
+                }
+                Status::Completed => {
+                    let (exact, left) = (10.0 / c * -(-c).exp_m1(), (50.0 / (h * c)).sqrt());
+                    assert!((way - exact).abs() <= 0.1 * exact + h * left, "{method}, c = {c}");
+                    assert!(velocity.abs() <= left.max(10.0 * (-c).exp() + 1e-9), "{method}, c = {c}: {velocity}");
+                }
+            }
+        }
+        assert!(stopped <= 3, "{method}");
     }
 }
 

@@ -404,3 +404,19 @@ fn arms_pass_through_rest_under_small_torques() {
         }
     }
 }
+
+/// A drive brings a balanced wheel to rest, ever more slowly: what rounded places are to its velocity is then far more than a share of its energy.
+#[test]
+fn drives_come_to_rest() {
+    for profile in ["0.5*(tanh(10*(t - 1)) + tanh(10))", "1 - (1 + 8*t)*exp(-8*t)", "1/(1 + exp(-20*(t - 0.5)))", "0.3*(1 - exp(-6*t^2))"] {
+        for mass in [1e-3, 1.0, 1e3] {
+            let text = format!(
+                "plane = \"xy\"\n[body.b]\nmass = {mass}\ninertia = 1\nposition = [0, 0]\n[joint.j]\ntype = \"revolute\"\nbetween = [\"ground\", \"b\"]\n\
+                 at = [0, 0]\n[drive.d]\ntype = \"angle\"\njoint = \"j\"\nprofile = \"{profile}\"\n"
+            );
+            for of in ["conserving-ggl", "conserving", "conserving-projected"] {
+                run(profile, &model(&text), of, 0.01, 3.0);
+            }
+        }
+    }
+}

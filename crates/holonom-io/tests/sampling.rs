@@ -113,3 +113,16 @@ fn a_sample_without_a_value_stops_the_run() {
     let Status::Stopped { at, reason } = simulation.step_to(2.0) else { panic!("it went on") };
     assert!(at > 0.1 && at < 1.0 && reason.contains("what the event `controller` sets an input to has no value"), "{at} {reason}");
 }
+
+/// Samples far closer than a millionth of the nominal step are taken all the same.
+#[test]
+fn no_sample_is_left_out() {
+    let text =
+        "gravity = [0, 0, 0]\n[point.p]\nmass = 1\nposition = [0, 0, 0]\n[input.n]\n[event.e]\nevery = PERIOD\nset = { n = \"n + 1\" }\n";
+    for (period, step, end, expected) in [("1e-3", 2000.0, 10.0, 10_001.0), ("9e-7", 1.0, 0.01, 11_112.0), ("1.01e-6", 1.0, 0.01, 9_901.0)]
+    {
+        let mut simulation = begin(&text.replace("PERIOD", period), "conserving-ggl", step);
+        assert_eq!(simulation.run(end, &mut |_: &Simulation| holonom::simulation::Verdict::GoOn), Status::Completed);
+        assert_eq!(simulation.input("n"), Some(expected), "every {period} s");
+    }
+}

@@ -478,3 +478,41 @@ fn jumps_of_measures_end_steps_as_those_of_forces() {
     });
     assert_eq!(counts[0], counts[1]);
 }
+
+/// An encoder: an event that moves its own threshold happens at each of them, with several in a nominal step and with several steps between.
+#[test]
+fn an_event_may_move_its_own_threshold() {
+    let text = "gravity = [0, 0, 0]\n[point.p]\nmass = 1\nposition = [0, 0, 0]\nvelocity = [1, 0, 0]\n[input.next]\ndefault = 0.007\n[input.n]\n\
+                [event.tick]\nwhen = \"p.x - next\"\ndirection = \"rising\"\nset = { next = \"next + 0.007\", n = \"n + 1\" }\n";
+    for method in ["conserving-ggl", "radau", "dopri5"] {
+        for step in [0.1, 0.01, 0.001] {
+            let (simulation, _) = run(&model(text), method, step, 1.0, 1);
+            assert_eq!(simulation.input("n"), Some(142.0), "{method}, {step} s");
+            for (k, event) in simulation.events().iter().enumerate() {
+                assert!((event.t - 0.007 * (k + 1) as f64).abs() < 1e-10, "{method}, {step} s: {event:?}");
+            }
+        }
+    }
+}
+
+/// A relay without hysteresis switches without end where either side drives it back to the other: the run ends there, and says so.
+#[test]
+fn a_relay_that_chatters_ends_the_run() {
+    let text = "gravity = [0, 0, 0]\n[point.p]\nmass = 1\nposition = [0, 0, 0]\nvelocity = [1, 0, 0]\n[input.u]\ndefault = -1\n\
+                [event.up]\nwhen = \"p.vx + p.x - 0.5\"\ndirection = \"rising\"\nset = { u = -1 }\n\
+                [event.down]\nwhen = \"p.vx + p.x - 0.5\"\ndirection = \"falling\"\nset = { u = 1 }\n\
+                [force.f]\ntype = \"expression\"\npoint = \"p\"\nforce = [\"2*u\", 0, 0]\n";
+    for method in ["conserving-ggl", "radau", "generalized-alpha"] {
+        for step in [0.1, 0.01] {
+            let model = model(text);
+            let method = Method::resolve(&Choice::default().named(method)).unwrap();
+            let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
+            match simulation.run(1.0, &mut |_: &Simulation| Verdict::GoOn) {
+                Status::Stopped { at, reason } => {
+                    assert!((at - 0.3660254037844386).abs() < 1e-6 && reason.contains("happens again and again"), "{at} s: {reason}");
+                }
+                status => panic!("{status:?}"),
+            }
+        }
+    }
+}

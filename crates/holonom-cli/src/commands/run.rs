@@ -170,7 +170,7 @@ pub fn describe(loaded: &Loaded, summary: &Value) -> String {
         (
             "steps",
             format!(
-                "{} of {} s{}, {} iterations in each, {} rejected",
+                "{} of {} s{}, {} iterations in each, {} rejected{}",
                 summary["steps"],
                 short(summary["step"].as_f64().unwrap_or(0.0)),
                 match summary["method"]["accuracy"].as_f64() {
@@ -178,7 +178,11 @@ pub fn describe(loaded: &Loaded, summary: &Value) -> String {
                     Some(accuracy) => format!(", {} taken for an accuracy of {}", summary["work"]["steps_taken"], short(accuracy)),
                 },
                 number("work", "iterations_per_step"),
-                summary["work"]["rejected_steps"]
+                summary["work"]["rejected_steps"],
+                match summary["provenance"]["every"].as_u64() {
+                    None | Some(1) => String::new(),
+                    Some(every) => format!("; one in {every} recorded, of which the largest values are"),
+                }
             ),
         ),
         ("energy", format!("{} J at the start, {} J at the end", number("energy", "initial"), number("energy", "final"))),

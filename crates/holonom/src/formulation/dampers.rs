@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::newton::Newton;
 use super::workspace::Workspace;
-use crate::system::{Law, LawEntry, MAX_ARGUMENTS, Reach, Response, System};
+use crate::system::{Evaluation, Law, LawEntry, MAX_ARGUMENTS, Reach, Response, System};
 
 /// z by the masses of single nodes from which on it is found with what else holds these: that may make it larger, as a rod's end
 /// is lighter than the rod.
@@ -152,14 +152,54 @@ impl Newton {
 impl Damping {
     /// Takes rates and stiffness from the start of a step.
     fn begin(&mut self, system: &System, law: &LawEntry, t: f64, work: &Workspace) {
-        let (at, v, m) = (&work.start.at, &work.start.v, law.arguments.len());
-        for (rate, &quantity) in self.rate.iter_mut().zip(&law.arguments) {
-            *rate = system.along(&system.slots_of(quantity), &system.slots.nodes, at, v);
-        }
+        let (at, m) = (&work.start.at, law.arguments.len());
+        self.rate = rates(system, law, at, &work.start.v);
         let mut response = Response::default();
         law.law.at(&system.arguments(law, at)[..m], &self.rate[..m], t, &mut response);
-        self.stiffness = std::array::from_fn(|i| response.by_rate[i][i].abs());
+        let (_, power) = braking(system, law, t, at, &work.start.v);
+        // Of friction that slides the force hardly changes with the rate: what counts is what would stop it.
+        let secant = |i: usize| if self.rate[i] == 0.0 { 0.0 } else { power[i] / (self.rate[i] * self.rate[i]) };
+        self.stiffness = std::array::from_fn(|i| response.by_rate[i][i].abs().max(secant(i)));
     }
+}
+
+/// What dissipative laws would take in a step of length `h` (s) of motions that it turned round, J: of each argument by the less of the powers
+/// at the ends of the step, at the times `t` (s); and the law that would take most. No damper turns a motion round, but a method may do so
+/// where its steps are too long for the damper.
+pub fn taken_of_turned(system: &System, t: [f64; 2], h: f64, work: &Workspace) -> (f64, Option<usize>) {
+    let (mut sum, mut most) = (0.0, (0.0, None));
+    for (k, law) in system.laws.iter().enumerate().filter(|(_, law)| !law.law.conservative()) {
+        let ends = [(t[0], &work.start), (t[1], &work.end)].map(|(t, end)| braking(system, law, t, &end.at, &end.v));
+        let [(from, before), (to, after)] = &ends;
+        let turned = (0..law.arguments.len()).filter(|&i| from[i] * to[i] < 0.0);
+        let taken: f64 = h.abs() * turned.map(|i| before[i].min(after[i]).max(0.0)).sum::<f64>();
+        sum += taken;
+        if taken > most.0 {
+            most = (taken, Some(k));
+        }
+    }
+    (sum, most.1)
+}
+
+/// Rates of the arguments of a law, and the power that the part of its force takes that follows them, W.
+fn braking(system: &System, law: &LawEntry, t: f64, at: &Evaluation, v: &[f64]) -> ([f64; MAX_ARGUMENTS], [f64; MAX_ARGUMENTS]) {
+    let (values, m) = (system.arguments(law, at), law.arguments.len());
+    let rates = rates(system, law, at, v);
+    let [along, against] = [1.0, -1.0].map(|sense| {
+        let mut response = Response::default();
+        law.law.at(&values[..m], &rates.map(|rate| sense * rate)[..m], t, &mut response);
+        response.force
+    });
+    (rates, std::array::from_fn(|i| 0.5 * (along[i] - against[i]) * rates[i]))
+}
+
+/// Rates of the arguments of a law.
+fn rates(system: &System, law: &LawEntry, at: &Evaluation, v: &[f64]) -> [f64; MAX_ARGUMENTS] {
+    let mut rates = [0.0; MAX_ARGUMENTS];
+    for (rate, &quantity) in rates.iter_mut().zip(&law.arguments) {
+        *rate = system.along(&system.slots_of(quantity), &system.slots.nodes, at, v);
+    }
+    rates
 }
 
 /// Bounds z over the step by Σ c |g| Σ |g| over the mass of each node: by Gershgorin no eigenvalue of M⁻¹ Gᵀ c G is larger where M

@@ -36,6 +36,15 @@ pub enum Failure {
         /// All there was to move, J.
         supply: f64,
     },
+    /// Steps are too long for a strong damper, which turns a motion round in each of them instead of ending it.
+    Ringing {
+        /// Which of the system's laws.
+        law: usize,
+        /// What dampers would take in the step of the motion that was turned round, J.
+        taken: f64,
+        /// All there was to move, J.
+        supply: f64,
+    },
     /// A recorded angle turns so far in a step that its turns are not counted for sure.
     Turned {
         /// Which of the system's gauges.
@@ -45,6 +54,11 @@ pub enum Failure {
     },
     /// A number that an event sets an input to has no value.
     NoSetting {
+        /// Which of the system's events.
+        event: usize,
+    },
+    /// An event happens again and again at one time.
+    Chattering {
         /// Which of the system's events.
         event: usize,
     },
@@ -90,11 +104,19 @@ impl Failure {
             Self::Unsupplied { excess, supply } => format!(
                 "{excess:.1e} J of energy came from nothing where {supply:.1e} J could move (shorter steps help, or a method that keeps the energy)"
             ),
+            Self::Ringing { law, taken, supply } => format!(
+                "the step turns round what `{}` brakes, which would take {taken:.1e} J of the {supply:.1e} J that could move: it is too long for a damper so strong (shorter steps help, or conserving-ggl and radau, where dampers do not ring)",
+                system.laws[law].name
+            ),
             Self::Turned { gauge, by } => {
                 format!("`{}` turns by {by:.2} rad in a step, too far for turns to be counted: give a shorter step", system.gauges()[gauge])
             }
             Self::NoIndicator { event } => format!(
                 "what the event `{}` waits for has no value there: a formula is outside its domain, or a table outside its range",
+                system.events[event].name
+            ),
+            Self::Chattering { event } => format!(
+                "the event `{}` happens again and again at the same time: what it sets makes its condition turn round at once (give the conditions some distance, as a switch has)",
                 system.events[event].name
             ),
             Self::NoSetting { event } => format!(

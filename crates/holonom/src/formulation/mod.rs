@@ -34,7 +34,7 @@ mod velocity_rows;
 mod workspace;
 
 pub use collocation::{Collocation, Timing};
-pub use dampers::Fit;
+pub use dampers::{Fit, taken_of_turned};
 pub use failure::{Failure, Unknown};
 pub(crate) use independence::extent;
 pub use independence::{Independence, VANISHED, independence, independent, natural_sizes};

@@ -78,6 +78,8 @@ pub struct LocalErrors {
     /// Of position (n), m, and velocity (n), m/s.
     pub q: Vec<f64>,
     pub v: Vec<f64>,
+    /// Largest velocity that loads would make more or less in the step by what they are at its ends than they made, m/s.
+    pub loads: f64,
     /// Those that are allowed, over the size of the mechanism and the step, 1/s, where steps follow from an accuracy.
     pub allowed: f64,
 }
@@ -172,7 +174,7 @@ impl Workspace {
             turned: Turned { v: vec![0.0; slots], a: vec![0.0; slots], rows: vec![0.0; slots], half: vec![0.0; system.invariants.len()] },
             phi: vec![0.0; r],
             phi_start: vec![0.0; r],
-            estimate: LocalErrors { q: vec![0.0; n], v: vec![0.0; n], allowed: 0.0 },
+            estimate: LocalErrors { q: vec![0.0; n], v: vec![0.0; n], loads: 0.0, allowed: 0.0 },
             inputs: system.inputs.iter().map(|(_, default)| *default).collect(),
             memory: Vec::new(),
             full: vec![0.0; all],

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::heading::{Heading, Units};
 use crate::simulation::Simulation;
-use crate::system::{FunctionId, LawEntry, LoadEntry, Look, MAX_ARGUMENTS, Quantity, Response, Sense, System};
+use crate::system::{FunctionId, LawEntry, LoadEntry, Look, MAX_ARGUMENTS, Quantity, Response, Sense, System, Term, place_of};
 
 /// A force whose effect is recorded.
 #[derive(Clone)]
@@ -32,6 +32,13 @@ pub enum Shows {
     },
     /// What its laws exert along some coordinates.
     Along(Vec<Along>),
+    /// What a bushing exerts along and about the axes of its first body, which are those of the model at the start.
+    Bushing {
+        /// Displacements, then sines of rotations.
+        coordinates: Vec<Along>,
+        /// The axes of both bodies.
+        axes: [Vec<Vec<Term>>; 2],
+    },
     /// What its load exerts.
     Load {
         /// Whether it is a moment (N·m) and not a force (N).
@@ -147,7 +154,7 @@ impl RecordedForce {
                     headings.push(drum.effort_heading(&of));
                 }
             }
-            Shows::Along(coordinates) => {
+            Shows::Along(coordinates) | Shows::Bushing { coordinates, .. } => {
                 let shown = |along: &Along| along.value.clone().map(|[suffix, words]| (suffix, words, Units::of(along.is_angle)));
                 headings.extend(coordinates.iter().filter_map(shown).map(|(suffix, words, units)| of(&suffix, units.value, words)));
                 headings.extend(coordinates.iter().map(|along| along.effort_heading(&of)));
@@ -194,15 +201,19 @@ impl RecordedForce {
                     }
                 }
             }
-            Shows::Along(coordinates) => {
+            Shows::Along(coordinates) | Shows::Bushing { coordinates, .. } => {
                 let shown = coordinates.iter().filter(|along| along.value.is_some());
                 row.extend(shown.map(|along| at.value(along.coordinate.into())));
+                let first = row.len();
                 row.extend(coordinates.iter().map(|along| {
                     let own = |law: &LawEntry| law.arguments.first() == Some(&along.coordinate.into());
                     let efforts = laws.iter().zip(&responses).filter(|(law, _)| own(law)).map(|(_, (_, response))| -response.force[0]);
                     let of_loads = loads.iter().map(|load| at.along(load, along.coordinate.into()));
                     0.0 + efforts.sum::<f64>() + of_loads.sum::<f64>()
                 }));
+                if let Shows::Bushing { axes, .. } = &self.shows {
+                    moments(axes, at.look.x, &mut row[first + dim..]);
+                }
             }
             Shows::Load { is_moment, exerts } => {
                 let Some(load) = loads.first() else { return };
@@ -217,6 +228,25 @@ impl RecordedForce {
         let of_laws: f64 = laws.iter().zip(&responses).map(of_law).sum();
         let of_loads: f64 = loads.iter().map(|load| at.exerted(load).1).sum();
         row.push(0.0 + of_laws + of_loads);
+    }
+}
+
+/// Makes moments about the axes e(A) of the first body from efforts f along the sines s_k = ½ (e_j(A)·e_i(B) − e_i(A)·e_j(B)), (i, j, k)
+/// cyclic. With R = e(A)·e(B)ᵀ a rotation δθ of B about the axes of A changes them by δs_k = ½ (tr R δθ_k − Σ R_km δθ_m).
+fn moments([first, second]: &[Vec<Vec<Term>>; 2], x: &[f64], efforts: &mut [f64]) {
+    let dim = first.len();
+    let [first, second] = [first, second].map(|axes| axes.iter().map(|axis| place_of(axis, x, dim)).collect::<Vec<_>>());
+    let r = |k: usize, m: usize| (0..dim).map(|c| first[k][c] * second[m][c]).sum::<f64>();
+    let trace: f64 = (0..dim).map(|k| r(k, k)).sum();
+    match efforts {
+        // Both normals stay the same.
+        [about_normal] => *about_normal *= 0.5 * trace,
+        all => {
+            let of_sines = [all[0], all[1], all[2]];
+            for (m, moment) in all.iter_mut().enumerate() {
+                *moment = 0.5 * (trace * of_sines[m] - (0..3).map(|k| of_sines[k] * r(k, m)).sum::<f64>());
+            }
+        }
     }
 }
 

@@ -83,7 +83,9 @@ impl Peaks {
             match &force.shows {
                 Shows::Power => Vec::new(),
                 Shows::Tension { .. } => vec![peak(&force.name, &[column("force")])],
-                Shows::Along(along) => along.iter().map(|along| peak(&force.name, &[column(&along.effort[0])])).collect(),
+                Shows::Along(along) | Shows::Bushing { coordinates: along, .. } => {
+                    along.iter().map(|along| peak(&force.name, &[column(&along.effort[0])])).collect()
+                }
                 Shows::Load { is_moment, .. } => {
                     let letter = if *is_moment { 't' } else { 'f' };
                     let components: Vec<String> = match (channels.axes.len(), is_moment) {

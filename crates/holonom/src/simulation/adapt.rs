@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::advance::Inside;
-use super::control::Control;
+use super::control::{Control, KEEPING};
 use super::{Audit, Method, Simulation, State, start};
 use crate::formulation::{Failure, Independence, Newton};
 use crate::integrator::{Estimate, Step, Work};
@@ -172,7 +172,9 @@ impl Pilot {
         let ratio = self.control.ratio(taken, step, t, &self.v, 1.0, work);
         // Errors of explicit schemes grow there, too, and may be far more than their estimate, which the energy shows.
         if simulation.method.integrator.is_explicit() {
-            return ratio.max(simulation.audit.made_since(&self.before.audit) / (WORSE * self.control.allowed() * step));
+            let of_energy = simulation.audit.made_since(&self.before.audit) / (WORSE * self.control.allowed() * step);
+            // It may be the same however long steps are, as where positions have left their rows, and asks for no length then.
+            return if of_energy > KEEPING { ratio.max(of_energy) } else { ratio };
         }
         if ratio <= 1.0 {
             return ratio;

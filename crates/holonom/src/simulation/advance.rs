@@ -1,7 +1,7 @@
 //! A nominal step: in parts where it fails as a whole, each audited, projected and judged before it becomes the state.
 
 use super::{Audit, Simulation};
-use crate::formulation::{Failure, Iteration};
+use crate::formulation::{Failure, Iteration, Sampling};
 use crate::integrator::Step;
 
 /// Halvings of a step before a run gives up.
@@ -110,6 +110,9 @@ impl Simulation {
             work.end.x[i] = work.start.x[i] + work.d[i];
         }
         system.evaluate(&work.end.x, target, &work.start.at, &mut work.end.at);
+        if work.estimate.allowed > 0.0 && matches!(taken.stage.sampling, Sampling::Between | Sampling::Middle) {
+            work.compare_loads(system, &taken.stage, target);
+        }
         let mut audit = self.audit.clone();
         let accounts = audit.integrated(system, &taken, target, work);
         self.judge.positions(system, target, work)?;
@@ -122,6 +125,7 @@ impl Simulation {
         audit.closed(system, method, target, &self.newton, work);
         self.judge.accelerations(step, work)?;
         self.judge.energy(system, step, &self.audit, &audit, work)?;
+        self.judge.dampers(system, [self.state.t, target], step, &audit, work)?;
         // A part that takes the nominal step out of its bound can be taken again.
         self.judge.whole(system, step, &audit, work)?;
         self.next_gauges.copy_from(&self.gauges);

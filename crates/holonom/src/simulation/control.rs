@@ -18,10 +18,13 @@ const SAFETY: f64 = 0.9;
 const ROUND_OFF: f64 = 1e-14;
 
 /// Ratio of error and allowance that leaves the step about as it is.
-const KEEPING: f64 = 0.5;
+pub(super) const KEEPING: f64 = 0.5;
 
 /// Smallest ratio of error and allowance that counts.
 const LEAST: f64 = 1e-6;
+
+/// Loads at the ends of a step may differ so many times more from what was taken of them between: they are there for those that jump.
+const WORSE: f64 = 20.0;
 
 /// Changes of the step by less than this are left out: matrices of equal steps are alike.
 const WORTH: f64 = 1.2;
@@ -115,13 +118,14 @@ impl Control {
         if self.estimate == Estimate::History {
             self.look_back(h, t, v, work);
         }
+        let of_loads = work.estimate.loads / (WORSE * self.speed);
         let error = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::INFINITY } else { m.max(x.abs()) });
         let noise = ROUND_OFF * amplified;
         let above = |error: f64, noise: f64| if error > noise { error } else { 0.0 };
         let mut position = error(&work.estimate.q) / work.scales.length;
-        let mut velocity = error(&work.estimate.v) / self.speed;
+        let mut velocity = (error(&work.estimate.v) / self.speed).max(of_loads);
         let of_velocity = noise * (work.scales.length / (h * self.speed)).max(1.0);
-        let is_noise = position <= noise && velocity <= of_velocity;
+        let is_noise = position <= noise && velocity.max(WORSE * of_loads) <= of_velocity;
         if amplified > 1.0 {
             (position, velocity) = (above(position, noise), above(velocity, of_velocity));
         }
@@ -135,7 +139,8 @@ impl Control {
         if is_noise { ratio.min(KEEPING) } else { ratio }
     }
 
-    /// Local errors of a scheme of order 2 that errs by h³/12 of the third derivatives, from divided differences.
+    /// Local errors of a scheme of order 2 that errs by h³/12 of the third derivatives, from divided differences. Where the step is much shorter
+    /// than those before, what jumped within it is little of a third derivative over all of them: it counts as within equal steps, too.
     fn look_back(&self, h: f64, now: f64, latest: &[f64], work: &mut Workspace) {
         let t = |k: usize| if k == 0 { now } else { self.times[k - 1] };
         for i in 0..self.start.len() {
@@ -147,8 +152,9 @@ impl Control {
                 2 => (second(0), 0.0),
                 _ => (second(0), (second(0) - second(1)) / (t(0) - t(3))),
             };
+            let equal = if self.count < 3 { 0.0 } else { (t(0) - t(2)) * (t(0) - t(3)) / (6.0 * WORSE) };
             work.estimate.q[i] = h * h * h * bend / 6.0;
-            work.estimate.v[i] = h * h * h * twist / 2.0;
+            work.estimate.v[i] = h * twist / 2.0 * equal.max(h * h);
         }
     }
 

@@ -29,6 +29,9 @@ const SHORTEST: f64 = 1e-6;
 /// Tries to find the time of an event. Each halves the interval at least every other time.
 const MOST_TRIES: usize = 100;
 
+/// An event that has happened so often at one time goes on for ever.
+const CHATTER: usize = 16;
+
 impl Simulation {
     /// Events that happened so far, in their order.
     pub fn events(&self) -> &[Happening] {
@@ -83,16 +86,23 @@ impl Simulation {
             return self.advance(target, wants_forces, show).map(|()| false);
         }
         let system = self.system.clone();
-        let shortest = SHORTEST * (target - self.state.t);
+        let shortest = self.shortest(target - self.state.t);
         let first = (self.audit.clone(), self.steps);
         // Indicators where the part begins, before inputs were set there; zero of events that happened there, also at the end of the step
         // before.
-        let known = self.watched.take().filter(|(t, _)| *t == self.state.t);
-        let mut from = known.map_or_else(|| self.indicate(), |(_, from)| Ok(from))?;
-        for last in self.happenings.iter().rev().take_while(|last| (self.state.t - last.t).abs() <= 2.0 * shortest) {
-            let same = system.events.iter().zip(&mut from).filter(|(event, _)| event.name == last.event);
-            same.for_each(|(_, from)| *from = 0.0);
-        }
+        let mut from = match self.watched.take().filter(|(t, _)| *t == self.state.t) {
+            Some((_, from)) => from,
+            None => {
+                let mut from = self.indicate()?;
+                for last in self.happenings.iter().rev().take_while(|last| (self.state.t - last.t).abs() <= 2.0 * shortest) {
+                    let same = system.events.iter().zip(&mut from).filter(|(event, _)| event.name == last.event);
+                    same.for_each(|(_, from)| *from = 0.0);
+                }
+                from
+            }
+        };
+        // Indicators that went through zero here and lie beside it again before anything else happens.
+        let mut turned: Vec<(usize, f64)> = Vec::new();
         loop {
             let due = self.due(shortest);
             let samples = !due.is_empty();
@@ -110,6 +120,7 @@ impl Simulation {
                 self.join_parts(&first);
                 return Ok(stops);
             }
+            turned.drain(..).for_each(|(at, beside)| from[at] = f64::MIN_POSITIVE.copysign(beside));
             let before = self.moment();
             let next = self.next_sample().unwrap_or(f64::INFINITY);
             let until = if next < target - shortest { next } else { target };
@@ -131,7 +142,7 @@ impl Simulation {
             };
             self.advance(until, reacts, Some(&mut look))?;
             let to = self.indicate().inspect_err(|_| self.restore(&before))?;
-            let (t, k) = match crossed(&from, &to) {
+            let (t, k, beside) = match crossed(&from, &to) {
                 Some(k) => self.locate(&before, (low, k), &from, shortest, wants_forces, &|to: &[f64]| crossed(&from, to))?,
                 None => {
                     from = to;
@@ -143,7 +154,11 @@ impl Simulation {
             let happening: Vec<usize> = (0..now.len()).filter(|&at| happens(at)).collect();
             if self.state.t > before.t() {
                 from = now;
+            } else {
+                // What went through zero here, and turned round when inputs were set, may go through it again.
+                turned.extend((0..).zip(beside).filter(|&(at, beside)| from[at] == 0.0 && beside != 0.0));
             }
+            self.require_no_chatter(k, t, shortest)?;
             if sees_divisions {
                 self.show_division(observer);
             }
@@ -159,14 +174,27 @@ impl Simulation {
     /// Lets events happen at a time, and says whether one ends the run.
     fn happen(&mut self, events: &[usize], t: f64, from: &mut [f64]) -> Result<bool, Failure> {
         let mut stops = false;
+        let before = self.indicate()?;
         for &k in events {
-            from[k] = 0.0;
             self.set_by(k)?;
             let event = &self.system.events[k];
             stops |= event.stops;
             self.happenings.push(Happening { event: event.name.clone(), t, stopped: event.stops });
         }
+        // What an event waits for may depend on what it sets: then it is not at zero any more.
+        let now = self.indicate()?;
+        events.iter().for_each(|&k| from[k] = if now[k] == before[k] { 0.0 } else { now[k] });
         Ok(stops)
+    }
+
+    /// Refuses an event that happens again and again at the same time.
+    fn require_no_chatter(&self, event: usize, t: f64, shortest: f64) -> Result<(), Failure> {
+        let name = &self.system.events[event].name;
+        let here = self.happenings.iter().rev().take_while(|last| (t - last.t).abs() <= 2.0 * shortest);
+        match here.filter(|last| last.event == *name).count() {
+            CHATTER.. => Err(Failure::Chattering { event }),
+            _ => Ok(()),
+        }
     }
 
     /// Shows the present state where a step is divided, with the forces of its inputs.
@@ -180,10 +208,12 @@ impl Simulation {
     /// Lets the events happen whose indicators jumped through zero when inputs were set, one after the other and each once, and says whether
     /// one ends the run; nothing where there were none.
     fn jump(&mut self, from: &mut [f64]) -> Result<Option<bool>, Failure> {
-        let mut jumps = None;
+        let (mut jumps, mut has_jumped) = (None, vec![false; from.len()]);
         for _ in 0..=from.len() {
             let now = self.indicate()?;
-            let jumped: Vec<usize> = (0..now.len()).filter(|&k| self.system.events[k].trigger.is_between(from[k], now[k])).collect();
+            let is_between = |k: usize| !has_jumped[k] && self.system.events[k].trigger.is_between(from[k], now[k]);
+            let jumped: Vec<usize> = (0..now.len()).filter(|&k| is_between(k)).collect();
+            jumped.iter().for_each(|&k| has_jumped[k] = true);
             from.iter_mut().zip(now).filter(|(from, _)| **from != 0.0).for_each(|(from, now)| *from = now);
             if jumped.is_empty() {
                 break;
@@ -243,9 +273,14 @@ impl Simulation {
         }
     }
 
+    /// Shortest part of a step of some length, and of the shortest period, s.
+    fn shortest(&self, length: f64) -> f64 {
+        SHORTEST * self.periods().map(|(_, period, _)| period).fold(length, f64::min)
+    }
+
     /// Counts as happened what lies before the present time, at which a run begins.
     pub(super) fn begin_periods(&mut self) {
-        let before = -SHORTEST * self.step;
+        let before = -self.shortest(self.step);
         self.samples = (0..self.system.events.len()).map(|k| if self.state.t > 0.0 { self.taken(k, before) } else { 0 }).collect();
     }
 
@@ -254,7 +289,7 @@ impl Simulation {
         if self.watched.as_ref().is_none_or(|(t, _)| *t != self.state.t) {
             self.watched = Some((self.state.t, self.indicate()?));
         }
-        let within = SHORTEST * self.step;
+        let within = self.shortest(self.step);
         let due = self.due(within);
         self.sample(&due, within).map(|()| !due.is_empty())
     }
@@ -272,7 +307,7 @@ impl Simulation {
     }
 
     /// Goes to where the first event happens in the part that began at `before` and in which the k-th has happened after the time `low`, and
-    /// says when that is and which it is.
+    /// says when that is, which it is, and what the indicators are just behind.
     fn locate(
         &mut self,
         before: &Moment,
@@ -281,12 +316,13 @@ impl Simulation {
         shortest: f64,
         wants_forces: bool,
         crossed: &dyn Fn(&[f64]) -> Option<usize>,
-    ) -> Result<(f64, usize), Failure> {
+    ) -> Result<(f64, usize, Vec<f64>), Failure> {
         let (begin, end) = (before.t(), self.state.t);
         // None has happened at `low`, and the k-th has at `high`.
         let mut high = end;
         let width = (LOCATED * (high - begin)).max(f64::EPSILON * high.abs());
-        let (mut at_low, mut at_high) = (from[k], self.indicate()?[k]);
+        let mut beside = self.indicate()?;
+        let (mut at_low, mut at_high) = (from[k], beside[k]);
         let (mut here, mut bisects) = (high, false);
         for _ in 0..MOST_TRIES {
             if high - low <= width {
@@ -296,7 +332,7 @@ impl Simulation {
             if high - begin <= 1.5 * shortest {
                 // Over so short a time all that moves goes straight.
                 self.restore(before);
-                return Ok((secant, k));
+                return Ok((secant, k, beside));
             }
             // Just beside the secant, towards the farther end, so that both ends come close.
             let aim = if secant - low < high - secant { secant + 0.25 * width } else { secant - 0.25 * width };
@@ -311,6 +347,7 @@ impl Simulation {
                 Some(other) => {
                     at_low = if other == k { at_low } else { from[other] };
                     (high, at_high, k) = (next, now[other], other);
+                    beside = now;
                 }
                 None => (low, at_low) = (next, now[k]),
             }
@@ -321,7 +358,7 @@ impl Simulation {
             self.restore(before);
             self.advance(lands, wants_forces, None)?;
         }
-        Ok((high, k))
+        Ok((high, k, beside))
     }
 
     /// Values of all indicators at the present state.

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use super::Method;
 use super::audit::Audit;
 use crate::energy;
-use crate::formulation::{Failure, Independence, Iteration, Level, Multipliers, RowsAt, Workspace};
+use crate::formulation::{Failure, Independence, Iteration, Level, Multipliers, RowsAt, Workspace, taken_of_turned};
 use crate::linalg::largest;
 use crate::projection::{Metric, Solve};
 use crate::system::{GaugeValues, System};
@@ -114,6 +114,8 @@ const TOLERANCES: f64 = 16.0;
 /// Holds steps to what a method promises.
 pub(super) struct Judge {
     promises: Vec<Promise>,
+    /// Whether dampers may turn motions round: at other means than those of steps that keep the energy.
+    looks_at_dampers: bool,
     /// Tolerance of the iteration, over the size of the mechanism.
     tolerance: f64,
     /// All mass, kg.
@@ -133,12 +135,14 @@ impl Judge {
         let mass = (0..system.free).map(|node| system.mass.diagonal(node)).sum();
         let weight = work.forces.weight.iter().map(|w| w.abs()).sum();
         let mut promises = method.promises();
+        let keeps_energy = [Promise::Energy, Promise::FallingEnergy].iter().any(|kept| promises.contains(kept));
+        let looks_at_dampers = method.settings.iterations.is_none() && !keeps_energy;
         // Where rows move, the impulse that projects velocities does work.
         for promise in promises.iter_mut().filter(|promise| **promise == Promise::FallingEnergy && system.is_driven()) {
             *promise = Promise::SuppliedEnergy;
         }
         let farthest = if method.subdivide { FARTHEST } else { PI };
-        Self { promises, tolerance: TOLERANCES * tolerance, mass, weight, farthest, independence: None }
+        Self { promises, looks_at_dampers, tolerance: TOLERANCES * tolerance, mass, weight, farthest, independence: None }
     }
 
     fn promises(&self, promise: Promise) -> bool {
@@ -172,10 +176,26 @@ impl Judge {
         }
     }
 
+    /// Looks after a step of length `h` (s) at the times `t` (s) whether it turned round what strong dampers would have stopped.
+    pub(super) fn dampers(&self, system: &System, t: [f64; 2], h: f64, after: &Audit, work: &Workspace) -> Result<(), Failure> {
+        if !self.looks_at_dampers {
+            return Ok(());
+        }
+        let [_, supply] = after.supply();
+        match taken_of_turned(system, t, h, work) {
+            (taken, Some(law)) if taken > SUPPLY * supply + self.nothing(h, 0.0, after, work) => {
+                Err(Failure::Ringing { law, taken, supply })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Energy that is nothing beside the energies after a nominal step of length `h` (s), J; `more` are others beside them.
     fn nothing(&self, h: f64, more: f64, after: &Audit, work: &Workspace) -> f64 {
         let length = work.scales.length;
-        let trembling = self.mass * (ROUNDED * length * 2.0 / h).powi(2);
+        // What velocities are rounded by is most of slow ones. Cauchy and Schwarz: Σ m |v| is at most √(2 T Σ m).
+        let (rounded, momentum) = (ROUNDED * length * 2.0 / h.abs(), (2.0 * (after.kinetic + more) * self.mass).sqrt());
+        let trembling = (self.mass * rounded + momentum) * rounded;
         WHOLE * (after.kinetic + more) + WEIGHED * (after.potential.abs() + self.weight * length) + trembling
     }
 

@@ -1,7 +1,7 @@
 //! The start: positions and velocities put on their constraints, accelerations and multipliers found.
 
 use super::Method;
-use crate::formulation::{Level, Multipliers, Newton, Workspace};
+use crate::formulation::{Failure, Level, Multipliers, Newton, Workspace};
 use crate::linalg::largest;
 use crate::system::System;
 
@@ -58,6 +58,9 @@ pub enum StartError {
     /// Inertia that is zero where nothing holds it.
     #[error("the accelerations at the start cannot be found: the mass matrix is singular where nothing holds it")]
     Acceleration,
+    /// Forces, or their derivatives, that are not finite.
+    #[error("the accelerations at the start cannot be found: forces or their derivatives are not finite there")]
+    NotFinite,
     /// The state has other numbers of nodes, rows or angles than the system.
     #[error("the state is one of another system")]
     Other,
@@ -168,7 +171,10 @@ fn correct_velocities(
     let mut change = vec![0.0; written.len()];
     let least = if work.scales.are_light { PASSES_OF_LIGHT } else { 1 };
     let differ = asked.impulse.iter().any(|impulse| *impulse != 0.0);
-    let (mut violation, mut size, mut is_sharp) = (f64::INFINITY, largest(&work.end.v), false);
+    // What only parts that share nodes are written with is in the impulse.
+    let of_parts = asked.impulse.chunks_exact(system.dim).zip(&work.scales.agility).map(|(impulse, agility)| largest(impulse) * agility);
+    let size = of_parts.fold(largest(&work.end.v), f64::max);
+    let (mut violation, mut size, mut is_sharp) = (f64::INFINITY, size, false);
     for pass in 0..PASSES {
         work.rate_violation(system, asked.t);
         let before = violation;
@@ -212,7 +218,10 @@ pub(super) fn accelerate(system: &System, method: &Method, t: f64, newton: &mut 
         true => newton.accelerate(system, t, work),
         false => newton.react(system, t, work),
     };
-    outcome.map_err(|_| StartError::Acceleration)
+    outcome.map_err(|failure| match failure {
+        Failure::NotFinite => StartError::NotFinite,
+        _ => StartError::Acceleration,
+    })
 }
 
 /// The three rows with the largest violation, by name.

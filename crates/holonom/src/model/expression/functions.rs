@@ -71,7 +71,8 @@ impl Function {
             Self::Atan => x.atan(),
             Self::Sinh => x.sinh(),
             Self::Cosh => x.cosh(),
-            Self::Tanh => x.tanh(),
+            Self::Tanh if real < 0.0 => -tanh(-x),
+            Self::Tanh => tanh(x),
             Self::Exp => x.exp(),
             Self::Ln => x.ln(),
             Self::Log10 => x.log10(),
@@ -93,7 +94,7 @@ impl Function {
     /// The value of a function of two numbers.
     pub(super) fn of_two<N: Number>(self, x: N, y: N) -> N {
         match self {
-            Self::Atan2 => x.atan2(y),
+            Self::Atan2 => atan2(x, y),
             Self::Min => {
                 if y.re() < x.re() {
                     y
@@ -114,6 +115,32 @@ impl Function {
     }
 }
 
+/// tanh x of x ≥ 0 by powers that vanish for large x, where those of sinh and cosh overflow in the derivatives.
+fn tanh<N: Number>(x: N) -> N {
+    let rest = -(x * -2.0).exp_m1();
+    rest / (-rest + 2.0)
+}
+
+/// The angle of (x, y), with derivatives on both axes, too.
+fn atan2<N: Number>(y: N, x: N) -> N {
+    if x.re() == 0.0 && y.re() == 0.0 {
+        return y.atan2(x);
+    }
+    let angle = if x.re().abs() >= y.re().abs() { (y / x).atan() } else { -(x / y).atan() };
+    // Both differ from the angle by a constant.
+    angle + (y.re().atan2(x.re()) - angle.re())
+}
+
+/// x/y. What is divided by a power that overflows is nothing, and so are its derivatives, as of 1/cosh(x) far out.
+pub(super) fn quotient<N: Number>(x: N, y: N) -> N {
+    if y.re().is_infinite() && x.re().is_finite() { N::from(0.0) } else { x / y }
+}
+
+/// x^n for a constant integer n.
+pub(super) fn integer_power<N: Number>(x: N, n: i32) -> N {
+    if n < 0 && x.re().is_infinite() { N::from(0.0) } else { x.powi(n) }
+}
+
 /// x^p for a constant p that is no integer.
 pub(super) fn real_power<N: Number>(x: N, p: f64) -> N {
     if p == 0.5 {
@@ -121,6 +148,9 @@ pub(super) fn real_power<N: Number>(x: N, p: f64) -> N {
     }
     if x.re() == 0.0 && p > 1.0 {
         // The general rule makes 0·∞ of this. What grows without bound here is at most the second derivative.
+        return N::from(0.0);
+    }
+    if p < 0.0 && x.re() == f64::INFINITY {
         return N::from(0.0);
     }
     x.powf(p)

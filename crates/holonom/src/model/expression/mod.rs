@@ -22,7 +22,7 @@ use crate::record::Formula;
 use crate::system::{Number, Signal};
 pub use curve::{Beyond, Curve};
 pub use external::{External, ExternalFunction, Functions, differences};
-use functions::Function;
+use functions::{Function, quotient};
 pub use names::{Names, Nothing};
 
 /// Most numbers an expression may hold at once while it is evaluated.
@@ -275,7 +275,7 @@ impl Program {
                 Op::Add => first + last,
                 Op::Sub => first - last,
                 Op::Mul => first * last,
-                Op::Div => first / last,
+                Op::Div => quotient(first, last),
                 Op::OfTwo(function) => function.of_two(first, last),
                 _ => unreachable!("operations of one and of many numbers came before"),
             };

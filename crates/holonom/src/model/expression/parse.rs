@@ -1,6 +1,6 @@
 //! From the text of an expression to a program, by recursive descent; every mistake has a character and a cure.
 
-use super::functions::{CONSTANTS, FUNCTIONS, Function, UNITS, real_power};
+use super::functions::{CONSTANTS, FUNCTIONS, Function, UNITS, integer_power, real_power};
 use super::lex::{Token, lex};
 use super::names::{self, Names, OF_PLACES, RUNNING};
 use super::{External, Functions, Mistake, Op, Program, STACK, Scope, Value};
@@ -436,7 +436,7 @@ impl Op {
     #[inline]
     pub(super) fn power<N: crate::system::Number>(&self, x: N) -> N {
         match *self {
-            Self::IntegerPower(n) => x.powi(n),
+            Self::IntegerPower(n) => integer_power(x, n),
             Self::RealPower(p) => real_power(x, p),
             _ => unreachable!("no power"),
         }

@@ -1,4 +1,5 @@
 use std::collections::HashMap;
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 use num_dual::{Dual2_64, Dual64, HyperDual64};
@@ -112,6 +113,30 @@ fn derivatives_agree_with_differences() {
         (hyper.eps1, hyper.eps2) = (1.0, 1.0);
         let hyper = program.evaluate(&[hyper]);
         assert!((hyper.eps1eps2 - dual.v2).abs() < 1e-12 * (1.0 + dual.v2.abs()), "{text}");
+    }
+}
+
+/// Value and both derivatives where powers overflow, and of angles on the axes.
+#[test]
+fn derivatives_are_right_far_out_and_on_axes() {
+    for (text, x, expected) in [
+        ("tanh(x)", 400.0, [1.0, 0.0, 0.0]),
+        ("tanh(x)", -1e6, [-1.0, 0.0, 0.0]),
+        ("tanh(x)", 1e-9, [1e-9, 1.0, -2e-9]),
+        ("tanh(x)", -0.5, [-0.46211715726000975, 0.7864477329659274, 0.7268619813835873]),
+        ("1/(1 + exp(-x))", -1e3, [0.0; 3]),
+        ("1/cosh(x)", 2e3, [0.0; 3]),
+        ("cosh(x)^-2", -1e3, [0.0; 3]),
+        ("(1 + exp(x))^-0.5", 2e3, [0.0; 3]),
+        ("atan2(x, 0)", 2.0, [FRAC_PI_2, 0.0, 0.0]),
+        ("atan2(1, x)", 0.0, [FRAC_PI_2, -1.0, 0.0]),
+        ("atan2(x, -1)", 0.0, [PI, -1.0, 0.0]),
+        ("atan2(-1, x)", 0.5, [-1.1071487177940904, 0.8, -0.64]),
+    ] {
+        let found = Program::parse(text, &["x"], &Scope::default()).unwrap().evaluate(&[Dual2_64::new(x, 1.0, 0.0)]);
+        for (found, expected) in [found.re, found.v1, found.v2].into_iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-15 * (1.0 + expected.abs()), "{text} at {x}: {found:e}, and {expected:e}");
+        }
     }
 }
 

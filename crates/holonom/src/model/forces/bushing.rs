@@ -65,7 +65,8 @@ impl Element for Bushing {
             return Err(entry.refuse_all(format!("the bushing `{}` does nothing", entry.name), "give it a stiffness or a damping above 0"));
         }
         let coordinates = coordinates(assembly, members, at);
-        assembly.show(Shows::Along(shown(&coordinates, assembly.axes.name)));
+        let axes = members.map(|member| (0..assembly.dimension()).map(|k| assembly.frame(member).vector(unit(k))).collect());
+        assembly.show(Shows::Bushing { coordinates: shown(&coordinates, assembly.axes.name), axes });
         for (k, &q) in coordinates.iter().enumerate() {
             if stiffness[k] > 0.0 {
                 assembly.builder.law(entry.name, &[q], Arc::new(Spring { stiffness: stiffness[k], rest: 0.0 }));

@@ -132,6 +132,15 @@ pub struct Impact {
     pub dissipation: f64,
 }
 
+impl Impact {
+    /// The rate that counts, and by how much it changes with the rate: what goes out faster than at 1/d takes all of the spring's force, and is
+    /// not pulled back.
+    fn counted(&self, rate: f64) -> (f64, f64) {
+        let fastest = -self.buffer.sign / self.dissipation;
+        if self.buffer.sign * rate < -1.0 / self.dissipation { (fastest, 0.0) } else { (rate, 1.0) }
+    }
+}
+
 impl Law for Impact {
     fn conservative(&self) -> bool {
         false
@@ -140,18 +149,19 @@ impl Law for Impact {
     fn at(&self, value: &[f64], rate: &[f64], _t: f64, out: &mut Response) {
         let factor = self.buffer.stiffness * self.dissipation;
         let p = self.buffer.beyond(value[0]);
-        out.force[0] = factor * p * rate[0];
-        out.by_value[0][0] = if p > 0.0 { factor * self.buffer.sign * rate[0] } else { 0.0 };
-        out.by_rate[0][0] = factor * p;
+        let (rate, counts) = self.counted(rate[0]);
+        out.force[0] = factor * p * rate;
+        out.by_value[0][0] = if p > 0.0 { factor * self.buffer.sign * rate } else { 0.0 };
+        out.by_rate[0][0] = factor * p * counts;
     }
 
     fn between(&self, reach: Reach<'_>, out: &mut Response) {
         let factor = self.buffer.stiffness * self.dissipation;
         let (p0, p1) = (self.buffer.beyond(reach.from[0]), self.buffer.beyond(reach.to[0]));
-        let rate = (reach.to[0] - reach.from[0]) / reach.step;
+        let (rate, counts) = self.counted((reach.to[0] - reach.from[0]) / reach.step);
         let mean = 0.5 * (p0 + p1);
         out.force[0] = factor * mean * rate;
-        out.by_value[0][0] = factor * (mean / reach.step + if p1 > 0.0 { 0.5 * self.buffer.sign * rate } else { 0.0 });
+        out.by_value[0][0] = factor * (counts * mean / reach.step + if p1 > 0.0 { 0.5 * self.buffer.sign * rate } else { 0.0 });
     }
 }
 

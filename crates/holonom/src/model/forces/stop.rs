@@ -13,7 +13,7 @@ use crate::model::joints::coordinate;
 #[derive(Clone, Debug, PartialEq, Keys)]
 #[kind(
     name = "stop",
-    equations = "beyond a limit by p: V = ½ k p², effort −k d p q̇ (Hunt and Crossley)",
+    equations = "beyond a limit by p: V = ½ k p², effort −k d p q̇, which takes at most all of the spring's (Hunt and Crossley)",
     example = r#"
 [body.flap]
 mass = 1

@@ -236,6 +236,16 @@ impl Pair<'_, '_> {
         self.coordinate(name, form, false);
     }
 
+    /// Adds the displacements across u, measured as `JOINT.x` and `JOINT.y`: x goes the way of that axis of the model which is nearest to being at
+    /// right angles to u, the first of several, as far as that is across u; y is u × x.
+    pub fn displacements_across(&mut self) {
+        // w = u × v, and v = u × x.
+        let x = self.e(Side::A, 2).into_iter().map(|term| Term { factor: -term.factor, turn: -term.turn, ..term });
+        let form = Form::Product([self.d(), x.collect()]);
+        self.coordinate("x", form, false);
+        self.displacement("y", 1);
+    }
+
     /// Adds a coordinate, measured as `JOINT.NAME`: an angle in rad, or a displacement in m.
     pub fn coordinate(&mut self, name: &'static str, form: Form, is_angle: bool) {
         self.coordinates.push(Coordinate { joint: self.entry.name.to_string(), name, form, is_angle });

@@ -49,8 +49,7 @@ impl Joint for Planar {
         pair.stay(0);
         pair.align();
         pair.angle();
-        pair.displacement("x", 1);
-        pair.displacement("y", 2);
+        pair.displacements_across();
         Ok(())
     }
 }

@@ -40,8 +40,7 @@ impl Joint for PointOnPlane {
 
     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
         pair.stay(0);
-        pair.displacement("x", 1);
-        pair.displacement("y", 2);
+        pair.displacements_across();
         Ok(())
     }
 }
