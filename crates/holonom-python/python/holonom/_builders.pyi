@@ -950,7 +950,7 @@ class Builders:
     ) -> Entry:
         """Adds a force of the kind ``stop``: buffers at the ends of a joint's way: springs that act beyond its limits only, with what an impact takes out.
 
-        Equations: beyond a limit by p: V = ½ k p², effort −k d p q̇ (Hunt and Crossley)
+        Equations: beyond a limit by p: V = ½ k p², effort −k d p q̇, which takes at most all of the spring's (Hunt and Crossley)
 
         joint: the joint, or its coordinate as "JOINT.angle" or "JOINT.displacement"
         lower: smallest coordinate without contact, counted from the start [rad or m]; default: none
