@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use common::{distance, model_with_forces as model, run_every as run, simulation, source};
 use holonom::analysis::rank;
 use holonom::record::{Constraints, Peaks, Recorder, Recording};
-use holonom::simulation::{Choice, Method, Simulation, Status, Verdict};
+use holonom::simulation::{Checkpoint, Choice, Method, Simulation, Status, Verdict};
 
 fn last(recording: &Recording, name: &str) -> f64 {
     *recording.column(name).unwrap_or_else(|| panic!("there is no column {name}")).last().unwrap()
@@ -490,6 +490,32 @@ fn an_event_may_move_its_own_threshold() {
             assert_eq!(simulation.input("n"), Some(142.0), "{method}, {step} s");
             for (k, event) in simulation.events().iter().enumerate() {
                 assert!((event.t - 0.007 * (k + 1) as f64).abs() < 1e-10, "{method}, {step} s: {event:?}");
+            }
+        }
+    }
+}
+
+/// It goes on from a checkpoint as it would have without, also from the very time of an event.
+#[test]
+fn thresholds_go_on_from_checkpoints() {
+    let text = "gravity = [0, 0, 0]\n[point.p]\nmass = 1\nposition = [0, 0, 0]\nvelocity = [1, 0, 0]\n[input.next]\ndefault = 0.05\n[input.n]\n\
+                [event.tick]\nwhen = \"p.x - next\"\ndirection = \"rising\"\nset = { next = \"next + 0.05\", n = \"n + 1\" }\n";
+    let model = model(text);
+    for of in ["conserving-ggl", "radau"] {
+        for step in [0.1, 0.05, 0.02] {
+            let method = || Method::resolve(&Choice::default().named(of)).unwrap();
+            let mut whole = Simulation::new(model.system.clone(), method(), step).unwrap();
+            for end in [0.1, 0.3, 0.5] {
+                assert_eq!(whole.step_to(end), Status::Completed);
+                let checkpoint = serde_json::to_string(&whole.checkpoint()).unwrap();
+                let checkpoint: Checkpoint = serde_json::from_str(&checkpoint).unwrap();
+                let mut rest = Simulation::resume(model.system.clone(), method(), step, checkpoint).unwrap();
+                let mut clone = Simulation::resume(model.system.clone(), method(), step, whole.checkpoint()).unwrap();
+                let ends = [&mut rest, &mut clone].map(|simulation| {
+                    assert_eq!(simulation.step_to(1.02), Status::Completed);
+                    simulation.input("n")
+                });
+                assert_eq!(ends, [Some(20.0); 2], "{of}, {step} s, from {end} s");
             }
         }
     }

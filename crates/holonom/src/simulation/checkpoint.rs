@@ -40,6 +40,8 @@ struct Run {
     method: String,
     grid: Grid,
     happenings: Vec<Happening>,
+    /// Indicators of the events there, and the time, s.
+    watched: Option<(f64, Vec<f64>)>,
     /// How often events with a period have happened.
     samples: Vec<u64>,
     has_ended: bool,
@@ -149,6 +151,10 @@ impl Simulation {
             method: words(&self.method),
             grid: self.grid,
             happenings: self.happenings.clone(),
+            watched: self.watched.clone().filter(|(t, indicators)| {
+                // Files know no infinite numbers.
+                *t == self.state.t && !indicators.is_empty() && indicators.iter().all(|indicator| indicator.is_finite())
+            }),
             samples: self.samples.clone(),
             has_ended: self.has_ended,
             progress: self.progress(),
@@ -190,6 +196,7 @@ impl Simulation {
         if let Some(run) = run.filter(|run| run.method == words(&simulation.method)) {
             simulation.go_on(run.progress);
             (simulation.happenings, simulation.samples, simulation.has_ended) = (run.happenings, run.samples, run.has_ended);
+            simulation.watched = run.watched;
             if run.grid.step == simulation.step {
                 simulation.grid = run.grid;
             }
