@@ -72,3 +72,34 @@ pub fn freedom(model: &Model) -> [usize; 2] {
 pub fn distance(a: &Simulation, b: &Simulation) -> f64 {
     a.state().x.iter().zip(&b.state().x).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
+
+/// The last value of a column.
+#[track_caller]
+pub fn last(recording: &Recording, name: &str) -> f64 {
+    *recording.column(name).unwrap_or_else(|| panic!("there is no column {name}")).last().unwrap()
+}
+
+/// A mass on a spring: x = 1 + cos(2 t), so that what measures say is known.
+pub const OSCILLATOR: &str = r#"
+gravity = [0, 0, 0]
+
+[point.bob]
+mass = 1
+position = [2, 0, 0]
+
+[point.stand]
+position = [0, 3, 0]
+fixed = true
+
+[force.spring]
+type = "spring"
+between = ["ground", "bob"]
+stiffness = 4
+rest_length = 1
+
+[constraint.line]
+type = "point-on-line"
+point = "bob"
+through = [0, 0, 0]
+direction = [1, 0, 0]
+"#;

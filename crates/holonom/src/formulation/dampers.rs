@@ -152,14 +152,11 @@ impl Newton {
 impl Damping {
     /// Takes rates and stiffness from the start of a step.
     fn begin(&mut self, system: &System, law: &LawEntry, t: f64, work: &Workspace) {
-        let (at, m) = (&work.start.at, law.arguments.len());
-        self.rate = rates(system, law, at, &work.start.v);
-        let mut response = Response::default();
-        law.law.at(&system.arguments(law, at)[..m], &self.rate[..m], t, &mut response);
-        let (_, power) = braking(system, law, t, at, &work.start.v);
+        let Braking { rate, slope, power } = Braking::of(system, law, t, &work.start.at, &work.start.v);
+        self.rate = rate;
         // Of friction that slides the force hardly changes with the rate: what counts is what would stop it.
-        let secant = |i: usize| if self.rate[i] == 0.0 { 0.0 } else { power[i] / (self.rate[i] * self.rate[i]) };
-        self.stiffness = std::array::from_fn(|i| response.by_rate[i][i].abs().max(secant(i)));
+        let secant = |i: usize| if rate[i] == 0.0 { 0.0 } else { power[i] / (rate[i] * rate[i]) };
+        self.stiffness = std::array::from_fn(|i| slope[i].abs().max(secant(i)));
     }
 }
 
@@ -169,10 +166,9 @@ impl Damping {
 pub fn taken_of_turned(system: &System, t: [f64; 2], h: f64, work: &Workspace) -> (f64, Option<usize>) {
     let (mut sum, mut most) = (0.0, (0.0, None));
     for (k, law) in system.laws.iter().enumerate().filter(|(_, law)| !law.law.conservative()) {
-        let ends = [(t[0], &work.start), (t[1], &work.end)].map(|(t, end)| braking(system, law, t, &end.at, &end.v));
-        let [(from, before), (to, after)] = &ends;
-        let turned = (0..law.arguments.len()).filter(|&i| from[i] * to[i] < 0.0);
-        let taken: f64 = h.abs() * turned.map(|i| before[i].min(after[i]).max(0.0)).sum::<f64>();
+        let [from, to] = [(t[0], &work.start), (t[1], &work.end)].map(|(t, end)| Braking::of(system, law, t, &end.at, &end.v));
+        let turned = (0..law.arguments.len()).filter(|&i| from.rate[i] * to.rate[i] < 0.0);
+        let taken: f64 = h.abs() * turned.map(|i| from.power[i].min(to.power[i]).max(0.0)).sum::<f64>();
         sum += taken;
         if taken > most.0 {
             most = (taken, Some(k));
@@ -181,25 +177,31 @@ pub fn taken_of_turned(system: &System, t: [f64; 2], h: f64, work: &Workspace) -
     (sum, most.1)
 }
 
-/// Rates of the arguments of a law, and the power that the part of its force takes that follows them, W.
-fn braking(system: &System, law: &LawEntry, t: f64, at: &Evaluation, v: &[f64]) -> ([f64; MAX_ARGUMENTS], [f64; MAX_ARGUMENTS]) {
-    let (values, m) = (system.arguments(law, at), law.arguments.len());
-    let rates = rates(system, law, at, v);
-    let [along, against] = [1.0, -1.0].map(|sense| {
-        let mut response = Response::default();
-        law.law.at(&values[..m], &rates.map(|rate| sense * rate)[..m], t, &mut response);
-        response.force
-    });
-    (rates, std::array::from_fn(|i| 0.5 * (along[i] - against[i]) * rates[i]))
+/// What a law does to the motion of each of its arguments.
+struct Braking {
+    /// Rate of the argument.
+    rate: [f64; MAX_ARGUMENTS],
+    /// By how much the force changes with that.
+    slope: [f64; MAX_ARGUMENTS],
+    /// Power that the part of the force takes that turns round with the rates, W.
+    power: [f64; MAX_ARGUMENTS],
 }
 
-/// Rates of the arguments of a law.
-fn rates(system: &System, law: &LawEntry, at: &Evaluation, v: &[f64]) -> [f64; MAX_ARGUMENTS] {
-    let mut rates = [0.0; MAX_ARGUMENTS];
-    for (rate, &quantity) in rates.iter_mut().zip(&law.arguments) {
-        *rate = system.along(&system.slots_of(quantity), &system.slots.nodes, at, v);
+impl Braking {
+    fn of(system: &System, law: &LawEntry, t: f64, at: &Evaluation, v: &[f64]) -> Self {
+        let (values, m) = (system.arguments(law, at), law.arguments.len());
+        let mut rate = [0.0; MAX_ARGUMENTS];
+        for (rate, &quantity) in rate.iter_mut().zip(&law.arguments) {
+            *rate = system.along(&system.slots_of(quantity), &system.slots.nodes, at, v);
+        }
+        let [along, against] = [rate, rate.map(|rate| -rate)].map(|rate| {
+            let mut response = Response::default();
+            law.law.at(&values[..m], &rate[..m], t, &mut response);
+            response
+        });
+        let power = std::array::from_fn(|i| 0.5 * (along.force[i] - against.force[i]) * rate[i]);
+        Self { rate, slope: std::array::from_fn(|i| along.by_rate[i][i]), power }
     }
-    rates
 }
 
 /// Bounds z over the step by Σ c |g| Σ |g| over the mass of each node: by Gershgorin no eigenvalue of M⁻¹ Gᵀ c G is larger where M

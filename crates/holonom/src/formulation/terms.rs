@@ -4,7 +4,9 @@ use super::kkt::{Block, Kkt, LawFactors};
 use super::level::Level;
 use super::stage::{RowsAt, Sampling, Stage};
 use super::workspace::{Moment, Workspace};
-use crate::system::{Between, Direction, LoadEntry, Look, MAX_ARGUMENTS, Quantity, Reach, Response, Slopes, System, gather, scatter};
+use crate::system::{
+    Between, Direction, LoadEntry, Local, Look, MAX_ARGUMENTS, Quantity, Reach, Response, Slopes, System, gather, scatter,
+};
 
 impl Workspace {
     /// Evaluates rows, laws and loads of a stage; leaves Φ in `phi` and the sum of forces in `forces`.
@@ -314,7 +316,7 @@ impl Workspace {
         let mut used = &self.forces.of_loads[..];
         for load in &system.loads {
             let width = load.nodes.len() * dim;
-            let mut ends = [vec![0.0; width], vec![0.0; width]];
+            let mut ends: [Local; 2] = std::array::from_fn(|_| Local::from_elem(0.0, width));
             for ((end, t), out) in [(&self.start, stage.start), (&self.end, t)].into_iter().zip(&mut ends) {
                 let look = Look { x: &end.x, v: &end.v, t, at: &end.at, inputs: &self.inputs, span: None };
                 system.load_forces(load, look, out);

@@ -114,7 +114,7 @@ const TOLERANCES: f64 = 16.0;
 /// Holds steps to what a method promises.
 pub(super) struct Judge {
     promises: Vec<Promise>,
-    /// Whether dampers may turn motions round: at other means than those of steps that keep the energy.
+    /// Whether there are dampers, and the method may turn round what they stop: those that keep the energy take their rates later.
     looks_at_dampers: bool,
     /// Tolerance of the iteration, over the size of the mechanism.
     tolerance: f64,
@@ -136,7 +136,8 @@ impl Judge {
         let weight = work.forces.weight.iter().map(|w| w.abs()).sum();
         let mut promises = method.promises();
         let keeps_energy = [Promise::Energy, Promise::FallingEnergy].iter().any(|kept| promises.contains(kept));
-        let looks_at_dampers = method.settings.iterations.is_none() && !keeps_energy;
+        let has_dampers = system.laws.iter().any(|law| !law.law.conservative());
+        let looks_at_dampers = has_dampers && method.settings.iterations.is_none() && !keeps_energy;
         // Where rows move, the impulse that projects velocities does work.
         for promise in promises.iter_mut().filter(|promise| **promise == Promise::FallingEnergy && system.is_driven()) {
             *promise = Promise::SuppliedEnergy;
@@ -193,10 +194,15 @@ impl Judge {
     /// Energy that is nothing beside the energies after a nominal step of length `h` (s), J; `more` are others beside them.
     fn nothing(&self, h: f64, more: f64, after: &Audit, work: &Workspace) -> f64 {
         let length = work.scales.length;
-        // What velocities are rounded by is most of slow ones. Cauchy and Schwarz: Σ m |v| is at most √(2 T Σ m).
-        let (rounded, momentum) = (ROUNDED * length * 2.0 / h.abs(), (2.0 * (after.kinetic + more) * self.mass).sqrt());
-        let trembling = (self.mass * rounded + momentum) * rounded;
+        // What velocities are rounded by is most of slow ones.
+        let rounded = ROUNDED * length * 2.0 / h.abs();
+        let trembling = (self.mass * rounded + self.most_momentum(after.kinetic + more)) * rounded;
         WHOLE * (after.kinetic + more) + WEIGHED * (after.potential.abs() + self.weight * length) + trembling
+    }
+
+    /// Most that Σ m |v| may be with a kinetic energy T: √(2 T Σ m), by Cauchy and Schwarz.
+    fn most_momentum(&self, kinetic: f64) -> f64 {
+        (2.0 * kinetic * self.mass).sqrt()
     }
 
     /// Looks at how far the angles turn that are measured at both ends of a step of length `h` (s).
@@ -227,9 +233,7 @@ impl Judge {
         // What forces do along rounded positions, also where hardly anything moves.
         let working = if work.is_worked_on() { energy::size_of_working_forces(system, work) * scales.length } else { 0.0 };
         let sizes = kinetic + energy::size(system, work, &work.end.x) + (after.work - before.work).abs() + rows + working;
-        // Cauchy and Schwarz: Σ m |v| is at most √(2 T Σ m).
-        let momentum = (2.0 * kinetic * self.mass).sqrt();
-        ROUND_OFF * sizes + momentum * scales.length * 2.0 / h.abs() * (ROUNDED + self.tolerance)
+        ROUND_OFF * sizes + self.most_momentum(kinetic) * scales.length * 2.0 / h.abs() * (ROUNDED + self.tolerance)
     }
 
     /// Looks at Φ at the end of a step at the time `t` (s), in `phi`.
