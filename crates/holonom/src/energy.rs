@@ -2,7 +2,7 @@
 
 use crate::formulation::{Sampling, Stage, Workspace};
 use crate::linalg::largest;
-use crate::system::{Evaluation, System};
+use crate::system::{Evaluation, InvariantId, System};
 
 /// Kinetic energy ½ vᵀ M v, J.
 pub fn kinetic(system: &System, v: &[f64]) -> f64 {
@@ -37,16 +37,26 @@ pub fn size(system: &System, work: &Workspace, x: &[f64]) -> f64 {
             size += law.law.energy(&system.arguments(law, &work.end.at)[..law.arguments.len()]).abs();
         }
         for (i, &id) in law.invariants.iter().enumerate() {
-            let value = work.end.at.value[id.0 as usize];
+            let value = work.end.at.value[id.0 as usize].abs() + size_of_invariant(system, id, work, x);
             let rise = |j: usize| {
                 let k = law.invariants[j].0 as usize;
                 response.by_value[i][j] * (work.end.at.value[k] - work.start.at.value[k])
             };
             let pull = response.force[i].abs() + (0..law.invariants.len()).map(|j| rise(j).abs()).sum::<f64>();
-            size += pull * value.abs();
+            size += pull * value;
         }
     }
     size
+}
+
+/// The sizes of the terms of an invariant that are rounded with positions: of its gradient times these.
+fn size_of_invariant(system: &System, id: InvariantId, work: &Workspace, x: &[f64]) -> f64 {
+    let slots = system.invariants.slots_of(id);
+    let of_slot = |s: usize| {
+        let (g, node) = (s * system.dim, system.slots.nodes[s] as usize * system.dim);
+        largest(&work.end.at.gradient[g..g + system.dim]) * largest(&x[node..node + system.dim])
+    };
+    slots.map(of_slot).sum()
 }
 
 /// The sizes of the forces that do work, of loads and of laws without a potential, as they were last sampled, N.

@@ -18,6 +18,13 @@ pub enum Failure {
     NotFinite,
     /// No step is short enough for the accuracy.
     TooSmall,
+    /// Steps for the accuracy are so short that the run would hardly ever end.
+    Crawling {
+        /// What each comes on by, s.
+        pace: f64,
+        /// How many the rest of the run would take.
+        left: f64,
+    },
     /// A step whose result misses what the method promises.
     Broken {
         /// What is promised, in words.
@@ -124,6 +131,9 @@ impl Failure {
                 system.events[event].name
             ),
             Self::TooSmall => "no step is short enough for the accuracy".into(),
+            Self::Crawling { pace, left } => format!(
+                "the accuracy asks for steps of {pace:.1e} s, of which the rest of the run would take {left:.0e}: ask for less, or end the run sooner"
+            ),
         }
     }
 }

@@ -4,12 +4,15 @@
 use serde::{Deserialize, Serialize};
 
 use super::advance::Inside;
+use super::bracket::Bracket;
 use super::control::{Control, KEEPING};
+use super::events::{LOCATED, MOST_TRIES, SHORTEST};
 use super::{Audit, Method, Simulation, State, start};
+use crate::energy;
 use crate::formulation::{Failure, Independence, Newton};
 use crate::integrator::{Estimate, Step, Work};
 use crate::projection::{Metric, Projection, Solve};
-use crate::system::{GaugeValues, Measured, System};
+use crate::system::{Crossing, GaugeValues, Measured, System};
 
 /// Smallest step over the length of the run that an accuracy may ask for: below it times no longer tell steps apart.
 const SMALLEST_SHARE: f64 = 1e-13;
@@ -66,8 +69,18 @@ pub(super) struct Pilot {
     independence: Independence,
     redundant: usize,
     patience: Patience,
+    /// Where the forces of laws bend: numbers that go through zero there, at the end of the last step; 0 of one that has been reached.
+    bends: Vec<f64>,
     /// Times at which steps end, as something changes abruptly there, s.
     switches: Vec<f64>,
+}
+
+/// Where a step ends.
+#[derive(Default)]
+struct Landing {
+    /// Where the forces of laws bend, as the pilot has it.
+    bends: Vec<f64>,
+    is_on_one: bool,
 }
 
 /// How attempts at steps have gone.
@@ -93,13 +106,11 @@ const WORSE: f64 = 20.0;
 const OFTEN: u32 = 64;
 const DOUBT: u32 = 2;
 
-/// Attempts between looks at how far they have come, and the share of the run that each must come on average.
+/// Attempts between looks at how far they have come, and so many looks in a row at which each had come on by less than this share of the run on
+/// average: a stiff stop takes a hundred thousand steps at the finest accuracy, and then it is over.
 const LOOK: u32 = 2000;
-const CRAWL: f64 = 1e-9;
-
-/// A larger share that so many looks in a row must not fall below: a short stretch of small steps ends before.
 const SLOW: f64 = 1e-8;
-const SLOW_LOOKS: u32 = 10;
+const SLOW_LOOKS: u32 = 1000;
 
 /// Places at which the inside of a step with dense output is looked at: a step of order 8 may be a turn long.
 const INSIDE: f64 = 8.0;
@@ -135,6 +146,7 @@ impl Pilot {
             independence,
             redundant,
             patience: Patience::default(),
+            bends: Vec::new(),
             switches: Vec::new(),
         }))
     }
@@ -152,6 +164,7 @@ pub(super) struct Flight {
     length: Option<f64>,
     redundant: usize,
     patience: Patience,
+    bends: Vec<f64>,
 }
 
 impl Pilot {
@@ -172,7 +185,9 @@ impl Pilot {
         let ratio = self.control.ratio(taken, step, t, &self.v, 1.0, work);
         // Errors of explicit schemes grow there, too, and may be far more than their estimate, which the energy shows.
         if simulation.method.integrator.is_explicit() {
-            let of_energy = simulation.audit.made_since(&self.before.audit) / (WORSE * self.control.allowed() * step);
+            let (system, state) = (&simulation.system, &simulation.state);
+            let made = simulation.audit.made_since(&self.before.audit, || energy::size(system, work, &state.x));
+            let of_energy = made / (WORSE * self.control.allowed() * step);
             // It may be the same however long steps are, as where positions have left their rows, and asks for no length then.
             return if of_energy > KEEPING { ratio.max(of_energy) } else { ratio };
         }
@@ -208,17 +223,20 @@ impl Pilot {
         self.front.audit.supply()[1]
     }
 
-    /// Whether attempts have come nowhere: at this pace the run never ends.
-    fn crawls(&mut self, t: f64) -> bool {
+    /// Refuses attempts at steps of length `step` (s) that come nowhere: at this pace the run never ends.
+    fn require_progress(&mut self, step: f64, t: f64) -> Result<(), Failure> {
+        if step < SMALLEST_SHARE * self.control.span {
+            return Err(Failure::TooSmall);
+        }
         let Patience { attempts, since, slow, .. } = &mut self.patience;
         *attempts += 1;
         if *attempts % LOOK != 0 {
-            return false;
+            return Ok(());
         }
-        let pace = (t - *since) / (f64::from(LOOK) * self.control.span);
+        let pace = (t - *since) / f64::from(LOOK);
         *since = t;
-        *slow = if pace < SLOW { *slow + 1 } else { 0 };
-        pace < CRAWL || *slow >= SLOW_LOOKS
+        *slow = if pace < SLOW * self.control.span { *slow + 1 } else { 0 };
+        if *slow >= SLOW_LOOKS { Err(Failure::Crawling { pace, left: (self.end - t) / pace }) } else { Ok(()) }
     }
 
     pub(super) fn flight(&self) -> Flight {
@@ -233,13 +251,14 @@ impl Pilot {
             length,
             redundant: self.redundant,
             patience: self.patience,
+            bends: self.bends.clone(),
         }
     }
 
     /// Goes on from there. An integrator with dense output takes the last step once more, to know what is inside it.
     pub(super) fn take_over(&mut self, flight: Flight, simulation: &mut Simulation) {
-        let Flight { control, end, v, before, front, length, redundant, patience } = flight;
-        (self.redundant, self.patience) = (redundant, patience);
+        let Flight { control, end, v, before, front, length, redundant, patience, bends } = flight;
+        (self.redundant, self.patience, self.bends) = (redundant, patience, bends);
         (self.control, self.end, self.v, self.before, self.front) = (control, end, v, before, front);
         simulation.work.estimate.allowed = self.control.allowed();
         if let (Some(length), true) = (length, simulation.method.integrator.dense) {
@@ -280,6 +299,7 @@ impl Simulation {
         pilot.end = end;
         pilot.v.copy_from_slice(&self.shown_v);
         pilot.control.begin(&self.state, &pilot.v, end - self.state.t, self.work.scales.length);
+        pilot.bends = self.system.bends(&self.work.start.at, &self.shown_v);
         pilot.turn(self);
         self.work.estimate.allowed = pilot.control.allowed();
         self.pilot = Some(pilot);
@@ -386,11 +406,11 @@ impl Simulation {
 
     /// One attempt at a step, and whether it is taken; a step whose error is too large, or that fails, is taken back and the next one shorter.
     fn attempt(&mut self, step: f64, target: f64, pilot: &mut Pilot) -> Result<bool, Failure> {
-        if step < SMALLEST_SHARE * pilot.control.span || pilot.crawls(self.state.t) {
-            return Err(Failure::TooSmall);
-        }
+        pilot.require_progress(step, self.state.t)?;
         pilot.before.keep(self);
-        let outcome = self.substep(step, target).and_then(|taken| {
+        let (mut step, mut landing) = (step, Landing::default());
+        let outcome = self.substep(step, target).and_then(|mut taken| {
+            landing = self.land_on_bend(&mut taken, &mut step, pilot)?;
             self.smooth(step, pilot)?;
             Ok(taken)
         });
@@ -400,11 +420,22 @@ impl Simulation {
                 pilot.count_redundant(&self.system, &self.state);
             }
             pilot.control.remember(self.state.t, &pilot.v);
+            let planned = pilot.control.step;
             pilot.control.accept(step, ratio);
             pilot.last = Some((taken, step));
             pilot.patience.rejected = 0;
-            if pilot.switches.contains(&self.state.t) {
-                self.pass_switch();
+            pilot.bends = landing.bends;
+            let has_switch = pilot.switches.contains(&self.state.t);
+            if has_switch {
+                // Just behind it.
+                self.state.t = self.state.t.next_up().next_up();
+            }
+            if landing.is_on_one {
+                // How long the step to it was says nothing of the next one.
+                pilot.control.step = planned;
+            }
+            if has_switch || landing.is_on_one {
+                self.begin_anew();
                 pilot.control.begin_anew(&self.state, &pilot.v);
             }
             return Ok(true);
@@ -419,10 +450,36 @@ impl Simulation {
         Ok(false)
     }
 
-    /// Goes to just behind a time where something changes abruptly, and on from there.
-    fn pass_switch(&mut self) {
-        self.state.t = self.state.t.next_up().next_up();
-        self.begin_anew();
+    /// Where a force bends within the step that was just taken, it is taken again and ends there: what follows is not continued from what came
+    /// before.
+    fn land_on_bend(&mut self, taken: &mut Step, step: &mut f64, pilot: &Pilot) -> Result<Landing, Failure> {
+        let passed = |bends: &[f64]| (0..bends.len()).find(|&k| Crossing::Both.is_between(pilot.bends[k], bends[k]));
+        let mut bends = self.system.bends(&self.work.start.at, &self.shown_v);
+        let Some(mut k) = passed(&bends) else { return Ok(Landing { bends, is_on_one: false }) };
+        let (begin, whole) = (pilot.before.state.t, *step);
+        let mut bracket = Bracket::new([begin, self.state.t], [pilot.bends[k], bends[k]]);
+        let width = (LOCATED * whole).max(f64::EPSILON * self.state.t.abs());
+        for _ in 0..MOST_TRIES {
+            let there = bracket.secant();
+            let is_here = (there - self.state.t).abs() <= width || bracket.high - bracket.low <= width;
+            if is_here || there - begin <= SHORTEST * whole {
+                break;
+            }
+            let next = bracket.next(width);
+            pilot.before.restore(self);
+            self.audit.reject(&self.newton);
+            *step = next - begin;
+            *taken = self.substep(*step, next)?;
+            bends = self.system.bends(&self.work.start.at, &self.shown_v);
+            let first = passed(&bends);
+            if let Some(other) = first.filter(|&other| other != k) {
+                (k, bracket.at_low) = (other, pilot.bends[other]);
+            }
+            bracket.narrow(next, bends[k], first.is_some());
+        }
+        let is_past = |k: usize, now: f64| Crossing::Both.is_between(pilot.bends[k], now);
+        (0..).zip(&mut bends).filter(|(at, now)| *at == k || is_past(*at, **now)).for_each(|(_, now)| *now = 0.0);
+        Ok(Landing { bends, is_on_one: true })
     }
 
     /// Goes on with the accelerations that forces have now, and without what was kept of the steps before.

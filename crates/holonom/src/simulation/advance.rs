@@ -1,6 +1,7 @@
 //! A nominal step: in parts where it fails as a whole, each audited, projected and judged before it becomes the state.
 
 use super::{Audit, Simulation};
+use crate::energy;
 use crate::formulation::{Failure, Iteration, Sampling};
 use crate::integrator::Step;
 
@@ -21,6 +22,7 @@ impl Simulation {
     pub(super) fn advance(&mut self, target: f64, reacts: bool, look: Option<&mut Inside<'_>>) -> Result<(), Failure> {
         let from = self.state.t;
         self.audit.begin_step();
+        self.judge.begin_step();
         match self.pilot.take() {
             None => self.halve(target, look)?,
             Some(mut pilot) => {
@@ -33,7 +35,7 @@ impl Simulation {
             }
         }
         let h = self.state.t - from;
-        self.judge.whole(&self.system, h, &self.audit, &self.work)?;
+        self.judge.whole(h, &self.audit, 0.0, &self.work)?;
         let known = self.pilot.as_ref().map_or(0.0, |pilot| pilot.supply());
         self.judge.supply(h, known, &self.audit, &self.work)?;
         self.steps += 1;
@@ -124,13 +126,15 @@ impl Simulation {
         self.judge.velocities(system, target, step, work)?;
         audit.closed(system, method, target, &self.newton, work);
         self.judge.accelerations(step, work)?;
-        self.judge.energy(system, step, &self.audit, &audit, work)?;
+        let of_laws = if self.judge.holds_energy() { energy::size(system, work, &work.end.x) } else { 0.0 };
+        self.judge.energy(system, step, [&self.audit, &audit], of_laws, work)?;
         self.judge.dampers(system, [self.state.t, target], step, &audit, work)?;
         // A part that takes the nominal step out of its bound can be taken again.
-        self.judge.whole(system, step, &audit, work)?;
+        self.judge.whole(step, &audit, of_laws, work)?;
         self.next_gauges.copy_from(&self.gauges);
         system.measure(&work.end.x, &work.end.v, &mut self.next_gauges);
         self.judge.turns(system, step, &self.gauges, &self.next_gauges)?;
+        self.judge.take(of_laws);
         self.commit(audit, step, target);
         Ok(taken)
     }

@@ -155,15 +155,16 @@ impl Audit {
     }
 
     /// What the integrator made or lost of the energy since an earlier state, over all there is to move; nothing where that is round-off, or
-    /// work was done, which is booked less exactly than the motion is found.
-    pub(super) fn made_since(&self, before: &Self) -> f64 {
+    /// work was done, which is booked less exactly than the motion is found. `of_laws` are the sizes of what laws make of rounded positions, J.
+    pub(super) fn made_since(&self, before: &Self, of_laws: impl FnOnce() -> f64) -> f64 {
         if self.work != before.work {
             return 0.0;
         }
         let made = (self.integrator_total - before.integrator_total).abs();
         let sizes = self.kinetic + self.potential.abs() + self.work.abs() + self.integrator_total.abs();
         let round_off = ROUNDED * sizes;
-        if made <= round_off { 0.0 } else { made / (self.supply()[1] + round_off) }
+        let is_round_off = made <= round_off || made <= round_off + ROUNDED * of_laws();
+        if is_round_off { 0.0 } else { made / (self.supply()[1] + round_off) }
     }
 
     /// Energy and work at the start of the nominal step, J.

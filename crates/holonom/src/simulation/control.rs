@@ -15,7 +15,7 @@ const SAFETY: f64 = 0.9;
 
 /// Estimated errors below this share of positions, and of velocities that are their differences over the step, are
 /// round-off: shorter steps would only raise it.
-const ROUND_OFF: f64 = 1e-14;
+const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 
 /// Ratio of error and allowance that leaves the step about as it is.
 pub(super) const KEEPING: f64 = 0.5;

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::advance::Inside;
+use super::bracket::Bracket;
 use super::checkpoint::Moment;
 use super::{Audit, Observer, Simulation};
 use crate::formulation::Failure;
@@ -19,15 +20,15 @@ pub struct Happening {
     pub stopped: bool,
 }
 
-/// Times of events are found to this share of the step.
-const LOCATED: f64 = 1e-12;
+/// Times of events, and of bends of forces, are found to this share of the step.
+pub(super) const LOCATED: f64 = 1e-12;
 
 /// Shortest part of a step: over a shorter one a rounding of positions would be a velocity. An event closer to the beginning of a step is taken
 /// there, and one closer to its end at that end.
-const SHORTEST: f64 = 1e-6;
+pub(super) const SHORTEST: f64 = 1e-6;
 
 /// Tries to find the time of an event. Each halves the interval at least every other time.
-const MOST_TRIES: usize = 100;
+pub(super) const MOST_TRIES: usize = 100;
 
 /// An event that has happened so often at one time goes on for ever.
 const CHATTER: usize = 16;
@@ -311,48 +312,42 @@ impl Simulation {
     fn locate(
         &mut self,
         before: &Moment,
-        (mut low, mut k): (f64, usize),
+        (low, mut k): (f64, usize),
         from: &[f64],
         shortest: f64,
         wants_forces: bool,
         crossed: &dyn Fn(&[f64]) -> Option<usize>,
     ) -> Result<(f64, usize, Vec<f64>), Failure> {
         let (begin, end) = (before.t(), self.state.t);
-        // None has happened at `low`, and the k-th has at `high`.
-        let mut high = end;
-        let width = (LOCATED * (high - begin)).max(f64::EPSILON * high.abs());
         let mut beside = self.indicate()?;
-        let (mut at_low, mut at_high) = (from[k], beside[k]);
-        let (mut here, mut bisects) = (high, false);
+        // None has happened at its beginning, and the k-th has at its end.
+        let mut bracket = Bracket::new([low, end], [from[k], beside[k]]);
+        let width = (LOCATED * (end - begin)).max(f64::EPSILON * end.abs());
+        let mut here = end;
         for _ in 0..MOST_TRIES {
-            if high - low <= width {
+            if bracket.high - bracket.low <= width {
                 break;
             }
-            let secant = high - at_high * (high - low) / (at_high - at_low);
-            if high - begin <= 1.5 * shortest {
+            if bracket.high - begin <= 1.5 * shortest {
                 // Over so short a time all that moves goes straight.
                 self.restore(before);
-                return Ok((secant, k, beside));
+                return Ok((bracket.secant(), k, beside));
             }
-            // Just beside the secant, towards the farther end, so that both ends come close.
-            let aim = if secant - low < high - secant { secant + 0.25 * width } else { secant - 0.25 * width };
-            let next = if bisects || !(aim > low && aim < high) { 0.5 * (low + high) } else { aim };
-            let next = next.max(begin + shortest).min(high);
-            let whole = high - low;
+            here = bracket.next(width).max(begin + shortest).min(bracket.high);
             self.restore(before);
-            self.advance(next, wants_forces, None)?;
-            here = next;
+            self.advance(here, wants_forces, None)?;
             let now = self.indicate().inspect_err(|_| self.restore(before))?;
             match crossed(&now) {
                 Some(other) => {
-                    at_low = if other == k { at_low } else { from[other] };
-                    (high, at_high, k) = (next, now[other], other);
+                    bracket.at_low = if other == k { bracket.at_low } else { from[other] };
+                    bracket.narrow(here, now[other], true);
+                    k = other;
                     beside = now;
                 }
-                None => (low, at_low) = (next, now[k]),
+                None => bracket.narrow(here, now[k], false),
             }
-            bisects = high - low > 0.5 * whole;
         }
+        let high = bracket.high;
         let lands = if end - high < shortest { end } else { high };
         if here != lands {
             self.restore(before);

@@ -4,6 +4,7 @@ mod adapt;
 mod advance;
 pub(crate) mod any_number;
 mod audit;
+mod bracket;
 mod checkpoint;
 mod conflict;
 mod control;

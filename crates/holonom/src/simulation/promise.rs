@@ -124,6 +124,8 @@ pub(super) struct Judge {
     weight: f64,
     /// Farthest that an angle may turn in a step, rad.
     farthest: f64,
+    /// Largest size of what laws make of rounded positions at the ends of the parts of the nominal step so far, J.
+    stiffest: f64,
     /// Measures how near a singular position is, from when that is first asked.
     independence: Option<Box<Independence>>,
 }
@@ -143,26 +145,48 @@ impl Judge {
             *promise = Promise::SuppliedEnergy;
         }
         let farthest = if method.subdivide { FARTHEST } else { PI };
-        Self { promises, looks_at_dampers, tolerance: TOLERANCES * tolerance, mass, weight, farthest, independence: None }
+        Self { promises, looks_at_dampers, tolerance: TOLERANCES * tolerance, mass, weight, farthest, stiffest: 0.0, independence: None }
     }
 
     fn promises(&self, promise: Promise) -> bool {
         self.promises.contains(&promise)
     }
 
-    /// Looks at the energy after a step of length `h` (s); `before` and `after` are the audits around it.
-    pub(super) fn energy(&self, system: &System, h: f64, before: &Audit, after: &Audit, work: &Workspace) -> Result<(), Failure> {
-        self.hold_energy([before.energy(), before.work], after, || self.energy_bound(system, h, before, after, work))
+    /// Whether the method promises anything of the energy.
+    pub(super) fn holds_energy(&self) -> bool {
+        self.promises(Promise::Energy) || self.promises(Promise::FallingEnergy)
+    }
+
+    /// Begins a nominal step.
+    pub(super) fn begin_step(&mut self) {
+        self.stiffest = 0.0;
+    }
+
+    /// Takes note of a step that is taken, with the size of what laws make there of rounded positions, J.
+    pub(super) fn take(&mut self, of_laws: f64) {
+        self.stiffest = self.stiffest.max(of_laws);
+    }
+
+    /// Looks at the energy after a step of length `h` (s); `before` and `after` are the audits around it, `of_laws` is the size of what laws
+    /// make of rounded positions, J.
+    pub(super) fn energy(
+        &self,
+        system: &System,
+        h: f64,
+        [before, after]: [&Audit; 2],
+        of_laws: f64,
+        work: &Workspace,
+    ) -> Result<(), Failure> {
+        self.hold_energy([before.energy(), before.work], after, || self.energy_bound(system, h, [before, after], of_laws, work))
     }
 
     /// Looks at the energy after a nominal step, or so far, of length `h` (s): parts of it may each be round-off and add up to more.
-    pub(super) fn whole(&self, system: &System, h: f64, after: &Audit, work: &Workspace) -> Result<(), Failure> {
+    pub(super) fn whole(&self, h: f64, after: &Audit, of_laws: f64, work: &Workspace) -> Result<(), Failure> {
         let before = after.start_of_step();
         let moved = after.kinetic_at_start_of_step() + (after.work - before[1]).abs();
-        let nothing = || self.nothing(h, moved, after, work);
-        // The forces of stiff laws are rounded, too, which is seldom asked for.
-        let held = self.hold_energy(before, after, nothing);
-        held.or_else(|_| self.hold_energy(before, after, || nothing() + ROUND_OFF * energy::size(system, work, &work.end.x)))
+        // A stiff law may have acted in one part and not in those after it.
+        let of_laws = self.stiffest.max(of_laws);
+        self.hold_energy(before, after, || self.nothing(h, moved, after, work) + ROUND_OFF * of_laws)
     }
 
     /// Looks after a nominal step of length `h` (s) at what energy nothing supplied. Shorter steps would only add more slowly to it.
@@ -226,13 +250,13 @@ impl Judge {
 
     /// Round-off of energies, of the work of rows and laws, and of velocities, which are increments of rounded positions over
     /// the step; and what the tolerance leaves of these.
-    fn energy_bound(&self, system: &System, h: f64, before: &Audit, after: &Audit, work: &Workspace) -> f64 {
+    fn energy_bound(&self, system: &System, h: f64, [before, after]: [&Audit; 2], of_laws: f64, work: &Workspace) -> f64 {
         let scales = &work.scales;
         let kinetic = before.kinetic.abs() + after.kinetic.abs();
         let rows = work.lambda.iter().zip(&scales.gradient).map(|(lambda, g)| (lambda * g).abs()).sum::<f64>() * scales.length;
         // What forces do along rounded positions, also where hardly anything moves.
         let working = if work.is_worked_on() { energy::size_of_working_forces(system, work) * scales.length } else { 0.0 };
-        let sizes = kinetic + energy::size(system, work, &work.end.x) + (after.work - before.work).abs() + rows + working;
+        let sizes = kinetic + of_laws + (after.work - before.work).abs() + rows + working;
         ROUND_OFF * sizes + self.most_momentum(kinetic) * scales.length * 2.0 / h.abs() * (ROUNDED + self.tolerance)
     }
 

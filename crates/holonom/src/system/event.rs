@@ -23,7 +23,7 @@ pub enum Crossing {
 
 impl Crossing {
     /// Whether it lies between two values. One that begins at zero has been there.
-    fn is_between(self, from: f64, to: f64) -> bool {
+    pub(crate) fn is_between(self, from: f64, to: f64) -> bool {
         let (rises, falls) = (from < 0.0 && to >= 0.0, from > 0.0 && to <= 0.0);
         match self {
             Self::Rising => rises,

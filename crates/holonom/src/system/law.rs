@@ -37,6 +37,12 @@ pub trait Law: Send + Sync {
     /// Whether [`Law::energy`] accounts for all the law does.
     fn conservative(&self) -> bool;
 
+    /// A number that goes through zero where the force bends, as that of a stop at its limit: steps by accuracy end there. Of a law that has
+    /// one it is never `None`.
+    fn bend(&self, _value: &[f64], _rate: &[f64]) -> Option<f64> {
+        None
+    }
+
     /// Forces and derivatives at a state. `out` arrives zeroed.
     fn at(&self, value: &[f64], rate: &[f64], t: f64, out: &mut Response);
 

@@ -37,6 +37,11 @@ impl Law for Spring {
 /// f(q̇), against the motion: the force and its derivative.
 pub trait Resistance: Send + Sync {
     fn at(&self, rate: f64) -> [f64; 2];
+
+    /// A number that goes through zero where it bends, as [`Law::bend`] has it.
+    fn bend(&self, _rate: f64) -> Option<f64> {
+        None
+    }
 }
 
 /// f = c q̇.
@@ -54,7 +59,14 @@ pub struct Dry {
     pub speed: f64,
 }
 
+/// Rate over that of dry friction from which on the friction is as good as full, and steps do not see from there how it falls.
+const FULL: f64 = 6.0;
+
 impl Resistance for Dry {
+    fn bend(&self, rate: f64) -> Option<f64> {
+        Some(rate.abs() - FULL * self.speed)
+    }
+
     fn at(&self, rate: f64) -> [f64; 2] {
         let tanh = (rate / self.speed).tanh();
         [self.effort * tanh, self.effort / self.speed * (1.0 - tanh * tanh)]
@@ -65,6 +77,10 @@ impl Resistance for Dry {
 pub struct Resisting<R>(pub R);
 
 impl<R: Resistance> Law for Resisting<R> {
+    fn bend(&self, _value: &[f64], rate: &[f64]) -> Option<f64> {
+        self.0.bend(rate[0])
+    }
+
     fn conservative(&self) -> bool {
         false
     }
@@ -100,6 +116,10 @@ impl Law for Buffer {
 
     fn conservative(&self) -> bool {
         true
+    }
+
+    fn bend(&self, value: &[f64], _rate: &[f64]) -> Option<f64> {
+        Some(self.sign * (value[0] - self.limit))
     }
 
     fn at(&self, value: &[f64], _rate: &[f64], _t: f64, out: &mut Response) {

@@ -151,6 +151,11 @@ impl<P: Pull> Law for Taut<P> {
         self.pull.conservative()
     }
 
+    /// The damping bends where the tension does.
+    fn bend(&self, value: &[f64], _rate: &[f64]) -> Option<f64> {
+        self.pull.conservative().then(|| self.strands.beyond(value))
+    }
+
     fn at(&self, value: &[f64], rate: &[f64], _t: f64, out: &mut Response) {
         let stretch = self.strands.beyond(value);
         if stretch <= 0.0 {
