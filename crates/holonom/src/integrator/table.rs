@@ -17,6 +17,8 @@ pub enum Estimate {
     History,
     /// The integrator gives it.
     Own,
+    /// The same, from the differences of many states, in which more is rounded.
+    OwnOfStates,
     /// None: the step is the user's.
     None,
 }
@@ -321,7 +323,7 @@ pub const INTEGRATORS: &[Entry] = &[
         conserves: false,
         orders: &[2, 1, 3, 4, 5],
         adaptive_order: 5,
-        estimate: Estimate::Own,
+        estimate: Estimate::OwnOfStates,
         dense: false,
         convergence: full,
         make: |system, newton, parameters| Box::new(bdf::Bdf::new(system, &newton.settings, parameters.order, parameters.adapts)),

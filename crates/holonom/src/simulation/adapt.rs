@@ -12,7 +12,7 @@ use crate::energy;
 use crate::formulation::{Failure, Independence, Newton};
 use crate::integrator::{Estimate, Step, Work};
 use crate::projection::{Metric, Projection, Solve};
-use crate::system::{Crossing, GaugeValues, Measured, System};
+use crate::system::{Crossing, GaugeValues, Measured, Seen, System};
 
 /// Smallest step over the length of the run that an accuracy may ask for: below it times no longer tell steps apart.
 const SMALLEST_SHARE: f64 = 1e-13;
@@ -69,18 +69,108 @@ pub(super) struct Pilot {
     independence: Independence,
     redundant: usize,
     patience: Patience,
-    /// Where the forces of laws bend: numbers that go through zero there, at the end of the last step; 0 of one that has been reached.
-    bends: Vec<f64>,
+    /// What is seen of forces that bend at the end of the last step.
+    sight: Sight,
     /// Times at which steps end, as something changes abruptly there, s.
     switches: Vec<f64>,
 }
 
-/// Where a step ends.
-#[derive(Default)]
-struct Landing {
-    /// Where the forces of laws bend, as the pilot has it.
+/// What is seen of forces that bend: what they depend on, and the numbers that go through zero where they do; next to nothing of one that has
+/// been reached, with the sign that it has behind.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Sight {
+    seen: Seen,
     bends: Vec<f64>,
-    is_on_one: bool,
+}
+
+/// Where a step ends.
+enum Landing {
+    /// Where no force bends.
+    Between(Sight),
+    /// Where one does.
+    OnBend(Sight),
+    /// Not at all, as a force bends where it begins.
+    AtOnce,
+    /// Not at all, as a force that bent where it began bends again before it ends: it would be as if it had not bent. How long it may be, s.
+    TooLong(f64),
+}
+
+/// The first force that bends on a way.
+struct Passed {
+    /// Its number.
+    bend: usize,
+    /// Shares of the way between which it does, and the numbers that go through zero there.
+    shares: [f64; 2],
+    values: [f64; 2],
+}
+
+impl Sight {
+    /// The first of the forces that bends on the way to what is seen `at` the end, if one does.
+    fn first_passed(&self, at: &Self, system: &System) -> Option<Passed> {
+        if self.bends.is_empty() {
+            return None;
+        }
+        let look = |share: f64| if share < 1.0 { system.bends(&self.seen.between(&at.seen, share)) } else { at.bends.clone() };
+        let passed = |from: f64, last: &[f64], share: f64, bends: &[f64]| {
+            let bend = (0..bends.len()).find(|&k| Crossing::Both.is_between(self.bends[k], bends[k]))?;
+            Some(Passed { bend, shares: [from, share], values: [last[bend], bends[bend]] })
+        };
+        let mut before = self.bends.clone();
+        let mut last = self.bends.clone();
+        for part in 1..=INSIDE as u32 {
+            let [from, share] = [part - 1, part].map(|part| f64::from(part) / INSIDE);
+            let bends = look(share);
+            // What comes near zero and goes away again may have been there: look where the parabola through three has its end.
+            let near = (0..bends.len()).filter_map(|k| nearest([before[k], last[k], bends[k]])).filter(|_| part > 1);
+            let turn = near.map(|place| from + place / INSIDE).find_map(|turn| passed(from.min(turn), &last, turn, &look(turn)));
+            if let Some(first) = turn.or_else(|| passed(from, &last, share, &bends)) {
+                return Some(first);
+            }
+            before = std::mem::replace(&mut last, bends);
+        }
+        None
+    }
+
+    /// Whether a force has bent so much later, s, as what it depends on moves now.
+    fn is_beyond(&self, bend: usize, later: f64, system: &System) -> bool {
+        Crossing::Both.is_between(self.bends[bend], system.bends(&self.seen.ahead(later))[bend])
+    }
+
+    /// How long it takes until a force bends, s, as what it depends on moves now and for a while, s; no number where nothing tells.
+    fn left(&self, bend: usize, a_while: f64, system: &System) -> f64 {
+        a_while * self.bends[bend] / (self.bends[bend] - system.bends(&self.seen.ahead(a_while))[bend])
+    }
+
+    /// Where a step that failed ends as far as can be told from where it began: a force that jumps at its end may allow none.
+    fn stop_before(&mut self, step: f64, system: &System) -> Landing {
+        let left = |bend: usize| self.left(bend, SHORTEST * step, system);
+        let soon = (0..self.bends.len()).map(|bend| (bend, left(bend))).filter(|(_, left)| (0.0..2.0 * step).contains(left));
+        match soon.min_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((bend, left)) if left <= SHORTEST * step => {
+                self.bends[bend] = REACHED.copysign(-self.bends[bend]);
+                Landing::AtOnce
+            }
+            // What moves gets faster, too.
+            Some((_, left)) => Landing::TooLong(if left < step { 0.99 * left } else { 0.5 * step }),
+            None => Landing::Between(Self::default()),
+        }
+    }
+
+    /// Counts a bend as reached, on the way from `before`, and all that are the same.
+    fn reach(&mut self, bend: usize, before: &Self) {
+        let (here, behind) = (self.bends[bend], REACHED.copysign(-before.bends[bend]));
+        self.bends.iter_mut().filter(|now| **now == here).for_each(|now| *now = behind);
+    }
+}
+
+/// The number of a bend that has been reached, with the sign that it has behind.
+const REACHED: f64 = f64::MIN_POSITIVE;
+
+/// Where a parabola through values at −1, 0 and 1 is nearest to zero, if that is between −1 and 1 and not beyond zero by these values already.
+fn nearest([before, middle, after]: [f64; 3]) -> Option<f64> {
+    let (slope, bend) = (0.5 * (after - before), after - 2.0 * middle + before);
+    let place = -slope / bend;
+    (middle * bend > 0.0 && place.abs() < 1.0).then_some(place)
 }
 
 /// How attempts at steps have gone.
@@ -146,7 +236,7 @@ impl Pilot {
             independence,
             redundant,
             patience: Patience::default(),
-            bends: Vec::new(),
+            sight: Sight::default(),
             switches: Vec::new(),
         }))
     }
@@ -164,7 +254,7 @@ pub(super) struct Flight {
     length: Option<f64>,
     redundant: usize,
     patience: Patience,
-    bends: Vec<f64>,
+    sight: Sight,
 }
 
 impl Pilot {
@@ -209,6 +299,7 @@ impl Pilot {
     pub(super) fn begin_anew(&mut self, simulation: &Simulation) {
         self.v.copy_from_slice(&simulation.shown_v);
         self.control.begin_anew(&simulation.state, &self.v);
+        self.sight = simulation.sight();
         self.turn(simulation);
     }
 
@@ -251,14 +342,14 @@ impl Pilot {
             length,
             redundant: self.redundant,
             patience: self.patience,
-            bends: self.bends.clone(),
+            sight: self.sight.clone(),
         }
     }
 
     /// Goes on from there. An integrator with dense output takes the last step once more, to know what is inside it.
     pub(super) fn take_over(&mut self, flight: Flight, simulation: &mut Simulation) {
-        let Flight { control, end, v, before, front, length, redundant, patience, bends } = flight;
-        (self.redundant, self.patience, self.bends) = (redundant, patience, bends);
+        let Flight { control, end, v, before, front, length, redundant, patience, sight } = flight;
+        (self.redundant, self.patience, self.sight) = (redundant, patience, sight);
         (self.control, self.end, self.v, self.before, self.front) = (control, end, v, before, front);
         simulation.work.estimate.allowed = self.control.allowed();
         if let (Some(length), true) = (length, simulation.method.integrator.dense) {
@@ -299,7 +390,7 @@ impl Simulation {
         pilot.end = end;
         pilot.v.copy_from_slice(&self.shown_v);
         pilot.control.begin(&self.state, &pilot.v, end - self.state.t, self.work.scales.length);
-        pilot.bends = self.system.bends(&self.work.start.at, &self.shown_v);
+        pilot.sight = self.sight();
         pilot.turn(self);
         self.work.estimate.allowed = pilot.control.allowed();
         self.pilot = Some(pilot);
@@ -310,6 +401,9 @@ impl Simulation {
         while self.state.t < target {
             let (stop, longest) = pilot.reach(self.state.t, target);
             let left = stop - self.state.t;
+            if self.skips(left, stop, pilot) {
+                continue;
+            }
             let parts = (left / longest - 1e-9).ceil().max(1.0);
             let step = left / parts;
             let is_taken = self.attempt(step, if parts == 1.0 { stop } else { self.state.t + step }, pilot)?;
@@ -334,6 +428,9 @@ impl Simulation {
             // The last two steps are alike.
             let (stop, longest) = pilot.reach(self.state.t, pilot.end);
             let left = stop - self.state.t;
+            if self.skips(left, stop, pilot) {
+                continue;
+            }
             let parts = (left / longest - 1e-9).ceil().max(1.0);
             let step = if parts <= 2.0 { left / parts } else { longest };
             let taken = self.attempt(step, if parts == 1.0 { stop } else { self.state.t + step }, pilot);
@@ -408,14 +505,22 @@ impl Simulation {
     fn attempt(&mut self, step: f64, target: f64, pilot: &mut Pilot) -> Result<bool, Failure> {
         pilot.require_progress(step, self.state.t)?;
         pilot.before.keep(self);
-        let (mut step, mut landing) = (step, Landing::default());
+        let (mut step, mut landing) = (step, Landing::Between(Sight::default()));
         let outcome = self.substep(step, target).and_then(|mut taken| {
             landing = self.land_on_bend(&mut taken, &mut step, pilot)?;
             self.smooth(step, pilot)?;
             Ok(taken)
         });
+        if outcome.is_err() {
+            landing = pilot.sight.stop_before(step, &self.system);
+        }
+        if pilot.sight.bends.iter().any(|bend| bend.abs() == REACHED) {
+            // What jumped where the step begins is known.
+            self.work.estimate.loads = 0.0;
+        }
         let ratio = outcome.as_ref().map_or(f64::INFINITY, |taken| pilot.ratio(self, taken, step));
-        if let (Ok(taken), true) = (outcome, ratio <= 1.0) {
+        let has_bend = matches!(landing, Landing::OnBend(_));
+        if let (Ok(taken), Landing::Between(sight) | Landing::OnBend(sight), true) = (outcome, &mut landing, ratio <= 1.0) {
             if pilot.redundant > 0 && pilot.patience.attempts.is_multiple_of(OFTEN) {
                 pilot.count_redundant(&self.system, &self.state);
             }
@@ -424,17 +529,13 @@ impl Simulation {
             pilot.control.accept(step, ratio);
             pilot.last = Some((taken, step));
             pilot.patience.rejected = 0;
-            pilot.bends = landing.bends;
-            let has_switch = pilot.switches.contains(&self.state.t);
-            if has_switch {
-                // Just behind it.
-                self.state.t = self.state.t.next_up().next_up();
-            }
-            if landing.is_on_one {
-                // How long the step to it was says nothing of the next one.
+            pilot.sight = std::mem::take(sight);
+            if has_bend || step < 0.5 * planned {
+                // How long the step to a bend was, or what was left to a time, says nothing of the next one.
                 pilot.control.step = planned;
             }
-            if has_switch || landing.is_on_one {
+            if !self.pass_switch(pilot) && has_bend {
+                self.pass_bend(&pilot.sight, step);
                 self.begin_anew();
                 pilot.control.begin_anew(&self.state, &pilot.v);
             }
@@ -442,7 +543,19 @@ impl Simulation {
         }
         pilot.before.restore(self);
         self.audit.reject(&self.newton);
-        pilot.control.reject(step, ratio);
+        match landing {
+            Landing::AtOnce => {
+                self.pass_bend(&pilot.sight, step);
+                self.begin_anew();
+                pilot.control.forget(&self.state);
+                return Ok(false);
+            }
+            Landing::TooLong(longest) => {
+                pilot.control.step = longest;
+                return Ok(false);
+            }
+            _ => pilot.control.reject(step, ratio),
+        }
         pilot.patience.rejected += 1;
         if pilot.patience.rejected == RESTART {
             self.state.memory.fill(0.0);
@@ -450,36 +563,115 @@ impl Simulation {
         Ok(false)
     }
 
+    /// Whether so little is left (s) until the time `stop` that it is that time already.
+    fn skips(&mut self, left: f64, stop: f64, pilot: &mut Pilot) -> bool {
+        let skips = left < (SMALLEST_SHARE * pilot.control.span).max(16.0 * LOCATED * self.step);
+        if skips {
+            self.state.t = stop;
+            self.pass_switch(pilot);
+        }
+        skips
+    }
+
+    /// Goes to just behind a time where something changes abruptly, if it is that, and begins anew there.
+    fn pass_switch(&mut self, pilot: &mut Pilot) -> bool {
+        let has_switch = pilot.switches.contains(&self.state.t);
+        if has_switch {
+            self.state.t = self.state.t.next_up().next_up();
+            pilot.sight = self.sight();
+            self.begin_anew();
+            pilot.control.begin_anew(&self.state, &pilot.v);
+        }
+        has_switch
+    }
+
     /// Where a force bends within the step that was just taken, it is taken again and ends there: what follows is not continued from what came
     /// before.
-    fn land_on_bend(&mut self, taken: &mut Step, step: &mut f64, pilot: &Pilot) -> Result<Landing, Failure> {
-        let passed = |bends: &[f64]| (0..bends.len()).find(|&k| Crossing::Both.is_between(pilot.bends[k], bends[k]));
-        let mut bends = self.system.bends(&self.work.start.at, &self.shown_v);
-        let Some(mut k) = passed(&bends) else { return Ok(Landing { bends, is_on_one: false }) };
+    fn land_on_bend(&mut self, taken: &mut Step, step: &mut f64, pilot: &mut Pilot) -> Result<Landing, Failure> {
+        let (system, from) = (self.system.clone(), &mut pilot.sight);
+        let mut at = self.sight();
         let (begin, whole) = (pilot.before.state.t, *step);
-        let mut bracket = Bracket::new([begin, self.state.t], [pilot.bends[k], bends[k]]);
+        let Some(first) = from.first_passed(&at, &system) else { return Ok(Landing::Between(at)) };
+        let left = whole * Bracket::new(first.shares, first.values).secant();
+        if left <= SHORTEST * whole {
+            from.bends[first.bend] = REACHED.copysign(-from.bends[first.bend]);
+            return Ok(Landing::AtOnce);
+        }
+        if from.bends[first.bend].abs() == REACHED {
+            return Ok(Landing::TooLong(left / BETWEEN));
+        }
         let width = (LOCATED * whole).max(f64::EPSILON * self.state.t.abs());
+        let mut bend = first.bend;
+        let mut bracket: Option<Bracket> = None;
         for _ in 0..MOST_TRIES {
-            let there = bracket.secant();
-            let is_here = (there - self.state.t).abs() <= width || bracket.high - bracket.low <= width;
-            if is_here || there - begin <= SHORTEST * whole {
-                break;
-            }
-            let next = bracket.next(width);
+            let next = match (from.first_passed(&at, &system), &mut bracket) {
+                // What is seen between is about so: only what is seen at the end of a step is sure.
+                (Some(passed), _) if passed.shares[1] < 1.0 => {
+                    (bend, bracket) = (passed.bend, None);
+                    begin + passed.shares[1] * *step
+                }
+                (None, None) => return Ok(Landing::Between(at)),
+                (passed, bracket) => {
+                    let (t, is_beyond) = (self.state.t, passed.is_some());
+                    let same =
+                        bracket.take().filter(|_| passed.is_none_or(|passed| std::mem::replace(&mut bend, passed.bend) == passed.bend));
+                    let bracket = bracket.insert(match same {
+                        Some(mut same) => {
+                            same.narrow(t, at.bends[bend], is_beyond);
+                            same
+                        }
+                        None => Bracket::new([begin, t], [from.bends[bend], at.bends[bend]]),
+                    });
+                    let is_found = bracket.high - bracket.low <= width;
+                    match is_beyond {
+                        // Just before it forces are those that the step has had.
+                        true if is_found && bracket.low > begin => bracket.low,
+                        true => bracket.next(width),
+                        false if is_found || at.is_beyond(bend, width, &system) => break,
+                        false => {
+                            let ahead = t + at.left(bend, SHORTEST * whole, &system) - 0.5 * width;
+                            if ahead > t && ahead < bracket.high { ahead } else { bracket.next(width) }
+                        }
+                    }
+                }
+            };
             pilot.before.restore(self);
             self.audit.reject(&self.newton);
             *step = next - begin;
             *taken = self.substep(*step, next)?;
-            bends = self.system.bends(&self.work.start.at, &self.shown_v);
-            let first = passed(&bends);
-            if let Some(other) = first.filter(|&other| other != k) {
-                (k, bracket.at_low) = (other, pilot.bends[other]);
-            }
-            bracket.narrow(next, bends[k], first.is_some());
+            at = self.sight();
         }
-        let is_past = |k: usize, now: f64| Crossing::Both.is_between(pilot.bends[k], now);
-        (0..).zip(&mut bends).filter(|(at, now)| *at == k || is_past(*at, **now)).for_each(|(_, now)| *now = 0.0);
-        Ok(Landing { bends, is_on_one: true })
+        at.reach(bend, from);
+        // What jumps there is known.
+        self.work.estimate.loads = 0.0;
+        Ok(Landing::OnBend(at))
+    }
+
+    /// Goes on to just behind the bends that a step of length `step` (s) has ended before, so that forces are those of what follows also where the
+    /// next begins. The conserving schemes, which ask for the forces between, stay where the energy is what it was.
+    fn pass_bend(&mut self, sight: &Sight, step: f64) {
+        if self.method.integrator.conserves {
+            return;
+        }
+        let reached = |hop: &f64| {
+            let ahead = self.system.bends(&sight.seen.ahead(*hop));
+            sight.bends.iter().zip(ahead).all(|(bend, ahead)| bend.abs() != REACHED || bend * ahead > 0.0)
+        };
+        let mut hops = std::iter::successors(Some(LOCATED * step), |hop| Some(2.0 * hop)).take_while(|hop| *hop <= SHORTEST * step);
+        let Some(hop) = hops.find(reached) else { return };
+        let Self { system, state, work, gauges, .. } = self;
+        state.x.iter_mut().zip(&self.shown_v).for_each(|(x, v)| *x += hop * v);
+        state.t += hop;
+        system.place_known(state.t, &mut state.x, &mut work.end.v, &mut work.a);
+        system.evaluate_again(&state.x, state.t, &mut work.start.at);
+        system.measure(&state.x, &self.shown_v, gauges);
+        state.measured.copy_from_slice(gauges.counted());
+    }
+
+    /// What is seen of forces that bend at the present state.
+    fn sight(&self) -> Sight {
+        let seen = self.system.see(self.look());
+        Sight { bends: self.system.bends(&seen), seen }
     }
 
     /// Goes on with the accelerations that forces have now, and without what was kept of the steps before.

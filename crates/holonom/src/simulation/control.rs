@@ -17,6 +17,9 @@ const SAFETY: f64 = 0.9;
 /// round-off: shorter steps would only raise it.
 const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 
+/// How many times that is rounded in differences of many states.
+const TERMS: f64 = 8.0;
+
 /// Ratio of error and allowance that leaves the step about as it is.
 pub(super) const KEEPING: f64 = 0.5;
 
@@ -87,10 +90,15 @@ impl Control {
     /// Begins anew at a state with velocities `v`, where something changes abruptly: of what came before nothing tells what comes,
     /// and a step of a tenth asks.
     pub(super) fn begin_anew(&mut self, state: &State, v: &[f64]) {
+        self.remember(state.t, v);
+        self.forget(state);
+    }
+
+    /// The same at the state whose velocities were remembered last.
+    pub(super) fn forget(&mut self, state: &State) {
         let n = self.start.len();
         self.start.copy_from_slice(&state.a[..n]);
-        self.count = 0;
-        self.remember(state.t, v);
+        self.count = 1;
         self.step *= 0.1;
         self.last_ratio = 1.0;
     }
@@ -120,7 +128,9 @@ impl Control {
         }
         let of_loads = work.estimate.loads / (WORSE * self.speed);
         let error = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| if x.is_nan() { f64::INFINITY } else { m.max(x.abs()) });
-        let noise = ROUND_OFF * amplified;
+        // Of places far away, as on a long way, more is rounded.
+        let terms = if self.estimate == Estimate::OwnOfStates { TERMS } else { 1.0 };
+        let noise = ROUND_OFF * terms * amplified * (largest(&work.end.x) / work.scales.length).max(1.0);
         let above = |error: f64, noise: f64| if error > noise { error } else { 0.0 };
         let mut position = error(&work.estimate.q) / work.scales.length;
         let mut velocity = (error(&work.estimate.v) / self.speed).max(of_loads);

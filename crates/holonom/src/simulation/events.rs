@@ -295,7 +295,7 @@ impl Simulation {
         self.sample(&due, within).map(|()| !due.is_empty())
     }
 
-    fn look(&self) -> Look<'_> {
+    pub(super) fn look(&self) -> Look<'_> {
         let (state, at) = (&self.state, &self.work.start.at);
         Look { x: &state.x, v: &self.shown_v, t: state.t, at, inputs: &state.inputs, span: None }
     }

@@ -156,7 +156,7 @@ pub(super) fn accuracy(choice: &Choice, integrator: &Entry, order: u8, is_unstab
     let estimates = |entry: &Entry, order: u8| match entry.estimate {
         Estimate::History => order == 2,
         // A first order would need steps by the million.
-        Estimate::Own => order > 1,
+        Estimate::Own | Estimate::OwnOfStates => order > 1,
         Estimate::None => false,
     };
     if is_unstable {

@@ -44,11 +44,18 @@ pub trait ConstraintFunction: Send + Sync {
 pub trait ForceFunction: Send + Sync {
     /// Force at coordinates `x` and velocities `v` of the nodes, D numbers a node, and time `t`, N.
     fn evaluate<N: Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]);
+
+    /// Hands over numbers that go through zero where the force jumps or has a kink, as [`Law::bends`](super::Law::bends) does.
+    fn bends(&self, _x: &[f64], _v: &[f64], _t: f64, _note: &mut dyn FnMut(f64)) {}
 }
 
 impl<F: ForceFunction> ForceFunction for std::sync::Arc<F> {
     fn evaluate<N: Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
         (**self).evaluate(x, v, t, force);
+    }
+
+    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+        (**self).bends(x, v, t, note);
     }
 }
 
@@ -167,6 +174,10 @@ impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
 }
 
 impl<F: ForceFunction> Load for Differentiated<F> {
+    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+        self.0.bends(x, v, t, note);
+    }
+
     fn force(&self, x: &[f64], v: &[f64], t: f64, force: &mut [f64]) {
         self.0.evaluate(x, v, t, force);
     }

@@ -37,11 +37,9 @@ pub trait Law: Send + Sync {
     /// Whether [`Law::energy`] accounts for all the law does.
     fn conservative(&self) -> bool;
 
-    /// A number that goes through zero where the force bends, as that of a stop at its limit: steps by accuracy end there. Of a law that has
-    /// one it is never `None`.
-    fn bend(&self, _value: &[f64], _rate: &[f64]) -> Option<f64> {
-        None
-    }
+    /// Hands over numbers that go through zero where the force jumps or has a kink, as that of a stop at its limit: steps by accuracy end
+    /// there. They are as many at every state.
+    fn bends(&self, _value: &[f64], _rate: &[f64], _t: f64, _note: &mut dyn FnMut(f64)) {}
 
     /// Forces and derivatives at a state. `out` arrives zeroed.
     fn at(&self, value: &[f64], rate: &[f64], t: f64, out: &mut Response);
@@ -56,6 +54,9 @@ pub trait Law: Send + Sync {
 pub trait Load: Send + Sync {
     /// Writes the force on each of the load's nodes (D × nodes), N, for their positions `x`, velocities `v` and time.
     fn force(&self, x: &[f64], v: &[f64], t: f64, force: &mut [f64]);
+
+    /// Hands over numbers that go through zero where the force jumps or has a kink, as [`Law::bends`] does.
+    fn bends(&self, _x: &[f64], _v: &[f64], _t: f64, _note: &mut dyn FnMut(f64)) {}
 
     /// Writes ∂F/∂x and ∂F/∂v, both row-major (D·nodes × D·nodes). Both arrive zeroed.
     fn tangent(&self, x: &[f64], v: &[f64], t: f64, by_position: &mut [f64], by_velocity: &mut [f64]);

@@ -5,6 +5,7 @@
 //! folded into the invariants as constants.
 
 mod angle;
+mod bends;
 mod builder;
 mod custom;
 mod derive;
@@ -23,6 +24,7 @@ mod slots;
 mod switches;
 mod terms;
 
+pub(crate) use bends::{Bending, Seen};
 pub use builder::{NodeId, Place, SystemBuilder, Term};
 pub use custom::{ConstraintFunction, CustomRows, Differences, Differentiated, ForceFunction, Number, SIZE};
 pub(crate) use derive::NO_CHANGE;
@@ -141,6 +143,8 @@ pub struct System {
     pub(crate) motions: Vec<[Arc<dyn Signal>; 3]>,
     /// Functions of time at whose zeros forces or motions change abruptly.
     pub(crate) switches: Vec<Arc<dyn Signal>>,
+    /// The laws and loads whose forces bend.
+    pub(crate) bending: Bending,
     /// Names of the numbers from outside, and what they are until they are set.
     pub(crate) inputs: Vec<(String, f64)>,
     pub(crate) events: Vec<Event>,

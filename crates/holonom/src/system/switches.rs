@@ -1,6 +1,6 @@
-//! When something changes abruptly, as far as it is known in advance, and where forces bend.
+//! When something changes abruptly, as far as it is known in advance.
 
-use super::{Evaluation, LawEntry, MAX_ARGUMENTS, Signal, System};
+use super::{Signal, System};
 
 /// Times between which no more than one zero of a switch is looked for.
 const LOOKS: usize = 10_000;
@@ -12,19 +12,6 @@ impl System {
         times.sort_by(f64::total_cmp);
         times.dedup();
         times
-    }
-
-    /// Numbers that go through zero where the forces of laws bend, at an evaluation with the velocities `v` (D × nodes).
-    pub(crate) fn bends(&self, at: &Evaluation, v: &[f64]) -> Vec<f64> {
-        let bend = |law: &LawEntry| {
-            let m = law.arguments.len();
-            let mut rates = [0.0; MAX_ARGUMENTS];
-            for (rate, &quantity) in rates.iter_mut().zip(&law.arguments) {
-                *rate = self.along(&self.slots_of(quantity), &self.slots.nodes, at, v);
-            }
-            law.law.bend(&self.arguments(law, at)[..m], &rates[..m])
-        };
-        self.laws.iter().filter_map(bend).collect()
     }
 }
 

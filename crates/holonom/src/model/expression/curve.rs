@@ -77,6 +77,32 @@ impl Curve {
         self.knots.iter().map(move |&knot| [Op::Constant(knot), Op::Sub].into_iter().chain(turns.clone().into_iter().flatten()).collect())
     }
 
+    /// A number that passes zero with slope ±1 where the slope jumps: the distance of `s` from the nearest of these places, of one sign and
+    /// the other in turn.
+    pub(super) fn bend(&self, s: f64) -> f64 {
+        let last = self.knots.len() - 1;
+        let (first, end) = (self.knots[0], self.knots[last]);
+        let (s, turns) = match self.beyond {
+            Beyond::Periodic => {
+                let turns = ((s - first) / (end - first)).floor();
+                (s - turns * (end - first), turns * last as f64)
+            }
+            _ => (s, 0.0),
+        };
+        let is_polygon = self.slopes.is_none() && self.spline.is_none();
+        let (before, near): (usize, [f64; 2]) = match is_polygon {
+            true => {
+                let k = self.knots.partition_point(|&knot| knot <= s);
+                (k, [self.knots[k.saturating_sub(1)], self.knots[k.min(last)]])
+            }
+            // Smooth but for its ends.
+            false if self.beyond == Beyond::Periodic => return 1.0,
+            false => (usize::from(s >= first) + usize::from(s >= end), [first, end]),
+        };
+        let distance = near.map(|knot| (s - knot).abs()).into_iter().fold(f64::INFINITY, f64::min);
+        if (before as f64 + turns).rem_euclid(2.0) == 0.0 { distance } else { -distance }
+    }
+
     /// The value at `s`, with whatever derivatives the number carries.
     pub fn evaluate<N: Number>(&self, s: N) -> N {
         let last = self.knots.len() - 1;
@@ -157,6 +183,20 @@ mod tests {
         assert!(values.windows(2).all(|pair| pair[1] >= pair[0] - 1e-14));
         let spline = Curve::cubic(vec![0.0, 1.0, 1.1, 3.0, 4.0], vec![0.0, 0.0, 5.0, 5.0, 6.0], Beyond::Hold);
         assert!((0..=400).any(|k| spline.evaluate(f64::from(k) * 0.01) > 6.0), "which a spline does");
+    }
+
+    #[test]
+    fn bends_change_their_sign_at_the_knots_and_nowhere_else() {
+        let signs = |curve: &Curve, from: f64, to: f64| {
+            let at = |k: i32| curve.bend(from + (to - from) * (f64::from(k) + 0.5) / 1000.0);
+            assert!((0..1000).all(|k| (at(k + 1) - at(k)).abs() < 1.001 * (to - from) / 1000.0), "it is continuous");
+            (0..1000).filter(|&k| (at(k) > 0.0) != (at(k + 1) > 0.0)).count()
+        };
+        for (beyond, knots) in [(Beyond::Hold, 5), (Beyond::Line, 5), (Beyond::Refuse, 5), (Beyond::Periodic, 11)] {
+            assert_eq!(signs(&Curve::linear(KNOTS.to_vec(), VALUES.to_vec(), beyond), -4.9, 9.9), knots, "{beyond:?}");
+        }
+        assert_eq!(signs(&Curve::cubic(KNOTS.to_vec(), VALUES.to_vec(), Beyond::Hold), -4.9, 9.9), 2);
+        assert_eq!(signs(&Curve::monotone(KNOTS.to_vec(), VALUES.to_vec(), Beyond::Periodic), -4.9, 9.9), 0);
     }
 
     #[test]

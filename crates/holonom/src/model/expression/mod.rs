@@ -237,6 +237,16 @@ impl Program {
 
     /// The value for values of the variables. Nothing is allocated.
     pub fn evaluate<N: Number>(&self, variables: &[N]) -> N {
+        self.run(variables, |_| ())
+    }
+
+    /// Hands over the numbers at whose zeros the expression jumps or has a kink: the arguments of `step`, `sign` and `abs`, the difference of
+    /// those of `min` and `max`, and where a table has knots.
+    pub fn bends(&self, variables: &[f64], note: &mut dyn FnMut(f64)) {
+        self.run(variables, note);
+    }
+
+    fn run<N: Number>(&self, variables: &[N], mut note: impl FnMut(f64)) -> N {
         let mut stack = [N::from(0.0); STACK];
         let mut top = 0;
         for op in &self.ops {
@@ -255,6 +265,11 @@ impl Program {
             }
             let last = stack[top - 1];
             if let Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) | Op::OfTable(_) = op {
+                match op {
+                    Op::OfOne(Function::Step | Function::Sign | Function::Abs) => note(last.re()),
+                    Op::OfTable(curve) => note(curve.bend(last.re())),
+                    _ => (),
+                }
                 stack[top - 1] = match op {
                     Op::Neg => -last,
                     Op::OfOne(function) => function.of_one(last),
@@ -271,6 +286,9 @@ impl Program {
             }
             top -= 1;
             let first = stack[top - 1];
+            if let Op::OfTwo(Function::Min | Function::Max) = op {
+                note(first.re() - last.re());
+            }
             stack[top - 1] = match op {
                 Op::Add => first + last,
                 Op::Sub => first - last,

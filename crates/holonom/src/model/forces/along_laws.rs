@@ -7,6 +7,10 @@ use crate::system::{Law, Reach, Response};
 pub(super) struct Along<L>(pub L);
 
 impl Law for Along<Energy> {
+    fn bends(&self, value: &[f64], _rate: &[f64], _t: f64, note: &mut dyn FnMut(f64)) {
+        self.0.bends(value[0], note);
+    }
+
     fn energy(&self, value: &[f64]) -> f64 {
         self.0.value(value[0])
     }
@@ -27,6 +31,10 @@ impl Law for Along<Energy> {
 }
 
 impl Law for Along<Force> {
+    fn bends(&self, value: &[f64], rate: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+        self.0.bends(value[0], rate[0], t, note);
+    }
+
     fn conservative(&self) -> bool {
         false
     }

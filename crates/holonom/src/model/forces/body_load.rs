@@ -15,7 +15,7 @@ use crate::model::expression::Program;
 use crate::model::fault::Read;
 use crate::model::fields::{List, Number, Turn};
 use crate::model::geometry::unit;
-use crate::model::signals::{Reader, Readings, angular_velocity};
+use crate::model::signals::{ROOM, Reader, Readings, angular_velocity};
 use crate::model::sum::{Sum, cross};
 use crate::model::value::Value;
 use crate::record::{Exerts, Shows};
@@ -58,16 +58,22 @@ struct BodyLoad {
 }
 
 impl BodyLoad {
-    /// The formulas at a state.
-    fn given<N: AnyNumber>(&self, x: &[N], v: &[N], t: N) -> [N; 3] {
-        let (dim, zero) = (self.dim, N::from(0.0));
+    /// What the formulas are of.
+    fn variables<N: AnyNumber>(&self, x: &[N], v: &[N], t: N) -> SmallVec<[N; ROOM]> {
+        let dim = self.dim;
         let turn = angular_velocity(&self.axes, x, v, dim);
         let mut variables = SmallVec::from_slice(&[t]);
         variables.extend_from_slice(&self.point.at(x, dim, 1.0)[..dim]);
         variables.extend_from_slice(&self.point.at(v, dim, 0.0)[..dim]);
         variables.extend_from_slice(if dim == 2 { &turn[2..] } else { &turn[..] });
         self.readings.append(x, v, &mut variables);
-        let mut given = [zero; 3];
+        variables
+    }
+
+    /// The formulas at a state.
+    fn given<N: AnyNumber>(&self, x: &[N], v: &[N], t: N) -> [N; 3] {
+        let variables = self.variables(x, v, t);
+        let mut given = [N::from(0.0); 3];
         given.iter_mut().zip(&self.formulas).for_each(|(given, formula)| *given = formula.evaluate(&variables));
         given
     }
@@ -122,6 +128,11 @@ impl Exerts for BodyLoad {
 }
 
 impl ForceFunction for BodyLoad {
+    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+        let variables = self.variables(x, v, t);
+        self.formulas.iter().for_each(|formula| formula.bends(&variables, note));
+    }
+
     fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
         let (dim, exerted) = (self.dim, self.exerted(x, v, t));
         force.fill(N::from(0.0));

@@ -38,10 +38,8 @@ impl Law for Spring {
 pub trait Resistance: Send + Sync {
     fn at(&self, rate: f64) -> [f64; 2];
 
-    /// A number that goes through zero where it bends, as [`Law::bend`] has it.
-    fn bend(&self, _rate: f64) -> Option<f64> {
-        None
-    }
+    /// Hands over numbers that go through zero where it bends, as [`Law::bends`] does.
+    fn bends(&self, _rate: f64, _note: &mut dyn FnMut(f64)) {}
 }
 
 /// f = c q̇.
@@ -63,8 +61,8 @@ pub struct Dry {
 const FULL: f64 = 6.0;
 
 impl Resistance for Dry {
-    fn bend(&self, rate: f64) -> Option<f64> {
-        Some(rate.abs() - FULL * self.speed)
+    fn bends(&self, rate: f64, note: &mut dyn FnMut(f64)) {
+        [-FULL, FULL].into_iter().for_each(|full| note(rate - full * self.speed));
     }
 
     fn at(&self, rate: f64) -> [f64; 2] {
@@ -77,8 +75,8 @@ impl Resistance for Dry {
 pub struct Resisting<R>(pub R);
 
 impl<R: Resistance> Law for Resisting<R> {
-    fn bend(&self, _value: &[f64], rate: &[f64]) -> Option<f64> {
-        self.0.bend(rate[0])
+    fn bends(&self, _value: &[f64], rate: &[f64], _t: f64, note: &mut dyn FnMut(f64)) {
+        self.0.bends(rate[0], note);
     }
 
     fn conservative(&self) -> bool {
@@ -118,8 +116,8 @@ impl Law for Buffer {
         true
     }
 
-    fn bend(&self, value: &[f64], _rate: &[f64]) -> Option<f64> {
-        Some(self.sign * (value[0] - self.limit))
+    fn bends(&self, value: &[f64], _rate: &[f64], _t: f64, note: &mut dyn FnMut(f64)) {
+        note(self.sign * (value[0] - self.limit));
     }
 
     fn at(&self, value: &[f64], _rate: &[f64], _t: f64, out: &mut Response) {
@@ -190,14 +188,18 @@ impl Law for Impact {
 pub struct Effort(pub Program);
 
 impl Effort {
+    fn variables(value: &[f64], rate: &[f64], t: f64) -> [f64; 1 + 2 * MAX_ARGUMENTS] {
+        let mut variables = [t; 1 + 2 * MAX_ARGUMENTS];
+        for (k, (value, rate)) in value.iter().zip(rate).enumerate() {
+            (variables[1 + 2 * k], variables[2 + 2 * k]) = (*value, *rate);
+        }
+        variables
+    }
+
     /// E, and its derivatives by coordinates and by rates.
     fn evaluate(&self, value: &[f64], rate: &[f64], t: f64) -> (f64, [f64; MAX_ARGUMENTS], [f64; MAX_ARGUMENTS]) {
         let m = value.len();
-        let mut variables = [Dual64::from(t); 1 + 2 * MAX_ARGUMENTS];
-        for k in 0..m {
-            variables[1 + 2 * k] = Dual64::from(value[k]);
-            variables[2 + 2 * k] = Dual64::from(rate[k]);
-        }
+        let mut variables = Self::variables(value, rate, t).map(Dual64::from);
         let (mut effort, mut by) = (0.0, [[0.0; MAX_ARGUMENTS]; 2]);
         for k in 0..2 * m {
             variables[1 + k].eps = 1.0;
@@ -211,6 +213,10 @@ impl Effort {
 }
 
 impl Law for Effort {
+    fn bends(&self, value: &[f64], rate: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+        self.0.bends(&Self::variables(value, rate, t), note);
+    }
+
     fn conservative(&self) -> bool {
         false
     }

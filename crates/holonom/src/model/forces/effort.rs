@@ -13,7 +13,7 @@ use crate::model::fields::{Keys, Map, Number};
 use crate::model::joints::coordinate;
 use crate::model::key::Shape;
 use crate::model::parameters::require_name;
-use crate::model::signals::{Reader, Readings};
+use crate::model::signals::{ROOM, Reader, Readings};
 use crate::system::{Differentiated, ForceFunction, MAX_ARGUMENTS, Number as AnyNumber, Reading, Sense};
 
 /// a motor or any other effort along the coordinate of a joint, as a formula of time, of that coordinate and its rate, and of
@@ -120,14 +120,25 @@ struct EffortLoad {
     effort: Program,
 }
 
-impl ForceFunction for EffortLoad {
-    fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
+impl EffortLoad {
+    /// What the formula is of.
+    fn variables<N: AnyNumber>(&self, x: &[N], v: &[N], t: N) -> SmallVec<[N; ROOM]> {
         let mut variables = SmallVec::from_slice(&[t]);
         for k in self.own..self.own + self.coordinates {
             variables.extend([x[k], v[k]]);
         }
         self.readings.append(x, v, &mut variables);
+        variables
+    }
+}
+
+impl ForceFunction for EffortLoad {
+    fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
         force.fill(N::from(0.0));
-        force[self.own] = self.effort.evaluate(&variables);
+        force[self.own] = self.effort.evaluate(&self.variables(x, v, t));
+    }
+
+    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+        self.effort.bends(&self.variables(x, v, t), note);
     }
 }

@@ -57,6 +57,12 @@ impl Follows {
         self.known().is_none()
     }
 
+    fn bends(&self, read: &[f64], note: &mut dyn FnMut(f64)) {
+        if let Self::Formula(program) = self {
+            program.bends(read, note);
+        }
+    }
+
     fn at<N: AnyNumber>(&self, read: &[N]) -> N {
         match self {
             Self::Known(number) => N::from(*number),
@@ -103,10 +109,32 @@ pub(super) struct SpringLoad {
     pub readings: Readings,
 }
 
+impl SpringLoad {
+    /// Length and rate.
+    fn own<N: AnyNumber>(&self, x: &[N], v: &[N]) -> [N; 2] {
+        if self.is_square { length(x[self.own], v[self.own]) } else { [x[self.own], v[self.own]] }
+    }
+
+    /// What the formula of the force is of, where the rest length is `rest`.
+    fn variables<N: AnyNumber>([length, rate]: [N; 2], rest: N, read: &[N]) -> SmallVec<[N; ROOM]> {
+        let mut variables = SmallVec::from_slice(&[length, rate, read[0], rest, length - rest]);
+        variables.extend_from_slice(&read[1..]);
+        variables
+    }
+}
+
 impl ForceFunction for SpringLoad {
+    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+        let read = read(&self.readings, x, v, t);
+        [self.stiffness.as_ref(), Some(&self.rest), self.damping.as_ref()].into_iter().flatten().for_each(|key| key.bends(&read, note));
+        if let Some(formula) = &self.force {
+            formula.bends(&Self::variables(self.own(x, v), self.rest.at(&read), &read), note);
+        }
+    }
+
     fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
         let read = read(&self.readings, x, v, t);
-        let [length, rate] = if self.is_square { length(x[self.own], v[self.own]) } else { [x[self.own], v[self.own]] };
+        let [length, rate] = self.own(x, v);
         let rest = self.rest.at(&read);
         let mut tension = N::from(0.0);
         if let Some(stiffness) = &self.stiffness {
@@ -116,9 +144,7 @@ impl ForceFunction for SpringLoad {
             tension += damping.at(&read) * rate;
         }
         if let Some(formula) = &self.force {
-            let mut variables: SmallVec<[N; ROOM]> = SmallVec::from_slice(&[length, rate, t, rest, length - rest]);
-            variables.extend_from_slice(&read[1..]);
-            tension += formula.evaluate(&variables);
+            tension += formula.evaluate(&Self::variables([length, rate], rest, &read));
         }
         force.fill(N::from(0.0));
         force[self.own] = -if self.is_square { tension / length } else { tension };
@@ -163,6 +189,12 @@ impl RopeLoad {
 }
 
 impl ForceFunction for RopeLoad {
+    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+        let read = read(&self.readings, x, v, t);
+        [&self.length, &self.stiffness, &self.damping].into_iter().for_each(|key| key.bends(&read, note));
+        note(self.stretch(x, v, t)[0]);
+    }
+
     fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
         force.fill(N::from(0.0));
         let [stretch, speed] = self.stretch(x, v, t);

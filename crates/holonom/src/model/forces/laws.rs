@@ -120,6 +120,10 @@ impl Energy {
         self.formula.evaluate(&[r, self.rest, r - self.rest])
     }
 
+    pub fn bends(&self, r: f64, note: &mut dyn FnMut(f64)) {
+        self.formula.bends(&[r, self.rest, r - self.rest], note);
+    }
+
     /// V with its derivatives.
     pub fn v(&self, r: f64) -> Dual2_64 {
         let r = Dual2_64::new(r, 1.0, 0.0);
@@ -145,6 +149,10 @@ impl Energy {
 }
 
 impl Law for Energy {
+    fn bends(&self, value: &[f64], _rate: &[f64], _t: f64, note: &mut dyn FnMut(f64)) {
+        self.bends(length(value[0]).0, note);
+    }
+
     fn energy(&self, value: &[f64]) -> f64 {
         self.value(length(value[0]).0)
     }
@@ -176,6 +184,10 @@ pub(super) struct Force {
 }
 
 impl Force {
+    pub fn bends(&self, r: f64, rate: f64, t: f64, note: &mut dyn FnMut(f64)) {
+        self.formula.bends(&[r, rate, t, self.rest, r - self.rest], note);
+    }
+
     /// F with its derivatives by r and ṙ.
     pub fn tension(&self, r: f64, rate: f64, t: f64) -> (f64, f64, f64) {
         let at = |r: Dual64, rate: Dual64| self.formula.evaluate(&[r, rate, t.into(), self.rest.into(), r - self.rest]);
@@ -186,6 +198,11 @@ impl Force {
 }
 
 impl Law for Force {
+    fn bends(&self, value: &[f64], rate: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+        let (r, _) = length(value[0]);
+        self.bends(r, rate[0] / r, t, note);
+    }
+
     fn conservative(&self) -> bool {
         false
     }

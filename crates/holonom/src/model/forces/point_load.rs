@@ -9,7 +9,7 @@ use crate::model::ends::End;
 use crate::model::entry::Entry;
 use crate::model::expression::Program;
 use crate::model::fault::Read;
-use crate::model::signals::Readings;
+use crate::model::signals::{ROOM, Readings};
 use crate::model::sum::Sum;
 use crate::record::{Exerts, Shows};
 use crate::system::{Differentiated, ForceFunction, Number};
@@ -37,12 +37,18 @@ pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, point: &End, m
 }
 
 impl PointLoad {
-    /// The force as it is given.
-    fn given<N: Number>(&self, x: &[N], v: &[N], t: N) -> [N; 3] {
+    /// What the formulas are of.
+    fn variables<N: Number>(&self, x: &[N], v: &[N], t: N) -> SmallVec<[N; ROOM]> {
         let mut variables = SmallVec::from_slice(&[t]);
         variables.extend_from_slice(&self.point.at(x, self.dim, 1.0)[..self.dim]);
         variables.extend_from_slice(&self.point.at(v, self.dim, 0.0)[..self.dim]);
         self.readings.append(x, v, &mut variables);
+        variables
+    }
+
+    /// The force as it is given.
+    fn given<N: Number>(&self, x: &[N], v: &[N], t: N) -> [N; 3] {
+        let variables = self.variables(x, v, t);
         let mut whole = [N::from(0.0); 3];
         whole.iter_mut().zip(&self.formulas).for_each(|(whole, formula)| *whole = formula.evaluate(&variables));
         whole
@@ -59,5 +65,10 @@ impl ForceFunction for PointLoad {
     fn evaluate<N: Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
         force.fill(N::from(0.0));
         self.point.spread(self.given(x, v, t), self.dim, force);
+    }
+
+    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+        let variables = self.variables(x, v, t);
+        self.formulas.iter().for_each(|formula| formula.bends(&variables, note));
     }
 }

@@ -152,8 +152,10 @@ impl<P: Pull> Law for Taut<P> {
     }
 
     /// The damping bends where the tension does.
-    fn bend(&self, value: &[f64], _rate: &[f64]) -> Option<f64> {
-        self.pull.conservative().then(|| self.strands.beyond(value))
+    fn bends(&self, value: &[f64], _rate: &[f64], _t: f64, note: &mut dyn FnMut(f64)) {
+        if self.pull.conservative() {
+            note(self.strands.beyond(value));
+        }
     }
 
     fn at(&self, value: &[f64], rate: &[f64], _t: f64, out: &mut Response) {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Moving, NodeId, Place, SystemBuilder};
-use crate::system::{Mass, Quantity, Row, Slots, System};
+use crate::system::{Bending, Mass, Quantity, Row, Slots, System};
 
 /// Gives each of the `free` nodes the velocity of the heaviest part there, beside which the momenta of light ones are not rounded
 /// away, and finds what the momentum of all parts is more than that of the nodes then, N·s.
@@ -100,6 +100,7 @@ impl SystemBuilder {
             loads: self.loads,
             motions: self.motions,
             switches: self.switches,
+            bending: Bending::default(),
             inputs: self.inputs,
             events: self.events,
             row_names,
@@ -112,6 +113,7 @@ impl SystemBuilder {
             plans: Arc::default(),
         };
         system.slots = Arc::new(Slots::new(&system));
+        system.bending = system.find_bending();
         system
     }
 }

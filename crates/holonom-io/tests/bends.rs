@@ -1,0 +1,135 @@
+//! Steps by accuracy end where forces jump or have kinks with what moves: stops, ropes, friction, and what formulas say of places and rates. The
+//! truths are closed forms.
+
+mod common;
+
+use common::model;
+use holonom::simulation::Choice;
+
+const METHODS: [&str; 6] = ["conserving-ggl", "conserving", "generalized-alpha", "radau", "ggl/bdf", "ode/dopri5"];
+
+/// The last row of some columns.
+fn last<const N: usize>(text: &str, method: &str, accuracy: f64, step: f64, end: f64, names: [&str; N]) -> [f64; N] {
+    let choice = Choice { accuracy: Some(accuracy), ..Choice::default().named(method) };
+    let (simulation, recording) = common::run(&model(text), choice, step, end);
+    assert_eq!(simulation.state().t, end, "{method}, step {step}");
+    let row = recording.rows() - 1;
+    names.map(|name| recording.column(name).unwrap_or_else(|| panic!("{name} is recorded"))[row])
+}
+
+/// A block of 1 kg on a rail, from `place` with the velocity `speed`.
+fn block(place: f64, speed: f64, force: &str) -> String {
+    format!(
+        "plane = \"xy\"\ngravity = [0, 0]\n[body.b]\nmass = 1\ninertia = 0.01\nposition = [{place}, 0]\nvelocity = [{speed}, 0]\n\
+         [joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"b\"]\naxis = [1, 0]\n[force.f]\n{force}\n"
+    )
+}
+
+/// Stiff stops and ropes, in their own units all the same motion: steps end where they touch and where they let go, and the error at the end is
+/// within ten times of what was asked for, also after as short a contact as 30 µs.
+#[test]
+fn contacts_are_landed_on() {
+    let stop = "plane = \"xy\"\ngravity = [0, 0]\n[body.block]\nmass = 1\ninertia = 0.01\nposition = [-0.5, 0]\nvelocity = [1, 0]\n\
+                [joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"block\"]\naxis = [1, 0]\n\
+                [force.stop]\ntype = \"stop\"\njoint = \"rail\"\nupper = 0.5\nstiffness = K\n";
+    let rope = "plane = \"xy\"\ngravity = [0, 0]\n[point.block]\nmass = 1\nposition = [0.5, 0]\nvelocity = [1, 0]\n\
+                [point.hook]\nposition = [0, 0]\nfixed = true\n\
+                [force.rope]\ntype = \"rope\"\nbetween = [\"hook\", \"block\"]\nlength = 1.0\nstiffness = K\n";
+    // In contact for half a swing, from half a second on; then back with the speed that it came with.
+    let at = |k: f64| -(0.5 - std::f64::consts::PI / k.sqrt());
+    let methods = [("radau", 1e-9), ("ggl/bdf", 1e-7), ("conserving-ggl", 1e-6), ("generalized-alpha", 1e-6), ("ode/dopri5", 1e-8)];
+    for (text, touch) in [(stop, 0.0), (rope, 1.0)] {
+        for stiffness in [1e4, 1e7, 1e10] {
+            let text = text.replace('K', &stiffness.to_string());
+            for (method, accuracy) in methods {
+                for step in [1.0, 0.03] {
+                    let [place] = last(&text, method, accuracy, step, 1.0, ["block.x"]);
+                    let off = (place - touch - at(stiffness)).abs();
+                    assert!(off <= 10.0 * accuracy, "{method}, {stiffness:e} N/m, touching at {touch} m, step {step}: off by {off:e} m");
+                }
+            }
+        }
+    }
+}
+
+/// A strip of 2 cm in which 100 N brake 1 kg, narrower than steps are long and reached at a nominal time: 2 J are gone behind it, whatever says
+/// so, a force on a body, an effort along the rail, or the tension of a spring.
+#[test]
+fn loads_in_narrow_strips_are_seen() {
+    let forces = [
+        "type = \"force\"\nbody = \"b\"\nforce = [\"-100*(step(x - 1) - step(x - 1.02))\", 0]",
+        "type = \"effort\"\njoint = \"rail\"\neffort = \"-100*(step(q - 1) - step(q - 1.02))\"",
+        "type = \"spring\"\nbetween = [[-1, 0], \"b\"]\nforce = \"100*(step(length - 2) - step(length - 2.02))\"",
+        "type = \"effort\"\njoint = \"rail\"\neffort = \"-50*(sign(q - 1) - sign(q - 1.02))\"",
+    ];
+    let slow = 21.0_f64.sqrt();
+    let inside = (5.0 - slow) / 100.0;
+    let end = 1.02 + slow * (1.0 - 0.2 - inside);
+    for force in forces {
+        let text = block(0.0, 5.0, force);
+        for method in METHODS {
+            for step in [0.005, 0.1, 1.0] {
+                let [place, speed, work] = last(&text, method, 1e-6, step, 1.0, ["b.x", "b.vx", "work"]);
+                let off = (place - end).abs().max((speed - slow).abs() / 5.0);
+                assert!(off < 1e-5, "{method}, step {step}, {force}: {place} for {end} m, {speed} for {slow} m/s");
+                assert!((work + 2.0).abs() < 1e-4, "{method}, step {step}, {force}: work {work}");
+            }
+        }
+    }
+}
+
+/// A ball thrown up against a ceiling a hair below where it would turn: it is in touch for 9 ms of steps that are half a second long.
+#[test]
+fn a_touch_within_a_step_is_seen() {
+    let (speed, g, share) = (10.0_f64, 9.81, 1e-4);
+    let height = speed * speed / (2.0 * g) * (1.0 - share);
+    let text = block(0.0, speed, &format!("type = \"stop\"\njoint = \"rail\"\nupper = {height}\nstiffness = 1e7"))
+        .replace("gravity = [0, 0]", &format!("gravity = [{}, 0]", -g));
+    // In touch: p = g/ω² (cos ωs − 1) + v/ω sin ωs, from the speed v that is left; then down with that speed.
+    let (omega, left) = (1e7_f64.sqrt(), speed * share.sqrt());
+    let touch = 2.0 * (left * omega / g).atan() / omega;
+    let fall = 2.0 - (speed - left) / g - touch;
+    let end = height - left * fall - 0.5 * g * fall * fall;
+    for method in METHODS {
+        for step in [0.01, 0.5, 2.0] {
+            let [place] = last(&text, method, 1e-6, step, 2.0, ["b.x"]);
+            assert!((place - end).abs() < 1e-5, "{method}, step {step}: {place} for {end} m");
+        }
+    }
+}
+
+/// Friction stops a block in a tenth of a second, at a time at which steps end, with nothing that bends before it: the way is v²/2a, and what it
+/// creeps at the end.
+#[test]
+fn friction_stops_where_it_should() {
+    for creep in [1e-2, 1e-4] {
+        let text = block(0.0, 1.0, &format!("type = \"friction\"\njoint = \"rail\"\neffort = 10\nspeed = {creep}"));
+        // ∫ v dv / (10 tanh(v/c)) = 0.05 + c² π²/120 but for exp(−2/c).
+        let end = 0.05 + creep * creep * std::f64::consts::PI.powi(2) / 120.0;
+        for method in METHODS {
+            for step in [0.02, 0.25, 0.5] {
+                let [place] = last(&text, method, 1e-7, step, 0.5, ["b.x"]);
+                assert!((place - end).abs() < 1e-6, "{method}, {creep} m/s, step {step}: {place} for {end} m");
+            }
+        }
+    }
+}
+
+/// A spring that pulls with the same force on either side: a quarter of a period is v/a, over and over, and steps grow again between.
+#[test]
+fn jumps_are_passed_over_and_over() {
+    let text = block(0.0, 1.0, "type = \"effort\"\njoint = \"rail\"\neffort = \"-sign(q - 0.3)\"");
+    // From 0.3 m with √1.6 m/s, half a period of 2 √1.6 s, sixteen times.
+    let fast = 1.6_f64.sqrt();
+    let since: f64 = 20.0 - (fast - 1.0);
+    let (half, sides) = (since.rem_euclid(2.0 * fast), (since / (2.0 * fast)).floor());
+    let end = 0.3 + if sides % 2.0 == 0.0 { 1.0 } else { -1.0 } * (fast * half - 0.5 * half * half);
+    for method in METHODS {
+        let choice = Choice { accuracy: Some(1e-6), ..Choice::default().named(method) };
+        let (simulation, recording) = common::run(&model(&text), choice, 0.1, 20.0);
+        let place = recording.column("b.x").unwrap()[recording.rows() - 1];
+        assert!((place - end).abs() < 1e-5, "{method}: {place} for {end} m");
+        let taken = simulation.audit().work_summary(simulation.steps()).steps_taken;
+        assert!(taken < 4000, "{method}: {taken} steps");
+    }
+}
