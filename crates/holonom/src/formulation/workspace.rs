@@ -82,6 +82,8 @@ pub struct LocalErrors {
     pub loads: f64,
     /// Those that are allowed, over the size of the mechanism and the step, 1/s, where steps follow from an accuracy.
     pub allowed: f64,
+    /// The unit of errors of velocity, m/s.
+    pub speed: f64,
 }
 
 /// A step as it is tried.
@@ -174,7 +176,7 @@ impl Workspace {
             turned: Turned { v: vec![0.0; slots], a: vec![0.0; slots], rows: vec![0.0; slots], half: vec![0.0; system.invariants.len()] },
             phi: vec![0.0; r],
             phi_start: vec![0.0; r],
-            estimate: LocalErrors { q: vec![0.0; n], v: vec![0.0; n], loads: 0.0, allowed: 0.0 },
+            estimate: LocalErrors { q: vec![0.0; n], v: vec![0.0; n], loads: 0.0, allowed: 0.0, speed: f64::INFINITY },
             inputs: system.inputs.iter().map(|(_, default)| *default).collect(),
             memory: Vec::new(),
             full: vec![0.0; all],

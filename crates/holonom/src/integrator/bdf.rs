@@ -11,6 +11,9 @@ use crate::system::System;
 /// States before the present one that are kept: what order 5 and its error estimate need.
 const KEPT: usize = 6;
 
+/// Error over what is allowed below which an order is as good as any.
+const LEAST: f64 = 1e-10;
+
 /// Numbers of the memory before those of the states.
 const HEAD: usize = 3;
 
@@ -201,8 +204,8 @@ impl Bdf {
     /// Estimates the local error at the order in use, and takes the neighbour that allows longer steps for the next one.
     fn choose(&self, order: usize, t: f64, history: &mut History<'_>, work: &mut Workspace) {
         // By how much a step of an order could be longer: its error over what is allowed.
-        let allowed = work.estimate.allowed * work.scales.length * (t - history.time(0));
-        let room = |order: usize, error: f64| (error / allowed).max(1e-10).powf(-1.0 / order as f64);
+        let allowed = work.estimate.allowed * (t - history.time(0));
+        let room = |order: usize, error: f64| (error / allowed).max(LEAST).powf(-1.0 / order as f64);
         let mut next = order;
         let mut best = 0.0;
         if order > 1 {
@@ -215,8 +218,9 @@ impl Bdf {
                 (best, next) = (higher, order + 1);
             }
         }
-        // Another order must be worth it.
-        if best < 1.1 * room(order, local_error(order, t, history, work)) {
+        // Another order must be worth it, and nothing is where hardly anything moves.
+        let error = local_error(order, t, history, work);
+        if best < 1.1 * room(order, error) || error <= LEAST * allowed {
             next = order;
         }
         history.numbers[1] = next as f64;
@@ -224,9 +228,11 @@ impl Bdf {
 }
 
 /// Writes the estimated local errors of a step to `t` with order `k`: ψ_1 … ψ_k times the divided difference over k + 2
-/// states over the leading weight of the derivative. Says the largest of the positions, m.
+/// states over the leading weight of the derivative. Says the largest, of positions over the size of the mechanism and of velocities over
+/// their unit.
 fn local_error(order: usize, t: f64, history: &History<'_>, work: &mut Workspace) -> f64 {
     let n = history.n;
+    let (length, speed) = (work.scales.length, work.estimate.speed);
     let time = |j: usize| if j == 0 { t } else { history.time(j - 1) };
     let (mut product, mut leading) = (1.0, 0.0);
     for j in 1..=order {
@@ -248,9 +254,10 @@ fn local_error(order: usize, t: f64, history: &History<'_>, work: &mut Workspace
         let error = product * differences[0] / leading;
         if k < n {
             work.estimate.q[k] = error;
-            largest = largest.max(error.abs());
+            largest = largest.max(error.abs() / length);
         } else {
             work.estimate.v[k - n] = error;
+            largest = largest.max(error.abs() / speed);
         }
     }
     largest

@@ -505,6 +505,7 @@ impl Simulation {
     fn attempt(&mut self, step: f64, target: f64, pilot: &mut Pilot) -> Result<bool, Failure> {
         pilot.require_progress(step, self.state.t)?;
         pilot.before.keep(self);
+        self.work.estimate.speed = pilot.control.speed;
         let (mut step, mut landing) = (step, Landing::Between(Sight::default()));
         let outcome = self.substep(step, target).and_then(|mut taken| {
             landing = self.land_on_bend(&mut taken, &mut step, pilot)?;

@@ -46,7 +46,7 @@ pub(super) struct Control {
     pub step: f64,
     last_ratio: f64,
     /// Largest speed so far, m/s: the unit of velocity errors.
-    speed: f64,
+    pub speed: f64,
     /// Times and velocities of the last accepted steps, the latest first.
     times: [f64; KEPT],
     velocities: [Vec<f64>; KEPT],

@@ -102,6 +102,9 @@ const WHOLE: f64 = 1e-10;
 /// The same of the potential energy and of the weight times the size of the mechanism, which may be far more than what moves.
 const WEIGHED: f64 = 1e-12;
 
+/// What moves by so little of the mechanism's size in a nominal step stands still.
+const STILL: f64 = 1e-12;
+
 /// Energy of nothing over all there was to move from which on nothing is left of a motion: as much as there is.
 const SUPPLY: f64 = 1.0;
 
@@ -194,8 +197,10 @@ impl Judge {
     pub(super) fn supply(&self, h: f64, known: f64, after: &Audit, work: &Workspace) -> Result<(), Failure> {
         let [excess, supply] = after.supply();
         let supply = supply.max(known);
+        let moved = STILL * work.scales.length / h.abs();
+        let still = self.mass * moved * moved;
         // What is no number is no energy.
-        match !self.promises(Promise::SuppliedEnergy) || excess <= SUPPLY * supply + self.nothing(h, 0.0, after, work) {
+        match !self.promises(Promise::SuppliedEnergy) || excess <= SUPPLY * supply + still + self.nothing(h, 0.0, after, work) {
             true => Ok(()),
             false => Err(Failure::Unsupplied { excess, supply }),
         }
