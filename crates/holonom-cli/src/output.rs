@@ -7,9 +7,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use cpu_time::ProcessTime;
-use holonom::analysis;
+use holonom::analysis::{self, Undetermined};
 use holonom::model::{Model, StartChange};
-use holonom::record::{COLUMNS, Column, Constraints, Peaks, Recorder, Recording};
+use holonom::record::{COLUMNS, Channels, Column, Constraints, Peaks, RecordedJoint, Recorder, Recording};
 use holonom::simulation::{Method, Simulation, Status};
 use holonom_io::{WriteTable, Writer};
 use holonom_report::{Report, Run};
@@ -177,7 +177,14 @@ pub(crate) fn simulate_kept(
     if !step_us.is_null() {
         value["time"]["step_us"] = step_us;
     }
-    let unknown: Vec<String> = unknown_measures(model, watched.recorder.recording());
+    let open = not_unique(model, &simulation);
+    let mut unknown = unknown_measures(model, watched.recorder.recording());
+    if !open.is_empty() {
+        unknown.push(format!(
+            "redundant constraints share forces among them, and what is shown of these is one way of many: {} (a bushing in place of a joint tells how)",
+            listed(&open)
+        ));
+    }
     if !quiet {
         unknown.iter().for_each(|text| note(text));
     }
@@ -189,6 +196,32 @@ pub(crate) fn simulate_kept(
     value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording)).expect("peaks are plain data");
     let finished = Finished { method: name, recording, summary: value, completed: status == Status::Completed };
     Ok((finished, Reached { last, before_end }))
+}
+
+/// Most rows for which a run says which forces are not unique: it takes a time that grows with their cube.
+const MOST_ROWS: usize = 200;
+
+/// What redundant rows leave undetermined of the forces that a run has recorded.
+fn not_unique(model: &Model, simulation: &Simulation) -> Vec<String> {
+    if simulation.reactions().is_none() {
+        return Vec::new();
+    }
+    let free = analysis::undetermined_of(simulation, MOST_ROWS).filter(|free| free.count() > 0);
+    free.map_or(Vec::new(), |free| open_columns(&free, model.channels.told(), &simulation.reacting_positions(), model))
+}
+
+/// Components of forces and moments of joints that are left undetermined, `world` being where the nodes are: `hinge.fy .tx`.
+pub(crate) fn open_columns(free: &Undetermined<'_>, channels: &Channels, world: &[f64], model: &Model) -> Vec<String> {
+    let mut open = Vec::new();
+    for joint in &channels.joints {
+        let unique = free.are_unique(&joint.rows, &joint.nodes, free.system().of_world(joint.place(world, model.dimension)));
+        let columns = RecordedJoint::columns(model.axes);
+        let columns: Vec<&str> = columns.iter().filter(|(k, _)| !unique[*k]).map(|(_, column)| column.as_str()).collect();
+        if !columns.is_empty() {
+            open.push(format!("{}.{}", joint.name, columns.join(" .")));
+        }
+    }
+    open
 }
 
 /// Measures that have no value in some rows.

@@ -158,6 +158,19 @@ fn parameters_that_nothing_uses_are_named() {
     assert!(prints(&folder, "check many.toml", 0).contains("`a0`, `a1`, `a2`, `a3`, `a4`, and 995 more\n"));
 }
 
+/// Forces that redundant constraints share are named by runs as by `check`.
+#[test]
+fn runs_name_the_forces_that_are_not_unique() {
+    let folder = folder();
+    let output = holonom(&folder, "run example:spatial-four-bar --end 0.02");
+    let found = json(&folder, "check example:spatial-four-bar --json")["reactions_not_unique"].as_array().unwrap().clone();
+    assert!(!found.is_empty());
+    for columns in found {
+        assert!(text(&output.stderr).contains(columns.as_str().unwrap()), "{columns}: {}", text(&output.stderr));
+    }
+    assert!(holonom(&folder, "run example:slider-crank --end 0.02").stderr.is_empty());
+}
+
 #[test]
 fn only_the_mass_matrix_never_adds_energy() {
     let folder = folder();

@@ -5,7 +5,6 @@ use std::process::ExitCode;
 use holonom::analysis::{Rank, projection_form, rank_of, undetermined};
 use holonom::model::{Model, StartChange};
 use holonom::projection::Solve;
-use holonom::record::RecordedJoint;
 use holonom::simulation::{Method, ModelSize, PENALTY, Simulation};
 use holonom_io::Source;
 use serde_json::json;
@@ -13,9 +12,9 @@ use serde_json::json;
 use crate::failure::Failure;
 use crate::found::Found;
 use crate::load::{self, Loaded};
-use crate::message::unused_parameters;
+use crate::message::{listed, unused_parameters};
 use crate::options::CheckArguments;
-use crate::output::changes_in_words;
+use crate::output::{changes_in_words, open_columns};
 use crate::table::{list, short};
 
 /// Validates a model and says what it is made of.
@@ -84,13 +83,13 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
     }
     let redundant = match (found.redundant.is_empty(), &held.conflict) {
         (true, _) => "none".to_string(),
-        (false, None) => format!("{}: these follow from the others and may stay", named(&found.redundant)),
-        (false, Some(_)) => format!("{}: these follow from the others", named(&found.redundant)),
+        (false, None) => format!("{}: these follow from the others and may stay", listed(&found.redundant)),
+        (false, Some(_)) => format!("{}: these follow from the others", listed(&found.redundant)),
     };
     let reactions = match (found.redundant.is_empty(), held.not_unique.is_empty()) {
         (true, _) => "all are unique".to_string(),
         (false, true) => "those of all joints are unique; multipliers of single rows are not".to_string(),
-        (false, false) => format!("not unique: {}; all others are", named(&held.not_unique)),
+        (false, false) => format!("not unique: {}; all others are", listed(&held.not_unique)),
     };
     let singular = match (near, &found.weakest) {
         (Some((row, independence)), _) => format!("yes: `{row}` adds only {} of itself to the others", short(*independence)),
@@ -149,17 +148,6 @@ fn sizes(solved: &ModelSize, plain: &ModelSize) -> String {
     }
 }
 
-/// Most names in a line on the screen; all are in the JSON.
-const NAMED: usize = 12;
-
-/// The first names of a list, and how many more there are.
-fn named(names: &[String]) -> String {
-    match names.len().saturating_sub(NAMED) {
-        0 => names.join(", "),
-        more => format!("{} and {more} more", names[..NAMED].join(", ")),
-    }
-}
-
 /// What holds a model, row by row.
 struct Held {
     rank: Rank,
@@ -180,21 +168,13 @@ impl Held {
         let mut simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
         let conflict = simulation.conflict().map(str::to_string);
         let (system, x) = (&model.system, &simulation.state().x);
-        let world = system.in_world(x);
         let rank = rank_of(&simulation);
         let size = rank.size(&model.system);
         let (mut involved, mut not_unique) = (Vec::new(), Vec::new());
         let free = if rank.redundant.is_empty() { None } else { undetermined(&model.system, x, 0.0) };
         if let Some(free) = free {
             involved = free.rows().into_iter().map(|row| model.system.row_names()[row].clone()).collect();
-            for joint in &model.channels.joints {
-                let unique = free.are_unique(&joint.rows, &joint.nodes, system.of_world(joint.place(&world, model.dimension)));
-                let columns = RecordedJoint::columns(model.axes);
-                let open: Vec<&str> = columns.iter().filter(|(k, _)| !unique[*k]).map(|(_, column)| column.as_str()).collect();
-                if !open.is_empty() {
-                    not_unique.push(format!("{}.{}", joint.name, open.join(" .")));
-                }
-            }
+            not_unique = open_columns(&free, &model.channels, &system.in_world(x), model);
         }
         Ok(Self { rank, size, involved, not_unique, conflict, notes: notes(model) })
     }

@@ -10,5 +10,5 @@ mod stability;
 pub use jacobian::constraint_jacobian;
 pub use projection::{ProjectionForm, projection_form};
 pub use rank::{Rank, rank, rank_of};
-pub use reactions::{MOST_ROWS, Undetermined, undetermined};
+pub use reactions::{MOST_ROWS, Undetermined, undetermined, undetermined_of};
 pub use stability::{LargestStep, largest_step};

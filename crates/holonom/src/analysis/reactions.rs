@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::constraint_jacobian;
 use crate::formulation::{VANISHED, extent, natural_sizes};
 use crate::linalg::null_space;
-use crate::simulation::wrench;
+use crate::simulation::{Simulation, wrench};
 use crate::system::{Evaluation, NodeId, System};
 
 /// Multipliers λ with Gᵀλ = 0 at a position: what may be added to the multipliers without any effect on the motion.
@@ -52,7 +52,22 @@ pub fn undetermined<'s>(system: &'s System, x: &[f64], t: f64) -> Option<Undeter
     Some(Undetermined { system, spaces, at, x: x.to_vec() })
 }
 
-impl Undetermined<'_> {
+/// Finds what redundant rows leave undetermined of the forces that a simulation finds at its present state. `None` as above, and for
+/// more than `most` rows.
+pub fn undetermined_of(simulation: &Simulation, most: usize) -> Option<Undetermined<'_>> {
+    let (system, _) = simulation.reacting();
+    if system.constraints() > most {
+        return None;
+    }
+    undetermined(system, simulation.reacting_x(), simulation.state().t)
+}
+
+impl<'s> Undetermined<'s> {
+    /// The system that they are found in.
+    pub fn system(&self) -> &'s System {
+        self.system
+    }
+
     /// Number of independent combinations: the redundant rows.
     pub fn count(&self) -> usize {
         self.spaces.len()

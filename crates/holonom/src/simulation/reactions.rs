@@ -145,7 +145,8 @@ impl Simulation {
         }
     }
 
-    fn reacting_x(&self) -> &[f64] {
+    /// Positions of its nodes from its origin (D × nodes), m.
+    pub(crate) fn reacting_x(&self) -> &[f64] {
         self.apart.as_ref().map_or(&self.state.x, |elsewhere| &elsewhere.work.end.x)
     }
 
