@@ -4,15 +4,16 @@
 use serde::{Deserialize, Serialize};
 
 use super::advance::Inside;
-use super::bracket::Bracket;
 use super::control::{Control, KEEPING};
-use super::events::{LOCATED, MOST_TRIES, SHORTEST};
+use super::events::LOCATED;
+use super::landing::Landing;
+use super::sight::{INSIDE, REACHED, Sight};
 use super::{Audit, Method, Simulation, State, start};
 use crate::energy;
 use crate::formulation::{Failure, Independence, Newton};
 use crate::integrator::{Estimate, Step, Work};
 use crate::projection::{Metric, Projection, Solve};
-use crate::system::{Crossing, GaugeValues, Measured, Seen, System};
+use crate::system::{GaugeValues, Measured, System};
 
 /// Smallest step over the length of the run that an accuracy may ask for: below it times no longer tell steps apart.
 const SMALLEST_SHARE: f64 = 1e-13;
@@ -23,7 +24,7 @@ const LEAST_SHARE: f64 = 1e-10;
 /// A state, what is shown and measured of it, and what is booked of the run up to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Moment {
-    state: State,
+    pub state: State,
     v: Vec<f64>,
     a: Vec<f64>,
     measured: Measured,
@@ -40,7 +41,7 @@ impl Moment {
     }
 
     /// Puts a simulation back here.
-    fn restore(&self, simulation: &mut Simulation) {
+    pub fn restore(&self, simulation: &mut Simulation) {
         simulation.state.copy_from(&self.state);
         simulation.shown_v.copy_from_slice(&self.v);
         simulation.shown_a.copy_from_slice(&self.a);
@@ -62,7 +63,7 @@ pub(super) struct Pilot {
     /// Velocities (D × nodes) that errors are estimated from.
     v: Vec<f64>,
     /// The start of the last step, and its end, where integration goes on.
-    before: Moment,
+    pub before: Moment,
     front: Moment,
     last: Option<(Step, f64)>,
     /// How independent rows are, and how many are redundant everywhere, as far as is known.
@@ -70,107 +71,9 @@ pub(super) struct Pilot {
     redundant: usize,
     patience: Patience,
     /// What is seen of forces that bend at the end of the last step.
-    sight: Sight,
+    pub sight: Sight,
     /// Times at which steps end, as something changes abruptly there, s.
     switches: Vec<f64>,
-}
-
-/// What is seen of forces that bend: what they depend on, and the numbers that go through zero where they do; next to nothing of one that has
-/// been reached, with the sign that it has behind.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Sight {
-    seen: Seen,
-    bends: Vec<f64>,
-}
-
-/// Where a step ends.
-enum Landing {
-    /// Where no force bends.
-    Between(Sight),
-    /// Where one does.
-    OnBend(Sight),
-    /// Not at all, as a force bends where it begins.
-    AtOnce,
-    /// Not at all, as a force that bent where it began bends again before it ends: it would be as if it had not bent. How long it may be, s.
-    TooLong(f64),
-}
-
-/// The first force that bends on a way.
-struct Passed {
-    /// Its number.
-    bend: usize,
-    /// Shares of the way between which it does, and the numbers that go through zero there.
-    shares: [f64; 2],
-    values: [f64; 2],
-}
-
-impl Sight {
-    /// The first of the forces that bends on the way to what is seen `at` the end, if one does.
-    fn first_passed(&self, at: &Self, system: &System) -> Option<Passed> {
-        if self.bends.is_empty() {
-            return None;
-        }
-        let look = |share: f64| if share < 1.0 { system.bends(&self.seen.between(&at.seen, share)) } else { at.bends.clone() };
-        let passed = |from: f64, last: &[f64], share: f64, bends: &[f64]| {
-            let bend = (0..bends.len()).find(|&k| Crossing::Both.is_between(self.bends[k], bends[k]))?;
-            Some(Passed { bend, shares: [from, share], values: [last[bend], bends[bend]] })
-        };
-        let mut before = self.bends.clone();
-        let mut last = self.bends.clone();
-        for part in 1..=INSIDE as u32 {
-            let [from, share] = [part - 1, part].map(|part| f64::from(part) / INSIDE);
-            let bends = look(share);
-            // What comes near zero and goes away again may have been there: look where the parabola through three has its end.
-            let near = (0..bends.len()).filter_map(|k| nearest([before[k], last[k], bends[k]])).filter(|_| part > 1);
-            let turn = near.map(|place| from + place / INSIDE).find_map(|turn| passed(from.min(turn), &last, turn, &look(turn)));
-            if let Some(first) = turn.or_else(|| passed(from, &last, share, &bends)) {
-                return Some(first);
-            }
-            before = std::mem::replace(&mut last, bends);
-        }
-        None
-    }
-
-    /// Whether a force has bent so much later, s, as what it depends on moves now.
-    fn is_beyond(&self, bend: usize, later: f64, system: &System) -> bool {
-        Crossing::Both.is_between(self.bends[bend], system.bends(&self.seen.ahead(later))[bend])
-    }
-
-    /// How long it takes until a force bends, s, as what it depends on moves now and for a while, s; no number where nothing tells.
-    fn left(&self, bend: usize, a_while: f64, system: &System) -> f64 {
-        a_while * self.bends[bend] / (self.bends[bend] - system.bends(&self.seen.ahead(a_while))[bend])
-    }
-
-    /// Where a step that failed ends as far as can be told from where it began: a force that jumps at its end may allow none.
-    fn stop_before(&mut self, step: f64, system: &System) -> Landing {
-        let left = |bend: usize| self.left(bend, SHORTEST * step, system);
-        let soon = (0..self.bends.len()).map(|bend| (bend, left(bend))).filter(|(_, left)| (0.0..2.0 * step).contains(left));
-        match soon.min_by(|a, b| a.1.total_cmp(&b.1)) {
-            Some((bend, left)) if left <= SHORTEST * step => {
-                self.bends[bend] = REACHED.copysign(-self.bends[bend]);
-                Landing::AtOnce
-            }
-            // What moves gets faster, too.
-            Some((_, left)) => Landing::TooLong(if left < step { 0.99 * left } else { 0.5 * step }),
-            None => Landing::Between(Self::default()),
-        }
-    }
-
-    /// Counts a bend as reached, on the way from `before`, and all that are the same.
-    fn reach(&mut self, bend: usize, before: &Self) {
-        let (here, behind) = (self.bends[bend], REACHED.copysign(-before.bends[bend]));
-        self.bends.iter_mut().filter(|now| **now == here).for_each(|now| *now = behind);
-    }
-}
-
-/// The number of a bend that has been reached, with the sign that it has behind.
-const REACHED: f64 = f64::MIN_POSITIVE;
-
-/// Where a parabola through values at −1, 0 and 1 is nearest to zero, if that is between −1 and 1 and not beyond zero by these values already.
-fn nearest([before, middle, after]: [f64; 3]) -> Option<f64> {
-    let (slope, bend) = (0.5 * (after - before), after - 2.0 * middle + before);
-    let place = -slope / bend;
-    (middle * bend > 0.0 && place.abs() < 1.0).then_some(place)
 }
 
 /// How attempts at steps have gone.
@@ -202,11 +105,8 @@ const LOOK: u32 = 2000;
 const SLOW: f64 = 1e-8;
 const SLOW_LOOKS: u32 = 1000;
 
-/// Places at which the inside of a step with dense output is looked at: a step of order 8 may be a turn long.
-const INSIDE: f64 = 8.0;
-
 /// Steps between two times at which something changes abruptly: a pulse that is nothing at both is seen.
-const BETWEEN: f64 = 4.0;
+pub(super) const BETWEEN: f64 = 4.0;
 
 impl Pilot {
     pub(super) fn new(
@@ -584,95 +484,6 @@ impl Simulation {
             pilot.control.begin_anew(&self.state, &pilot.v);
         }
         has_switch
-    }
-
-    /// Where a force bends within the step that was just taken, it is taken again and ends there: what follows is not continued from what came
-    /// before.
-    fn land_on_bend(&mut self, taken: &mut Step, step: &mut f64, pilot: &mut Pilot) -> Result<Landing, Failure> {
-        let (system, from) = (self.system.clone(), &mut pilot.sight);
-        let mut at = self.sight();
-        let (begin, whole) = (pilot.before.state.t, *step);
-        let Some(first) = from.first_passed(&at, &system) else { return Ok(Landing::Between(at)) };
-        let left = whole * Bracket::new(first.shares, first.values).secant();
-        if left <= SHORTEST * whole {
-            from.bends[first.bend] = REACHED.copysign(-from.bends[first.bend]);
-            return Ok(Landing::AtOnce);
-        }
-        if from.bends[first.bend].abs() == REACHED {
-            return Ok(Landing::TooLong(left / BETWEEN));
-        }
-        let width = (LOCATED * whole).max(f64::EPSILON * self.state.t.abs());
-        let mut bend = first.bend;
-        let mut bracket: Option<Bracket> = None;
-        for _ in 0..MOST_TRIES {
-            let next = match (from.first_passed(&at, &system), &mut bracket) {
-                // What is seen between is about so: only what is seen at the end of a step is sure.
-                (Some(passed), _) if passed.shares[1] < 1.0 => {
-                    (bend, bracket) = (passed.bend, None);
-                    begin + passed.shares[1] * *step
-                }
-                (None, None) => return Ok(Landing::Between(at)),
-                (passed, bracket) => {
-                    let (t, is_beyond) = (self.state.t, passed.is_some());
-                    let same =
-                        bracket.take().filter(|_| passed.is_none_or(|passed| std::mem::replace(&mut bend, passed.bend) == passed.bend));
-                    let bracket = bracket.insert(match same {
-                        Some(mut same) => {
-                            same.narrow(t, at.bends[bend], is_beyond);
-                            same
-                        }
-                        None => Bracket::new([begin, t], [from.bends[bend], at.bends[bend]]),
-                    });
-                    let is_found = bracket.high - bracket.low <= width;
-                    match is_beyond {
-                        // Just before it forces are those that the step has had.
-                        true if is_found && bracket.low > begin => bracket.low,
-                        true => bracket.next(width),
-                        false if is_found || at.is_beyond(bend, width, &system) => break,
-                        false => {
-                            let ahead = t + at.left(bend, SHORTEST * whole, &system) - 0.5 * width;
-                            if ahead > t && ahead < bracket.high { ahead } else { bracket.next(width) }
-                        }
-                    }
-                }
-            };
-            pilot.before.restore(self);
-            self.audit.reject(&self.newton);
-            *step = next - begin;
-            *taken = self.substep(*step, next)?;
-            at = self.sight();
-        }
-        at.reach(bend, from);
-        // What jumps there is known.
-        self.work.estimate.loads = 0.0;
-        Ok(Landing::OnBend(at))
-    }
-
-    /// Goes on to just behind the bends that a step of length `step` (s) has ended before, so that forces are those of what follows also where the
-    /// next begins. The conserving schemes, which ask for the forces between, stay where the energy is what it was.
-    fn pass_bend(&mut self, sight: &Sight, step: f64) {
-        if self.method.integrator.conserves {
-            return;
-        }
-        let reached = |hop: &f64| {
-            let ahead = self.system.bends(&sight.seen.ahead(*hop));
-            sight.bends.iter().zip(ahead).all(|(bend, ahead)| bend.abs() != REACHED || bend * ahead > 0.0)
-        };
-        let mut hops = std::iter::successors(Some(LOCATED * step), |hop| Some(2.0 * hop)).take_while(|hop| *hop <= SHORTEST * step);
-        let Some(hop) = hops.find(reached) else { return };
-        let Self { system, state, work, gauges, .. } = self;
-        state.x.iter_mut().zip(&self.shown_v).for_each(|(x, v)| *x += hop * v);
-        state.t += hop;
-        system.place_known(state.t, &mut state.x, &mut work.end.v, &mut work.a);
-        system.evaluate_again(&state.x, state.t, &mut work.start.at);
-        system.measure(&state.x, &self.shown_v, gauges);
-        state.measured.copy_from_slice(gauges.counted());
-    }
-
-    /// What is seen of forces that bend at the present state.
-    fn sight(&self) -> Sight {
-        let seen = self.system.see(self.look());
-        Sight { bends: self.system.bends(&seen), seen }
     }
 
     /// Goes on with the accelerations that forces have now, and without what was kept of the steps before.

@@ -1,0 +1,130 @@
+//! Steps by accuracy end where forces bend (methods §16).
+
+use super::Simulation;
+use super::adapt::{BETWEEN, Pilot};
+use super::bracket::Bracket;
+use super::events::{LOCATED, MOST_TRIES, SHORTEST};
+use super::sight::{REACHED, Sight};
+use crate::formulation::Failure;
+use crate::integrator::Step;
+use crate::system::System;
+
+/// Where a step ends.
+pub(super) enum Landing {
+    /// Where no force bends.
+    Between(Sight),
+    /// Where one does.
+    OnBend(Sight),
+    /// Not at all, as a force bends where it begins.
+    AtOnce,
+    /// Not at all, as a force that bent where it began bends again before it ends: it would be as if it had not bent. How long it may be, s.
+    TooLong(f64),
+}
+
+impl Sight {
+    /// Where a step that failed ends as far as can be told from where it began: a force that jumps at its end may allow none.
+    pub fn stop_before(&mut self, step: f64, system: &System) -> Landing {
+        let left = |bend: usize| self.left(bend, SHORTEST * step, system);
+        let soon = (0..self.bends.len()).map(|bend| (bend, left(bend))).filter(|(_, left)| (0.0..2.0 * step).contains(left));
+        match soon.min_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((bend, left)) if left <= SHORTEST * step => {
+                self.bends[bend] = REACHED.copysign(-self.bends[bend]);
+                Landing::AtOnce
+            }
+            // What moves gets faster, too.
+            Some((_, left)) => Landing::TooLong(if left < step { 0.99 * left } else { 0.5 * step }),
+            None => Landing::Between(Self::default()),
+        }
+    }
+}
+
+impl Simulation {
+    /// Where a force bends within the step that was just taken, it is taken again and ends there: what follows is not continued from what came
+    /// before.
+    pub(super) fn land_on_bend(&mut self, taken: &mut Step, step: &mut f64, pilot: &mut Pilot) -> Result<Landing, Failure> {
+        let (system, from) = (self.system.clone(), &mut pilot.sight);
+        let mut at = self.sight();
+        let (begin, whole) = (pilot.before.state.t, *step);
+        let Some(first) = from.first_passed(&at, &system) else { return Ok(Landing::Between(at)) };
+        let left = whole * Bracket::new(first.shares, first.values).secant();
+        if left <= SHORTEST * whole {
+            from.bends[first.bend] = REACHED.copysign(-from.bends[first.bend]);
+            return Ok(Landing::AtOnce);
+        }
+        if from.bends[first.bend].abs() == REACHED {
+            return Ok(Landing::TooLong(left / BETWEEN));
+        }
+        let width = (LOCATED * whole).max(f64::EPSILON * self.state.t.abs());
+        let mut bend = first.bend;
+        let mut bracket: Option<Bracket> = None;
+        for _ in 0..MOST_TRIES {
+            let next = match (from.first_passed(&at, &system), &mut bracket) {
+                // What is seen between is about so: only what is seen at the end of a step is sure.
+                (Some(passed), _) if passed.shares[1] < 1.0 => {
+                    (bend, bracket) = (passed.bend, None);
+                    begin + passed.shares[1] * *step
+                }
+                (None, None) => return Ok(Landing::Between(at)),
+                (passed, bracket) => {
+                    let (t, is_beyond) = (self.state.t, passed.is_some());
+                    let same =
+                        bracket.take().filter(|_| passed.is_none_or(|passed| std::mem::replace(&mut bend, passed.bend) == passed.bend));
+                    let bracket = bracket.insert(match same {
+                        Some(mut same) => {
+                            same.narrow(t, at.bends[bend], is_beyond);
+                            same
+                        }
+                        None => Bracket::new([begin, t], [from.bends[bend], at.bends[bend]]),
+                    });
+                    let is_found = bracket.high - bracket.low <= width;
+                    match is_beyond {
+                        // Just before it forces are those that the step has had.
+                        true if is_found && bracket.low > begin => bracket.low,
+                        true => bracket.next(width),
+                        false if is_found || at.is_beyond(bend, width, &system) => break,
+                        false => {
+                            let ahead = t + at.left(bend, SHORTEST * whole, &system) - 0.5 * width;
+                            if ahead > t && ahead < bracket.high { ahead } else { bracket.next(width) }
+                        }
+                    }
+                }
+            };
+            pilot.before.restore(self);
+            self.audit.reject(&self.newton);
+            *step = next - begin;
+            *taken = self.substep(*step, next)?;
+            at = self.sight();
+        }
+        at.reach(bend, from);
+        // What jumps there is known.
+        self.work.estimate.loads = 0.0;
+        Ok(Landing::OnBend(at))
+    }
+
+    /// Goes on to just behind the bends that a step of length `step` (s) has ended before, so that forces are those of what follows also where the
+    /// next begins. The conserving schemes, which ask for the forces between, stay where the energy is what it was.
+    pub(super) fn pass_bend(&mut self, sight: &Sight, step: f64) {
+        if self.method.integrator.conserves {
+            return;
+        }
+        let reached = |hop: &f64| {
+            let ahead = self.system.bends(&sight.seen.ahead(*hop));
+            sight.bends.iter().zip(ahead).all(|(bend, ahead)| bend.abs() != REACHED || (*bend > 0.0) == (ahead > 0.0))
+        };
+        let mut hops = std::iter::successors(Some(LOCATED * step), |hop| Some(2.0 * hop)).take_while(|hop| *hop <= SHORTEST * step);
+        let Some(hop) = hops.find(reached) else { return };
+        let Self { system, state, work, gauges, .. } = self;
+        state.x.iter_mut().zip(&self.shown_v).for_each(|(x, v)| *x += hop * v);
+        state.t += hop;
+        system.place_known(state.t, &mut state.x, &mut work.end.v, &mut work.a);
+        system.evaluate_again(&state.x, state.t, &mut work.start.at);
+        system.measure(&state.x, &self.shown_v, gauges);
+        state.measured.copy_from_slice(gauges.counted());
+    }
+
+    /// What is seen of forces that bend at the present state.
+    pub(super) fn sight(&self) -> Sight {
+        let seen = self.system.see(self.look());
+        Sight { bends: self.system.bends(&seen), seen }
+    }
+}
