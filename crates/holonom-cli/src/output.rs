@@ -177,19 +177,13 @@ pub(crate) fn simulate_kept(
     if !step_us.is_null() {
         value["time"]["step_us"] = step_us;
     }
-    let open = not_unique(model, &simulation);
-    let mut unknown = unknown_measures(model, watched.recorder.recording());
-    if !open.is_empty() {
-        unknown.push(format!(
-            "redundant constraints share forces among them, and what is shown of these is one way of many: {} (a bushing in place of a joint tells how)",
-            listed(&open)
-        ));
-    }
+    let unknown = unknown_measures(model, watched.recorder.recording());
+    let of_results: Vec<String> = unknown.into_iter().chain(shared_forces(model, &simulation)).collect();
     if !quiet {
-        unknown.iter().for_each(|text| note(text));
+        of_results.iter().for_each(|text| note(text));
     }
     value["provenance"] = serde_json::to_value(&provenance).expect("a provenance is plain data");
-    value["notes"] = slips(loaded).chain(corrections.clone()).chain(unknown).collect();
+    value["notes"] = slips(loaded).chain(corrections.clone()).chain(of_results).collect();
     let last = Point::of(&simulation, &watched.recorder, &corrections);
     let before_end = watched.before_end.take().filter(|_| !last.run.goes_on_unbroken());
     let recording = watched.finish();
@@ -199,15 +193,17 @@ pub(crate) fn simulate_kept(
 }
 
 /// Most rows for which a run says which forces are not unique: it takes a time that grows with their cube.
-const MOST_ROWS: usize = 200;
+const FEW_ROWS: usize = 200;
 
-/// What redundant rows leave undetermined of the forces that a run has recorded.
-fn not_unique(model: &Model, simulation: &Simulation) -> Vec<String> {
-    if simulation.reactions().is_none() {
-        return Vec::new();
-    }
-    let free = analysis::undetermined_of(simulation, MOST_ROWS).filter(|free| free.count() > 0);
-    free.map_or(Vec::new(), |free| open_columns(&free, model.channels.told(), &simulation.reacting_positions(), model))
+/// Which of the forces that a run has recorded redundant rows leave undetermined.
+fn shared_forces(model: &Model, simulation: &Simulation) -> Option<String> {
+    simulation.reactions()?;
+    let free = analysis::undetermined_of(simulation, FEW_ROWS).filter(|free| free.count() > 0)?;
+    let open = open_columns(&free, model.channels.told(), &simulation.reacting_positions(), model);
+    let named = (!open.is_empty()).then(|| listed(&open))?;
+    Some(format!(
+        "redundant constraints leave open how they share forces: of {named} one way of many is shown (a bushing in place of a joint decides it)"
+    ))
 }
 
 /// Components of forces and moments of joints that are left undetermined, `world` being where the nodes are: `hinge.fy .tx`.

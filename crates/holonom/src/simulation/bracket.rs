@@ -28,8 +28,8 @@ impl Bracket {
         if self.bisects || !(aim > self.low && aim < self.high) { 0.5 * (self.low + self.high) } else { aim }
     }
 
-    /// Takes the number at the time looked at for one of the ends.
-    pub(super) fn narrow(&mut self, t: f64, value: f64, is_beyond: bool) {
+    /// The part of it that is left with the number at the time looked at for one of the ends.
+    pub(super) fn narrowed(mut self, t: f64, value: f64, is_beyond: bool) -> Self {
         let whole = self.high - self.low;
         if is_beyond {
             (self.high, self.at_high) = (t, value);
@@ -37,5 +37,6 @@ impl Bracket {
             (self.low, self.at_low) = (t, value);
         }
         self.bisects = self.high - self.low > 0.5 * whole;
+        self
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::adapt::Flight;
+use super::pilot::Flight;
 use super::{Audit, Happening, Method, Reactions, Simulation, State};
 use crate::formulation::{Fit, Newton, Rank, Workspace};
 use crate::integrator::Integrator;

@@ -340,11 +340,11 @@ impl Simulation {
             match crossed(&now) {
                 Some(other) => {
                     bracket.at_low = if other == k { bracket.at_low } else { from[other] };
-                    bracket.narrow(here, now[other], true);
+                    bracket = bracket.narrowed(here, now[other], true);
                     k = other;
                     beside = now;
                 }
-                None => bracket.narrow(here, now[k], false),
+                None => bracket = bracket.narrowed(here, now[k], false),
             }
         }
         let high = bracket.high;

@@ -1,10 +1,10 @@
 //! Steps by accuracy end where forces bend (methods §16).
 
 use super::Simulation;
-use super::adapt::{BETWEEN, Pilot};
 use super::bracket::Bracket;
 use super::events::{LOCATED, MOST_TRIES, SHORTEST};
-use super::sight::{REACHED, Sight};
+use super::pilot::{BETWEEN, Pilot};
+use super::sight::{Passed, REACHED, Sight};
 use crate::formulation::Failure;
 use crate::integrator::Step;
 use crate::system::System;
@@ -19,6 +19,8 @@ pub(super) enum Landing {
     AtOnce,
     /// Not at all, as a force that bent where it began bends again before it ends: it would be as if it had not bent. How long it may be, s.
     TooLong(f64),
+    /// Not at all, as it failed.
+    Failed,
 }
 
 impl Sight {
@@ -33,7 +35,7 @@ impl Sight {
             }
             // What moves gets faster, too.
             Some((_, left)) => Landing::TooLong(if left < step { 0.99 * left } else { 0.5 * step }),
-            None => Landing::Between(Self::default()),
+            None => Landing::Failed,
         }
     }
 }
@@ -55,38 +57,38 @@ impl Simulation {
             return Ok(Landing::TooLong(left / BETWEEN));
         }
         let width = (LOCATED * whole).max(f64::EPSILON * self.state.t.abs());
-        let mut bend = first.bend;
+        let (mut bend, mut passed) = (first.bend, Some(first));
         let mut bracket: Option<Bracket> = None;
         for _ in 0..MOST_TRIES {
-            let next = match (from.first_passed(&at, &system), &mut bracket) {
+            let t = self.state.t;
+            let next = match passed {
                 // What is seen between is about so: only what is seen at the end of a step is sure.
-                (Some(passed), _) if passed.shares[1] < 1.0 => {
-                    (bend, bracket) = (passed.bend, None);
-                    begin + passed.shares[1] * *step
+                Some(Passed { bend: first, shares: [_, share], .. }) if share < 1.0 => {
+                    (bend, bracket) = (first, None);
+                    begin + share * *step
                 }
-                (None, None) => return Ok(Landing::Between(at)),
-                (passed, bracket) => {
-                    let (t, is_beyond) = (self.state.t, passed.is_some());
-                    let same =
-                        bracket.take().filter(|_| passed.is_none_or(|passed| std::mem::replace(&mut bend, passed.bend) == passed.bend));
-                    let bracket = bracket.insert(match same {
-                        Some(mut same) => {
-                            same.narrow(t, at.bends[bend], is_beyond);
-                            same
-                        }
-                        None => Bracket::new([begin, t], [from.bends[bend], at.bends[bend]]),
-                    });
-                    let is_found = bracket.high - bracket.low <= width;
-                    match is_beyond {
-                        // Just before it forces are those that the step has had.
-                        true if is_found && bracket.low > begin => bracket.low,
-                        true => bracket.next(width),
-                        false if is_found || at.is_beyond(bend, width, &system) => break,
-                        false => {
-                            let ahead = t + at.left(bend, SHORTEST * whole, &system) - 0.5 * width;
-                            if ahead > t && ahead < bracket.high { ahead } else { bracket.next(width) }
-                        }
+                Some(Passed { bend: first, .. }) => {
+                    let known = match bracket.take().filter(|_| first == bend) {
+                        Some(known) => known.narrowed(t, at.bends[first], true),
+                        None => Bracket::new([begin, t], [from.bends[first], at.bends[first]]),
+                    };
+                    bend = first;
+                    // It ends just before, where forces are those that the step has had.
+                    let is_found = known.high - known.low <= width && known.low > begin;
+                    let next = if is_found { known.low } else { known.next(width) };
+                    bracket = Some(known);
+                    next
+                }
+                None => {
+                    let Some(known) = bracket.take() else { return Ok(Landing::Between(at)) };
+                    let known = known.narrowed(t, at.bends[bend], false);
+                    if known.high - known.low <= width || at.is_beyond(bend, width, &system) {
+                        break;
                     }
+                    let ahead = t + at.left(bend, SHORTEST * whole, &system) - 0.5 * width;
+                    let next = if ahead > t && ahead < known.high { ahead } else { known.next(width) };
+                    bracket = Some(known);
+                    next
                 }
             };
             pilot.before.restore(self);
@@ -94,10 +96,9 @@ impl Simulation {
             *step = next - begin;
             *taken = self.substep(*step, next)?;
             at = self.sight();
+            passed = from.first_passed(&at, &system);
         }
         at.reach(bend, from);
-        // What jumps there is known.
-        self.work.estimate.loads = 0.0;
         Ok(Landing::OnBend(at))
     }
 

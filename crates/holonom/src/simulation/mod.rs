@@ -11,6 +11,7 @@ mod control;
 mod events;
 mod landing;
 mod method;
+mod pilot;
 mod promise;
 mod reactions;
 mod sight;
@@ -39,8 +40,8 @@ use std::sync::Arc;
 use crate::formulation::{Failure, Independence, Newton, Workspace};
 use crate::integrator::Integrator;
 use crate::system::{Evaluation, GaugeValues, System};
-use adapt::Pilot;
 use checkpoint::{Grid, Hints};
+use pilot::Pilot;
 use promise::Judge;
 
 /// How a run ended.

@@ -1,0 +1,263 @@
+//! What chooses steps by accuracy: how far each may go, what its error is worth, and the moments to go back to.
+
+use serde::{Deserialize, Serialize};
+
+use super::control::{Control, KEEPING};
+use super::sight::Sight;
+use super::{Audit, Method, Simulation, State};
+use crate::energy;
+use crate::formulation::{Failure, Independence, Newton};
+use crate::integrator::{Estimate, Step};
+use crate::projection::{Metric, Projection, Solve};
+use crate::system::{GaugeValues, Measured, System};
+
+/// Smallest step over the length of the run that an accuracy may ask for: below it times no longer tell steps apart.
+pub(super) const SMALLEST_SHARE: f64 = 1e-13;
+
+/// Share of itself that a row adds to the others below which it adds nothing.
+const LEAST_SHARE: f64 = 1e-10;
+
+/// A state, what is shown and measured of it, and what is booked of the run up to it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Moment {
+    pub state: State,
+    v: Vec<f64>,
+    a: Vec<f64>,
+    measured: Measured,
+    audit: Audit,
+}
+
+impl Moment {
+    pub fn keep(&mut self, simulation: &Simulation) {
+        self.state.copy_from(&simulation.state);
+        self.v.copy_from_slice(&simulation.shown_v);
+        self.a.copy_from_slice(&simulation.shown_a);
+        self.measured.keep(&simulation.gauges);
+        self.audit.clone_from(&simulation.audit);
+    }
+
+    /// Puts a simulation back here.
+    pub fn restore(&self, simulation: &mut Simulation) {
+        simulation.state.copy_from(&self.state);
+        simulation.shown_v.copy_from_slice(&self.v);
+        simulation.shown_a.copy_from_slice(&self.a);
+        simulation.gauges.restore(&self.measured);
+        simulation.gauges.count_on(&self.state.measured);
+        simulation.audit.clone_from(&self.audit);
+        let work = &mut simulation.work;
+        work.start.at.functions.angle.copy_from_slice(&self.state.angle);
+        simulation.system.evaluate_again(&self.state.x, self.state.t, &mut work.start.at);
+    }
+}
+
+/// What chooses the steps, and the moments to go back to.
+pub(super) struct Pilot {
+    pub control: Control,
+    pub end: f64,
+    /// The projection that smooths velocities for the estimate from the steps before, where nothing else does.
+    pub smooth: Option<Projection>,
+    /// Velocities (D × nodes) that errors are estimated from.
+    pub v: Vec<f64>,
+    /// The start of the last step, and its end, where integration goes on.
+    pub before: Moment,
+    pub front: Moment,
+    pub last: Option<(Step, f64)>,
+    /// How independent rows are, and how many are redundant everywhere, as far as is known.
+    independence: Independence,
+    pub redundant: usize,
+    pub patience: Patience,
+    /// What is seen of forces that bend at the end of the last step.
+    pub sight: Sight,
+    /// Times at which steps end, as something changes abruptly there, s.
+    pub switches: Vec<f64>,
+}
+
+/// How attempts at steps have gone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Patience {
+    /// Rejected one after the other.
+    pub rejected: u32,
+    /// Attempts since `since` (s).
+    pub attempts: u32,
+    since: f64,
+    /// Looks one after the other at which they had hardly come on.
+    slow: u32,
+}
+
+/// Largest share of the energy to move that a step of an explicit scheme may make or lose, in units of the accuracy it is allowed.
+const WORSE: f64 = 20.0;
+
+/// Attempts between counts of redundant rows, and rejections in a row after which none is taken to be redundant everywhere.
+pub(super) const OFTEN: u32 = 64;
+const DOUBT: u32 = 2;
+
+/// Attempts between looks at how far they have come, and so many looks in a row at which each had come on by less than this share of the run on
+/// average: a stiff stop takes a hundred thousand steps at the finest accuracy, and then it is over.
+const LOOK: u32 = 2000;
+const SLOW: f64 = 1e-8;
+const SLOW_LOOKS: u32 = 1000;
+
+/// Steps between two times at which something changes abruptly: a pulse that is nothing at both is seen.
+pub(super) const BETWEEN: f64 = 4.0;
+
+impl Pilot {
+    pub fn new(system: &System, method: &Method, newton: &Newton, state: &State, gauges: &GaugeValues, audit: &Audit) -> Option<Box<Self>> {
+        let mut measured = Measured::default();
+        measured.keep(gauges);
+        let moment =
+            || Moment { state: state.clone(), v: state.v.clone(), a: state.a.clone(), measured: measured.clone(), audit: audit.clone() };
+        let control = Control::new(method.accuracy?, method.order(), method.integrator.estimate, system.coordinates());
+        let mut independence = Independence::like(system, &newton.kkt);
+        let redundant = independence.count_redundant(system, &state.x, state.t);
+        let smooth = smoothing(method);
+        Some(Box::new(Self {
+            control,
+            end: state.t,
+            smooth,
+            v: state.v.clone(),
+            before: moment(),
+            front: moment(),
+            last: None,
+            independence,
+            redundant,
+            patience: Patience::default(),
+            sight: Sight::default(),
+            switches: Vec::new(),
+        }))
+    }
+}
+
+/// What a pilot goes on from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Flight {
+    control: Control,
+    end: f64,
+    v: Vec<f64>,
+    before: Moment,
+    front: Moment,
+    /// Length of the last step, where one was taken, s.
+    length: Option<f64>,
+    redundant: usize,
+    patience: Patience,
+    sight: Sight,
+}
+
+impl Pilot {
+    /// Where a step from `t` ends at the latest on the way to `target`, as something changes abruptly there, and how long it may be.
+    pub fn reach(&self, t: f64, target: f64) -> (f64, f64) {
+        let next = self.switches.partition_point(|switch| *switch <= t);
+        match (next.checked_sub(1).map(|last| self.switches[last]), self.switches.get(next)) {
+            (_, None) => (target, self.control.step),
+            (None, Some(&switch)) => (switch.min(target), self.control.step),
+            (Some(last), Some(&switch)) => (switch.min(target), self.control.step.min((switch - last) / BETWEEN)),
+        }
+    }
+
+    /// The error of the last step over what is allowed. Where it is too large it is looked at once more: rows that hardly differ
+    /// from others, but for those that are redundant anyway, make more of round-off, and shorter steps all the more.
+    pub fn ratio(&mut self, simulation: &mut Simulation, taken: &Step, step: f64) -> f64 {
+        let (t, work) = (simulation.state.t, &mut simulation.work);
+        let ratio = self.control.ratio(taken, step, t, &self.v, 1.0, work);
+        // Errors of explicit schemes grow there, too, and may be far more than their estimate, which the energy shows.
+        if simulation.method.integrator.is_explicit() {
+            let (system, state) = (&simulation.system, &simulation.state);
+            let made = simulation.audit.made_since(&self.before.audit, || energy::size(system, work, &state.x));
+            let of_energy = made / (WORSE * self.control.allowed() * step);
+            // It may be the same however long steps are, as where positions have left their rows, and asks for no length then.
+            return if of_energy > KEEPING { ratio.max(of_energy) } else { ratio };
+        }
+        if ratio <= 1.0 {
+            return ratio;
+        }
+        self.count_redundant(&simulation.system, &simulation.state);
+        let redundant = if self.patience.rejected < DOUBT { self.redundant } else { 0 };
+        let weakest = self.independence.weakest(redundant).max(LEAST_SHARE);
+        self.control.ratio(taken, step, t, &self.v, 1.0 / weakest.sqrt(), work)
+    }
+
+    /// Counts the rows that are redundant here: those that are so everywhere are the fewest, as a run may begin at a singular position.
+    pub fn count_redundant(&mut self, system: &System, state: &State) {
+        self.redundant = self.redundant.min(self.independence.count_redundant(system, &state.x, state.t));
+    }
+
+    /// Begins anew at the present state, where inputs were set: what was found beyond it was of others.
+    pub fn begin_anew(&mut self, simulation: &Simulation) {
+        self.v.copy_from_slice(&simulation.shown_v);
+        self.control.begin_anew(&simulation.state, &self.v);
+        self.sight = simulation.sight();
+        self.turn(simulation);
+    }
+
+    /// Goes on from the present state.
+    pub fn turn(&mut self, simulation: &Simulation) {
+        self.front.keep(simulation);
+        self.last = None;
+    }
+
+    /// All energy there was to move up to where integration has come, J.
+    pub fn supply(&self) -> f64 {
+        self.front.audit.supply()[1]
+    }
+
+    /// Refuses attempts at steps of length `step` (s) that come nowhere: at this pace the run never ends.
+    pub fn require_progress(&mut self, step: f64, t: f64) -> Result<(), Failure> {
+        if step < SMALLEST_SHARE * self.control.span {
+            return Err(Failure::TooSmall);
+        }
+        let Patience { attempts, since, slow, .. } = &mut self.patience;
+        *attempts += 1;
+        if *attempts % LOOK != 0 {
+            return Ok(());
+        }
+        let pace = (t - *since) / f64::from(LOOK);
+        *since = t;
+        *slow = if pace < SLOW * self.control.span { *slow + 1 } else { 0 };
+        if *slow >= SLOW_LOOKS { Err(Failure::Crawling { pace, left: (self.end - t) / pace }) } else { Ok(()) }
+    }
+
+    pub fn flight(&self) -> Flight {
+        let length = self.last.map(|(_, length)| length);
+        let (control, v) = (self.control.clone(), self.v.clone());
+        Flight {
+            control,
+            end: self.end,
+            v,
+            before: self.before.clone(),
+            front: self.front.clone(),
+            length,
+            redundant: self.redundant,
+            patience: self.patience,
+            sight: self.sight.clone(),
+        }
+    }
+
+    /// Goes on from there. An integrator with dense output takes the last step once more, to know what is inside it.
+    pub fn take_over(&mut self, flight: Flight, simulation: &mut Simulation) {
+        let Flight { control, end, v, before, front, length, redundant, patience, sight } = flight;
+        (self.redundant, self.patience, self.sight) = (redundant, patience, sight);
+        (self.control, self.end, self.v, self.before, self.front) = (control, end, v, before, front);
+        simulation.work.estimate.allowed = self.control.allowed();
+        if let (Some(length), true) = (length, simulation.method.integrator.dense) {
+            self.before.restore(simulation);
+            self.last = simulation.substep(length, self.front.state.t).ok().map(|taken| (taken, length));
+            if let Some((taken, length)) = self.last {
+                self.before.restore(simulation);
+                // What is inside the step is known then, as it is where something was read there.
+                let middle = self.before.state.t + 0.5 * length;
+                let _ = simulation.interpolate(middle, taken, length);
+            }
+        }
+    }
+}
+
+fn smoothing(method: &Method) -> Option<Projection> {
+    let rough = method.formulation.is_at_position() && !method.projection.velocity;
+    (rough && method.integrator.estimate == Estimate::History).then_some(Projection {
+        velocity: true,
+        acceleration: false,
+        metric: Metric::Mass,
+        solve: Solve::Exact,
+        strength: 1.0,
+        shadow: true,
+    })
+}
