@@ -4,7 +4,8 @@
 mod common;
 
 use common::model;
-use holonom::simulation::Choice;
+use holonom::record::{Constraints, Recorder};
+use holonom::simulation::{Choice, Method, Simulation, Status};
 
 const METHODS: [&str; 6] = ["conserving-ggl", "conserving", "generalized-alpha", "radau", "ggl/bdf", "ode/dopri5"];
 
@@ -131,5 +132,21 @@ fn jumps_are_passed_over_and_over() {
         assert!((place - end).abs() < 1e-5, "{method}: {place} for {end} m");
         let taken = simulation.audit().work_summary(simulation.steps()).steps_taken;
         assert!(taken < 4000, "{method}: {taken} steps");
+    }
+}
+
+/// Friction by a formula of a sign holds by jumping to and fro, for which no step is short enough: what is said names it.
+#[test]
+fn a_sign_that_holds_is_named() {
+    let text = block(0.0, 1.0, "type = \"effort\"\njoint = \"rail\"\neffort = \"-2*sign(q_rate) + 3*sin(t)\"")
+        + "[force.other]\ntype = \"stop\"\njoint = \"rail\"\nlower = -9\nstiffness = 1e5\n";
+    let model = model(&text);
+    for name in ["radau", "ggl/bdf", "generalized-alpha"] {
+        let choice = Choice { accuracy: Some(1e-6), ..Choice::default().named(name) };
+        let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&choice).unwrap(), 0.01).unwrap();
+        let mut recorder = Recorder::new(&model.channels, &model.system, 1, Constraints::Nothing);
+        let Status::Stopped { at, reason } = simulation.run(10.0, &mut recorder) else { panic!("{name} came through") };
+        // It slides until it holds what pushes, which is less than 2 N at that time.
+        assert!(reason.contains("the force of `f` jumps to and fro") && 3.0 * at.sin() > -2.0, "{name} at {at} s: {reason}");
     }
 }

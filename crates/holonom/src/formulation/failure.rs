@@ -18,6 +18,11 @@ pub enum Failure {
     NotFinite,
     /// No step is short enough for the accuracy.
     TooSmall,
+    /// No step is short enough for the accuracy, as a force jumps to and fro.
+    JumpsBack {
+        /// Which of the numbers that go through zero where forces jump.
+        bend: usize,
+    },
     /// Steps for the accuracy are so short that the run would hardly ever end.
     Crawling {
         /// What each comes on by, s.
@@ -131,6 +136,10 @@ impl Failure {
                 system.events[event].name
             ),
             Self::TooSmall => "no step is short enough for the accuracy".into(),
+            Self::JumpsBack { bend } => format!(
+                "no step is short enough for the accuracy, as the force of `{}` jumps to and fro with what it moves (friction that holds is a force of type \"friction\", or a formula with tanh(x/small) in place of sign(x))",
+                system.bending_force(bend)
+            ),
             Self::Crawling { pace, left } => format!(
                 "the accuracy asks for steps of {pace:.1e} s, of which the rest of the run would take {left:.0e}: ask for less, or end the run sooner"
             ),

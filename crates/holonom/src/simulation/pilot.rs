@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::control::{Control, KEEPING};
-use super::sight::Sight;
+use super::sight::{REACHED, Sight};
 use super::{Audit, Method, Simulation, State};
 use crate::energy;
 use crate::formulation::{Failure, Independence, Newton};
@@ -202,7 +202,8 @@ impl Pilot {
     /// Refuses attempts at steps of length `step` (s) that come nowhere: at this pace the run never ends.
     pub fn require_progress(&mut self, step: f64, t: f64) -> Result<(), Failure> {
         if step < SMALLEST_SHARE * self.control.span {
-            return Err(Failure::TooSmall);
+            let jumps = self.sight.bends.iter().position(|bend| bend.abs() == REACHED);
+            return Err(jumps.map_or(Failure::TooSmall, |bend| Failure::JumpsBack { bend }));
         }
         let Patience { attempts, since, slow, .. } = &mut self.patience;
         *attempts += 1;

@@ -41,21 +41,36 @@ impl Seen {
 }
 
 impl System {
+    /// The name of the force that has the number `bend` of those handed over.
+    pub(crate) fn bending_force(&self, bend: usize) -> &str {
+        let laws = self.bending.laws.iter().map(|&k| (self.count_of_law(k), &self.laws[k].name));
+        let loads = self.bending.loads.iter().map(|&k| (self.count_of_load(k), &self.loads[k].name));
+        let mut left = bend;
+        let found = laws.chain(loads).find(|(count, _)| left.checked_sub(*count).map(|rest| left = rest).is_none());
+        found.map_or("", |(_, name)| name)
+    }
+
+    /// How many numbers a law hands over.
+    fn count_of_law(&self, k: usize) -> usize {
+        let (law, nothing, mut count) = (&self.laws[k], [0.0; MAX_ARGUMENTS], 0);
+        let nothing = &nothing[..law.arguments.len()];
+        law.law.bends(nothing, nothing, 0.0, &mut |_| count += 1);
+        count
+    }
+
+    /// How many numbers a load hands over.
+    fn count_of_load(&self, k: usize) -> usize {
+        let (load, mut count) = (&self.loads[k], 0);
+        let nothing = vec![0.0; load.reading.nodes.len() * self.dim + load.reading.senses.len()];
+        load.load.bends(&nothing, &nothing, 0.0, &mut |_| count += 1);
+        count
+    }
+
     /// The laws and loads whose forces bend.
     pub(super) fn find_bending(&self) -> Bending {
-        let law = |k: &usize| {
-            let (law, nothing, mut bends) = (&self.laws[*k], [0.0; MAX_ARGUMENTS], false);
-            let nothing = &nothing[..law.arguments.len()];
-            law.law.bends(nothing, nothing, 0.0, &mut |_| bends = true);
-            bends
-        };
-        let load = |k: &usize| {
-            let (load, mut bends) = (&self.loads[*k], false);
-            let nothing = vec![0.0; load.reading.nodes.len() * self.dim + load.reading.senses.len()];
-            load.load.bends(&nothing, &nothing, 0.0, &mut |_| bends = true);
-            bends
-        };
-        Bending { laws: (0..self.laws.len()).filter(law).collect(), loads: (0..self.loads.len()).filter(load).collect() }
+        let laws = (0..self.laws.len()).filter(|&k| self.count_of_law(k) > 0).collect();
+        let loads = (0..self.loads.len()).filter(|&k| self.count_of_load(k) > 0).collect();
+        Bending { laws, loads }
     }
 
     /// What the forces that bend depend on.
