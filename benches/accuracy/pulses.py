@@ -4,6 +4,7 @@ Truths agree with equal steps to 1e-9; at a place to 3e-5 of the speed, which fa
 """
 
 import math
+from functools import partial
 
 import numpy as np
 from scipy.special import erf
@@ -12,8 +13,8 @@ from mechanism import Case, bar, plane, solved
 
 GRAVITY = 9.81
 
-# How long a pulse is, and when it begins, s.
-LASTS, AT = 1e-4, 0.3
+# How long a pulse is, and when it begins, s; and when one does between times that steps end at anyway.
+LASTS, AT, BETWEEN = 1e-4, 0.3, 0.37123
 
 
 def ramps(t, at, lasts=LASTS):
@@ -40,8 +41,8 @@ def half_sine(t):
     return 0.5 * (inside - LASTS / math.pi * math.sin(phase)) + max(t - AT - LASTS, 0.0), 0.5 * (1 - math.cos(phase))
 
 
-def bell(t, width=LASTS / 5):
-    s = (t - AT) / width
+def bell(t, at=AT, width=LASTS / 5):
+    s = (t - at) / width
     return 0.5 * width * (s + s * erf(s) + math.exp(-s * s) / math.sqrt(math.pi)), 0.5 * (1 + erf(s))
 
 
@@ -100,7 +101,8 @@ def pendulum():
 def cases():
     yield pulse("rectangular", f"1e4*(step(t-{AT})-step(t-{AT}-{LASTS}))", lambda t: ramps(t, AT))
     yield pulse("half a sine", f"5e3*pi*sin(pi*(t-{AT})/{LASTS})*step(t-{AT})*step({AT + LASTS}-t)", half_sine)
-    yield pulse("bell without ends", f"exp(-((t-{AT})/{LASTS / 5})^2)/({LASTS / 5}*sqrt(pi))", bell, probe=("lagrange-1/rk4", 1e-6))
+    for name, at in [("bell without ends", AT), ("bell between times", BETWEEN)]:
+        yield pulse(name, f"exp(-((t-{at})/{LASTS / 5})^2)/({LASTS / 5}*sqrt(pi))", partial(bell, at=at), probe=("lagrange-1/rk4", 1e-6))
     train_of = "+".join(f"({(-1) ** k})*(step(t-{0.05 + 0.1 * k:.2f})-step(t-{0.05 + 0.1 * k:.2f}-{LASTS}))" for k in range(10))
     yield pulse("train of ten", f"1e4*({train_of})", train)
     yield pulse("rectangular at a place", "1e4*(step(x+0.7)-step(x+0.7-1e-4))", at_place, speed=1.0, probe=("lagrange-1/rk4", 1e-7),

@@ -135,6 +135,23 @@ fn jumps_are_passed_over_and_over() {
     }
 }
 
+/// Peaks of formulas that are far narrower than steps are seen, in time and at a place: of 1 N·s, and of 0.5 J.
+#[test]
+fn narrow_peaks_are_seen() {
+    let bell = "exp(-((t - 0.37123)/2e-5)^2)/(2e-5*sqrt(pi))";
+    let (steep, smooth) = ("0.5/2e-5/cosh((t - 0.37123)/2e-5)^2", "(tanh((t - 0.37103)/2e-5) - tanh((t - 0.37143)/2e-5))/8e-4");
+    let force = |of: &str| block(-1.0, 0.0, &format!("type = \"force\"\nbody = \"b\"\nforce = [\"{of}\", 0]"));
+    let at_place = "type = \"effort\"\njoint = \"rail\"\neffort = \"0.5*exp(-((q - 1.3)/1e-4)^2)/(1e-4*sqrt(pi))\"";
+    for method in METHODS.into_iter().chain(["ode/dop853"]) {
+        for of in [bell, steep, smooth] {
+            let [x] = last(&force(of), method, 1e-6, 0.01, 1.0, ["b.x"]);
+            assert!((x + 0.37123).abs() <= 1e-5, "{method}, {of}: {x}");
+        }
+        let [speed] = last(&block(-1.0, 2.0, at_place), method, 1e-6, 0.01, 1.0, ["b.vx"]);
+        assert!((speed - 5f64.sqrt()).abs() <= 2e-5, "{method} at a place: {speed}");
+    }
+}
+
 /// Friction by a formula of a sign holds by jumping to and fro, for which no step is short enough: what is said names it.
 #[test]
 fn a_sign_that_holds_is_named() {

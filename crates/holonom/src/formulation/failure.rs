@@ -20,8 +20,8 @@ pub enum Failure {
     TooSmall,
     /// No step is short enough for the accuracy, as a force jumps to and fro.
     JumpsBack {
-        /// Which of the numbers that go through zero where forces jump.
-        bend: usize,
+        /// Which of the numbers that go through zero at corners of forces.
+        corner: usize,
     },
     /// Steps for the accuracy are so short that the run would hardly ever end.
     Crawling {
@@ -136,9 +136,9 @@ impl Failure {
                 system.events[event].name
             ),
             Self::TooSmall => "no step is short enough for the accuracy".into(),
-            Self::JumpsBack { bend } => format!(
+            Self::JumpsBack { corner } => format!(
                 "no step is short enough for the accuracy, as the force of `{}` jumps to and fro with what it moves (friction that holds is a force of type \"friction\", or a formula with tanh(x/small) in place of sign(x))",
-                system.bending_force(bend)
+                system.cornering_force(corner)
             ),
             Self::Crawling { pace, left } => format!(
                 "the accuracy asks for steps of {pace:.1e} s, of which the rest of the run would take {left:.0e}: ask for less, or end the run sooner"

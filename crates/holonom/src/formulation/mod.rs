@@ -10,6 +10,7 @@
 
 mod acceleration;
 mod collocation;
+mod compare;
 mod coupled;
 mod custom_rates;
 mod dampers;

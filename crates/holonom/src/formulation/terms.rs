@@ -4,9 +4,7 @@ use super::kkt::{Block, Kkt, LawFactors};
 use super::level::Level;
 use super::stage::{RowsAt, Sampling, Stage};
 use super::workspace::{Moment, Workspace};
-use crate::system::{
-    Between, Direction, LoadEntry, Local, Look, MAX_ARGUMENTS, Quantity, Reach, Response, Slopes, System, gather, scatter,
-};
+use crate::system::{Between, Direction, LoadEntry, Look, MAX_ARGUMENTS, Quantity, Reach, Response, Slopes, System, gather, scatter};
 
 impl Workspace {
     /// Evaluates rows, laws and loads of a stage; leaves Φ in `phi` and the sum of forces in `forces`.
@@ -306,30 +304,6 @@ impl Workspace {
         system.evaluate(&self.end.x, t, &self.start.at, &mut self.end.at);
         self.respond_at_end(system, t);
         self.sum_forces(system, t, None);
-    }
-
-    /// Compares the loads of a step between positions with the mean of those at its ends, `t` (s) the later: where they jumped, those between
-    /// show nothing of it.
-    pub(crate) fn compare_loads(&mut self, system: &System, stage: &Stage, t: f64) {
-        let dim = system.dim;
-        let mut largest = 0.0_f64;
-        let mut used = &self.forces.of_loads[..];
-        for load in &system.loads {
-            let width = load.nodes.len() * dim;
-            let mut ends: [Local; 2] = std::array::from_fn(|_| Local::from_elem(0.0, width));
-            for ((end, t), out) in [(&self.start, stage.start), (&self.end, t)].into_iter().zip(&mut ends) {
-                let look = Look { x: &end.x, v: &end.v, t, at: &end.at, inputs: &self.inputs, span: None };
-                system.load_forces(load, look, out);
-            }
-            for (k, node) in load.nodes.iter().enumerate().filter(|(_, node)| node.index() < system.free) {
-                for i in k * dim..(k + 1) * dim {
-                    let off = 0.5 * (ends[0][i] + ends[1][i]) - used[i];
-                    largest = largest.max((stage.step * off * self.scales.agility[node.index()]).abs());
-                }
-            }
-            used = &used[width..];
-        }
-        self.estimate.loads = largest;
     }
 
     /// Samples forces at the sampled position and velocity, with the multipliers as they are, and evaluates there.

@@ -156,7 +156,7 @@ impl Simulation {
             landing = pilot.sight.stop_before(step, &self.system);
         }
         let has_bend = matches!(landing, Landing::OnBend(_));
-        if has_bend || pilot.sight.bends.iter().any(|bend| bend.abs() == REACHED) {
+        if has_bend || pilot.sight.corners.iter().any(|bend| bend.abs() == REACHED) {
             // What jumps where the step ends, or where it begins, is known.
             self.work.estimate.loads = 0.0;
         }

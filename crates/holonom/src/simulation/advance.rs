@@ -113,7 +113,7 @@ impl Simulation {
         }
         system.evaluate(&work.end.x, target, &work.start.at, &mut work.end.at);
         if work.estimate.allowed > 0.0 && matches!(taken.stage.sampling, Sampling::Between | Sampling::Middle) {
-            work.compare_loads(system, &taken.stage, target);
+            work.compare_forces(system, &taken.stage, target);
         }
         let mut audit = self.audit.clone();
         let accounts = audit.integrated(system, &taken, target, work);

@@ -3,11 +3,11 @@
 use super::Simulation;
 use super::bracket::Bracket;
 use super::events::{LOCATED, MOST_TRIES, SHORTEST};
-use super::pilot::{BETWEEN, Pilot};
+use super::pilot::{BETWEEN, Pilot, SMALLEST_SHARE};
 use super::sight::{Passed, REACHED, Sight};
 use crate::formulation::Failure;
 use crate::integrator::Step;
-use crate::system::System;
+use crate::system::{Bends, System};
 
 /// Where a step ends.
 pub(super) enum Landing {
@@ -27,10 +27,10 @@ impl Sight {
     /// Where a step that failed ends as far as can be told from where it began: a force that jumps at its end may allow none.
     pub fn stop_before(&mut self, step: f64, system: &System) -> Landing {
         let left = |bend: usize| self.left(bend, SHORTEST * step, system);
-        let soon = (0..self.bends.len()).map(|bend| (bend, left(bend))).filter(|(_, left)| (0.0..2.0 * step).contains(left));
+        let soon = (0..self.corners.len()).map(|bend| (bend, left(bend))).filter(|(_, left)| (0.0..2.0 * step).contains(left));
         match soon.min_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((bend, left)) if left <= SHORTEST * step => {
-                self.bends[bend] = REACHED.copysign(-self.bends[bend]);
+                self.corners[bend] = REACHED.copysign(-self.corners[bend]);
                 Landing::AtOnce
             }
             // What moves gets faster, too.
@@ -47,13 +47,18 @@ impl Simulation {
         let (system, from) = (self.system.clone(), &mut pilot.sight);
         let mut at = self.sight();
         let (begin, whole) = (pilot.before.state.t, *step);
+        // A step that ends about at a peak has an error that shows it.
+        let least = SMALLEST_SHARE * pilot.control.span;
+        if let Some(left) = from.first_hidden(&at, &system).map(|share| share * whole).filter(|left| *left > 2.0 * least) {
+            return Ok(Landing::TooLong(left));
+        }
         let Some(first) = from.first_passed(&at, &system) else { return Ok(Landing::Between(at)) };
         let left = whole * Bracket::new(first.shares, first.values).secant();
         if left <= SHORTEST * whole {
-            from.bends[first.bend] = REACHED.copysign(-from.bends[first.bend]);
+            from.corners[first.bend] = REACHED.copysign(-from.corners[first.bend]);
             return Ok(Landing::AtOnce);
         }
-        if from.bends[first.bend].abs() == REACHED {
+        if from.corners[first.bend].abs() == REACHED {
             return Ok(Landing::TooLong(left / BETWEEN));
         }
         let width = (LOCATED * whole).max(f64::EPSILON * self.state.t.abs());
@@ -69,8 +74,8 @@ impl Simulation {
                 }
                 Some(Passed { bend: first, .. }) => {
                     let known = match bracket.take().filter(|_| first == bend) {
-                        Some(known) => known.narrowed(t, at.bends[first], true),
-                        None => Bracket::new([begin, t], [from.bends[first], at.bends[first]]),
+                        Some(known) => known.narrowed(t, at.corners[first], true),
+                        None => Bracket::new([begin, t], [from.corners[first], at.corners[first]]),
                     };
                     bend = first;
                     // It ends just before, where forces are those that the step has had.
@@ -81,7 +86,7 @@ impl Simulation {
                 }
                 None => {
                     let Some(known) = bracket.take() else { return Ok(Landing::Between(at)) };
-                    let known = known.narrowed(t, at.bends[bend], false);
+                    let known = known.narrowed(t, at.corners[bend], false);
                     if known.high - known.low <= width || at.is_beyond(bend, width, &system) {
                         break;
                     }
@@ -109,8 +114,8 @@ impl Simulation {
             return;
         }
         let reached = |hop: &f64| {
-            let ahead = self.system.bends(&sight.seen.ahead(*hop));
-            sight.bends.iter().zip(ahead).all(|(bend, ahead)| bend.abs() != REACHED || (*bend > 0.0) == (ahead > 0.0))
+            let ahead = self.system.bends(&sight.seen.ahead(*hop)).corners;
+            sight.corners.iter().zip(ahead).all(|(bend, ahead)| bend.abs() != REACHED || (*bend > 0.0) == (ahead > 0.0))
         };
         let mut hops = std::iter::successors(Some(LOCATED * step), |hop| Some(2.0 * hop)).take_while(|hop| *hop <= SHORTEST * step);
         let Some(hop) = hops.find(reached) else { return };
@@ -126,6 +131,7 @@ impl Simulation {
     /// What is seen of forces that bend at the present state.
     pub(super) fn sight(&self) -> Sight {
         let seen = self.system.see(self.look());
-        Sight { bends: self.system.bends(&seen), seen }
+        let Bends { corners, peaks } = self.system.bends(&seen);
+        Sight { seen, corners, peaks }
     }
 }

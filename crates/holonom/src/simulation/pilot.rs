@@ -202,8 +202,8 @@ impl Pilot {
     /// Refuses attempts at steps of length `step` (s) that come nowhere: at this pace the run never ends.
     pub fn require_progress(&mut self, step: f64, t: f64) -> Result<(), Failure> {
         if step < SMALLEST_SHARE * self.control.span {
-            let jumps = self.sight.bends.iter().position(|bend| bend.abs() == REACHED);
-            return Err(jumps.map_or(Failure::TooSmall, |bend| Failure::JumpsBack { bend }));
+            let jumps = self.sight.corners.iter().position(|corner| corner.abs() == REACHED);
+            return Err(jumps.map_or(Failure::TooSmall, |corner| Failure::JumpsBack { corner }));
         }
         let Patience { attempts, since, slow, .. } = &mut self.patience;
         *attempts += 1;

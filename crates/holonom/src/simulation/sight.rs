@@ -7,12 +7,13 @@ use crate::system::{Crossing, Seen, System};
 /// Places at which the inside of a step is looked at: one of order 8 may be a turn long.
 pub(super) const INSIDE: f64 = 8.0;
 
-/// What is seen of forces that bend: what they depend on, and the numbers that go through zero where they do; next to nothing of one that has
-/// been reached, with the sign that it has behind.
+/// What is seen of forces that bend: what they depend on, the numbers that go through zero at their corners (next to nothing of one that has been
+/// reached, with the sign that it has behind), and the logarithms that are largest where they have peaks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Sight {
     pub seen: Seen,
-    pub bends: Vec<f64>,
+    pub corners: Vec<f64>,
+    pub peaks: Vec<f64>,
 }
 
 /// The first force that bends on a way.
@@ -27,16 +28,16 @@ pub(super) struct Passed {
 impl Sight {
     /// The first of the forces that bends on the way to what is seen `at` the end, if one does.
     pub fn first_passed(&self, at: &Self, system: &System) -> Option<Passed> {
-        if self.bends.is_empty() {
+        if self.corners.is_empty() {
             return None;
         }
-        let look = |share: f64| if share < 1.0 { system.bends(&self.seen.between(&at.seen, share)) } else { at.bends.clone() };
+        let look = |share: f64| if share < 1.0 { system.bends(&self.seen.between(&at.seen, share)).corners } else { at.corners.clone() };
         let passed = |from: f64, last: &[f64], share: f64, bends: &[f64]| {
-            let bend = (0..bends.len()).find(|&k| Crossing::Both.is_between(self.bends[k], bends[k]))?;
+            let bend = (0..bends.len()).find(|&k| Crossing::Both.is_between(self.corners[k], bends[k]))?;
             Some(Passed { bend, shares: [from, share], values: [last[bend], bends[bend]] })
         };
-        let mut before = self.bends.clone();
-        let mut last = self.bends.clone();
+        let mut before = self.corners.clone();
+        let mut last = self.corners.clone();
         for part in 1..=INSIDE as u32 {
             let [from, share] = [part - 1, part].map(|part| f64::from(part) / INSIDE);
             let bends = look(share);
@@ -51,25 +52,82 @@ impl Sight {
         None
     }
 
+    /// The share of the way to what is seen `at` the end after which a force has a peak of which neither end shows anything.
+    pub fn first_hidden(&self, at: &Self, system: &System) -> Option<f64> {
+        if self.peaks.is_empty() {
+            return None;
+        }
+        let look = |share: f64| system.bends(&self.seen.between(&at.seen, share)).peaks;
+        let look_at = |shares: &[f64]| -> Vec<Vec<f64>> {
+            let inside = shares[1..shares.len() - 1].iter().map(|&share| look(share));
+            std::iter::once(self.peaks.clone()).chain(inside).chain([at.peaks.clone()]).collect()
+        };
+        // Right behind the beginning and right before the end it is seen whether peaks are near them.
+        let few = look_at(&[0.0, NEAR_END, 0.4, 0.6, 1.0 - NEAR_END, 1.0]);
+        let falls_after_rise = |peak: usize| {
+            let mut pairs = few.windows(2).map(|pair| pair[1][peak] - pair[0][peak]);
+            pairs.any(|rise| rise > 0.0) && pairs.any(|rise| rise < 0.0)
+        };
+        if !(0..self.peaks.len()).any(falls_after_rise) {
+            return None;
+        }
+        let inside = (1..INSIDE as u32).map(|part| f64::from(part) / INSIDE);
+        let shares: Vec<f64> = [0.0, NEAR_END].into_iter().chain(inside).chain([1.0 - NEAR_END, 1.0]).collect();
+        let (last, looks) = (shares.len() - 1, look_at(&shares));
+        let hidden = |k: usize, peak: usize| {
+            let [before, middle, after] = [k - 1, k, k + 1].map(|look| looks[look][peak]);
+            let is_top = middle >= before && middle >= after && middle > before.min(after);
+            let (share, height) = is_top.then(|| highest(|share| look(share)[peak], [shares[k - 1], shares[k + 1]]))?;
+            (height - self.peaks[peak].max(at.peaks[peak]) > HIDDEN).then_some(share)
+        };
+        (1..last).find_map(|k| (0..self.peaks.len()).find_map(|peak| hidden(k, peak)))
+    }
+
     /// Whether a force has bent so much later, s, as what it depends on moves now.
     pub fn is_beyond(&self, bend: usize, later: f64, system: &System) -> bool {
-        Crossing::Both.is_between(self.bends[bend], system.bends(&self.seen.ahead(later))[bend])
+        Crossing::Both.is_between(self.corners[bend], system.bends(&self.seen.ahead(later)).corners[bend])
     }
 
     /// How long it takes until a force bends, s, as what it depends on moves now and for a while, s; no number where nothing tells.
     pub fn left(&self, bend: usize, a_while: f64, system: &System) -> f64 {
-        a_while * self.bends[bend] / (self.bends[bend] - system.bends(&self.seen.ahead(a_while))[bend])
+        a_while * self.corners[bend] / (self.corners[bend] - system.bends(&self.seen.ahead(a_while)).corners[bend])
     }
 
     /// Counts a bend as reached, on the way from `before`, and all that are the same.
     pub fn reach(&mut self, bend: usize, before: &Self) {
-        let (here, behind) = (self.bends[bend], REACHED.copysign(-before.bends[bend]));
-        self.bends.iter_mut().filter(|now| **now == here).for_each(|now| *now = behind);
+        let (here, behind) = (self.corners[bend], REACHED.copysign(-before.corners[bend]));
+        self.corners.iter_mut().filter(|now| **now == here).for_each(|now| *now = behind);
     }
 }
 
 /// The number of a bend that has been reached, with the sign that it has behind.
 pub(super) const REACHED: f64 = f64::MIN_POSITIVE;
+
+/// By how much the logarithm of a peak is higher than at both ends of a step that does not see it.
+const HIDDEN: f64 = 1.0;
+
+/// Share of a step from its ends within which peaks are not looked for.
+const NEAR_END: f64 = 1e-6;
+
+/// Where a number is highest that rises and then falls between two places, and how high: by the golden section.
+fn highest(at: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> (f64, f64) {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)].map(|place| (place, at(place)));
+    let [mut left, mut right] = inner(low, high);
+    while high - low > NEAR_END * NEAR_END {
+        if left.1 >= right.1 {
+            (high, right) = (right.0, left);
+            left = inner(low, high)[0];
+        } else {
+            (low, left) = (left.0, right);
+            right = inner(low, high)[1];
+        }
+        if !(low < left.0 && left.0 < right.0 && right.0 < high) {
+            break;
+        }
+    }
+    if left.1 >= right.1 { left } else { right }
+}
 
 /// Where a parabola through values at −1, 0 and 1 is nearest to zero, if that is between −1 and 1 and not beyond zero by these values already.
 fn nearest([before, middle, after]: [f64; 3]) -> Option<f64> {

@@ -1,13 +1,15 @@
-//! Where forces jump or have kinks with what moves: numbers that go through zero there.
+//! Where forces jump or have kinks with what moves, and where they may have peaks.
 
 use serde::{Deserialize, Serialize};
 
-use super::{Look, MAX_ARGUMENTS, System};
+use super::{Bend, Look, MAX_ARGUMENTS, System};
 
 /// The laws and the loads whose forces bend, by their numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Bending {
     laws: Vec<usize>,
+    /// Those of them that may have peaks.
+    peaked: Vec<usize>,
     loads: Vec<usize>,
 }
 
@@ -17,6 +19,22 @@ pub(crate) struct Seen {
     t: f64,
     values: Vec<f64>,
     rates: Vec<f64>,
+}
+
+/// Where forces bend, as much at every state: numbers that go through zero at corners, and logarithms that are largest at peaks.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Bends {
+    pub corners: Vec<f64>,
+    pub peaks: Vec<f64>,
+}
+
+impl Bends {
+    fn take(&mut self, bend: Bend) {
+        match bend {
+            Bend::Corner(number) => self.corners.push(number),
+            Bend::Peak(logarithm) => self.peaks.push(logarithm),
+        }
+    }
 }
 
 impl Seen {
@@ -41,45 +59,51 @@ impl Seen {
 }
 
 impl System {
-    /// The name of the force that has the number `bend` of those handed over.
-    pub(crate) fn bending_force(&self, bend: usize) -> &str {
-        let laws = self.bending.laws.iter().map(|&k| (self.count_of_law(k), &self.laws[k].name));
-        let loads = self.bending.loads.iter().map(|&k| (self.count_of_load(k), &self.loads[k].name));
-        let mut left = bend;
-        let found = laws.chain(loads).find(|(count, _)| left.checked_sub(*count).map(|rest| left = rest).is_none());
+    /// The name of the force that has a corner.
+    pub(crate) fn cornering_force(&self, corner: usize) -> &str {
+        let laws = self.bending.laws.iter().map(|&k| (self.bends_of_law(k), &self.laws[k].name));
+        let loads = self.bending.loads.iter().map(|&k| (self.bends_of_load(k), &self.loads[k].name));
+        let mut left = corner;
+        let found = laws.chain(loads).find(|([corners, _], _)| left.checked_sub(*corners).map(|rest| left = rest).is_none());
         found.map_or("", |(_, name)| name)
     }
 
-    /// How many numbers a law hands over.
-    fn count_of_law(&self, k: usize) -> usize {
-        let (law, nothing, mut count) = (&self.laws[k], [0.0; MAX_ARGUMENTS], 0);
+    /// How many corners and peaks a law tells of.
+    fn bends_of_law(&self, k: usize) -> [usize; 2] {
+        let (law, nothing, mut bends) = (&self.laws[k], [0.0; MAX_ARGUMENTS], Bends::default());
         let nothing = &nothing[..law.arguments.len()];
-        law.law.bends(nothing, nothing, 0.0, &mut |_| count += 1);
-        count
+        law.law.bends(nothing, nothing, 0.0, &mut |bend| bends.take(bend));
+        [bends.corners.len(), bends.peaks.len()]
     }
 
-    /// How many numbers a load hands over.
-    fn count_of_load(&self, k: usize) -> usize {
-        let (load, mut count) = (&self.loads[k], 0);
+    /// How many corners and peaks a load tells of.
+    fn bends_of_load(&self, k: usize) -> [usize; 2] {
+        let (load, mut bends) = (&self.loads[k], Bends::default());
         let nothing = vec![0.0; load.reading.nodes.len() * self.dim + load.reading.senses.len()];
-        load.load.bends(&nothing, &nothing, 0.0, &mut |_| count += 1);
-        count
+        load.load.bends(&nothing, &nothing, 0.0, &mut |bend| bends.take(bend));
+        [bends.corners.len(), bends.peaks.len()]
     }
 
     /// The laws and loads whose forces bend.
     pub(super) fn find_bending(&self) -> Bending {
-        let laws = (0..self.laws.len()).filter(|&k| self.count_of_law(k) > 0).collect();
-        let loads = (0..self.loads.len()).filter(|&k| self.count_of_load(k) > 0).collect();
-        Bending { laws, loads }
+        let laws: Vec<_> = (0..self.laws.len()).filter(|&k| self.bends_of_law(k) != [0; 2]).collect();
+        let peaked = laws.iter().copied().filter(|&k| self.bends_of_law(k)[1] > 0).collect();
+        let loads = (0..self.loads.len()).filter(|&k| self.bends_of_load(k) != [0; 2]).collect();
+        Bending { laws, peaked, loads }
+    }
+
+    /// The laws that may have peaks, by their numbers.
+    pub(crate) fn peaked_laws(&self) -> impl Iterator<Item = usize> {
+        self.bending.peaked.iter().copied()
     }
 
     /// What the forces that bend depend on.
     pub(crate) fn see(&self, look: Look<'_>) -> Seen {
         let mut seen = Seen { t: look.t, ..Seen::default() };
         for law in self.bending.laws.iter().map(|k| &self.laws[*k]) {
-            seen.values.extend_from_slice(&self.arguments(law, look.at)[..law.arguments.len()]);
-            let rate = |quantity| self.along(&self.slots_of(quantity), &self.slots.nodes, look.at, look.v);
-            seen.rates.extend(law.arguments.iter().map(|&quantity| rate(quantity)));
+            let [values, rates] = self.arguments_and_rates(law, look.at, look.v);
+            seen.values.extend_from_slice(&values[..law.arguments.len()]);
+            seen.rates.extend_from_slice(&rates[..law.arguments.len()]);
         }
         for load in self.bending.loads.iter().map(|k| &self.loads[*k]) {
             let [x, v] = self.read(&load.reading, look);
@@ -89,9 +113,9 @@ impl System {
         seen
     }
 
-    /// Numbers that go through zero where forces jump or have kinks, as many at every state.
-    pub(crate) fn bends(&self, seen: &Seen) -> Vec<f64> {
-        let (mut found, mut first) = (Vec::new(), 0);
+    /// Where forces bend.
+    pub(crate) fn bends(&self, seen: &Seen) -> Bends {
+        let (mut found, mut first) = (Bends::default(), 0);
         let mut next = |count: usize| {
             let range = first..first + count;
             first += count;
@@ -99,11 +123,11 @@ impl System {
         };
         for law in self.bending.laws.iter().map(|k| &self.laws[*k]) {
             let (values, rates) = next(law.arguments.len());
-            law.law.bends(values, rates, seen.t, &mut |bend| found.push(bend));
+            law.law.bends(values, rates, seen.t, &mut |bend| found.take(bend));
         }
         for load in self.bending.loads.iter().map(|k| &self.loads[*k]) {
             let (x, v) = next(load.reading.nodes.len() * self.dim + load.reading.senses.len());
-            load.load.bends(x, v, seen.t, &mut |bend| found.push(bend));
+            load.load.bends(x, v, seen.t, &mut |bend| found.take(bend));
         }
         found
     }

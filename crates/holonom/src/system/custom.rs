@@ -2,7 +2,7 @@
 
 use num_dual::{Dual2_64, Dual64, DualNum, HyperDual64};
 
-use super::Load;
+use super::{Bend, Load};
 
 /// A number that carries derivatives along, or a plain one.
 pub trait Number: DualNum<Primitive = f64> + Copy {}
@@ -45,8 +45,8 @@ pub trait ForceFunction: Send + Sync {
     /// Force at coordinates `x` and velocities `v` of the nodes, D numbers a node, and time `t`, N.
     fn evaluate<N: Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]);
 
-    /// Hands over numbers that go through zero where the force jumps or has a kink, as [`Law::bends`](super::Law::bends) does.
-    fn bends(&self, _x: &[f64], _v: &[f64], _t: f64, _note: &mut dyn FnMut(f64)) {}
+    /// Hands over where the force bends, as [`Law::bends`](super::Law::bends) does.
+    fn bends(&self, _x: &[f64], _v: &[f64], _t: f64, _note: &mut dyn FnMut(Bend)) {}
 }
 
 impl<F: ForceFunction> ForceFunction for std::sync::Arc<F> {
@@ -54,7 +54,7 @@ impl<F: ForceFunction> ForceFunction for std::sync::Arc<F> {
         (**self).evaluate(x, v, t, force);
     }
 
-    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(Bend)) {
         (**self).bends(x, v, t, note);
     }
 }
@@ -174,7 +174,7 @@ impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
 }
 
 impl<F: ForceFunction> Load for Differentiated<F> {
-    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(Bend)) {
         self.0.bends(x, v, t, note);
     }
 

@@ -27,6 +27,15 @@ pub struct Reach<'a> {
     pub middle: f64,
 }
 
+/// A number that tells where a force bends.
+#[derive(Clone, Copy, Debug)]
+pub enum Bend {
+    /// Goes through zero where the force jumps or has a kink, as that of a stop at its limit.
+    Corner(f64),
+    /// Has a maximum where a factor of the force has a peak, which may be narrow: its logarithm, but for a constant.
+    Peak(f64),
+}
+
 /// A potential V(π) or a dissipative force f(π, π̇, t) of at most [`MAX_ARGUMENTS`] invariants.
 pub trait Law: Send + Sync {
     /// V(π), J. Laws without energy leave this at zero; what they do is booked as work.
@@ -37,9 +46,8 @@ pub trait Law: Send + Sync {
     /// Whether [`Law::energy`] accounts for all the law does.
     fn conservative(&self) -> bool;
 
-    /// Hands over numbers that go through zero where the force jumps or has a kink, as that of a stop at its limit: steps by accuracy end
-    /// there. They are as many at every state.
-    fn bends(&self, _value: &[f64], _rate: &[f64], _t: f64, _note: &mut dyn FnMut(f64)) {}
+    /// Hands over where the force bends: steps by accuracy end there. It is as much at every state.
+    fn bends(&self, _value: &[f64], _rate: &[f64], _t: f64, _note: &mut dyn FnMut(Bend)) {}
 
     /// Forces and derivatives at a state. `out` arrives zeroed.
     fn at(&self, value: &[f64], rate: &[f64], t: f64, out: &mut Response);
@@ -55,8 +63,8 @@ pub trait Load: Send + Sync {
     /// Writes the force on each of the load's nodes (D × nodes), N, for their positions `x`, velocities `v` and time.
     fn force(&self, x: &[f64], v: &[f64], t: f64, force: &mut [f64]);
 
-    /// Hands over numbers that go through zero where the force jumps or has a kink, as [`Law::bends`] does.
-    fn bends(&self, _x: &[f64], _v: &[f64], _t: f64, _note: &mut dyn FnMut(f64)) {}
+    /// Hands over where the force bends, as [`Law::bends`] does.
+    fn bends(&self, _x: &[f64], _v: &[f64], _t: f64, _note: &mut dyn FnMut(Bend)) {}
 
     /// Writes ∂F/∂x and ∂F/∂v, both row-major (D·nodes × D·nodes). Both arrive zeroed.
     fn tangent(&self, x: &[f64], v: &[f64], t: f64, by_position: &mut [f64], by_velocity: &mut [f64]);

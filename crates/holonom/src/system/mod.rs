@@ -24,7 +24,7 @@ mod slots;
 mod switches;
 mod terms;
 
-pub(crate) use bends::{Bending, Seen};
+pub(crate) use bends::{Bending, Bends, Seen};
 pub use builder::{NodeId, Place, SystemBuilder, Term};
 pub use custom::{ConstraintFunction, CustomRows, Differences, Differentiated, ForceFunction, Number, SIZE};
 pub(crate) use derive::NO_CHANGE;
@@ -39,7 +39,7 @@ pub(crate) use gauge::Measured;
 pub use gauge::{Form, GaugeValues};
 pub(crate) use invariant::{HessianBlock, cross, skew};
 pub use invariant::{InvariantId, Invariants};
-pub use law::{Law, Load, MAX_ARGUMENTS, Reach, Response};
+pub use law::{Bend, Law, Load, MAX_ARGUMENTS, Reach, Response};
 pub use mass::{Mass, MassBlock};
 pub use motion::{Constant, Signal};
 pub(crate) use motion::{HalfSquare, Shifted};

@@ -10,6 +10,15 @@ impl System {
         values
     }
 
+    /// The same and their rates.
+    pub(crate) fn arguments_and_rates(&self, law: &LawEntry, at: &Evaluation, v: &[f64]) -> [[f64; MAX_ARGUMENTS]; 2] {
+        let mut rates = [0.0; MAX_ARGUMENTS];
+        for (rate, &quantity) in rates.iter_mut().zip(&law.arguments) {
+            *rate = self.along(&self.slots_of(quantity), &self.slots.nodes, at, v);
+        }
+        [self.arguments(law, at), rates]
+    }
+
     /// A response by the invariants of a law, one after the other, from `own` by its arguments. `at` is where the
     /// forces' gradients are, `end` where the values are that the forces depend on, `v` the velocities there.
     ///

@@ -19,7 +19,7 @@ use std::sync::Arc;
 use num_dual::Dual2_64;
 
 use crate::record::Formula;
-use crate::system::{Number, Signal};
+use crate::system::{Bend, Number, Signal};
 pub use curve::{Beyond, Curve};
 pub use external::{External, ExternalFunction, Functions, differences};
 use functions::{Function, quotient};
@@ -240,16 +240,17 @@ impl Program {
         self.run(variables, |_| ())
     }
 
-    /// Hands over the numbers at whose zeros the expression jumps or has a kink: the arguments of `step`, `sign` and `abs`, the difference of
-    /// those of `min` and `max`, and where a table has knots.
-    pub fn bends(&self, variables: &[f64], note: &mut dyn FnMut(f64)) {
+    /// Hands over where the expression bends. It has corners where the arguments of `step`, `sign` and `abs` are zero, where those of `min` and
+    /// `max` are equal, and at the knots of a table; peaks may be where the argument of `exp` is largest and what is divided by is smallest, and
+    /// where `tanh` goes from one side to the other.
+    pub fn bends(&self, variables: &[f64], note: &mut dyn FnMut(Bend)) {
         self.run(variables, note);
     }
 
-    fn run<N: Number>(&self, variables: &[N], mut note: impl FnMut(f64)) -> N {
+    fn run<N: Number>(&self, variables: &[N], mut note: impl FnMut(Bend)) -> N {
         let mut stack = [N::from(0.0); STACK];
         let mut top = 0;
-        for op in &self.ops {
+        for (k, op) in self.ops.iter().enumerate() {
             match op {
                 Op::Constant(value) => {
                     stack[top] = N::from(*value);
@@ -266,8 +267,12 @@ impl Program {
             let last = stack[top - 1];
             if let Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) | Op::OfTable(_) = op {
                 match op {
-                    Op::OfOne(Function::Step | Function::Sign | Function::Abs) => note(last.re()),
-                    Op::OfTable(curve) => note(curve.bend(last.re())),
+                    Op::OfOne(Function::Step | Function::Sign | Function::Abs) => note(Bend::Corner(last.re())),
+                    Op::OfOne(Function::Exp) => note(Bend::Peak(last.re())),
+                    Op::OfOne(Function::Tanh) => note(Bend::Peak(-2.0 * last.re().abs())),
+                    Op::IntegerPower(power) if *power < 0 => note(Bend::Peak(f64::from(*power) * last.re().abs().ln())),
+                    Op::RealPower(power) if *power < 0.0 => note(Bend::Peak(power * last.re().abs().ln())),
+                    Op::OfTable(curve) => note(Bend::Corner(curve.bend(last.re()))),
                     _ => (),
                 }
                 stack[top - 1] = match op {
@@ -287,7 +292,10 @@ impl Program {
             top -= 1;
             let first = stack[top - 1];
             if let Op::OfTwo(Function::Min | Function::Max) = op {
-                note(first.re() - last.re());
+                note(Bend::Corner(first.re() - last.re()));
+            }
+            if matches!(op, Op::Div) && !matches!(self.ops[k - 1], Op::Constant(_)) {
+                note(Bend::Peak(-last.re().abs().ln()));
             }
             stack[top - 1] = match op {
                 Op::Add => first + last,

@@ -1,13 +1,13 @@
 //! Laws of a spring along an axis, whose length is an invariant itself: the formulas of `laws.rs` without its root.
 
 use super::laws::{Energy, Force};
-use crate::system::{Law, Reach, Response};
+use crate::system::{Bend, Law, Reach, Response};
 
 /// A formula of the length along an axis.
 pub(super) struct Along<L>(pub L);
 
 impl Law for Along<Energy> {
-    fn bends(&self, value: &[f64], _rate: &[f64], _t: f64, note: &mut dyn FnMut(f64)) {
+    fn bends(&self, value: &[f64], _rate: &[f64], _t: f64, note: &mut dyn FnMut(Bend)) {
         self.0.bends(value[0], note);
     }
 
@@ -31,7 +31,7 @@ impl Law for Along<Energy> {
 }
 
 impl Law for Along<Force> {
-    fn bends(&self, value: &[f64], rate: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+    fn bends(&self, value: &[f64], rate: &[f64], t: f64, note: &mut dyn FnMut(Bend)) {
         self.0.bends(value[0], rate[0], t, note);
     }
 

@@ -19,7 +19,7 @@ use crate::model::signals::{ROOM, Reader, Readings, angular_velocity};
 use crate::model::sum::{Sum, cross};
 use crate::model::value::Value;
 use crate::record::{Exerts, Shows};
-use crate::system::{Differentiated, ForceFunction, Number as AnyNumber, Reading};
+use crate::system::{Bend, Differentiated, ForceFunction, Number as AnyNumber, Reading};
 
 /// Time, place, its velocity, and angular velocity of the body.
 pub(super) const VARIABLES: &[&str] = &["t", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz"];
@@ -128,7 +128,7 @@ impl Exerts for BodyLoad {
 }
 
 impl ForceFunction for BodyLoad {
-    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(Bend)) {
         let variables = self.variables(x, v, t);
         self.formulas.iter().for_each(|formula| formula.bends(&variables, note));
     }

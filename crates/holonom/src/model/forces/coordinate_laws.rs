@@ -6,7 +6,7 @@
 use num_dual::Dual64;
 
 use crate::model::expression::Program;
-use crate::system::{Law, MAX_ARGUMENTS, Reach, Response};
+use crate::system::{Bend, Law, MAX_ARGUMENTS, Reach, Response};
 
 /// V = ½ k (q − q₀)².
 pub struct Spring {
@@ -38,8 +38,8 @@ impl Law for Spring {
 pub trait Resistance: Send + Sync {
     fn at(&self, rate: f64) -> [f64; 2];
 
-    /// Hands over numbers that go through zero where it bends, as [`Law::bends`] does.
-    fn bends(&self, _rate: f64, _note: &mut dyn FnMut(f64)) {}
+    /// Hands over where it bends, as [`Law::bends`] does.
+    fn bends(&self, _rate: f64, _note: &mut dyn FnMut(Bend)) {}
 }
 
 /// f = c q̇.
@@ -61,8 +61,8 @@ pub struct Dry {
 const FULL: f64 = 6.0;
 
 impl Resistance for Dry {
-    fn bends(&self, rate: f64, note: &mut dyn FnMut(f64)) {
-        [-FULL, FULL].into_iter().for_each(|full| note(rate - full * self.speed));
+    fn bends(&self, rate: f64, note: &mut dyn FnMut(Bend)) {
+        [-FULL, FULL].into_iter().for_each(|full| note(Bend::Corner(rate - full * self.speed)));
     }
 
     fn at(&self, rate: f64) -> [f64; 2] {
@@ -75,7 +75,7 @@ impl Resistance for Dry {
 pub struct Resisting<R>(pub R);
 
 impl<R: Resistance> Law for Resisting<R> {
-    fn bends(&self, _value: &[f64], rate: &[f64], _t: f64, note: &mut dyn FnMut(f64)) {
+    fn bends(&self, _value: &[f64], rate: &[f64], _t: f64, note: &mut dyn FnMut(Bend)) {
         self.0.bends(rate[0], note);
     }
 
@@ -116,8 +116,8 @@ impl Law for Buffer {
         true
     }
 
-    fn bends(&self, value: &[f64], _rate: &[f64], _t: f64, note: &mut dyn FnMut(f64)) {
-        note(self.sign * (value[0] - self.limit));
+    fn bends(&self, value: &[f64], _rate: &[f64], _t: f64, note: &mut dyn FnMut(Bend)) {
+        note(Bend::Corner(self.sign * (value[0] - self.limit)));
     }
 
     fn at(&self, value: &[f64], _rate: &[f64], _t: f64, out: &mut Response) {
@@ -213,7 +213,7 @@ impl Effort {
 }
 
 impl Law for Effort {
-    fn bends(&self, value: &[f64], rate: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+    fn bends(&self, value: &[f64], rate: &[f64], t: f64, note: &mut dyn FnMut(Bend)) {
         self.0.bends(&Self::variables(value, rate, t), note);
     }
 

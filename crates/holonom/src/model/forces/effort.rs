@@ -14,7 +14,7 @@ use crate::model::joints::coordinate;
 use crate::model::key::Shape;
 use crate::model::parameters::require_name;
 use crate::model::signals::{ROOM, Reader, Readings};
-use crate::system::{Differentiated, ForceFunction, MAX_ARGUMENTS, Number as AnyNumber, Reading, Sense};
+use crate::system::{Bend, Differentiated, ForceFunction, MAX_ARGUMENTS, Number as AnyNumber, Reading, Sense};
 
 /// a motor or any other effort along the coordinate of a joint, as a formula of time, of that coordinate and its rate, and of
 /// whatever else moves: control laws, nonlinear springs, engines
@@ -138,7 +138,7 @@ impl ForceFunction for EffortLoad {
         force[self.own] = self.effort.evaluate(&self.variables(x, v, t));
     }
 
-    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(Bend)) {
         self.effort.bends(&self.variables(x, v, t), note);
     }
 }

@@ -11,7 +11,7 @@ use crate::model::expression::Program;
 use crate::model::fault::Read;
 use crate::model::fields::Number;
 use crate::model::signals::{ROOM, Reader, Readings};
-use crate::system::{ForceFunction, Number as AnyNumber};
+use crate::system::{Bend, ForceFunction, Number as AnyNumber};
 
 /// The value of a key.
 pub(super) enum Follows {
@@ -57,7 +57,7 @@ impl Follows {
         self.known().is_none()
     }
 
-    fn bends(&self, read: &[f64], note: &mut dyn FnMut(f64)) {
+    fn bends(&self, read: &[f64], note: &mut dyn FnMut(Bend)) {
         if let Self::Formula(program) = self {
             program.bends(read, note);
         }
@@ -124,7 +124,7 @@ impl SpringLoad {
 }
 
 impl ForceFunction for SpringLoad {
-    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(Bend)) {
         let read = read(&self.readings, x, v, t);
         [self.stiffness.as_ref(), Some(&self.rest), self.damping.as_ref()].into_iter().flatten().for_each(|key| key.bends(&read, note));
         if let Some(formula) = &self.force {
@@ -189,10 +189,10 @@ impl RopeLoad {
 }
 
 impl ForceFunction for RopeLoad {
-    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(Bend)) {
         let read = read(&self.readings, x, v, t);
         [&self.length, &self.stiffness, &self.damping].into_iter().for_each(|key| key.bends(&read, note));
-        note(self.stretch(x, v, t)[0]);
+        note(Bend::Corner(self.stretch(x, v, t)[0]));
     }
 
     fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {

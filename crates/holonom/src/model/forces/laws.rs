@@ -6,7 +6,7 @@
 use num_dual::{Dual2_64, Dual64};
 
 use crate::model::expression::Program;
-use crate::system::{Law, Reach, Response};
+use crate::system::{Bend, Law, Reach, Response};
 
 /// Distances below this count as this, m: a spring of no length has no direction, and nothing must become 0/0.
 pub(super) const SHORTEST: f64 = 1e-9;
@@ -120,7 +120,7 @@ impl Energy {
         self.formula.evaluate(&[r, self.rest, r - self.rest])
     }
 
-    pub fn bends(&self, r: f64, note: &mut dyn FnMut(f64)) {
+    pub fn bends(&self, r: f64, note: &mut dyn FnMut(Bend)) {
         self.formula.bends(&[r, self.rest, r - self.rest], note);
     }
 
@@ -149,7 +149,7 @@ impl Energy {
 }
 
 impl Law for Energy {
-    fn bends(&self, value: &[f64], _rate: &[f64], _t: f64, note: &mut dyn FnMut(f64)) {
+    fn bends(&self, value: &[f64], _rate: &[f64], _t: f64, note: &mut dyn FnMut(Bend)) {
         self.bends(length(value[0]).0, note);
     }
 
@@ -184,7 +184,7 @@ pub(super) struct Force {
 }
 
 impl Force {
-    pub fn bends(&self, r: f64, rate: f64, t: f64, note: &mut dyn FnMut(f64)) {
+    pub fn bends(&self, r: f64, rate: f64, t: f64, note: &mut dyn FnMut(Bend)) {
         self.formula.bends(&[r, rate, t, self.rest, r - self.rest], note);
     }
 
@@ -198,7 +198,7 @@ impl Force {
 }
 
 impl Law for Force {
-    fn bends(&self, value: &[f64], rate: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+    fn bends(&self, value: &[f64], rate: &[f64], t: f64, note: &mut dyn FnMut(Bend)) {
         let (r, _) = length(value[0]);
         self.bends(r, rate[0] / r, t, note);
     }

@@ -12,7 +12,7 @@ use crate::model::fault::Read;
 use crate::model::signals::{ROOM, Readings};
 use crate::model::sum::Sum;
 use crate::record::{Exerts, Shows};
-use crate::system::{Differentiated, ForceFunction, Number};
+use crate::system::{Bend, Differentiated, ForceFunction, Number};
 
 /// A force on a point: formulas of t, its place, its velocity, and what they read beside.
 struct PointLoad {
@@ -67,7 +67,7 @@ impl ForceFunction for PointLoad {
         self.point.spread(self.given(x, v, t), self.dim, force);
     }
 
-    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(f64)) {
+    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(Bend)) {
         let variables = self.variables(x, v, t);
         self.formulas.iter().for_each(|formula| formula.bends(&variables, note));
     }

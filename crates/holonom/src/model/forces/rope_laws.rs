@@ -5,7 +5,7 @@
 //! radius R, which lets out R q, it is −R times the tension.
 
 use super::laws::{length, lengths};
-use crate::system::{Law, MAX_ARGUMENTS, Reach, Response};
+use crate::system::{Bend, Law, MAX_ARGUMENTS, Reach, Response};
 
 /// How the lengths of a rope add up.
 #[derive(Clone, Copy)]
@@ -152,9 +152,9 @@ impl<P: Pull> Law for Taut<P> {
     }
 
     /// The damping bends where the tension does.
-    fn bends(&self, value: &[f64], _rate: &[f64], _t: f64, note: &mut dyn FnMut(f64)) {
+    fn bends(&self, value: &[f64], _rate: &[f64], _t: f64, note: &mut dyn FnMut(Bend)) {
         if self.pull.conservative() {
-            note(self.strands.beyond(value));
+            note(Bend::Corner(self.strands.beyond(value)));
         }
     }
 
