@@ -90,6 +90,9 @@ pub struct MethodArguments {
     /// Step, s
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub step: Option<String>,
+    /// Choose steps so that errors over the run stay about this share of the mechanism's size; results come at every --step
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
+    pub accuracy: Option<String>,
     /// End of the run, s
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub end: Option<String>,

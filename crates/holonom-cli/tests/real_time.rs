@@ -60,7 +60,7 @@ fn more_iterations_come_nearer_to_the_solution() {
 fn what_does_not_go_with_a_fixed_number_is_refused() {
     let folder = folder();
     for (words, told) in [
-        ("--set simulation.accuracy=1e-6", "equal steps"),
+        ("--accuracy 1e-6", "equal steps"),
         ("--set simulation.iteration=nested --method conserving", "newton"),
         ("--method ode/rk4", "radau"),
         ("--set simulation.iterations=0", "at least 1"),

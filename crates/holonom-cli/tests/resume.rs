@@ -83,7 +83,7 @@ fn an_end_between_steps_leaves_no_trace() {
 #[test]
 fn a_run_by_accuracy_is_noted_to_differ() {
     let folder = folder();
-    let words = format!("run {PAPER} --set simulation.accuracy=1e-4 --no-report");
+    let words = format!("run {PAPER} --accuracy 1e-4 --no-report");
     prints(&folder, &format!("{words} --end 1 --out a"), 0);
     let output = holonom(&folder, &format!("{words} --end 2 --resume a"));
     assert!(output.status.success() && text(&output.stderr).contains("an accuracy is that of the whole run"), "{}", text(&output.stderr));

@@ -23,6 +23,7 @@ const CHANGED_ACCURACY: &str = "an accuracy is that of the whole run, so its ste
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let mut overrides = load::overrides(&arguments.model.set);
     overrides.number("simulation.step", arguments.method.step.as_deref());
+    overrides.number("simulation.accuracy", arguments.method.accuracy.as_deref());
     overrides.number("simulation.end", arguments.method.end.as_deref());
     let loaded = load::load_to_run(&arguments.model.model, overrides)?;
     let output = &arguments.output;

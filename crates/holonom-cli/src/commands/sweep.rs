@@ -23,6 +23,7 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
     let plan = Plan::new(arguments)?;
     let mut overrides = load::overrides(&arguments.model.set);
     overrides.number("simulation.step", arguments.method.step.as_deref());
+    overrides.number("simulation.accuracy", arguments.method.accuracy.as_deref());
     overrides.number("simulation.end", arguments.method.end.as_deref());
     let (source, name) = load::open(&arguments.model.model, &overrides)?;
     let columns: Vec<String> = arguments.columns.iter().flat_map(|given| items(given)).map(str::to_string).collect();

@@ -155,15 +155,17 @@ impl Audit {
     }
 
     /// What the integrator made or lost of the energy since an earlier state, over all there is to move; nothing where that is round-off, or
-    /// work was done, which is booked less exactly than the motion is found. `of_laws` are the sizes of what laws make of rounded positions, J.
-    pub(super) fn made_since(&self, before: &Self, of_laws: impl FnOnce() -> f64) -> f64 {
+    /// work was done, which is booked less exactly than the motion is found. `of_laws` are the sizes of what laws make of rounded positions, J; all round-off
+    /// counts `amplified` times.
+    pub(super) fn made_since(&self, before: &Self, amplified: f64, of_laws: impl FnOnce() -> f64) -> f64 {
         if self.work != before.work {
             return 0.0;
         }
         let made = (self.integrator_total - before.integrator_total).abs();
         let sizes = self.kinetic + self.potential.abs() + self.work.abs() + self.integrator_total.abs();
-        let round_off = ROUNDED * sizes;
-        let is_round_off = made <= round_off || made <= round_off + ROUNDED * of_laws();
+        let rounded = ROUNDED * amplified;
+        let round_off = rounded * sizes;
+        let is_round_off = made <= round_off || made <= round_off + rounded * of_laws();
         if is_round_off { 0.0 } else { made / (self.supply()[1] + round_off) }
     }
 

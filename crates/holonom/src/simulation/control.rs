@@ -29,6 +29,9 @@ const LEAST: f64 = 1e-6;
 /// Loads at the ends of a step may differ so many times more from what was taken of them between: they are there for those that jump.
 const WORSE: f64 = 20.0;
 
+/// Lengths of the mechanism that anything may go in a run before errors of its energy count more, as they add up along the way.
+const WAYS: f64 = 3.0;
+
 /// Changes of the step by less than this are left out: matrices of equal steps are alike.
 const WORTH: f64 = 1.2;
 
@@ -106,6 +109,11 @@ impl Control {
     /// Local errors that are allowed, over the size of the mechanism and the step, 1/s.
     pub(super) fn allowed(&self) -> f64 {
         self.accuracy / self.span
+    }
+
+    /// A few lengths of the mechanism over the longest way that anything may go in the run, or 1 where that is shorter.
+    pub(super) fn share_of_way(&self, length: f64) -> f64 {
+        (WAYS * length / (self.speed * self.span)).min(1.0)
     }
 
     /// Takes note of an accepted state's time and velocities.

@@ -84,8 +84,11 @@ pub(super) struct Patience {
     slow: u32,
 }
 
-/// Largest share of the energy to move that a step of an explicit scheme may make or lose, in units of the accuracy it is allowed.
+/// Largest share of the energy to move that a step may make or lose, in units of the accuracy it is allowed.
 const WORSE: f64 = 20.0;
+
+/// Order of the schemes whose errors of energy come and go.
+const SYMMETRIC: u8 = 2;
 
 /// Attempts between counts of redundant rows, and rejections in a row after which none is taken to be redundant everywhere.
 pub(super) const OFTEN: u32 = 64;
@@ -156,23 +159,36 @@ impl Pilot {
     /// The error of the last step over what is allowed. Where it is too large it is looked at once more: rows that hardly differ
     /// from others, but for those that are redundant anyway, make more of round-off, and shorter steps all the more.
     pub fn ratio(&mut self, simulation: &mut Simulation, taken: &Step, step: f64) -> f64 {
-        let (t, work) = (simulation.state.t, &mut simulation.work);
-        let ratio = self.control.ratio(taken, step, t, &self.v, 1.0, work);
+        let (t, integrator) = (simulation.state.t, simulation.method.integrator);
+        let ratio = self.control.ratio(taken, step, t, &self.v, 1.0, &mut simulation.work);
+        let of_energy = self.ratio_of_energy(simulation, step, 1.0);
         // Errors of explicit schemes grow there, too, and may be far more than their estimate, which the energy shows.
-        if simulation.method.integrator.is_explicit() {
-            let (system, state) = (&simulation.system, &simulation.state);
-            let made = simulation.audit.made_since(&self.before.audit, || energy::size(system, work, &state.x));
-            let of_energy = made / (WORSE * self.control.allowed() * step);
-            // It may be the same however long steps are, as where positions have left their rows, and asks for no length then.
-            return if of_energy > KEEPING { ratio.max(of_energy) } else { ratio };
-        }
-        if ratio <= 1.0 {
-            return ratio;
+        if integrator.is_explicit() || ratio.max(of_energy) <= 1.0 {
+            return ratio.max(of_energy);
         }
         self.count_redundant(&simulation.system, &simulation.state);
         let redundant = if self.patience.rejected < DOUBT { self.redundant } else { 0 };
-        let weakest = self.independence.weakest(redundant).max(LEAST_SHARE);
-        self.control.ratio(taken, step, t, &self.v, 1.0 / weakest.sqrt(), work)
+        let amplified = 1.0 / self.independence.weakest(redundant).max(LEAST_SHARE).sqrt();
+        let of_energy = if of_energy > 1.0 { self.ratio_of_energy(simulation, step, amplified) } else { of_energy };
+        self.control.ratio(taken, step, t, &self.v, amplified, &mut simulation.work).max(of_energy)
+    }
+
+    /// The same by the energy that the step has made or lost, for schemes that err by little but in the same direction in step after step: what is
+    /// off in the velocity adds up to a way, which may be many times the length of the mechanism. Round-off counts `amplified` times.
+    fn ratio_of_energy(&self, simulation: &Simulation, step: f64, amplified: f64) -> f64 {
+        let Simulation { system, state, audit, work, method, .. } = simulation;
+        // Velocities that no row holds at the end of a step come and go.
+        let comes_and_goes = method.integrator.conserves || method.order() <= SYMMETRIC || is_rough(method);
+        if comes_and_goes {
+            return 0.0;
+        }
+        let made = audit.made_since(&self.before.audit, amplified, || energy::size(system, work, &state.x));
+        let of_accuracy = made / (WORSE * self.control.allowed() * step);
+        if !method.integrator.is_explicit() {
+            return of_accuracy / self.control.share_of_way(work.scales.length);
+        }
+        // Where positions have left their rows it may be the same however long steps are, and asks for no length then.
+        if of_accuracy > KEEPING { of_accuracy } else { 0.0 }
     }
 
     /// Counts the rows that are redundant here: those that are so everywhere are the fewest, as a run may begin at a singular position.
@@ -251,9 +267,13 @@ impl Pilot {
     }
 }
 
+/// Whether nothing holds the velocities on the rows.
+fn is_rough(method: &Method) -> bool {
+    method.formulation.is_at_position() && !method.projection.velocity
+}
+
 fn smoothing(method: &Method) -> Option<Projection> {
-    let rough = method.formulation.is_at_position() && !method.projection.velocity;
-    (rough && method.integrator.estimate == Estimate::History).then_some(Projection {
+    (is_rough(method) && method.integrator.estimate == Estimate::History).then_some(Projection {
         velocity: true,
         acceleration: false,
         metric: Metric::Mass,

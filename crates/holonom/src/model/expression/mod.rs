@@ -242,7 +242,7 @@ impl Program {
 
     /// Hands over where the expression bends. It has corners where the arguments of `step`, `sign` and `abs` are zero, where those of `min` and
     /// `max` are equal, and at the knots of a table; peaks may be where the argument of `exp` is largest and what is divided by is smallest, and
-    /// where `tanh` goes from one side to the other.
+    /// where the argument of `tanh` or `cosh` is zero.
     pub fn bends(&self, variables: &[f64], note: &mut dyn FnMut(Bend)) {
         self.run(variables, note);
     }
@@ -269,7 +269,8 @@ impl Program {
                 match op {
                     Op::OfOne(Function::Step | Function::Sign | Function::Abs) => note(Bend::Corner(last.re())),
                     Op::OfOne(Function::Exp) => note(Bend::Peak(last.re())),
-                    Op::OfOne(Function::Tanh) => note(Bend::Peak(-2.0 * last.re().abs())),
+                    // 1/cosh, and with its square the rate of tanh, where cosh itself may be too large for a number.
+                    Op::OfOne(Function::Tanh | Function::Cosh) => note(Bend::Peak(-2.0 * last.re().abs())),
                     Op::IntegerPower(power) if *power < 0 => note(Bend::Peak(f64::from(*power) * last.re().abs().ln())),
                     Op::RealPower(power) if *power < 0.0 => note(Bend::Peak(power * last.re().abs().ln())),
                     Op::OfTable(curve) => note(Bend::Corner(curve.bend(last.re()))),
