@@ -206,7 +206,8 @@ fn shared_forces(model: &Model, simulation: &Simulation) -> Option<String> {
     ))
 }
 
-/// Components of forces and moments of joints that are left undetermined, `world` being where the nodes are: `hinge.fy .tx`.
+/// Components of forces and moments of joints, and efforts of drives and couplers, that are left undetermined, `world` being where the
+/// nodes are: `hinge.fy .tx`, `motor.effort`.
 pub(crate) fn open_columns(free: &Undetermined<'_>, channels: &Channels, world: &[f64], model: &Model) -> Vec<String> {
     let mut open = Vec::new();
     for joint in &channels.joints {
@@ -217,6 +218,11 @@ pub(crate) fn open_columns(free: &Undetermined<'_>, channels: &Channels, world: 
             open.push(format!("{}.{}", joint.name, columns.join(" .")));
         }
     }
+    let shared: HashSet<usize> = free.rows().into_iter().collect();
+    let efforts = channels.efforts.iter().map(|effort| (&effort.name, effort.row));
+    let couplings = channels.couplings.iter().map(|coupling| (&coupling.name, coupling.row));
+    let efforts = efforts.chain(couplings).filter(|(_, row)| shared.contains(row));
+    open.extend(efforts.map(|(name, _)| format!("{name}.effort")));
     open
 }
 

@@ -169,6 +169,17 @@ fn runs_name_the_forces_that_are_not_unique() {
         assert!(text(&output.stderr).contains(columns.as_str().unwrap()), "{columns}: {}", text(&output.stderr));
     }
     assert!(holonom(&folder, "run example:slider-crank --end 0.02").stderr.is_empty());
+    // Two drives of two gears that mesh, of which either could do the work.
+    let gears = "[body.b]\nrepeat = \"i = 0 to 1\"\nmass = 1\ninertia = [1, 1, 1]\nposition = [\"i\", 0, 0]\n\
+                 [joint.a]\nrepeat = \"i = 0 to 1\"\ntype = \"revolute\"\nbetween = [\"ground\", \"b[i]\"]\nat = \"b[i]\"\naxis = [0, 0, 1]\n\
+                 [joint.mesh]\ntype = \"gear\"\njoints = [\"a[0]\", \"a[1]\"]\nratio = -1\n\
+                 [drive.m]\nrepeat = \"i = 0 to 1\"\ntype = \"angle\"\njoint = \"a[i]\"\nprofile = \"(1 - 2*i)*t^2\"\n\
+                 [simulation]\nend = 0.1\nstep = 0.01\n";
+    fs::write(folder.path().join("gears.toml"), gears).unwrap();
+    let efforts = "m[0].effort, m[1].effort, mesh.a[0].angle.effort, mesh.a[1].angle.effort";
+    let output = holonom(&folder, "run gears.toml");
+    assert!(text(&output.stderr).contains(&format!(": of {efforts} one way of many")), "{}", text(&output.stderr));
+    assert!(prints(&folder, "check gears.toml", 0).contains(&format!("not unique: {efforts}; all others are")));
 }
 
 #[test]

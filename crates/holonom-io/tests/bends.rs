@@ -167,3 +167,20 @@ fn a_sign_that_holds_is_named() {
         assert!(reason.contains("the force of `f` jumps to and fro") && 3.0 * at.sin() > -2.0, "{name} at {at} s: {reason}");
     }
 }
+
+/// A run that comes to where a formula has no value stops and names its force, and no other.
+#[test]
+fn a_force_without_a_value_is_named() {
+    let text = block(0.0, 1.0, "type = \"effort\"\njoint = \"rail\"\neffort = \"sqrt(0.3 - q)\"")
+        + "[force.other]\ntype = \"force\"\nbody = \"b\"\nforce = [\"-0.1/(2 - x)\", 0]\n";
+    let model = model(&text);
+    for name in METHODS {
+        for accuracy in [None, Some(1e-6)] {
+            let choice = Choice { accuracy, ..Choice::default().named(name) };
+            let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&choice).unwrap(), 0.01).unwrap();
+            let mut recorder = Recorder::new(&model.channels, &model.system, 1, Constraints::Nothing);
+            let Status::Stopped { at, reason } = simulation.run(1.0, &mut recorder) else { panic!("{name} came through") };
+            assert!(reason.contains("the force of `f` has no value there") && at < 0.3, "{name}, {accuracy:?}, {at} s: {reason}");
+        }
+    }
+}

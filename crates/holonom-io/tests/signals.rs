@@ -235,10 +235,10 @@ force = ["law(vx)", 0, 0]
     assert!((last(&recording, "bob.vx") - 3.0 * (-2.0_f64).exp()).abs() < 1e-10);
 }
 
-/// Units are factors in measures, too, and an input that is called like one comes first.
+/// Units are factors in measures, too, and a parameter that is called like one comes first.
 #[test]
 fn what_a_model_calls_like_a_unit_comes_before_it() {
-    let text = "[input.bar]\ndefault = 3\n[measure.low]\nvalue = \"bob.x/mm\"\n[measure.pressure]\nvalue = \"2*bar + 0*bob.x\"\n";
+    let text = "[parameters]\nbar = 3\n[measure.low]\nvalue = \"bob.x/mm\"\n[measure.pressure]\nvalue = \"2*bar + 0*bob.x\"\n";
     let (_, recording) = run(&model(&format!("{OSCILLATOR}{text}")), "radau", 0.01, 0.1, 1);
     assert!((last(&recording, "low") - 1e3 * last(&recording, "bob.x")).abs() < 1e-9);
     assert_eq!(last(&recording, "pressure"), 6.0);

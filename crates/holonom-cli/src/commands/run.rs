@@ -131,7 +131,10 @@ fn events(of: &Value) -> String {
     let events = of.as_array().map_or(&[][..], Vec::as_slice);
     let line = |event: &Value| {
         let end = if event["stopped"] == true { ", where the run ended" } else { "" };
-        format!("{} at {} s{end}", event["event"].as_str().unwrap_or(""), short(event["t"].as_f64().unwrap_or(f64::NAN)))
+        let t = event["t"].as_f64().unwrap_or(f64::NAN);
+        // Frequencies are read off times: small ones have as many figures as others.
+        let t = if (1e-12..1e-3).contains(&t) { format!("{t:.5e}") } else { short(t) };
+        format!("{} at {t} s{end}", event["event"].as_str().unwrap_or(""))
     };
     let (first, last) = events.split_at(events.len().min(LISTED));
     let mut lines: Vec<String> = first.iter().map(line).collect();

@@ -72,7 +72,7 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
             assembly.builder.switch(Arc::new(TimeProgram(program)));
         }
         let starts = std::mem::take(&mut assembly.starts);
-        if let Err((message, cure)) = start::begin(&mut assembly.builder, &starts) {
+        if let Err((message, cure)) = start::begin(&mut assembly.builder, &starts, &assembly.efforts) {
             drop(assembly);
             let _: Refused = sink.report(|| Fault::new("start", "start", message, cure));
             return Err(sink.finish().expect_err("there is a fault"));
@@ -128,7 +128,7 @@ impl Compiler<'_> {
         for name in names {
             let path = key_path("function", name);
             let entry = self.entry(name, &path, &nothing);
-            let _ = parameters::require_own_name(&entry);
+            let _ = parameters::require_own_name(&entry).and_then(|()| parameters::require_no_function(&entry));
             if self.tables.contains_key(name) {
                 let _: Refused = entry.refuse_all(format!("`{name}` is also a table"), "give one of them another name");
             }

@@ -3,7 +3,7 @@
 use super::entry::Entry;
 use super::fault::Read;
 use super::fields::{Keys, Number};
-use super::parameters::require_own_name;
+use super::parameters::{require_no_number, require_own_name};
 use crate::record::RecordedInput;
 
 /// `[input.NAME]`
@@ -25,6 +25,7 @@ impl Input {
     /// How it is recorded, and what it is until it is set.
     pub(super) fn recorded(&self, entry: &Entry<'_>) -> Read<(RecordedInput, f64)> {
         require_own_name(entry)?;
+        require_no_number(entry)?;
         let default = entry.optional("default", &self.default, Number::number)?.unwrap_or(0.0);
         let unit = self.unit.clone().unwrap_or_else(|| "1".into());
         let meaning = self.meaning.clone().unwrap_or_else(|| "input".into());

@@ -8,6 +8,7 @@ use super::expression::{Mistake, Names, Program};
 use super::fault::{Fault, Read, Sink, nearest};
 use super::fields::{Field, Keys, Number};
 use super::key::Shape;
+use super::parameters::require_no_number;
 use super::value::key_path;
 use crate::record::{COLUMNS, MeasureReads, RecordedMeasure, Running, Series};
 
@@ -75,6 +76,7 @@ impl Names for Reads<'_> {
 impl Measure {
     /// What is recorded of it.
     pub(super) fn recorded(&self, entry: &Entry<'_>, columns: &Columns<'_>) -> Read<RecordedMeasure> {
+        require_no_number(entry)?;
         let mut reads = Reads { columns, reads: Vec::new(), series: Vec::new() };
         let program = match &self.value {
             Number::Given(_) => Program::constant(self.value.number(entry, "value")?),

@@ -76,6 +76,21 @@ pub fn require_own_name(entry: &Entry<'_>) -> Read<()> {
     unfit(base).map_or(Ok(()), |[message, cure]| Err(entry.refuse_all(message, cure)))
 }
 
+/// Refuses an input or a measure with the name of a constant or a unit, which would be one number in some expressions and another in others.
+pub fn require_no_number(entry: &Entry<'_>) -> Read<()> {
+    let base = entry.name.split('[').next().unwrap_or(entry.name);
+    let refused = |what| Err(entry.refuse_all(format!("`{base}` is a {what} of every expression"), "give it another name"));
+    expression::number_called(base).map_or(Ok(()), refused)
+}
+
+/// Refuses a table or a function with the name of a function of places or of a whole run, which it would hide.
+pub fn require_no_function(entry: &Entry<'_>) -> Read<()> {
+    match expression::is_of_what_moves(entry.name) {
+        true => Err(entry.refuse_all(format!("`{}` is a function of every expression", entry.name), "give it another name")),
+        false => Ok(()),
+    }
+}
+
 /// Why something cannot be a name in expressions, and the cure.
 fn unfit(name: &str) -> Option<[String; 2]> {
     let starts = name.chars().next().is_some_and(|c| c.is_alphabetic() || c == '_');

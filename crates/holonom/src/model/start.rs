@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::assembly::Assembly;
+use super::assembly::{Assembly, Effort};
 use super::bodies::short;
 use super::entry::Entry;
 use super::fault::Read;
@@ -88,8 +88,8 @@ const MOST_TRIES: usize = 1000;
 ///
 /// # Errors
 /// Why that cannot be, and the cure.
-pub(super) fn begin(builder: &mut SystemBuilder, targets: &[Target]) -> Result<(), (String, &'static str)> {
-    assemble(builder, targets)?;
+pub(super) fn begin(builder: &mut SystemBuilder, targets: &[Target], drives: &[Effort]) -> Result<(), (String, &'static str)> {
+    assemble(builder, targets, drives)?;
     set_off(builder, targets)
 }
 
@@ -97,7 +97,7 @@ pub(super) fn begin(builder: &mut SystemBuilder, targets: &[Target]) -> Result<(
 ///
 /// # Errors
 /// Why that cannot be, and the cure.
-fn assemble(builder: &mut SystemBuilder, targets: &[Target]) -> Result<(), (String, &'static str)> {
+fn assemble(builder: &mut SystemBuilder, targets: &[Target], drives: &[Effort]) -> Result<(), (String, &'static str)> {
     if targets.iter().all(|target| target.value.is_none()) {
         return Ok(());
     }
@@ -130,8 +130,18 @@ fn assemble(builder: &mut SystemBuilder, targets: &[Target]) -> Result<(), (Stri
             None if step > LEAST_SHARE && tries < MOST_TRIES => step *= 0.5,
             None => {
                 let message = format!("the mechanism cannot be moved there: it gets {} % of the way", short(100.0 * share));
-                let cure = "take values that the joints can have together; away from a dead centre a coordinate leads that moves there";
-                return Err((message, cure));
+                let lengths = drives.iter().filter(|drive| drive.length.is_some()).map(|drive| format!("`{}`", drive.name));
+                let lengths: Vec<String> = lengths.collect();
+                return Err(match lengths.is_empty() {
+                    true => (
+                        message,
+                        "take values that the joints can have together; away from a dead centre a coordinate leads that moves there",
+                    ),
+                    false => (
+                        format!("{message}; driven distances stay as long as they are: {}", lengths.join(", ")),
+                        "write the bodies where they are at the start, or take values that the joints have with these lengths",
+                    ),
+                });
             }
         }
     }

@@ -9,7 +9,7 @@ use super::expression::{self, Beyond};
 use super::fault::{Read, Sink, suggest};
 use super::fields::{Keys, List};
 use super::key::Shape;
-use super::parameters::require_own_name;
+use super::parameters::{require_no_function, require_own_name};
 
 /// `[table.NAME]`
 #[derive(Clone, Debug, Default, PartialEq, Keys)]
@@ -42,6 +42,7 @@ impl Curve {
     /// What the keys come to.
     pub(super) fn curve(&self, entry: &Entry<'_>) -> Read<expression::Curve> {
         require_own_name(entry)?;
+        require_no_function(entry)?;
         let interpolation =
             entry.optional("interpolation", &self.interpolation, |word, entry, key| entry.choice(key, word, INTERPOLATIONS));
         let outside = entry.optional("outside", &self.outside, |word, entry, key| entry.choice(key, word, BEYOND));

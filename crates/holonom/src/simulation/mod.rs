@@ -11,6 +11,7 @@ mod control;
 mod events;
 mod landing;
 mod method;
+mod no_value;
 mod pilot;
 mod promise;
 mod reactions;
@@ -298,7 +299,15 @@ impl Simulation {
         // A row at round-off is not to blame.
         let worst = worst.filter(|(_, missed)| missed.is_nan() || *missed >= BLAMED);
         let row = worst.map_or(String::new(), |(k, _)| format!("; the worst row is `{}` with {:.1e}", self.system.row_names[k], phi[k]));
-        let what = format!("{} at t = {:.6} s{row}", failure.describe(&self.system), self.state.t);
+        let t = self.state.t;
+        if matches!(failure, Failure::NotFinite | Failure::TooSmall)
+            && let Some(force) = self.force_without_value()
+        {
+            return format!(
+                "the force of `{force}` has no value there (a formula is outside its domain, or a table outside its range) at t = {t:.6} s"
+            );
+        }
+        let what = format!("{} at t = {t:.6} s{row}", failure.describe(&self.system));
         let is_of_rows = matches!(failure, Failure::NotConverged { .. } | Failure::Broken { .. } | Failure::Singular(_));
         match is_of_rows.then(|| self.conflict()).flatten() {
             Some(row) => format!("`{row}` asks for a motion that the other constraints do not allow: {what}"),

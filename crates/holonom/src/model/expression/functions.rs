@@ -21,9 +21,11 @@ pub(super) enum Function {
     Abs,
     Sign,
     Step,
+    Floor,
     Atan2,
     Min,
     Max,
+    Mod,
     Pow,
 }
 
@@ -45,9 +47,11 @@ pub(super) const FUNCTIONS: &[(&str, usize, Function)] = &[
     ("abs", 1, Function::Abs),
     ("sign", 1, Function::Sign),
     ("step", 1, Function::Step),
+    ("floor", 1, Function::Floor),
     ("atan2", 2, Function::Atan2),
     ("min", 2, Function::Min),
     ("max", 2, Function::Max),
+    ("mod", 2, Function::Mod),
     ("pow", 2, Function::Pow),
 ];
 
@@ -87,7 +91,8 @@ impl Function {
             // Written out: the signum of a number library is 1 at zero, and a NaN must stay one.
             Self::Sign => N::from(if real == 0.0 { 0.0 } else { real.signum() }),
             Self::Step => N::from(if real.is_nan() { real } else { f64::from(real >= 0.0) }),
-            Self::Atan2 | Self::Min | Self::Max | Self::Pow => unreachable!("a function of two numbers"),
+            Self::Floor => N::from(real.floor()),
+            Self::Atan2 | Self::Min | Self::Max | Self::Mod | Self::Pow => unreachable!("a function of two numbers"),
         }
     }
 
@@ -109,6 +114,7 @@ impl Function {
                     x
                 }
             }
+            Self::Mod => x - y * (x.re() / y.re()).floor(),
             Self::Pow => x.powd(y),
             _ => unreachable!("a function of one number"),
         }

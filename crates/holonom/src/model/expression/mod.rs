@@ -90,6 +90,17 @@ pub fn is_reserved(name: &str) -> bool {
     functions::CONSTANTS.iter().any(|known| known.0 == name) || functions::FUNCTIONS.iter().any(|known| known.0 == name)
 }
 
+/// What a name stands for in every expression, if it is that of a number: a constant or a unit.
+pub fn number_called(name: &str) -> Option<&'static str> {
+    let is_in = |known: &[(&str, f64)]| known.iter().any(|known| known.0 == name);
+    if is_in(functions::CONSTANTS) { Some("constant") } else { is_in(functions::UNITS).then_some("unit") }
+}
+
+/// Whether a function of places or of a whole run has this name, which a table or a function of a program would hide.
+pub fn is_of_what_moves(name: &str) -> bool {
+    names::OF_PLACES.iter().any(|known| known.0 == name) || names::RUNNING.iter().any(|known| known.0 == name)
+}
+
 /// A name with the indices in its brackets worked out: `link[i-1].x` becomes `link[2].x`.
 ///
 /// # Errors
@@ -179,8 +190,8 @@ impl Program {
     }
 
     /// The expressions of the variable `t` alone, and of nothing else, at whose zeros this one jumps or has a kink, as programs of
-    /// one variable: the arguments of `step`, `sign` and `abs`, the difference of those of `min` and `max`, the first of `atan2`, and the cosine of
-    /// that of `tan`.
+    /// one variable: the arguments of `step`, `sign` and `abs`, the difference of those of `min` and `max`, the first of `atan2`, the cosine of
+    /// that of `tan`, and what is zero where `floor` and `mod` jump.
     pub fn switches(&self, t: usize) -> Vec<Self> {
         let mut found = Vec::new();
         // Where the operations of each number on the stack begin.
@@ -190,6 +201,9 @@ impl Program {
                 Op::Constant(_) | Op::Variable(_) => begins.push(k),
                 Op::OfOne(Function::Step | Function::Sign | Function::Abs) => {
                     found.extend(self.of_time(t, &self.ops[begins[begins.len() - 1]..k], &[]));
+                }
+                Op::OfOne(Function::Floor) => {
+                    found.extend(self.of_time(t, &self.ops[begins[begins.len() - 1]..k], &AT_INTEGERS));
                 }
                 Op::OfOne(Function::Tan) => {
                     found.extend(self.of_time(t, &self.ops[begins[begins.len() - 1]..k], &[Op::OfOne(Function::Cos)]));
@@ -206,6 +220,9 @@ impl Program {
                     let first = begins[begins.len() - 1];
                     match op {
                         Op::OfTwo(Function::Min | Function::Max) => found.extend(self.of_time(t, &self.ops[first..k], &[Op::Sub])),
+                        Op::OfTwo(Function::Mod) => {
+                            found.extend(self.of_time(t, &self.ops[first..k], &[&[Op::Div], &AT_INTEGERS[..]].concat()))
+                        }
                         Op::OfTwo(Function::Atan2) => found.extend(self.of_time(t, &self.ops[first..second], &[])),
                         _ => (),
                     }
@@ -241,7 +258,7 @@ impl Program {
     }
 
     /// Hands over where the expression bends. It has corners where the arguments of `step`, `sign` and `abs` are zero, where those of `min` and
-    /// `max` are equal, and at the knots of a table; peaks may be where the argument of `exp` is largest and what is divided by is smallest, and
+    /// `max` are equal, where `floor` and `mod` jump, and at the knots of a table; peaks may be where the argument of `exp` is largest and what is divided by is smallest, and
     /// where the argument of `tanh` or `cosh` is zero.
     pub fn bends(&self, variables: &[f64], note: &mut dyn FnMut(Bend)) {
         self.run(variables, note);
@@ -269,6 +286,7 @@ impl Program {
                 match op {
                     Op::OfOne(Function::Step | Function::Sign | Function::Abs) => note(Bend::Corner(last.re())),
                     Op::OfOne(Function::Exp) => note(Bend::Peak(last.re())),
+                    Op::OfOne(Function::Floor) => note(Bend::Corner(at_integers(last.re()))),
                     // 1/cosh, and with its square the rate of tanh, where cosh itself may be too large for a number.
                     Op::OfOne(Function::Tanh | Function::Cosh) => note(Bend::Peak(-2.0 * last.re().abs())),
                     Op::IntegerPower(power) if *power < 0 => note(Bend::Peak(f64::from(*power) * last.re().abs().ln())),
@@ -295,6 +313,9 @@ impl Program {
             if let Op::OfTwo(Function::Min | Function::Max) = op {
                 note(Bend::Corner(first.re() - last.re()));
             }
+            if let Op::OfTwo(Function::Mod) = op {
+                note(Bend::Corner(at_integers(first.re() / last.re())));
+            }
             if matches!(op, Op::Div) && !matches!(self.ops[k - 1], Op::Constant(_)) {
                 note(Bend::Peak(-last.re().abs().ln()));
             }
@@ -310,6 +331,14 @@ impl Program {
         stack[0]
     }
 }
+
+/// What is zero where a number is an integer, and goes through zero there.
+fn at_integers(x: f64) -> f64 {
+    (std::f64::consts::PI * x).sin()
+}
+
+/// The same as operations.
+const AT_INTEGERS: [Op; 3] = [Op::Constant(std::f64::consts::PI), Op::Mul, Op::OfOne(Function::Sin)];
 
 impl Formula for Program {
     fn evaluate(&self, values: &[f64]) -> f64 {

@@ -12,8 +12,19 @@ const DEPTH: usize = 50;
 /// Names of all functions.
 pub(super) fn functions() -> impl Iterator<Item = &'static str> + Clone {
     let of_numbers = FUNCTIONS.iter().map(|known| known.0);
-    of_numbers.chain(RUNNING.iter().map(|known| known.0)).chain(OF_PLACES.iter().map(|known| known.0))
+    let of_runs = RUNNING.iter().map(|known| known.0).filter(|name| !FUNCTIONS.iter().any(|known| known.0 == *name));
+    of_numbers.chain(of_runs).chain(OF_PLACES.iter().map(|known| known.0))
 }
+
+/// Functions that other programs have, and how their values are written here.
+const ELSEWHERE: &[(&str, &str)] = &[
+    ("log", "ln(x), or log10(x)"),
+    ("ceil", "-floor(-x)"),
+    ("round", "floor(x + 0.5)"),
+    ("heaviside", "step(x)"),
+    ("if", "step(x)*a + (1 - step(x))*b, which is a from x = 0 on and b below"),
+    ("cot", "1/tan(x)"),
+];
 
 /// Parses an expression of the given variables and of what `names` knows.
 pub(super) fn parse(text: &str, variables: &[&str], names: &mut dyn Names, scope: &Scope<'_>) -> Result<Program, Mistake> {
@@ -224,7 +235,13 @@ impl Parser<'_> {
             let mut known: Vec<&str> = tables.chain(given).collect();
             known.sort_unstable();
             functions().for_each(|name| known.push(name));
-            let cure = if is_value { format!("write {name}*(…)") } else { suggest(name, known.iter().copied()) };
+            let elsewhere = ELSEWHERE.iter().find(|spelt| spelt.0.eq_ignore_ascii_case(name));
+            let cure = match (elsewhere, nearest(name, known.iter().copied())) {
+                _ if is_value => format!("write {name}*(…)"),
+                (Some((_, here)), _) => format!("write {here}"),
+                (None, Some(near)) => format!("did you mean `{near}`?"),
+                (None, None) => format!("functions are {}", known.join(", ")),
+            };
             return Err(self.mistake(format!("`{name}` is no function"), cure));
         }
         self.at += 2;

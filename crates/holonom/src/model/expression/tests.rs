@@ -6,7 +6,7 @@ use num_dual::{Dual2_64, Dual64, HyperDual64};
 
 use super::functions::FUNCTIONS;
 use super::{Beyond, Curve, Program, STACK, Scope, TimeProgram, Value};
-use crate::system::{Signal, zeros};
+use crate::system::{Bend, Signal, zeros};
 
 fn value(text: &str) -> f64 {
     let program = Program::parse(text, &[], &Scope::default()).unwrap_or_else(|mistake| panic!("{text}: {mistake:?}"));
@@ -190,4 +190,32 @@ fn kinks_of_periodic_tables_come_again_in_every_period() {
     times.dedup_by(|b, a| *b - *a < 1e-12);
     let expected = [0.05, 0.2, 0.45, 0.6, 0.85];
     assert!(times.len() == 5 && times.iter().zip(expected).all(|(t, known)| (t - known).abs() < 1e-12), "{times:?}");
+}
+
+/// Where `floor` and `mod` jump steps end, in time and with what moves.
+#[test]
+fn floor_and_mod_jump_where_they_are_seen_to() {
+    let scope = Scope::default();
+    for (text, at, value, rate) in [("floor(t)", -0.3, -1.0, 0.0), ("mod(t, 2)", 5.5, 1.5, 1.0), ("mod(-t, 2)", 0.5, 1.5, -1.0)] {
+        let [found, slope, _] = TimeProgram(Program::parse(text, &["t"], &scope).unwrap()).at(at);
+        assert!((found - value).abs() < 1e-12 && (slope - rate).abs() < 1e-12, "{text}: {found}, {slope}");
+    }
+    let times = |text: &str| -> Vec<f64> {
+        let program = Program::parse(text, &["t"], &scope).unwrap();
+        program.switches(0).into_iter().flat_map(|switch| zeros(&TimeProgram(switch), 1.0)).collect()
+    };
+    for (text, expected) in [("2*floor(3*t)", [1.0 / 3.0, 2.0 / 3.0]), ("sin(mod(t + 0.1, 0.4))", [0.3, 0.7])] {
+        let found = times(text);
+        assert!(found.len() >= 2 && found.iter().zip(expected).all(|(t, known)| (t - known).abs() < 1e-12), "{text}: {found:?}");
+    }
+    let mut corners = Vec::new();
+    let program = Program::parse("floor(q) + mod(q, 0.5)", &["q"], &scope).unwrap();
+    for q in [0.99, 1.01] {
+        program.bends(&[q], &mut |bend| {
+            if let Bend::Corner(corner) = bend {
+                corners.push(corner)
+            }
+        });
+    }
+    assert!(corners[0] * corners[2] < 0.0 && corners[1] * corners[3] < 0.0, "{corners:?}");
 }
