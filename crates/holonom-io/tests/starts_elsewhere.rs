@@ -123,6 +123,46 @@ fn a_gear_may_turn_another_joint_more_than_half_a_turn() {
     }
 }
 
+/// An arm of two links on two cylinders: the cylinder of the joint that is moved gets as long as it takes and counts its stroke from there, the other
+/// one keeps its length. The distance itself may be given there in place of a stroke.
+#[test]
+fn cylinders_follow_the_joints_that_they_hold() {
+    let (angle, boom, stick) = (0.4_f64, [0.5, -0.5], [0.5, -0.4]);
+    // From the eye of a cylinder to that on the arm, which turns about the joint.
+    let length = |[eye, foot]: [f64; 2], q: f64| ((eye * q.cos()).powi(2) + (eye * q.sin() - foot).powi(2)).sqrt();
+    for (moved, profile) in [("boom", false), ("boom", true), ("stick", false)] {
+        let [of_boom, of_stick] = ["boom", "stick"].map(|joint| if joint == moved { angle } else { 0.0 });
+        let stroke = match profile {
+            true => format!("profile = \"{} + 0.1*t^2\"", length(boom, angle)),
+            false => "stroke = \"0.1*t^2\"".to_string(),
+        };
+        let model = model_with_forces(&format!(
+            "plane = \"xz\"\n[body.a]\nmass = 10\ninertia = 1\nposition = [0.5, 0]\npoints = {{ eye = [0, 0], foot = [0.5, -0.4], end = [0.5, 0] }}\n\
+             [body.b]\nmass = 5\ninertia = 0.5\nposition = [1.5, 0]\npoints = {{ eye = [0, 0] }}\n\
+             [joint.boom]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0]\n\
+             [joint.stick]\ntype = \"revolute\"\nbetween = [\"a\", \"b\"]\nat = [1, 0]\n\
+             [drive.lift]\ntype = \"distance\"\nbetween = [[0, -0.5], \"a.eye\"]\n{stroke}\n\
+             [drive.curl]\ntype = \"distance\"\nbetween = [\"a.foot\", \"b.eye\"]\nstroke = \"0\"\n\
+             [start]\n{moved}.angle = {angle}\n"
+        ));
+        let recording = run(&model, 0.01, 0.1);
+        let [lift, curl] = [length(boom, of_boom), length(stick, of_stick)];
+        for (column, row, expected) in [
+            ("boom.angle", 0, of_boom),
+            ("stick.angle", 0, of_stick),
+            ("lift.length", 0, lift),
+            ("curl.length", 0, curl),
+            ("lift.length", recording.rows() - 1, lift + 0.001),
+            ("curl.length", recording.rows() - 1, curl),
+        ] {
+            let found = recording.column(column).unwrap()[row];
+            assert!((found - expected).abs() < 1e-12, "{moved} moved, {column} in row {row}: {found} and not {expected}");
+        }
+        // Both links and their cylinders hang at the ground: forces are those of the whole weight.
+        assert!(recording.column("lift.effort").unwrap()[0] > 15.0 * 9.81);
+    }
+}
+
 /// A crank that turns at the start moves all else as its geometry says, from the pose that is written and from another one.
 #[test]
 fn a_mechanism_starts_at_the_rate_of_a_joint() {

@@ -13,7 +13,7 @@ use super::fault::{Read, Sink};
 use super::geometry::Vec3;
 use super::joints::{Geometry, JointInfo};
 use super::signals::Signals;
-use super::start::Target;
+use super::start::{DrivenLength, Target};
 use crate::record::{Anchor, Line, LineKind, RecordedCoupling, RecordedForce, SceneAxis, SceneJoint, SceneLoad, Shows};
 use crate::system::{Signal, SystemBuilder};
 
@@ -107,6 +107,8 @@ pub struct Assembly<'a> {
     pub(in crate::model) loads: Vec<SceneLoad>,
     /// Where joints are to be at the start.
     pub(in crate::model) starts: Vec<Target>,
+    /// Distances that are driven.
+    pub(in crate::model) lengths: Vec<DrivenLength>,
     /// Efforts of the drives.
     pub(in crate::model) efforts: Vec<Effort>,
     /// What couplers exert along the coordinates that they couple.
@@ -152,6 +154,7 @@ impl<'a> Assembly<'a> {
             scene_joints: Vec::new(),
             loads: Vec::new(),
             starts: Vec::new(),
+            lengths: Vec::new(),
             efforts: Vec::new(),
             couplings: Vec::new(),
             forces: Vec::new(),

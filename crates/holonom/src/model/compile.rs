@@ -72,7 +72,8 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
             assembly.builder.switch(Arc::new(TimeProgram(program)));
         }
         let starts = std::mem::take(&mut assembly.starts);
-        if let Err((message, cure)) = start::begin(&mut assembly.builder, &starts, &assembly.efforts) {
+        let lengths = std::mem::take(&mut assembly.lengths);
+        if let Err((message, cure)) = start::begin(&mut assembly.builder, &starts, &lengths, &mut assembly.efforts) {
             drop(assembly);
             let _: Refused = sink.report(|| Fault::new("start", "start", message, cure));
             return Err(sink.finish().expect_err("there is a fault"));

@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use super::assembly::{Assembly, Effort};
+use super::assembly::{Assembly, CONTRADICTION, Effort};
 use super::bodies::short;
 use super::entry::Entry;
 use super::fault::Read;
 use super::fields::{Keys, Number};
 use super::joints::{Coordinate, coordinate};
+use crate::analysis::undetermined;
 use crate::simulation::{Choice, Method, Simulation, State};
-use crate::system::{Constant, Shifted, Signal, System, SystemBuilder};
+use crate::system::{Constant, HalfSquare, Shifted, Signal, System, SystemBuilder};
 
 /// `[start.JOINT]`
 #[derive(Clone, Debug, Default, PartialEq, Keys)]
@@ -36,6 +37,23 @@ pub struct Target {
     rate: Option<f64>,
     /// The row of its drive.
     row: Option<usize>,
+}
+
+impl Target {
+    /// Whether the coordinate is put somewhere.
+    pub(super) fn is_placed(&self) -> bool {
+        self.value.is_some()
+    }
+}
+
+/// A distance that is driven, of half the square of which a row is one.
+pub struct DrivenLength {
+    /// Of the drive.
+    pub row: usize,
+    /// Number of its effort, which has its name, and the distance over time.
+    pub effort: usize,
+    /// By how much the distance differs from that at the start; `None` where the distance itself is given.
+    pub stroke: Option<Arc<dyn Signal>>,
 }
 
 /// The profile of a drive of a coordinate, whose row is the next one: it counts from where the joint is at the start.
@@ -88,8 +106,17 @@ const MOST_TRIES: usize = 1000;
 ///
 /// # Errors
 /// Why that cannot be, and the cure.
-pub(super) fn begin(builder: &mut SystemBuilder, targets: &[Target], drives: &[Effort]) -> Result<(), (String, &'static str)> {
-    assemble(builder, targets, drives)?;
+pub(super) fn begin(
+    builder: &mut SystemBuilder,
+    targets: &[Target],
+    lengths: &[DrivenLength],
+    efforts: &mut [Effort],
+) -> Result<(), (String, &'static str)> {
+    if targets.iter().any(Target::is_placed) {
+        let released = released(builder, targets, lengths);
+        assemble(builder, targets, &released)?;
+        extend(builder, lengths, efforts)?;
+    }
     set_off(builder, targets)
 }
 
@@ -97,10 +124,7 @@ pub(super) fn begin(builder: &mut SystemBuilder, targets: &[Target], drives: &[E
 ///
 /// # Errors
 /// Why that cannot be, and the cure.
-fn assemble(builder: &mut SystemBuilder, targets: &[Target], drives: &[Effort]) -> Result<(), (String, &'static str)> {
-    if targets.iter().all(|target| target.value.is_none()) {
-        return Ok(());
-    }
+fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize]) -> Result<(), (String, &'static str)> {
     if builder.is_moving() {
         let message = "a velocity is written for the pose in the file, and the mechanism is moved from there".to_string();
         return Err((message, "remove the velocities, or write the bodies where they are at the start"));
@@ -115,7 +139,7 @@ fn assemble(builder: &mut SystemBuilder, targets: &[Target], drives: &[Effort]) 
         let next = f64::min(share + step, 1.0);
         let ahead: Vec<f64> = here.iter().zip(&way).map(|(x, way)| x + (next - share) * way).collect();
         builder.move_to(&ahead, turned.each_ref().map(|angles| &angles[..]));
-        match at(builder.clone(), targets, next) {
+        match at(builder.clone(), targets, released, next) {
             Some((system, state)) => {
                 let there = system.in_world(&state.x);
                 way = there.iter().zip(&here).map(|(there, here)| (there - here) / (next - share)).collect();
@@ -130,37 +154,77 @@ fn assemble(builder: &mut SystemBuilder, targets: &[Target], drives: &[Effort]) 
             None if step > LEAST_SHARE && tries < MOST_TRIES => step *= 0.5,
             None => {
                 let message = format!("the mechanism cannot be moved there: it gets {} % of the way", short(100.0 * share));
-                let lengths = drives.iter().filter(|drive| drive.length.is_some()).map(|drive| format!("`{}`", drive.name));
-                let lengths: Vec<String> = lengths.collect();
-                return Err(match lengths.is_empty() {
-                    true => (
-                        message,
-                        "take values that the joints can have together; away from a dead centre a coordinate leads that moves there",
-                    ),
-                    false => (
-                        format!("{message}; driven distances stay as long as they are: {}", lengths.join(", ")),
-                        "write the bodies where they are at the start, or take values that the joints have with these lengths",
-                    ),
-                });
+                let cure = "take values that the joints can have together; away from a dead centre a coordinate leads that moves there";
+                return Err((message, cure));
             }
         }
     }
     Ok(())
 }
 
-/// The mechanism with its coordinates at a share of the way.
-fn at(mut builder: SystemBuilder, targets: &[Target], share: f64) -> Option<(Arc<System>, State)> {
+/// The rows of driven distances that would hold the coordinates where they are: those that are redundant beside these. They get as long as
+/// it takes.
+fn released(builder: &SystemBuilder, targets: &[Target], lengths: &[DrivenLength]) -> Vec<usize> {
+    if lengths.is_empty() {
+        return Vec::new();
+    }
+    let mut led = builder.clone();
+    let rows = lead(&mut led, targets, 0.0);
+    let system = led.build();
+    let held = undetermined(&system, system.start_position(), 0.0).map_or(Vec::new(), |free| free.rows_with(&rows));
+    lengths.iter().map(|length| length.row).filter(|row| held.contains(row)).collect()
+}
+
+/// Has strokes of driven distances count from where the ends are now, and refuses distances that are others than those.
+fn extend(builder: &mut SystemBuilder, lengths: &[DrivenLength], efforts: &mut [Effort]) -> Result<(), (String, &'static str)> {
+    let system = builder.clone().build();
+    let (mut at, mut values) = (system.evaluation(), vec![0.0; system.constraints()]);
+    system.evaluate_again(system.start_position(), 0.0, &mut at);
+    system.constraint_values(&at, 0.0, &mut values);
+    for DrivenLength { row, effort, stroke } in lengths {
+        let Effort { name, length, .. } = &mut efforts[*effort];
+        let given = length.as_ref().map_or(0.0, |length| length.at(0.0)[0]);
+        let there = (2.0 * values[*row] + given * given).max(0.0).sqrt();
+        match stroke {
+            Some(stroke) if (there - given).abs() > f64::EPSILON * given => {
+                let counted: Arc<dyn Signal> = Arc::new(Shifted(stroke.clone(), there));
+                builder.retarget(*row, Arc::new(HalfSquare(counted.clone())));
+                *length = Some(counted);
+            }
+            None if (there - given).abs() > CONTRADICTION * given => {
+                let message =
+                    format!("`{name}` is {} m long at t = 0, but its ends are {} m apart at the start", short(given), short(there));
+                return Err((message, "give that distance, or `stroke`, which counts from it"));
+            }
+            _ => (),
+        }
+    }
+    Ok(())
+}
+
+/// Has coordinates lead to a share of the way; the rows that do.
+fn lead(builder: &mut SystemBuilder, targets: &[Target], share: f64) -> Vec<usize> {
+    let mut rows = Vec::new();
     for Target { coordinate, value, row, .. } in targets {
         let Some(value) = value else { continue };
         let here = Arc::new(Constant(share * value));
         if let Some(row) = row {
             builder.retarget(*row, here);
+            rows.push(*row);
             continue;
         }
+        rows.push(builder.rows());
         let part = builder.part(&coordinate.form);
         let sum = builder.sum(&[(part, 1.0)]);
         builder.row(&coordinate.joint, sum, here);
     }
+    rows
+}
+
+/// The mechanism with its coordinates at a share of the way, without the rows that are `released`, in their order.
+fn at(mut builder: SystemBuilder, targets: &[Target], released: &[usize], share: f64) -> Option<(Arc<System>, State)> {
+    lead(&mut builder, targets, share);
+    released.iter().rev().for_each(|&row| builder.remove_row(row));
     let system = Arc::new(builder.build());
     let method = Method::resolve(&Choice::default()).expect("the default method goes with everything");
     let simulation = Simulation::new(system.clone(), method, 1e-3).ok()?;

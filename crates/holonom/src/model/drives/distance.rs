@@ -9,6 +9,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Place};
 use crate::model::geometry::norm;
 use crate::model::key::Shape;
+use crate::model::start::{DrivenLength, Target};
 use crate::model::stroke::from_start;
 use crate::record::LineKind;
 use crate::system::{HalfSquare, Signal};
@@ -58,17 +59,21 @@ impl Element for Distance {
         let stroke = entry.optional("stroke", &self.stroke, Profile::signal);
         let (ends, profile, stroke) = (ends?, profile?, stroke?);
         let [a, b] = &ends;
-        let length: Arc<dyn Signal> = match (profile, stroke) {
+        let is_moved = assembly.starts.iter().any(Target::is_placed);
+        let (length, stroke): (Arc<dyn Signal>, _) = match (profile, stroke) {
             (Some(profile), None) => {
                 let (given, start) = (profile.at(0.0)[0], norm(difference(a, b)));
                 if given <= 0.0 {
                     return Err(entry.refuse("profile", format!("the distance is {given} at t = 0"), "it must be above 0"));
                 }
                 let contradiction = || format!("the distance is {given} m at t = 0, but `{}` and `{}` are {start} m apart", a.name, b.name);
-                assembly.check_start(entry, start - given, given, contradiction)?;
-                profile
+                // Where joints are put elsewhere the ends may be as far apart as that there.
+                if !is_moved {
+                    assembly.check_start(entry, start - given, given, contradiction)?;
+                }
+                (profile, None)
             }
-            (None, Some(stroke)) => from_start(entry, &ends, stroke, "profile")?,
+            (None, Some(stroke)) => (from_start(entry, &ends, stroke.clone(), "profile")?, Some(stroke)),
             (None, None) => {
                 let cure = "add stroke = … to count from the start, or profile = … with the distance itself";
                 return Err(entry.refuse_all(format!("`{}` has neither `profile` nor `stroke`", entry.name), cure));
@@ -79,6 +84,7 @@ impl Element for Distance {
         };
         let half_square = assembly.builder.square(&from_to(a, b));
         let row = assembly.builder.rows();
+        assembly.lengths.push(DrivenLength { row, effort: assembly.efforts.len(), stroke });
         assembly.efforts.push(Effort { name: entry.name.to_string(), row, length: Some(Arc::clone(&length)), is_moment: false });
         assembly.builder.row(entry.name, half_square, Arc::new(HalfSquare(length)));
         assembly.draw(entry, LineKind::Cylinder, a, b);

@@ -294,6 +294,12 @@ impl SystemBuilder {
         self.rows[row] = Row::new(self.rows[row].quantity, target);
     }
 
+    /// Takes the k-th row out; those behind it move up.
+    pub(crate) fn remove_row(&mut self, row: usize) {
+        self.rows.remove(row);
+        self.row_names.remove(row);
+    }
+
     /// Adds the row Φ = π − c with a constant c.
     pub fn constant_row(&mut self, name: impl Into<String>, quantity: impl Into<Quantity>, target: f64) {
         self.row(name, quantity, Arc::new(Constant(target)));
