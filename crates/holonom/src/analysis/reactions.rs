@@ -75,14 +75,7 @@ impl<'s> Undetermined<'s> {
 
     /// The rows that take part in a redundancy: any one of the combination may be left out.
     pub fn rows(&self) -> Vec<usize> {
-        self.rows_with(&(0..self.system.constraints()).collect::<Vec<_>>())
-    }
-
-    /// The rows that take part in a redundancy together with any of some rows.
-    pub fn rows_with(&self, some: &[usize]) -> Vec<usize> {
-        let is_part = |space: &[f64], row: usize| space[row].abs() > SMALL * largest(space);
-        let spaces: Vec<&Vec<f64>> = self.spaces.iter().filter(|space| some.iter().any(|&row| is_part(space, row))).collect();
-        (0..self.system.constraints()).filter(|&row| spaces.iter().any(|space| is_part(space, row))).collect()
+        (0..self.system.constraints()).filter(|&row| self.spaces.iter().any(|space| space[row].abs() > SMALL * largest(space))).collect()
     }
 
     /// Whether the components of force (3) and moment about a place (3) of some rows on some nodes (points or directions)

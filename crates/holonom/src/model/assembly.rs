@@ -131,6 +131,13 @@ pub struct Effort {
     pub is_moment: bool,
 }
 
+impl Effort {
+    /// The distance that is driven at the start, m.
+    pub fn at_start(&self) -> f64 {
+        self.length.as_ref().map_or(0.0, |length| length.at(0.0)[0])
+    }
+}
+
 impl<'a> Assembly<'a> {
     /// With bodies whose nodes are not made yet, and nothing else.
     pub(super) fn new(builder: SystemBuilder, axes: Axes, gravity: [f64; 3], sink: &'a Sink, bodies: Vec<RigidBody>) -> Self {

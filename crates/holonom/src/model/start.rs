@@ -8,9 +8,8 @@ use super::entry::Entry;
 use super::fault::Read;
 use super::fields::{Keys, Number};
 use super::joints::{Coordinate, coordinate};
-use crate::analysis::undetermined;
-use crate::simulation::{Choice, Method, Simulation, State};
-use crate::system::{Constant, HalfSquare, Shifted, Signal, System, SystemBuilder};
+use crate::simulation::{Choice, Method, Simulation};
+use crate::system::{Constant, HalfSquare, Shifted, Signal, SystemBuilder};
 
 /// `[start.JOINT]`
 #[derive(Clone, Debug, Default, PartialEq, Keys)]
@@ -113,7 +112,7 @@ pub(super) fn begin(
     efforts: &mut [Effort],
 ) -> Result<(), (String, &'static str)> {
     if targets.iter().any(Target::is_placed) {
-        let released = released(builder, targets, lengths);
+        let released = released(builder, targets, lengths, efforts);
         assemble(builder, targets, &released)?;
         extend(builder, lengths, efforts)?;
     }
@@ -140,8 +139,9 @@ fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize])
         let ahead: Vec<f64> = here.iter().zip(&way).map(|(x, way)| x + (next - share) * way).collect();
         builder.move_to(&ahead, turned.each_ref().map(|angles| &angles[..]));
         match at(builder.clone(), targets, released, next) {
-            Some((system, state)) => {
-                let there = system.in_world(&state.x);
+            Some(simulation) => {
+                let state = simulation.state().clone();
+                let there = simulation.system().in_world(&state.x);
                 way = there.iter().zip(&here).map(|(there, here)| (there - here) / (next - share)).collect();
                 here = there.to_vec();
                 turned = [state.angle, state.measured];
@@ -162,38 +162,53 @@ fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize])
     Ok(())
 }
 
-/// The rows of driven distances that would hold the coordinates where they are: those that are redundant beside these. They get as long as
-/// it takes.
-fn released(builder: &SystemBuilder, targets: &[Target], lengths: &[DrivenLength]) -> Vec<usize> {
-    if lengths.is_empty() {
-        return Vec::new();
+/// The rows of driven distances that would hold the coordinates where they are: without one of these fewer rows are redundant beside those that
+/// lead. They get as long as it takes.
+fn released(builder: &SystemBuilder, targets: &[Target], lengths: &[DrivenLength], efforts: &[Effort]) -> Vec<usize> {
+    let mut held = builder.clone();
+    for (length, there) in lengths.iter().zip(distances(builder, lengths, efforts)) {
+        held.retarget(length.row, Arc::new(HalfSquare(Arc::new(Constant(there)))));
     }
-    let mut led = builder.clone();
-    let rows = lead(&mut led, targets, 0.0);
-    let system = led.build();
-    let held = undetermined(&system, system.start_position(), 0.0).map_or(Vec::new(), |free| free.rows_with(&rows));
-    lengths.iter().map(|length| length.row).filter(|row| held.contains(row)).collect()
+    // How many more rows are redundant where coordinates are led.
+    let more = |without: Option<usize>| {
+        let count = |mut builder: SystemBuilder| {
+            without.into_iter().for_each(|row| builder.remove_row(row));
+            start(builder).map(|simulation| simulation.redundant_rows())
+        };
+        let mut led = held.clone();
+        lead(&mut led, targets, 0.0);
+        Some(count(led)?.saturating_sub(count(held.clone())?))
+    };
+    let most = if lengths.is_empty() { None } else { more(None) };
+    let holds = |row: &usize| matches!((more(Some(*row)), most), (Some(fewer), Some(most)) if fewer < most);
+    lengths.iter().map(|length| length.row).filter(holds).collect()
 }
 
-/// Has strokes of driven distances count from where the ends are now, and refuses distances that are others than those.
-fn extend(builder: &mut SystemBuilder, lengths: &[DrivenLength], efforts: &mut [Effort]) -> Result<(), (String, &'static str)> {
+/// How far the ends of driven distances are apart where the mechanism is, m.
+fn distances(builder: &SystemBuilder, lengths: &[DrivenLength], efforts: &[Effort]) -> Vec<f64> {
     let system = builder.clone().build();
     let (mut at, mut values) = (system.evaluation(), vec![0.0; system.constraints()]);
     system.evaluate_again(system.start_position(), 0.0, &mut at);
     system.constraint_values(&at, 0.0, &mut values);
-    for DrivenLength { row, effort, stroke } in lengths {
-        let Effort { name, length, .. } = &mut efforts[*effort];
-        let given = length.as_ref().map_or(0.0, |length| length.at(0.0)[0]);
-        let there = (2.0 * values[*row] + given * given).max(0.0).sqrt();
+    // The row is half the square less that of the distance that is given.
+    let of_row = |length: &DrivenLength| (2.0 * values[length.row] + efforts[length.effort].at_start().powi(2)).max(0.0).sqrt();
+    lengths.iter().map(of_row).collect()
+}
+
+/// Has strokes of driven distances count from where the ends are now, and refuses distances that are others than those.
+fn extend(builder: &mut SystemBuilder, lengths: &[DrivenLength], efforts: &mut [Effort]) -> Result<(), (String, &'static str)> {
+    for (DrivenLength { row, effort, stroke }, there) in lengths.iter().zip(distances(builder, lengths, efforts)) {
+        let effort = &mut efforts[*effort];
+        let given = effort.at_start();
         match stroke {
             Some(stroke) if (there - given).abs() > f64::EPSILON * given => {
                 let counted: Arc<dyn Signal> = Arc::new(Shifted(stroke.clone(), there));
                 builder.retarget(*row, Arc::new(HalfSquare(counted.clone())));
-                *length = Some(counted);
+                effort.length = Some(counted);
             }
             None if (there - given).abs() > CONTRADICTION * given => {
-                let message =
-                    format!("`{name}` is {} m long at t = 0, but its ends are {} m apart at the start", short(given), short(there));
+                let (name, given, there) = (&effort.name, short(given), short(there));
+                let message = format!("`{name}` is {given} m long at t = 0, but its ends are {there} m apart at the start");
                 return Err((message, "give that distance, or `stroke`, which counts from it"));
             }
             _ => (),
@@ -202,34 +217,32 @@ fn extend(builder: &mut SystemBuilder, lengths: &[DrivenLength], efforts: &mut [
     Ok(())
 }
 
-/// Has coordinates lead to a share of the way; the rows that do.
-fn lead(builder: &mut SystemBuilder, targets: &[Target], share: f64) -> Vec<usize> {
-    let mut rows = Vec::new();
+/// Has coordinates lead to a share of the way.
+fn lead(builder: &mut SystemBuilder, targets: &[Target], share: f64) {
     for Target { coordinate, value, row, .. } in targets {
         let Some(value) = value else { continue };
         let here = Arc::new(Constant(share * value));
         if let Some(row) = row {
             builder.retarget(*row, here);
-            rows.push(*row);
             continue;
         }
-        rows.push(builder.rows());
         let part = builder.part(&coordinate.form);
         let sum = builder.sum(&[(part, 1.0)]);
         builder.row(&coordinate.joint, sum, here);
     }
-    rows
 }
 
 /// The mechanism with its coordinates at a share of the way, without the rows that are `released`, in their order.
-fn at(mut builder: SystemBuilder, targets: &[Target], released: &[usize], share: f64) -> Option<(Arc<System>, State)> {
+fn at(mut builder: SystemBuilder, targets: &[Target], released: &[usize], share: f64) -> Option<Simulation> {
     lead(&mut builder, targets, share);
     released.iter().rev().for_each(|&row| builder.remove_row(row));
-    let system = Arc::new(builder.build());
+    start(builder)
+}
+
+/// The mechanism at its start, where it has one.
+fn start(builder: SystemBuilder) -> Option<Simulation> {
     let method = Method::resolve(&Choice::default()).expect("the default method goes with everything");
-    let simulation = Simulation::new(system.clone(), method, 1e-3).ok()?;
-    let state = simulation.state().clone();
-    Some((system, state))
+    Simulation::new(Arc::new(builder.build()), method, 1e-3).ok()
 }
 
 /// A coordinate that has a rate: its value now, and that.
@@ -268,10 +281,9 @@ fn set_off(builder: &mut SystemBuilder, targets: &[Target]) -> Result<(), (Strin
     for (k, (_, rate)) in rated.iter().enumerate() {
         led.retarget(first + k, Arc::new(Rising([values[first + k], *rate])));
     }
-    let method = Method::resolve(&Choice::default()).expect("the default method goes with everything");
-    match Simulation::new(Arc::new(led.build()), method, 1e-3) {
-        Ok(simulation) => builder.set_velocity(&simulation.state().v),
-        Err(_) => {
+    match start(led) {
+        Some(simulation) => builder.set_velocity(&simulation.state().v),
+        None => {
             let name = |(Target { coordinate, .. }, _): &(&Target, f64)| format!("`{}.{}`", coordinate.joint, coordinate.name);
             let names = rated.iter().map(name).collect::<Vec<_>>().join(", ");
             let message = format!("no velocities at the start meet all constraints and the rates that are given of {names}");

@@ -111,6 +111,11 @@ impl Control {
         self.accuracy / self.span
     }
 
+    /// Whether nothing has been remembered since the start or since something changed abruptly.
+    pub(super) fn begins(&self) -> bool {
+        self.count == 1
+    }
+
     /// A few lengths of the mechanism over the longest way that anything may go in the run, or 1 where that is shorter.
     pub(super) fn share_of_way(&self, length: f64) -> f64 {
         (WAYS * length / (self.speed * self.span)).min(1.0)

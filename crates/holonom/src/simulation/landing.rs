@@ -4,7 +4,7 @@ use super::Simulation;
 use super::bracket::Bracket;
 use super::events::{LOCATED, MOST_TRIES, SHORTEST};
 use super::pilot::{BETWEEN, Pilot, SMALLEST_SHARE};
-use super::sight::{Passed, REACHED, Sight};
+use super::sight::{INSIDE, Passed, REACHED, Sight};
 use crate::formulation::Failure;
 use crate::integrator::Step;
 use crate::system::{Bends, System};
@@ -40,6 +40,19 @@ impl Sight {
     }
 }
 
+impl Sight {
+    /// The end of a step of length `step` (s) from what was seen `before` at a bend. A peak that ends there, too, is seen by steps that are as short,
+    /// but none shorter than `least` (s): what jumps at the end of this one says nothing of it.
+    fn land(mut self, bend: usize, before: &Self, step: f64, least: f64, system: &System) -> Landing {
+        let share = 1.0 - 1.0 / INSIDE;
+        if step > INSIDE * least && before.is_gone(&self, share, &self.peaks, system) {
+            return Landing::TooLong(share * step);
+        }
+        self.reach(bend, before);
+        Landing::OnBend(self)
+    }
+}
+
 impl Simulation {
     /// Where a force bends within the step that was just taken, it is taken again and ends there: what follows is not continued from what came
     /// before.
@@ -47,12 +60,23 @@ impl Simulation {
         let (system, from) = (self.system.clone(), &mut pilot.sight);
         let mut at = self.sight();
         let (begin, whole) = (pilot.before.state.t, *step);
+        let least = 2.0 * SMALLEST_SHARE * pilot.control.span;
+        // What begins where something changes is as long as a peak that begins there.
+        let is_new = pilot.control.begins() && whole > INSIDE * least;
+        if is_new && from.is_gone(&at, 1.0 / INSIDE, &from.peaks, &system) {
+            return Ok(Landing::TooLong(whole / INSIDE));
+        }
         // A step that ends about at a peak has an error that shows it.
-        let least = SMALLEST_SHARE * pilot.control.span;
-        if let Some(left) = from.first_hidden(&at, &system).map(|share| share * whole).filter(|left| *left > 2.0 * least) {
+        if let Some(left) = from.first_hidden(&at, &system).map(|share| share * whole).filter(|left| *left > least) {
             return Ok(Landing::TooLong(left));
         }
-        let Some(first) = from.first_passed(&at, &system) else { return Ok(Landing::Between(at)) };
+        let width = (LOCATED * whole).max(f64::EPSILON * self.state.t.abs());
+        let Some(first) = from.first_passed(&at, &system) else {
+            return Ok(match at.first_beyond(width, &system) {
+                Some(bend) => at.land(bend, from, whole, least, &system),
+                None => Landing::Between(at),
+            });
+        };
         let left = whole * Bracket::new(first.shares, first.values).secant();
         if left <= SHORTEST * whole {
             from.corners[first.bend] = REACHED.copysign(-from.corners[first.bend]);
@@ -61,7 +85,6 @@ impl Simulation {
         if from.corners[first.bend].abs() == REACHED {
             return Ok(Landing::TooLong(left / BETWEEN));
         }
-        let width = (LOCATED * whole).max(f64::EPSILON * self.state.t.abs());
         let (mut bend, mut passed) = (first.bend, Some(first));
         let mut bracket: Option<Bracket> = None;
         for _ in 0..MOST_TRIES {
@@ -103,8 +126,7 @@ impl Simulation {
             at = self.sight();
             passed = from.first_passed(&at, &system);
         }
-        at.reach(bend, from);
-        Ok(Landing::OnBend(at))
+        Ok(at.land(bend, from, *step, least, &system))
     }
 
     /// Goes on to just behind the bends that a step of length `step` (s) has ended before, so that forces are those of what follows also where the

@@ -38,7 +38,7 @@ pub use words::MethodError;
 
 use std::sync::Arc;
 
-use crate::formulation::{Failure, Independence, Newton, Workspace};
+use crate::formulation::{Failure, Independence, Newton, Workspace, independent};
 use crate::integrator::Integrator;
 use crate::system::{Evaluation, GaugeValues, System};
 use checkpoint::{Grid, Hints};
@@ -300,7 +300,7 @@ impl Simulation {
         let worst = worst.filter(|(_, missed)| missed.is_nan() || *missed >= BLAMED);
         let row = worst.map_or(String::new(), |(k, _)| format!("; the worst row is `{}` with {:.1e}", self.system.row_names[k], phi[k]));
         let t = self.state.t;
-        if matches!(failure, Failure::NotFinite | Failure::TooSmall)
+        if matches!(failure, Failure::NotFinite | Failure::TooSmall | Failure::JumpsBack { .. })
             && let Some(force) = self.force_without_value()
         {
             return format!(
@@ -359,6 +359,12 @@ impl Simulation {
     /// How much each row (r) adds to those before it at the present state, as [`crate::formulation::independence`] has it.
     pub fn independence(&self) -> Vec<f64> {
         Independence::like(&self.system, &self.newton.kkt).shares(&self.system, &self.state.x, self.state.t)
+    }
+
+    /// How many rows follow from others at the present state.
+    pub(crate) fn redundant_rows(&self) -> usize {
+        let least = independent(self.system.coordinates());
+        self.independence().into_iter().filter(|share| *share < least).count()
     }
 
     /// The energy audit so far.

@@ -83,9 +83,25 @@ impl Sight {
         (1..last).find_map(|k| (0..self.peaks.len()).find_map(|peak| hidden(k, peak)))
     }
 
+    /// Whether a peak of a force is gone at a share of the way to what is seen `at` the end, beside the logarithms `there` that it has at one of both
+    /// ends.
+    pub fn is_gone(&self, at: &Self, share: f64, there: &[f64], system: &System) -> bool {
+        let gone = |(there, here): (&f64, &f64)| there - here > HIDDEN;
+        !there.is_empty() && there.iter().zip(&system.bends(&self.seen.between(&at.seen, share)).peaks).any(gone)
+    }
+
     /// Whether a force has bent so much later, s, as what it depends on moves now.
     pub fn is_beyond(&self, bend: usize, later: f64, system: &System) -> bool {
         Crossing::Both.is_between(self.corners[bend], system.bends(&self.seen.ahead(later)).corners[bend])
+    }
+
+    /// The first force that has.
+    pub fn first_beyond(&self, later: f64, system: &System) -> Option<usize> {
+        if self.corners.is_empty() {
+            return None;
+        }
+        let ahead = system.bends(&self.seen.ahead(later)).corners;
+        (0..ahead.len()).find(|&bend| self.corners[bend].abs() != REACHED && Crossing::Both.is_between(self.corners[bend], ahead[bend]))
     }
 
     /// How long it takes until a force bends, s, as what it depends on moves now and for a while, s; no number where nothing tells.

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::Op;
 use super::functions::Function;
 use crate::model::spline::Spline;
-use crate::system::Number;
+use crate::system::{Bend, Number};
 
 /// What a curve is beyond its ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,12 +29,34 @@ pub struct Curve {
     slopes: Option<Vec<f64>>,
     spline: Option<Spline>,
     beyond: Beyond,
+    /// Knots at which it is highest or lowest, and how far the nearer of those next to them is.
+    tops: Vec<[f64; 2]>,
+}
+
+/// Most corners that are told one by one.
+const FEW: usize = 64;
+
+/// Knots that are higher or lower than those on both sides, as are both ends of a part that is level, with the way to the nearer knot.
+fn tops(knots: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
+    let mut tops = Vec::new();
+    let mut from = 1;
+    while from + 1 < knots.len() {
+        let level = values[from..].iter().take_while(|value| **value == values[from]).count();
+        let to = from + level - 1;
+        if to + 1 < knots.len() && (values[from] - values[from - 1]) * (values[to] - values[to + 1]) > 0.0 {
+            let width = |k: usize| (knots[k] - knots[k - 1]).min(knots[k + 1] - knots[k]);
+            tops.push([knots[from], width(from)]);
+            tops.extend((to > from).then(|| [knots[to], width(to)]));
+        }
+        from = to + 1;
+    }
+    tops
 }
 
 impl Curve {
     /// Straight lines from point to point.
     pub fn linear(knots: Vec<f64>, values: Vec<f64>, beyond: Beyond) -> Self {
-        Self { knots, values, slopes: None, spline: None, beyond }
+        Self { tops: tops(&knots, &values), knots, values, slopes: None, spline: None, beyond }
     }
 
     /// A cubic spline with two continuous derivatives: natural or periodic.
@@ -43,7 +65,7 @@ impl Curve {
             Beyond::Periodic => Spline::periodic(knots.clone(), values.clone()),
             _ => Spline::natural(knots.clone(), values.clone()),
         };
-        Self { knots, values, slopes: None, spline: Some(spline), beyond }
+        Self { tops: tops(&knots, &values), knots, values, slopes: None, spline: Some(spline), beyond }
     }
 
     /// Cubics with one continuous derivative that rise where the points rise and fall where they fall: slopes by Fritsch and Butland
@@ -66,7 +88,7 @@ impl Curve {
             _ => [secant(0), secant(last - 1)],
         };
         let slopes = [first].into_iter().chain(inner).chain([end]).collect();
-        Self { knots, values, slopes: Some(slopes), spline: None, beyond }
+        Self { tops: tops(&knots, &values), knots, values, slopes: Some(slopes), spline: None, beyond }
     }
 
     /// What to do to an argument, for each place where derivatives jump, to have a number that passes zero there: in every period of a
@@ -75,6 +97,31 @@ impl Curve {
         let period = (self.beyond == Beyond::Periodic).then(|| self.knots[self.knots.len() - 1] - self.knots[0]);
         let turns = period.map(|period| [Op::Constant(PI / period), Op::Mul, Op::OfOne(Function::Sin)]);
         self.knots.iter().map(move |&knot| [Op::Constant(knot), Op::Sub].into_iter().chain(turns.clone().into_iter().flatten()).collect())
+    }
+
+    /// Tells where the curve bends at `s`: at the corners of a polygon, one by one where they are few, and where it is highest or lowest within
+    /// a width that steps may be longer than.
+    pub(super) fn bends(&self, s: f64, note: &mut impl FnMut(Bend)) {
+        let is_polygon = self.slopes.is_none() && self.spline.is_none();
+        if is_polygon && self.knots.len() <= FEW {
+            let period = (self.beyond == Beyond::Periodic).then(|| self.knots[self.knots.len() - 1] - self.knots[0]);
+            let off = |knot: &f64| period.map_or(s - knot, |period| (PI * (s - knot) / period).sin());
+            return self.knots.iter().for_each(|knot| note(Bend::Corner(off(knot))));
+        }
+        note(Bend::Corner(self.bend(s)));
+        if !self.tops.is_empty() {
+            let s = self.in_period(s);
+            let next = self.tops.partition_point(|[knot, _]| *knot <= s);
+            let near = self.tops[next.saturating_sub(1)..(next + 1).min(self.tops.len())].iter();
+            let seen = near.map(|[knot, width]| -(1.0 + ((s - knot) / width).powi(2)).ln());
+            note(Bend::Peak(seen.fold(f64::NEG_INFINITY, f64::max)));
+        }
+    }
+
+    /// Where `s` is in the period that the knots are of.
+    fn in_period(&self, s: f64) -> f64 {
+        let (first, end) = (self.knots[0], self.knots[self.knots.len() - 1]);
+        if self.beyond == Beyond::Periodic { s - ((s - first) / (end - first)).floor() * (end - first) } else { s }
     }
 
     /// A number that passes zero with slope ±1 where the slope jumps: the distance of `s` from the nearest of these places, of one sign and
@@ -183,6 +230,18 @@ mod tests {
         assert!(values.windows(2).all(|pair| pair[1] >= pair[0] - 1e-14));
         let spline = Curve::cubic(vec![0.0, 1.0, 1.1, 3.0, 4.0], vec![0.0, 0.0, 5.0, 5.0, 6.0], Beyond::Hold);
         assert!((0..=400).any(|k| spline.evaluate(f64::from(k) * 0.01) > 6.0), "which a spline does");
+    }
+
+    #[test]
+    fn tops_are_where_a_curve_turns() {
+        let at = |values: &[f64]| {
+            let knots: Vec<f64> = (0..values.len()).map(|k| (k * k) as f64).collect();
+            tops(&knots, values).iter().map(|[knot, width]| [*knot, *width]).collect::<Vec<_>>()
+        };
+        assert_eq!(at(&[0.0, 0.0, 1.0, 0.0, 0.0]), [[4.0, 3.0]]);
+        assert_eq!(at(&[0.0, 1.0, 1.0, 0.5, 2.0]), [[1.0, 1.0], [4.0, 3.0], [9.0, 5.0]]);
+        assert_eq!(at(&[0.0, 0.0, 1.0, 1.0, 2.0]), [[0.0; 2]; 0]);
+        assert_eq!(at(&[3.0]), [[0.0; 2]; 0]);
     }
 
     #[test]

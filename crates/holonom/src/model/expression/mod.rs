@@ -4,6 +4,7 @@
 //! `functions.rs`; names are variables, indices of `repeat`, and `[parameters]`. Where an expression is of what a mechanism does,
 //! names have dots, as `hinge.angle`, and stand in single quotes where they have other signs: `'left-strut.force'`.
 
+mod call;
 mod curve;
 mod external;
 mod functions;
@@ -254,17 +255,18 @@ impl Program {
 
     /// The value for values of the variables. Nothing is allocated.
     pub fn evaluate<N: Number>(&self, variables: &[N]) -> N {
-        self.run(variables, |_| ())
+        self.run::<N, false>(variables, |_| ())
     }
 
     /// Hands over where the expression bends. It has corners where the arguments of `step`, `sign` and `abs` are zero, where those of `min` and
     /// `max` are equal, where `floor` and `mod` jump, and at the knots of a table; peaks may be where the argument of `exp` is largest and what is divided by is smallest, and
-    /// where the argument of `tanh` or `cosh` is zero.
+    /// where the argument of `tanh`, `cosh` or `atan` is zero, and where a table is highest or lowest.
     pub fn bends(&self, variables: &[f64], note: &mut dyn FnMut(Bend)) {
-        self.run(variables, note);
+        self.run::<f64, true>(variables, note);
     }
 
-    fn run<N: Number>(&self, variables: &[N], mut note: impl FnMut(Bend)) -> N {
+    /// The value, and with `TELLS` where the expression bends.
+    fn run<N: Number, const TELLS: bool>(&self, variables: &[N], mut note: impl FnMut(Bend)) -> N {
         let mut stack = [N::from(0.0); STACK];
         let mut top = 0;
         for (k, op) in self.ops.iter().enumerate() {
@@ -283,16 +285,8 @@ impl Program {
             }
             let last = stack[top - 1];
             if let Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) | Op::OfTable(_) = op {
-                match op {
-                    Op::OfOne(Function::Step | Function::Sign | Function::Abs) => note(Bend::Corner(last.re())),
-                    Op::OfOne(Function::Exp) => note(Bend::Peak(last.re())),
-                    Op::OfOne(Function::Floor) => note(Bend::Corner(at_integers(last.re()))),
-                    // 1/cosh, and with its square the rate of tanh, where cosh itself may be too large for a number.
-                    Op::OfOne(Function::Tanh | Function::Cosh) => note(Bend::Peak(-2.0 * last.re().abs())),
-                    Op::IntegerPower(power) if *power < 0 => note(Bend::Peak(f64::from(*power) * last.re().abs().ln())),
-                    Op::RealPower(power) if *power < 0.0 => note(Bend::Peak(power * last.re().abs().ln())),
-                    Op::OfTable(curve) => note(Bend::Corner(curve.bend(last.re()))),
-                    _ => (),
+                if TELLS {
+                    tell_of_one(op, last.re(), &mut note);
                 }
                 stack[top - 1] = match op {
                     Op::Neg => -last,
@@ -310,14 +304,9 @@ impl Program {
             }
             top -= 1;
             let first = stack[top - 1];
-            if let Op::OfTwo(Function::Min | Function::Max) = op {
-                note(Bend::Corner(first.re() - last.re()));
-            }
-            if let Op::OfTwo(Function::Mod) = op {
-                note(Bend::Corner(at_integers(first.re() / last.re())));
-            }
-            if matches!(op, Op::Div) && !matches!(self.ops[k - 1], Op::Constant(_)) {
-                note(Bend::Peak(-last.re().abs().ln()));
+            if TELLS {
+                let is_scaled = matches!(self.ops[k - 1], Op::Constant(_));
+                tell_of_two(op, [first.re(), last.re()], is_scaled, &mut note);
             }
             stack[top - 1] = match op {
                 Op::Add => first + last,
@@ -329,6 +318,32 @@ impl Program {
             };
         }
         stack[0]
+    }
+}
+
+/// Tells where an operation on the number `x` bends.
+fn tell_of_one(op: &Op, x: f64, note: &mut impl FnMut(Bend)) {
+    match op {
+        Op::OfOne(Function::Step | Function::Sign | Function::Abs) => note(Bend::Corner(x)),
+        Op::OfOne(Function::Floor) => note(Bend::Corner(at_integers(x))),
+        Op::OfOne(Function::Exp) => note(Bend::Peak(x)),
+        // 1/cosh, and with its square the rate of tanh, where cosh itself may be too large for a number.
+        Op::OfOne(Function::Tanh | Function::Cosh) => note(Bend::Peak(-2.0 * x.abs())),
+        Op::OfOne(Function::Atan) => note(Bend::Peak(-(1.0 + x * x).ln())),
+        Op::IntegerPower(power) if *power < 0 => note(Bend::Peak(f64::from(*power) * x.abs().ln())),
+        Op::RealPower(power) if *power < 0.0 => note(Bend::Peak(power * x.abs().ln())),
+        Op::OfTable(curve) => curve.bends(x, note),
+        _ => (),
+    }
+}
+
+/// The same on two numbers, the second of which is constant where the first `is_scaled` by it.
+fn tell_of_two(op: &Op, [x, y]: [f64; 2], is_scaled: bool, note: &mut impl FnMut(Bend)) {
+    match op {
+        Op::OfTwo(Function::Min | Function::Max) => note(Bend::Corner(x - y)),
+        Op::OfTwo(Function::Mod) => note(Bend::Corner(at_integers(x / y))),
+        Op::Div if !is_scaled => note(Bend::Peak(-y.abs().ln())),
+        _ => (),
     }
 }
 

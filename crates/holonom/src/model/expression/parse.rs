@@ -2,29 +2,12 @@
 
 use super::functions::{CONSTANTS, FUNCTIONS, Function, UNITS, integer_power, real_power};
 use super::lex::{Token, lex};
-use super::names::{self, Names, OF_PLACES, RUNNING};
-use super::{External, Functions, Mistake, Op, Program, STACK, Scope, Value};
+use super::names::Names;
+use super::{Mistake, Op, Program, STACK, Scope, Value};
 use crate::model::fault::{nearest, suggest};
 
 /// Deepest nesting of brackets, signs and powers.
 const DEPTH: usize = 50;
-
-/// Names of all functions.
-pub(super) fn functions() -> impl Iterator<Item = &'static str> + Clone {
-    let of_numbers = FUNCTIONS.iter().map(|known| known.0);
-    let of_runs = RUNNING.iter().map(|known| known.0).filter(|name| !FUNCTIONS.iter().any(|known| known.0 == *name));
-    of_numbers.chain(of_runs).chain(OF_PLACES.iter().map(|known| known.0))
-}
-
-/// Functions that other programs have, and how their values are written here.
-const ELSEWHERE: &[(&str, &str)] = &[
-    ("log", "ln(x), or log10(x)"),
-    ("ceil", "-floor(-x)"),
-    ("round", "floor(x + 0.5)"),
-    ("heaviside", "step(x)"),
-    ("if", "step(x)*a + (1 - step(x))*b, which is a from x = 0 on and b below"),
-    ("cot", "1/tan(x)"),
-];
 
 /// Parses an expression of the given variables and of what `names` knows.
 pub(super) fn parse(text: &str, variables: &[&str], names: &mut dyn Names, scope: &Scope<'_>) -> Result<Program, Mistake> {
@@ -43,46 +26,26 @@ pub(super) fn parse(text: &str, variables: &[&str], names: &mut dyn Names, scope
     }
 }
 
-/// The function that a name calls, and which of its values.
-fn external(functions: &Functions, name: &str) -> Result<Option<(External, usize)>, Mistake> {
-    let (base, index) = name.split_once('[').map_or((name, None), |(base, index)| (base, Some(index)));
-    let Some(function) = functions.get(base) else { return Ok(None) };
-    let values = function.values();
-    let value = match index {
-        None if values == 1 => Some(0),
-        None => None,
-        Some(index) => index.strip_suffix(']').and_then(|index| index.parse().ok()).filter(|&value| value < values),
-    };
-    match value {
-        Some(value) => Ok(Some((function.clone(), value))),
-        None => {
-            let message = format!("`{base}` has {values} value{}", if values == 1 { "" } else { "s" });
-            let last = values - 1;
-            let cure = if values == 1 { format!("write {base}(…)") } else { format!("write {base}[0](…) to {base}[{last}](…)") };
-            Err(Mistake::new(0, message, cure))
-        }
-    }
-}
-
-struct Parser<'a> {
+/// An expression as far as it has been read.
+pub(super) struct Parser<'a> {
     text: &'a str,
-    tokens: &'a [(usize, Token)],
-    at: usize,
+    pub(super) tokens: &'a [(usize, Token)],
+    pub(super) at: usize,
     depth: usize,
-    variables: &'a [&'a str],
-    names: &'a mut dyn Names,
-    scope: &'a Scope<'a>,
-    ops: Vec<Op>,
+    pub(super) variables: &'a [&'a str],
+    pub(super) names: &'a mut dyn Names,
+    pub(super) scope: &'a Scope<'a>,
+    pub(super) ops: Vec<Op>,
     /// Numbers on the stack after the operations so far.
-    used: usize,
+    pub(super) used: usize,
 }
 
 impl Parser<'_> {
-    fn peek(&self) -> &Token {
+    pub(super) fn peek(&self) -> &Token {
         &self.tokens[self.at].1
     }
 
-    fn mistake(&self, message: impl Into<String>, cure: impl Into<String>) -> Mistake {
+    pub(super) fn mistake(&self, message: impl Into<String>, cure: impl Into<String>) -> Mistake {
         Mistake::new(self.tokens[self.at].0, message, cure)
     }
 
@@ -114,7 +77,7 @@ impl Parser<'_> {
         }
     }
 
-    fn sum(&mut self) -> Result<(), Mistake> {
+    pub(super) fn sum(&mut self) -> Result<(), Mistake> {
         self.product()?;
         while let Some(c) = self.operator(&['+', '-']) {
             self.product()?;
@@ -157,7 +120,7 @@ impl Parser<'_> {
     }
 
     /// Powers with a constant exponent have their own operations: right for negative bases, and so are the derivatives.
-    fn power(&mut self) -> Result<(), Mistake> {
+    pub(super) fn power(&mut self) -> Result<(), Mistake> {
         match self.ops.last() {
             Some(&Op::Constant(p)) => {
                 self.ops.pop();
@@ -194,7 +157,7 @@ impl Parser<'_> {
         }
     }
 
-    fn close(&mut self) -> Result<(), Mistake> {
+    pub(super) fn close(&mut self) -> Result<(), Mistake> {
         match self.peek() {
             Token::Close => {
                 self.at += 1;
@@ -204,148 +167,6 @@ impl Parser<'_> {
             Token::Comma => Err(self.mistake("there is no further argument here", "decimal numbers have a point: 0.5")),
             _ => Err(self.mistake("an operator or a closing bracket is missing here", self.as_product())),
         }
-    }
-
-    fn call(&mut self, name: &str) -> Result<(), Mistake> {
-        let start = self.tokens[self.at].0;
-        if let Some(tables) = self.scope.tables
-            && let Some(curve) = tables.get(name)
-        {
-            let Some(curve) = curve else { return Err(Mistake::known()) };
-            let curve = curve.clone();
-            self.at += 2;
-            self.sum()?;
-            self.close()?;
-            return self.emit(Op::OfTable(curve));
-        }
-        if let Some(functions) = self.scope.functions
-            && let Some((function, value)) = external(functions, name).map_err(|inner| Mistake { character: start, ..inner })?
-        {
-            return self.call_external(name, function, value);
-        }
-        if OF_PLACES.iter().any(|known| known.0 == name) {
-            return self.of_places(name);
-        }
-        let function = FUNCTIONS.iter().find(|known| known.0 == name);
-        let running = RUNNING.iter().find(|known| known.0 == name);
-        if function.is_none() && running.is_none() {
-            let is_value = matches!(self.value_of(name), Ok(Some(_)));
-            let tables = self.scope.tables.into_iter().flat_map(|tables| tables.keys().map(String::as_str));
-            let given = self.scope.functions.into_iter().flat_map(|functions| functions.keys().map(String::as_str));
-            let mut known: Vec<&str> = tables.chain(given).collect();
-            known.sort_unstable();
-            functions().for_each(|name| known.push(name));
-            let elsewhere = ELSEWHERE.iter().find(|spelt| spelt.0.eq_ignore_ascii_case(name));
-            let cure = match (elsewhere, nearest(name, known.iter().copied())) {
-                _ if is_value => format!("write {name}*(…)"),
-                (Some((_, here)), _) => format!("write {here}"),
-                (None, Some(near)) => format!("did you mean `{near}`?"),
-                (None, None) => format!("functions are {}", known.join(", ")),
-            };
-            return Err(self.mistake(format!("`{name}` is no function"), cure));
-        }
-        self.at += 2;
-        let begin = self.ops.len();
-        self.sum()?;
-        if let (Some(&(_, running)), Token::Close) = (running, self.peek()) {
-            self.at += 1;
-            let inner = Program { ops: self.ops.drain(begin..).collect() };
-            self.used -= 1;
-            let Some(variable) = self.names.running(running, inner) else {
-                let message = match function {
-                    Some(_) => format!("`{name}` takes 2 arguments; of one number it is the largest or smallest of a run so far"),
-                    None => format!("`{name}` is of a whole run so far"),
-                };
-                return Err(Mistake::new(start, message, format!("use {name}(…) in a [measure.NAME] that no force and no event reads")));
-            };
-            return self.emit(Op::Variable(self.variables.len() + variable));
-        }
-        let Some(&(_, arguments, function)) = function else {
-            return Err(Mistake::new(start, format!("`{name}` takes one argument"), format!("write {name}(a)")));
-        };
-        for _ in 1..arguments {
-            match self.peek() {
-                Token::Comma => self.at += 1,
-                _ => return Err(Mistake::new(start, format!("`{name}` takes {arguments} arguments"), format!("write {name}(a, b)"))),
-            }
-            self.sum()?;
-        }
-        self.close()?;
-        match (function, arguments) {
-            (Function::Pow, _) => self.power(),
-            (_, 1) => self.emit(Op::OfOne(function)),
-            _ => self.emit(Op::OfTwo(function)),
-        }
-    }
-
-    /// A value of a function that a program gives.
-    fn call_external(&mut self, name: &str, function: External, value: usize) -> Result<(), Mistake> {
-        let (start, count) = (self.tokens[self.at].0, function.arguments());
-        self.at += 1;
-        let mut given = 0;
-        while given == 0 || *self.peek() == Token::Comma {
-            self.at += 1;
-            self.sum()?;
-            given += 1;
-        }
-        if given != count {
-            let plural = if count == 1 { "" } else { "s" };
-            let message = format!("`{name}` takes {count} argument{plural}, and these are {given}");
-            return Err(Mistake::new(start, message, "separate arguments by commas"));
-        }
-        self.close()?;
-        self.emit(Op::OfMany(function, value))
-    }
-
-    /// A function of places, such as `distance(A, B)`, written out as a formula of their coordinates.
-    fn of_places(&mut self, name: &str) -> Result<(), Mistake> {
-        let start = self.tokens[self.at].0;
-        let &(_, count, example) = OF_PLACES.iter().find(|known| known.0 == name).expect("it is one of these");
-        let Some(axes) = self.names.axes() else {
-            return Err(self.mistake(
-                format!("`{name}` is of places, and nothing moves here"),
-                "use it in measures, events, and forces of type effort, force, torque, expression, spring and rope",
-            ));
-        };
-        let wrong = |at: usize| Mistake::new(at, format!("`{name}` takes {count} names of places"), format!("write {example}"));
-        self.at += 2;
-        let (mut places, mut begins) = (Vec::new(), Vec::new());
-        for k in 0..count {
-            if k > 0 {
-                match self.peek() {
-                    Token::Comma => self.at += 1,
-                    _ => return Err(wrong(start)),
-                }
-            }
-            match self.peek() {
-                Token::Name(place) => places.push(place.clone()),
-                _ => return Err(wrong(self.tokens[self.at].0)),
-            }
-            begins.push(self.tokens[self.at].0);
-            self.at += 1;
-        }
-        self.close()?;
-        for (place, &begin) in places.iter().zip(&begins).filter(|(place, _)| *place != "ground") {
-            self.is_place(place, &axes[..1]).map_err(|mistake| Mistake { character: begin, ..mistake })?;
-        }
-        let text = names::of_places(name, &places, axes);
-        let written = Program::parse_with(&text, self.variables, self.names, self.scope);
-        let program = written.map_err(|inner| Mistake { character: start, ..inner })?;
-        program.ops.into_iter().try_for_each(|op| self.emit(op))
-    }
-
-    /// Refuses what has no coordinate of this name as no place, in words of what was written.
-    fn is_place(&mut self, place: &str, axis: &str) -> Result<(), Mistake> {
-        let coordinate = super::indexed(&format!("{place}.{axis}"), self.scope)?;
-        if self.names.variable(&coordinate)?.is_some() {
-            return Ok(());
-        }
-        let (known, suffix) = (self.names.known(), format!(".{axis}"));
-        let cure = match nearest(place, known.iter().filter_map(|name| name.strip_suffix(&suffix))) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => "name a point, a body, BODY.POINT or ground; a fixed place is a [point.NAME] with `fixed = true`".into(),
-        };
-        Err(Mistake::new(0, format!("there is no place `{place}`"), cure))
     }
 
     /// What a mechanism does, by its name: a variable, or a formula of some; or a unit.
@@ -372,7 +193,7 @@ impl Parser<'_> {
     }
 
     /// What a name stands for that is no name of something in the mechanism: a variable, an index or parameter, or a constant.
-    fn value_of(&self, name: &str) -> Result<Option<Op>, Mistake> {
+    pub(super) fn value_of(&self, name: &str) -> Result<Option<Op>, Mistake> {
         let variable = self.variables.iter().position(|&variable| variable == name);
         let value = self.scope.value(name);
         match (variable, value) {
@@ -424,7 +245,7 @@ impl Parser<'_> {
     }
 
     /// Appends an operation, or its result when all it works on is constant.
-    fn emit(&mut self, op: Op) -> Result<(), Mistake> {
+    pub(super) fn emit(&mut self, op: Op) -> Result<(), Mistake> {
         let takes = match op {
             Op::Constant(_) | Op::Variable(_) => 0,
             Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) | Op::OfTable(_) => 1,

@@ -33,8 +33,8 @@ const FAR: f64 = 10.0;
 
 impl SystemBuilder {
     /// Where points are counted from: the world's origin, or the middle of the points where that is much farther away than they
-    /// are from each other. Where rows are of coordinates in the world these are kept.
-    fn origin(&self, is_point: &[bool]) -> [f64; 3] {
+    /// are from each other, and how far these are. Where rows are of coordinates in the world these are kept.
+    fn origin(&self, is_point: &[bool]) -> ([f64; 3], f64) {
         let (mut middle, mut extent) = ([0.0; 3], self.size);
         for c in 0..self.dim {
             let points = self.position.chunks_exact(self.dim).zip(is_point).filter(|(_, is_point)| **is_point).map(|(x, _)| x[c]);
@@ -49,15 +49,17 @@ impl SystemBuilder {
         // Rows of coordinates in the world have all their digits in these.
         let is_tied = longest > FAR * extent || !self.custom.is_empty();
         let is_far = middle.iter().any(|x| x.is_finite() && x.abs() > FAR * extent);
-        if is_far && !is_tied { middle } else { [0.0; 3] }
+        (if is_far && !is_tied { middle } else { [0.0; 3] }, extent)
     }
 
     /// The finished system.
     pub fn build(mut self) -> System {
         let mut is_point = vec![true; self.free + self.motions.len()];
         self.directions.iter().for_each(|&node| is_point[node as usize] = false);
-        let origin = self.origin(&is_point);
+        let (origin, extent) = self.origin(&is_point);
         if origin != [0.0; 3] {
+            // A single point is at its own middle, and what holds it is not seen from there.
+            self.size = self.size.max(extent);
             for (x, _) in self.position.chunks_exact_mut(self.dim).zip(&is_point).filter(|(_, is_point)| **is_point) {
                 x.iter_mut().zip(origin).for_each(|(x, origin)| *x -= origin);
             }

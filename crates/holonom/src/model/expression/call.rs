@@ -1,0 +1,191 @@
+//! Calls in expressions: functions of numbers, tables, functions of places and of whole runs, and those that a program gives.
+
+use super::functions::{FUNCTIONS, Function};
+use super::lex::Token;
+use super::names::{self, OF_PLACES, RUNNING};
+use super::parse::Parser;
+use super::{External, Functions, Mistake, Op, Program};
+use crate::model::fault::nearest;
+
+/// Names of all functions.
+fn functions() -> impl Iterator<Item = &'static str> + Clone {
+    let of_numbers = FUNCTIONS.iter().map(|known| known.0);
+    let of_runs = RUNNING.iter().map(|known| known.0).filter(|name| !FUNCTIONS.iter().any(|known| known.0 == *name));
+    of_numbers.chain(of_runs).chain(OF_PLACES.iter().map(|known| known.0))
+}
+
+/// Functions that other programs have, and how their values are written here.
+const ELSEWHERE: &[(&str, &str)] = &[
+    ("log", "ln(x), or log10(x)"),
+    ("ceil", "-floor(-x)"),
+    ("round", "floor(x + 0.5)"),
+    ("heaviside", "step(x)"),
+    ("if", "step(x)*a + (1 - step(x))*b, which is a from x = 0 on and b below"),
+    ("cot", "1/tan(x)"),
+];
+
+/// The function that a name calls, and which of its values.
+fn external(functions: &Functions, name: &str) -> Result<Option<(External, usize)>, Mistake> {
+    let (base, index) = name.split_once('[').map_or((name, None), |(base, index)| (base, Some(index)));
+    let Some(function) = functions.get(base) else { return Ok(None) };
+    let values = function.values();
+    let value = match index {
+        None if values == 1 => Some(0),
+        None => None,
+        Some(index) => index.strip_suffix(']').and_then(|index| index.parse().ok()).filter(|&value| value < values),
+    };
+    match value {
+        Some(value) => Ok(Some((function.clone(), value))),
+        None => {
+            let message = format!("`{base}` has {values} value{}", if values == 1 { "" } else { "s" });
+            let last = values - 1;
+            let cure = if values == 1 { format!("write {base}(…)") } else { format!("write {base}[0](…) to {base}[{last}](…)") };
+            Err(Mistake::new(0, message, cure))
+        }
+    }
+}
+
+impl Parser<'_> {
+    /// A function of what is in brackets behind its name.
+    pub(super) fn call(&mut self, name: &str) -> Result<(), Mistake> {
+        let start = self.tokens[self.at].0;
+        if let Some(tables) = self.scope.tables
+            && let Some(curve) = tables.get(name)
+        {
+            let Some(curve) = curve else { return Err(Mistake::known()) };
+            let curve = curve.clone();
+            self.at += 2;
+            self.sum()?;
+            self.close()?;
+            return self.emit(Op::OfTable(curve));
+        }
+        if let Some(functions) = self.scope.functions
+            && let Some((function, value)) = external(functions, name).map_err(|inner| Mistake { character: start, ..inner })?
+        {
+            return self.call_external(name, function, value);
+        }
+        if OF_PLACES.iter().any(|known| known.0 == name) {
+            return self.of_places(name);
+        }
+        let function = FUNCTIONS.iter().find(|known| known.0 == name);
+        let running = RUNNING.iter().find(|known| known.0 == name);
+        if function.is_none() && running.is_none() {
+            let is_value = matches!(self.value_of(name), Ok(Some(_)));
+            let tables = self.scope.tables.into_iter().flat_map(|tables| tables.keys().map(String::as_str));
+            let given = self.scope.functions.into_iter().flat_map(|functions| functions.keys().map(String::as_str));
+            let mut known: Vec<&str> = tables.chain(given).collect();
+            known.sort_unstable();
+            functions().for_each(|name| known.push(name));
+            let elsewhere = ELSEWHERE.iter().find(|spelt| spelt.0.eq_ignore_ascii_case(name));
+            let cure = match (elsewhere, nearest(name, known.iter().copied())) {
+                _ if is_value => format!("write {name}*(…)"),
+                (Some((_, here)), _) => format!("write {here}"),
+                (None, Some(near)) => format!("did you mean `{near}`?"),
+                (None, None) => format!("functions are {}", known.join(", ")),
+            };
+            return Err(self.mistake(format!("`{name}` is no function"), cure));
+        }
+        self.at += 2;
+        let begin = self.ops.len();
+        self.sum()?;
+        if let (Some(&(_, running)), Token::Close) = (running, self.peek()) {
+            self.at += 1;
+            let inner = Program { ops: self.ops.drain(begin..).collect() };
+            self.used -= 1;
+            let Some(variable) = self.names.running(running, inner) else {
+                let message = match function {
+                    Some(_) => format!("`{name}` takes 2 arguments; of one number it is the largest or smallest of a run so far"),
+                    None => format!("`{name}` is of a whole run so far"),
+                };
+                return Err(Mistake::new(start, message, format!("use {name}(…) in a [measure.NAME] that no force and no event reads")));
+            };
+            return self.emit(Op::Variable(self.variables.len() + variable));
+        }
+        let Some(&(_, arguments, function)) = function else {
+            return Err(Mistake::new(start, format!("`{name}` takes one argument"), format!("write {name}(a)")));
+        };
+        for _ in 1..arguments {
+            match self.peek() {
+                Token::Comma => self.at += 1,
+                _ => return Err(Mistake::new(start, format!("`{name}` takes {arguments} arguments"), format!("write {name}(a, b)"))),
+            }
+            self.sum()?;
+        }
+        self.close()?;
+        match (function, arguments) {
+            (Function::Pow, _) => self.power(),
+            (_, 1) => self.emit(Op::OfOne(function)),
+            _ => self.emit(Op::OfTwo(function)),
+        }
+    }
+
+    /// A value of a function that a program gives.
+    fn call_external(&mut self, name: &str, function: External, value: usize) -> Result<(), Mistake> {
+        let (start, count) = (self.tokens[self.at].0, function.arguments());
+        self.at += 1;
+        let mut given = 0;
+        while given == 0 || *self.peek() == Token::Comma {
+            self.at += 1;
+            self.sum()?;
+            given += 1;
+        }
+        if given != count {
+            let plural = if count == 1 { "" } else { "s" };
+            let message = format!("`{name}` takes {count} argument{plural}, and these are {given}");
+            return Err(Mistake::new(start, message, "separate arguments by commas"));
+        }
+        self.close()?;
+        self.emit(Op::OfMany(function, value))
+    }
+
+    /// A function of places, such as `distance(A, B)`, written out as a formula of their coordinates.
+    fn of_places(&mut self, name: &str) -> Result<(), Mistake> {
+        let start = self.tokens[self.at].0;
+        let &(_, count, example) = OF_PLACES.iter().find(|known| known.0 == name).expect("it is one of these");
+        let Some(axes) = self.names.axes() else {
+            return Err(self.mistake(
+                format!("`{name}` is of places, and nothing moves here"),
+                "use it in measures, events, and forces of type effort, force, torque, expression, spring and rope",
+            ));
+        };
+        let wrong = |at: usize| Mistake::new(at, format!("`{name}` takes {count} names of places"), format!("write {example}"));
+        self.at += 2;
+        let (mut places, mut begins) = (Vec::new(), Vec::new());
+        for k in 0..count {
+            if k > 0 {
+                match self.peek() {
+                    Token::Comma => self.at += 1,
+                    _ => return Err(wrong(start)),
+                }
+            }
+            match self.peek() {
+                Token::Name(place) => places.push(place.clone()),
+                _ => return Err(wrong(self.tokens[self.at].0)),
+            }
+            begins.push(self.tokens[self.at].0);
+            self.at += 1;
+        }
+        self.close()?;
+        for (place, &begin) in places.iter().zip(&begins).filter(|(place, _)| *place != "ground") {
+            self.is_place(place, &axes[..1]).map_err(|mistake| Mistake { character: begin, ..mistake })?;
+        }
+        let text = names::of_places(name, &places, axes);
+        let written = Program::parse_with(&text, self.variables, self.names, self.scope);
+        let program = written.map_err(|inner| Mistake { character: start, ..inner })?;
+        program.ops.into_iter().try_for_each(|op| self.emit(op))
+    }
+
+    /// Refuses what has no coordinate of this name as no place, in words of what was written.
+    fn is_place(&mut self, place: &str, axis: &str) -> Result<(), Mistake> {
+        let coordinate = super::indexed(&format!("{place}.{axis}"), self.scope)?;
+        if self.names.variable(&coordinate)?.is_some() {
+            return Ok(());
+        }
+        let (known, suffix) = (self.names.known(), format!(".{axis}"));
+        let cure = match nearest(place, known.iter().filter_map(|name| name.strip_suffix(&suffix))) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "name a point, a body, BODY.POINT or ground; a fixed place is a [point.NAME] with `fixed = true`".into(),
+        };
+        Err(Mistake::new(0, format!("there is no place `{place}`"), cure))
+    }
+}
