@@ -290,3 +290,27 @@ fn steps_grow_again_after_samples() {
         assert_eq!(status, Status::Completed, "{stiffness} N/m");
     }
 }
+
+/// A single point has the size of what holds it, wherever that is: the same steps and the same motion.
+#[test]
+fn a_pendulum_is_the_same_far_away() {
+    let run = |place: f64, method: &str| {
+        let text = format!(
+            "plane = \"xz\"\n[point.b]\nmass = 1\nposition = [\"{place} + sin(0.5)\", \"-cos(0.5)\"]\n\
+             [constraint.c]\ntype = \"distance\"\nbetween = [[{place}, 0], \"b\"]\n"
+        );
+        let choice = Choice { accuracy: Some(1e-5), ..Choice::default().named(method) };
+        let (simulation, recording) = common::run(&model(&text), choice, 0.1, 1.0);
+        (recording.column("b.z").unwrap()[recording.rows() - 1], simulation.audit().iterations)
+    };
+    for method in ["conserving-ggl", "radau", "ggl/bdf"] {
+        let (here, iterations) = run(0.0, method);
+        for place in [10.0, 1e4] {
+            let (there, more) = run(place, method);
+            assert!(
+                (there - here).abs() < 1e-5 && more < 2 * iterations,
+                "{method} at {place} m: {there} and {here}, {more} and {iterations}"
+            );
+        }
+    }
+}

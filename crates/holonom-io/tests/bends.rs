@@ -152,6 +152,27 @@ fn narrow_peaks_are_seen() {
     }
 }
 
+/// The same where they begin or end at a corner, as a blow does that falls off, or in a table: each gives the block 1.5 J, or 1 N·s.
+#[test]
+fn peaks_at_corners_and_in_tables_are_seen() {
+    let table = |interpolation: &str, points: &str| {
+        block(0.0, 1.0, "type = \"effort\"\njoint = \"rail\"\neffort = \"T(q)\"")
+            + &format!("[table.T]\ninterpolation = \"{interpolation}\"\npoints = {points}\n")
+    };
+    let decay = block(0.0, 1.0, "type = \"effort\"\njoint = \"rail\"\neffort = \"1.5e5*step(q - 0.53)*exp(-max(q - 0.53, 0)/1e-5)\"");
+    let blow = "2e5*(exp(-max(t - 0.53, 0)/1e-5) - exp(-2*max(t - 0.53, 0)/1e-5))";
+    let blow = block(0.0, 1.0, &format!("type = \"force\"\nbody = \"b\"\nforce = [\"{blow}\", 0]"));
+    let narrow = "[[-9, 0], [0.53, 0], [0.531, 1500], [0.532, 0], [9, 0]]";
+    for method in METHODS.into_iter().chain(["ode/dop853"]) {
+        for (of, text) in
+            [("decay", &decay), ("blow", &blow), ("linear", &table("linear", narrow)), ("monotone", &table("monotone", narrow))]
+        {
+            let [speed] = last(text, method, 1e-6, 0.1, 1.0, ["b.vx"]);
+            assert!((speed - 2.0).abs() <= 2e-5, "{method}, {of}: {speed}");
+        }
+    }
+}
+
 /// Friction by a formula of a sign holds by jumping to and fro, for which no step is short enough: what is said names it.
 #[test]
 fn a_sign_that_holds_is_named() {

@@ -77,6 +77,10 @@ pub(super) struct Pilot {
 pub(super) struct Patience {
     /// Rejected one after the other.
     pub rejected: u32,
+    /// The first of these that was rejected for its energy: by how much that was more than is allowed, and its length, s.
+    energy: Option<[f64; 2]>,
+    /// Steps to come whose energy is not asked, as it was the same however long steps were.
+    drifts: u32,
     /// Attempts since `since` (s).
     pub attempts: u32,
     since: f64,
@@ -102,6 +106,26 @@ const SLOW_LOOKS: u32 = 1000;
 
 /// Steps between two times at which something changes abruptly: a pulse that is nothing at both is seen.
 pub(super) const BETWEEN: f64 = 4.0;
+
+impl Patience {
+    /// What the energy of an explicit scheme asks of a step: where positions have left their rows it is the same however long steps are, and asks
+    /// for no length then.
+    fn asks_for_energy(&mut self, ratio: f64, step: f64) -> f64 {
+        if self.drifts > 0 || ratio <= KEEPING {
+            return 0.0;
+        }
+        if ratio > 1.0 {
+            let [first, length] = *self.energy.get_or_insert([ratio, step]);
+            self.drifts = if step < 0.5 * length && ratio > 0.5 * first { OFTEN } else { 0 };
+        }
+        if self.drifts > 0 { 0.0 } else { ratio }
+    }
+
+    /// Begins anew after a step that was taken.
+    pub fn renew(&mut self) {
+        (self.rejected, self.energy, self.drifts) = (0, None, self.drifts.saturating_sub(1));
+    }
+}
 
 impl Pilot {
     pub fn new(system: &System, method: &Method, newton: &Newton, state: &State, gauges: &GaugeValues, audit: &Audit) -> Option<Box<Self>> {
@@ -163,7 +187,10 @@ impl Pilot {
         let ratio = self.control.ratio(taken, step, t, &self.v, 1.0, &mut simulation.work);
         let of_energy = self.ratio_of_energy(simulation, step, 1.0);
         // Errors of explicit schemes grow there, too, and may be far more than their estimate, which the energy shows.
-        if integrator.is_explicit() || ratio.max(of_energy) <= 1.0 {
+        if integrator.is_explicit() {
+            return ratio.max(self.patience.asks_for_energy(of_energy, step));
+        }
+        if ratio.max(of_energy) <= 1.0 {
             return ratio.max(of_energy);
         }
         self.count_redundant(&simulation.system, &simulation.state);
@@ -184,11 +211,7 @@ impl Pilot {
         }
         let made = audit.made_since(&self.before.audit, amplified, || energy::size(system, work, &state.x));
         let of_accuracy = made / (WORSE * self.control.allowed() * step);
-        if !method.integrator.is_explicit() {
-            return of_accuracy / self.control.share_of_way(work.scales.length);
-        }
-        // Where positions have left their rows it may be the same however long steps are, and asks for no length then.
-        if of_accuracy > KEEPING { of_accuracy } else { 0.0 }
+        if method.integrator.is_explicit() { of_accuracy } else { of_accuracy / self.control.share_of_way(work.scales.length) }
     }
 
     /// Counts the rows that are redundant here: those that are so everywhere are the fewest, as a run may begin at a singular position.
