@@ -114,7 +114,7 @@ impl Patience {
         if self.drifts > 0 || ratio <= KEEPING {
             return 0.0;
         }
-        if ratio > 1.0 {
+        if ratio > 1.0 && ratio.is_finite() {
             let [first, length] = *self.energy.get_or_insert([ratio, step]);
             self.drifts = if step < 0.5 * length && ratio > 0.5 * first { OFTEN } else { 0 };
         }

@@ -12,7 +12,9 @@ pub(super) const INSIDE: f64 = 8.0;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Sight {
     pub seen: Seen,
+    #[serde(with = "super::any_number")]
     pub corners: Vec<f64>,
+    #[serde(with = "super::any_number")]
     pub peaks: Vec<f64>,
 }
 
@@ -83,8 +85,8 @@ impl Sight {
         (1..last).find_map(|k| (0..self.peaks.len()).find_map(|peak| hidden(k, peak)))
     }
 
-    /// Whether a peak of a force is gone at a share of the way to what is seen `at` the end, beside the logarithms `there` that it has at one of both
-    /// ends.
+    /// Whether a peak of a force is gone at a share of the way to what is seen `at` the end, beside the logarithms `there` that they have at one of
+    /// both ends.
     pub fn is_gone(&self, at: &Self, share: f64, there: &[f64], system: &System) -> bool {
         let gone = |(there, here): (&f64, &f64)| there - here > HIDDEN;
         !there.is_empty() && there.iter().zip(&system.bends(&self.seen.between(&at.seen, share)).peaks).any(gone)
