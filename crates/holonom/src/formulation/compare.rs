@@ -3,7 +3,7 @@
 use super::stage::Stage;
 use super::workspace::Workspace;
 use crate::linalg::largest;
-use crate::system::{Local, Look, Response, System};
+use crate::system::{Local, Look, System};
 
 impl Workspace {
     /// Compares the loads of a step between positions, and the laws that may have peaks, with the mean of those at its ends, `t` (s) the later:
@@ -41,9 +41,7 @@ impl Workspace {
         let mut most = 0.0_f64;
         for (law, used) in system.peaked_laws().map(|k| (&system.laws[k], &self.forces.responses[k])) {
             let [start, end] = [(&self.start, stage.start), (&self.end, t)].map(|(end, t)| {
-                let [values, rates] = system.arguments_and_rates(law, &end.at, &end.v);
-                let (m, mut own) = (law.arguments.len(), Response::default());
-                law.law.at(&values[..m], &rates[..m], t, &mut own);
+                let (_, own) = system.respond(law, &end.at, &end.v, t);
                 system.by_invariants(law, own, &end.at, &end.at, &end.v)
             });
             for (k, &id) in law.invariants.iter().enumerate() {

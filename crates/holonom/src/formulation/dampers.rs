@@ -189,11 +189,7 @@ struct Braking {
 
 impl Braking {
     fn of(system: &System, law: &LawEntry, t: f64, at: &Evaluation, v: &[f64]) -> Self {
-        let (values, m) = (system.arguments(law, at), law.arguments.len());
-        let mut rate = [0.0; MAX_ARGUMENTS];
-        for (rate, &quantity) in rate.iter_mut().zip(&law.arguments) {
-            *rate = system.along(&system.slots_of(quantity), &system.slots.nodes, at, v);
-        }
+        let ([values, rate], m) = (system.arguments_and_rates(law, at, v), law.arguments.len());
         let [along, against] = [rate, rate.map(|rate| -rate)].map(|rate| {
             let mut response = Response::default();
             law.law.at(&values[..m], &rate[..m], t, &mut response);

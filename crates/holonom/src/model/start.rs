@@ -113,6 +113,10 @@ pub(super) fn begin(
 ) -> Result<(), (String, &'static str)> {
     if targets.iter().any(Target::is_placed) {
         let released = released(builder, targets, lengths, efforts);
+        let is_held = |length: &&DrivenLength| !released.contains(&length.row);
+        let distances = distances(builder, lengths, efforts);
+        let mut held = lengths.iter().zip(distances).filter(|(length, _)| is_held(length));
+        held.try_for_each(|(length, there)| length.require(&efforts[length.effort], there))?;
         assemble(builder, targets, &released)?;
         extend(builder, lengths, efforts)?;
     }
@@ -186,6 +190,9 @@ fn released(builder: &SystemBuilder, targets: &[Target], lengths: &[DrivenLength
 
 /// How far the ends of driven distances are apart where the mechanism is, m.
 fn distances(builder: &SystemBuilder, lengths: &[DrivenLength], efforts: &[Effort]) -> Vec<f64> {
+    if lengths.is_empty() {
+        return Vec::new();
+    }
     let system = builder.clone().build();
     let (mut at, mut values) = (system.evaluation(), vec![0.0; system.constraints()]);
     system.evaluate_again(system.start_position(), 0.0, &mut at);
@@ -195,23 +202,30 @@ fn distances(builder: &SystemBuilder, lengths: &[DrivenLength], efforts: &[Effor
     lengths.iter().map(of_row).collect()
 }
 
+impl DrivenLength {
+    /// Refuses a distance that is given and is another than that of its ends, which are `there` m apart.
+    fn require(&self, effort: &Effort, there: f64) -> Result<(), (String, &'static str)> {
+        let given = effort.at_start();
+        if self.stroke.is_some() || (there - given).abs() <= CONTRADICTION * given {
+            return Ok(());
+        }
+        let (name, given, there) = (&effort.name, short(given), short(there));
+        let message = format!("`{name}` is {given} m long at t = 0, but its ends are {there} m apart at the start");
+        Err((message, "give that distance, or `stroke`, which counts from it"))
+    }
+}
+
 /// Has strokes of driven distances count from where the ends are now, and refuses distances that are others than those.
 fn extend(builder: &mut SystemBuilder, lengths: &[DrivenLength], efforts: &mut [Effort]) -> Result<(), (String, &'static str)> {
-    for (DrivenLength { row, effort, stroke }, there) in lengths.iter().zip(distances(builder, lengths, efforts)) {
-        let effort = &mut efforts[*effort];
-        let given = effort.at_start();
-        match stroke {
-            Some(stroke) if (there - given).abs() > f64::EPSILON * given => {
-                let counted: Arc<dyn Signal> = Arc::new(Shifted(stroke.clone(), there));
-                builder.retarget(*row, Arc::new(HalfSquare(counted.clone())));
-                effort.length = Some(counted);
-            }
-            None if (there - given).abs() > CONTRADICTION * given => {
-                let (name, given, there) = (&effort.name, short(given), short(there));
-                let message = format!("`{name}` is {given} m long at t = 0, but its ends are {there} m apart at the start");
-                return Err((message, "give that distance, or `stroke`, which counts from it"));
-            }
-            _ => (),
+    for (length, there) in lengths.iter().zip(distances(builder, lengths, efforts)) {
+        let effort = &mut efforts[length.effort];
+        length.require(effort, there)?;
+        if let Some(stroke) = &length.stroke
+            && (there - effort.at_start()).abs() > f64::EPSILON * there
+        {
+            let counted: Arc<dyn Signal> = Arc::new(Shifted(stroke.clone(), there));
+            builder.retarget(length.row, Arc::new(HalfSquare(counted.clone())));
+            effort.length = Some(counted);
         }
     }
     Ok(())

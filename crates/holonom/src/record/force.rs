@@ -93,11 +93,7 @@ struct At<'a> {
 impl At<'_> {
     /// Rates of the arguments of a law, and what it responds with.
     fn response(&self, law: &LawEntry) -> ([f64; MAX_ARGUMENTS], Response) {
-        let mut rates = [0.0; MAX_ARGUMENTS];
-        rates.iter_mut().zip(&law.arguments).for_each(|(rate, &quantity)| *rate = self.rate(quantity));
-        let (m, mut response) = (law.arguments.len(), Response::default());
-        law.law.at(&self.system.arguments(law, self.look.at)[..m], &rates[..m], self.look.t, &mut response);
-        (rates, response)
+        self.system.respond(law, self.look.at, self.look.v, self.look.t)
     }
 
     fn rate(&self, quantity: Quantity) -> f64 {

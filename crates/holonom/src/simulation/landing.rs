@@ -17,7 +17,8 @@ pub(super) enum Landing {
     OnBend(Sight),
     /// Not at all, as a force bends where it begins.
     AtOnce,
-    /// Not at all, as a force that bent where it began bends again before it ends: it would be as if it had not bent. How long it may be, s.
+    /// Not at all, as it may be so long only, s: a force that bent where it began bends again before it ends, as if it had not bent; or a peak of
+    /// one is shorter than it.
     TooLong(f64),
     /// Not at all, as it failed.
     Failed,
@@ -38,9 +39,7 @@ impl Sight {
             None => Landing::Failed,
         }
     }
-}
 
-impl Sight {
     /// The end of a step of length `step` (s) from what was seen `before` at a bend. A peak that ends there, too, is seen by steps that are as short,
     /// but none shorter than `least` (s): what jumps at the end of this one says nothing of it.
     fn land(mut self, bend: usize, before: &Self, step: f64, least: f64, system: &System) -> Landing {

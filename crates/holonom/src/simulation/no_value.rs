@@ -1,7 +1,7 @@
 //! Forces that have no value where a mechanism goes: a formula is outside its domain, or a table outside its range.
 
 use super::Simulation;
-use crate::system::{LawEntry, LoadEntry, Local, Look, Response, System};
+use crate::system::{LawEntry, LoadEntry, Local, Look, System};
 
 /// How far ahead of the present state is looked, in nominal steps.
 const AHEAD: [f64; 6] = [0.0, 0.1, 0.5, 1.0, 2.0, 4.0];
@@ -26,9 +26,7 @@ impl Simulation {
 /// The first force that has no finite value at a state.
 fn without_value<'a>(system: &'a System, look: Look<'_>) -> Option<&'a str> {
     let is_law_without = |law: &&LawEntry| {
-        let ([values, rates], m) = (system.arguments_and_rates(law, look.at, look.v), law.arguments.len());
-        let mut out = Response::default();
-        law.law.at(&values[..m], &rates[..m], look.t, &mut out);
+        let (values, (rates, out)) = (system.arguments(law, look.at), system.respond(law, look.at, look.v, look.t));
         // Where nothing moves as it should the force is not to blame.
         values.iter().chain(&rates).all(|number| number.is_finite()) && !out.force.iter().all(|force| force.is_finite())
     };

@@ -124,15 +124,16 @@ pub(super) const REACHED: f64 = f64::MIN_POSITIVE;
 /// By how much the logarithm of a peak is higher than at both ends of a step that does not see it.
 const HIDDEN: f64 = 1.0;
 
-/// Share of a step from its ends within which peaks are not looked for.
+/// Share of a step from its ends within which peaks are not looked for, and to which their places are found.
 const NEAR_END: f64 = 1e-6;
+const FOUND: f64 = 1e-12;
 
 /// Where a number is highest that rises and then falls between two places, and how high: by the golden section.
 fn highest(at: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> (f64, f64) {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)].map(|place| (place, at(place)));
     let [mut left, mut right] = inner(low, high);
-    while high - low > NEAR_END * NEAR_END {
+    while high - low > FOUND {
         if left.1 >= right.1 {
             (high, right) = (right.0, left);
             left = inner(low, high)[0];

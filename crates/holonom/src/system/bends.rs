@@ -22,7 +22,7 @@ pub(crate) struct Seen {
 }
 
 /// Where forces bend, as much at every state: numbers that go through zero at corners, and logarithms that are largest at peaks.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Default)]
 pub(crate) struct Bends {
     pub corners: Vec<f64>,
     pub peaks: Vec<f64>,
@@ -86,10 +86,12 @@ impl System {
 
     /// The laws and loads whose forces bend.
     pub(super) fn find_bending(&self) -> Bending {
-        let laws: Vec<_> = (0..self.laws.len()).filter(|&k| self.bends_of_law(k) != [0; 2]).collect();
-        let peaked = laws.iter().copied().filter(|&k| self.bends_of_law(k)[1] > 0).collect();
-        let loads = (0..self.loads.len()).filter(|&k| self.bends_of_load(k) != [0; 2]).collect();
-        Bending { laws, peaked, loads }
+        let told: Vec<[usize; 2]> = (0..self.laws.len()).map(|k| self.bends_of_law(k)).collect();
+        Bending {
+            laws: (0..told.len()).filter(|&k| told[k] != [0; 2]).collect(),
+            peaked: (0..told.len()).filter(|&k| told[k][1] > 0).collect(),
+            loads: (0..self.loads.len()).filter(|&k| self.bends_of_load(k) != [0; 2]).collect(),
+        }
     }
 
     /// The laws that may have peaks, by their numbers.

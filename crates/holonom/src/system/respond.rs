@@ -19,6 +19,14 @@ impl System {
         [self.arguments(law, at), rates]
     }
 
+    /// Rates of the arguments of a law, and what it responds with by these, at a state with the velocities `v` and the time `t`.
+    pub(crate) fn respond(&self, law: &LawEntry, at: &Evaluation, v: &[f64], t: f64) -> ([f64; MAX_ARGUMENTS], Response) {
+        let [values, rates] = self.arguments_and_rates(law, at, v);
+        let (m, mut response) = (law.arguments.len(), Response::default());
+        law.law.at(&values[..m], &rates[..m], t, &mut response);
+        (rates, response)
+    }
+
     /// A response by the invariants of a law, one after the other, from `own` by its arguments. `at` is where the
     /// forces' gradients are, `end` where the values are that the forces depend on, `v` the velocities there.
     ///

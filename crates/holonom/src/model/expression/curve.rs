@@ -102,8 +102,7 @@ impl Curve {
     /// Tells where the curve bends at `s`: at the corners of a polygon, one by one where they are few, and where it is highest or lowest within
     /// a width that steps may be longer than.
     pub(super) fn bends(&self, s: f64, note: &mut impl FnMut(Bend)) {
-        let is_polygon = self.slopes.is_none() && self.spline.is_none();
-        if is_polygon && self.knots.len() <= FEW {
+        if self.is_polygon() && self.knots.len() <= FEW {
             let period = (self.beyond == Beyond::Periodic).then(|| self.knots[self.knots.len() - 1] - self.knots[0]);
             let off = |knot: &f64| period.map_or(s - knot, |period| (PI * (s - knot) / period).sin());
             return self.knots.iter().for_each(|knot| note(Bend::Corner(off(knot))));
@@ -116,6 +115,11 @@ impl Curve {
             let seen = near.map(|[knot, width]| -(1.0 + ((s - knot) / width).powi(2)).ln());
             note(Bend::Peak(seen.fold(f64::NEG_INFINITY, f64::max)));
         }
+    }
+
+    /// Whether it goes straight from knot to knot.
+    fn is_polygon(&self) -> bool {
+        self.slopes.is_none() && self.spline.is_none()
     }
 
     /// Where `s` is in the period that the knots are of.
@@ -136,8 +140,7 @@ impl Curve {
             }
             _ => (s, 0.0),
         };
-        let is_polygon = self.slopes.is_none() && self.spline.is_none();
-        let (before, near): (usize, [f64; 2]) = match is_polygon {
+        let (before, near): (usize, [f64; 2]) = match self.is_polygon() {
             true => {
                 let k = self.knots.partition_point(|&knot| knot <= s);
                 (k, [self.knots[k.saturating_sub(1)], self.knots[k.min(last)]])

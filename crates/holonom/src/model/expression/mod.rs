@@ -259,8 +259,8 @@ impl Program {
     }
 
     /// Hands over where the expression bends. It has corners where the arguments of `step`, `sign` and `abs` are zero, where those of `min` and
-    /// `max` are equal, where `floor` and `mod` jump, and at the knots of a table; peaks may be where the argument of `exp` is largest and what is divided by is smallest, and
-    /// where the argument of `tanh`, `cosh` or `atan` is zero, and where a table is highest or lowest.
+    /// `max` are equal, where `floor` and `mod` jump, and at the knots of a table. It may have peaks where the argument of `exp` is largest, where
+    /// what is divided by is smallest, where the argument of `tanh`, `cosh` or `atan` is zero, and where a table is highest or lowest.
     pub fn bends(&self, variables: &[f64], note: &mut dyn FnMut(Bend)) {
         self.run::<f64, true>(variables, note);
     }
