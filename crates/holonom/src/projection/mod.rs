@@ -1,4 +1,5 @@
-//! Coordinate projections of velocity and acceleration (10)–(13): the nearest ones that satisfy the rows, in a metric A.
+//! Coordinate projections of velocity and acceleration (10)–(13): the nearest ones that satisfy the rows, in a metric A. The same of
+//! positions, where steps are chosen for an accuracy by a method that lets them drift.
 
 use crate::formulation::{Block, Failure, Kkt, Newton, RowsAt, Sampling, Stage, Workspace};
 use crate::linalg::largest;
@@ -29,6 +30,8 @@ pub enum Solve {
 /// Projections after each step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Projection {
+    /// Whether positions are projected: M Δq + Gᵀλ = 0 with Φ(q + Δq) = 0.
+    pub position: bool,
     /// Whether velocities are projected (10).
     pub velocity: bool,
     /// Whether accelerations are projected (12).
@@ -61,6 +64,9 @@ const PASSES: usize = 4;
 /// Largest metric whose violation is left alone, relative to the size of the velocities.
 const ROUND_OFF: f64 = 1e-15;
 
+/// Violation of positions, over the size of the mechanism, that is their rounding.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
+
 /// A quantity that is projected: velocities or accelerations of all nodes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Level {
@@ -69,11 +75,62 @@ enum Level {
 }
 
 impl Projection {
+    /// Projects the positions at the end of a workspace's step, where the rows are evaluated. The matrix stays that of the positions as they
+    /// were found, from which a step drifts by its error only. At a singular position, where that does not bring them closer to the rows,
+    /// they stay where they are.
+    pub fn place(&self, system: &System, time: f64, step: f64, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
+        if !self.position {
+            return Ok(());
+        }
+        self.factor(system, time, step, newton, work)?;
+        let n = system.coordinates();
+        work.full[..n].copy_from_slice(&work.end.x[..n]);
+        let mut least = f64::INFINITY;
+        for _ in 0..=PASSES {
+            system.constraint_values(&work.end.at, time, &mut work.phi);
+            let violation = work.scaled_violation();
+            if !(violation < least) {
+                work.end.x[..n].copy_from_slice(&work.full[..n]);
+                system.evaluate(&work.end.x, time, &work.start.at, &mut work.end.at);
+                break;
+            }
+            if violation <= ROUNDED {
+                break;
+            }
+            (least, _) = (violation, work.full[..n].copy_from_slice(&work.end.x[..n]));
+            newton.unknowns[..n].fill(0.0);
+            newton.unknowns[n..].iter_mut().zip(&work.phi).for_each(|(unknown, phi)| *unknown = -phi);
+            newton.kkt.solve(&mut newton.unknowns);
+            work.end.x[..n].iter_mut().zip(&newton.unknowns).for_each(|(x, step)| *x += step);
+            system.evaluate(&work.end.x, time, &work.start.at, &mut work.end.at);
+        }
+        for k in 0..n {
+            work.d[k] = work.end.x[k] - work.start.x[k];
+        }
+        Ok(())
+    }
+
     /// Projects velocities and accelerations of a workspace at the end of its step, where the rows are evaluated.
     pub fn apply(&self, system: &System, time: f64, step: f64, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
         if !(self.velocity || self.acceleration) {
             return Ok(());
         }
+        // What is left of both equations is solved for with the matrix that is there.
+        if !self.position {
+            self.factor(system, time, step, newton, work)?;
+        }
+        if self.velocity {
+            self.project(system, time, Level::Velocity, newton, work);
+        }
+        if self.acceleration {
+            self.project(system, time, Level::Acceleration, newton, work);
+        }
+        let is_finite = work.end.v.iter().chain(&work.a).all(|value| value.is_finite());
+        if is_finite { Ok(()) } else { Err(Failure::NotFinite) }
+    }
+
+    /// Writes [A Gᵀ; G −δ] and factors it.
+    fn factor(&self, system: &System, time: f64, step: f64, newton: &mut Newton, work: &mut Workspace) -> Result<(), Failure> {
         let scale = self.assemble(system, time, step, &mut newton.kkt, work);
         match self.solve {
             Solve::Exact => newton.proximal(1.0, None, &work.scales),
@@ -85,14 +142,7 @@ impl Projection {
         newton.kkt.regularise(0, &newton.delta);
         newton.factorizations += 1;
         newton.kkt.factor()?;
-        if self.velocity {
-            self.project(system, time, Level::Velocity, newton, work);
-        }
-        if self.acceleration {
-            self.project(system, time, Level::Acceleration, newton, work);
-        }
-        let is_finite = work.end.v.iter().chain(&work.a).all(|value| value.is_finite());
-        if is_finite { Ok(()) } else { Err(Failure::NotFinite) }
+        Ok(())
     }
 
     /// Writes [A Gᵀ; G 0]; says how much softer than M the metric lets the rows be.

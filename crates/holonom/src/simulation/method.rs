@@ -261,7 +261,12 @@ impl Method {
                 order,
                 adapts: accuracy.is_some(),
             },
-            projection: projection(choice.projection.as_ref(), &levels)?,
+            projection: {
+                let asked = projection(choice.projection.as_ref(), &levels)?;
+                // What positions and velocities drift by is no error that shorter steps would see.
+                let drifts = accuracy.is_some() && integrator.is_explicit() && !formulation.soft && !asked.shadow;
+                Projection { position: drifts, velocity: drifts || asked.velocity, ..asked }
+            },
             subdivide: iterations.is_none() && choice.subdivide.unwrap_or(true),
             accuracy,
         })
@@ -282,6 +287,9 @@ impl Method {
     /// The method as the summary has it.
     pub fn summary(&self) -> MethodSummary {
         let mut levels = Vec::new();
+        if self.projection.position {
+            levels.push("position".to_string());
+        }
         if self.projection.velocity {
             levels.push("velocity".to_string());
         }
@@ -365,6 +373,7 @@ fn projection(choice: Option<&ProjectionChoice>, levels: &[String]) -> Result<Pr
     };
     let has = |name: &str| levels.iter().any(|level| level == name);
     Ok(Projection {
+        position: false,
         velocity: has("velocity"),
         acceleration: has("acceleration"),
         metric,

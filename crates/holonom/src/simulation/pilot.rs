@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::control::{Control, KEEPING};
+use super::control::Control;
 use super::sight::{REACHED, Sight};
 use super::{Audit, Method, Simulation, State};
 use crate::energy;
@@ -77,10 +77,6 @@ pub(super) struct Pilot {
 pub(super) struct Patience {
     /// Rejected one after the other.
     pub rejected: u32,
-    /// The first of these that was rejected for its energy: by how much that was more than is allowed, and its length, s.
-    energy: Option<[f64; 2]>,
-    /// Steps to come whose energy is not asked, as it was the same however long steps were.
-    drifts: u32,
     /// Attempts since `since` (s).
     pub attempts: u32,
     since: f64,
@@ -108,22 +104,9 @@ const SLOW_LOOKS: u32 = 1000;
 pub(super) const BETWEEN: f64 = 4.0;
 
 impl Patience {
-    /// What the energy of an explicit scheme asks of a step: where positions have left their rows it is the same however long steps are, and asks
-    /// for no length then.
-    fn asks_for_energy(&mut self, ratio: f64, step: f64) -> f64 {
-        if self.drifts > 0 || ratio <= KEEPING {
-            return 0.0;
-        }
-        if ratio > 1.0 && ratio.is_finite() {
-            let [first, length] = *self.energy.get_or_insert([ratio, step]);
-            self.drifts = if step < 0.5 * length && ratio > 0.5 * first { OFTEN } else { 0 };
-        }
-        if self.drifts > 0 { 0.0 } else { ratio }
-    }
-
     /// Begins anew after a step that was taken.
     pub fn renew(&mut self) {
-        (self.rejected, self.energy, self.drifts) = (0, None, self.drifts.saturating_sub(1));
+        self.rejected = 0;
     }
 }
 
@@ -188,7 +171,7 @@ impl Pilot {
         let of_energy = self.ratio_of_energy(simulation, step, 1.0);
         // Errors of explicit schemes grow there, too, and may be far more than their estimate, which the energy shows.
         if integrator.is_explicit() {
-            return ratio.max(self.patience.asks_for_energy(of_energy, step));
+            return ratio.max(of_energy);
         }
         if ratio.max(of_energy) <= 1.0 {
             return ratio.max(of_energy);
@@ -206,12 +189,13 @@ impl Pilot {
         let Simulation { system, state, audit, work, method, .. } = simulation;
         // Velocities that no row holds at the end of a step come and go.
         let comes_and_goes = method.integrator.conserves || method.order() <= SYMMETRIC || is_rough(method);
-        if comes_and_goes {
+        // What positions off their rows have of energy is no matter of the length of steps.
+        let drifts = method.integrator.is_explicit() && !method.projection.position;
+        if comes_and_goes || drifts {
             return 0.0;
         }
         let made = audit.made_since(&self.before.audit, amplified, || energy::size(system, work, &state.x));
-        let of_accuracy = made / (WORSE * self.control.allowed() * step);
-        if method.integrator.is_explicit() { of_accuracy } else { of_accuracy / self.control.share_of_way(work.scales.length) }
+        made / (WORSE * self.control.allowed() * step * self.control.share_of_way(work.scales.length))
     }
 
     /// Counts the rows that are redundant here: those that are so everywhere are the fewest, as a run may begin at a singular position.
@@ -297,6 +281,7 @@ fn is_rough(method: &Method) -> bool {
 
 fn smoothing(method: &Method) -> Option<Projection> {
     (is_rough(method) && method.integrator.estimate == Estimate::History).then_some(Projection {
+        position: false,
         velocity: true,
         acceleration: false,
         metric: Metric::Mass,

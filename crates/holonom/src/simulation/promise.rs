@@ -70,6 +70,9 @@ impl Method {
         if kept.is_empty() && !self.is_unstable {
             kept.push(Promise::SuppliedEnergy);
         }
+        if projects && projection.position {
+            kept.push(Promise::Position);
+        }
         let is_at_position = settings.doubled || settings.level == Level::POSITION && !is_soft;
         if self.integrator.ends_on_rows && is_at_position && self.parameters.rows == RowsAt::End {
             kept.push(Promise::Position);
