@@ -271,7 +271,32 @@ fn loads_that_jump_with_the_place_are_seen() {
     }
 }
 
-/// Where positions have left their rows the energy is off at a rate that no step makes less: steps grow again after each sample all the same.
+/// Explicit methods stay on the rows, so that a pendulum has its period after a hundred swings: by the arithmetic and geometric mean of
+/// Gauss it is 2π/agm(1, cos(θ₀/2)) √(l/g), a quarter of which after any number of them it hangs down.
+#[test]
+fn explicit_methods_stay_on_their_rows() {
+    let (amplitude, g, swings) = (2.0_f64, 9.81, 100.0);
+    let (mut a, mut b) = (1.0, (amplitude / 2.0).cos());
+    for _ in 0..6 {
+        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+    }
+    let end = (swings + 0.25) * std::f64::consts::TAU / a / f64::sqrt(g);
+    let text = format!(
+        "plane = \"xz\"\n[point.b]\nmass = 1\nposition = [\"sin({amplitude})\", \"-cos({amplitude})\"]\n\
+         [constraint.c]\ntype = \"distance\"\nbetween = [[0, 0], \"b\"]\n"
+    );
+    for (method, accuracy) in [("ode/dopri5", 1e-4), ("ode/dopri5", 1e-7), ("lagrange-1/dop853", 1e-5), ("baumgarte/dopri5", 1e-6)] {
+        let choice = Choice { accuracy: Some(accuracy), ..Choice::default().named(method) };
+        let (simulation, recording) = common::run(&model(&text), choice, end / 400.0, end);
+        let off = recording.column("b.x").unwrap()[recording.rows() - 1].abs();
+        let violation = simulation.audit().violation_summary();
+        println!("{method} {accuracy:e}: {off:.1e}, {violation:?}, {} steps", simulation.audit().work_summary(1).steps_taken);
+        assert!(off <= 10.0 * accuracy, "{method} at {accuracy:e}: {off:e} m from the lowest place");
+        assert!(violation.position <= 1e-14 && violation.velocity <= 1e-12, "{method}: {violation:?}");
+    }
+}
+
+/// Where events take samples, steps grow again after each of them.
 #[test]
 fn steps_grow_again_after_samples() {
     let text = "plane = \"xz\"\n[body.a]\nmass = 1\ninertia = 0.1\nposition = [0.5, 0]\n[body.b]\nmass = 1\ninertia = 0.1\nposition = [1.5, 0]\n\
