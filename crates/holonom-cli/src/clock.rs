@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use holonom::simulation::{Observer, Simulation, Verdict};
+use holonom::simulation::{Divisions, Observer, Simulation, Verdict};
 use serde_json::{Value, json};
 
 /// Measures the nominal steps that another observer watches, without the time that this one takes.
@@ -43,8 +43,8 @@ impl<O: Observer> Observer for Clock<'_, O> {
         self.watched.wants_forces()
     }
 
-    fn sees_divisions(&self) -> bool {
-        self.watched.sees_divisions()
+    fn divisions(&self) -> Divisions {
+        self.watched.divisions()
     }
 
     fn at_division(&mut self, simulation: &Simulation) {

@@ -206,7 +206,7 @@ fn shared_forces(model: &Model, simulation: &Simulation) -> Option<String> {
     ))
 }
 
-/// Components of forces and moments of joints, and efforts of drives and couplers, that are left undetermined, `world` being where the
+/// Components of forces and moments of joints, efforts of drives and couplers, and tensions of rods, that are left undetermined, `world` being where the
 /// nodes are: `hinge.fy .tx`, `motor.effort`.
 pub(crate) fn open_columns(free: &Undetermined<'_>, channels: &Channels, world: &[f64], model: &Model) -> Vec<String> {
     let mut open = Vec::new();
@@ -223,6 +223,8 @@ pub(crate) fn open_columns(free: &Undetermined<'_>, channels: &Channels, world: 
     let couplings = channels.couplings.iter().map(|coupling| (&coupling.name, coupling.row));
     let efforts = efforts.chain(couplings).filter(|(_, row)| shared.contains(row));
     open.extend(efforts.map(|(name, _)| format!("{name}.effort")));
+    let rods = channels.rods.iter().filter(|rod| shared.contains(&rod.row));
+    open.extend(rods.map(|rod| format!("{}.force", rod.name)));
     open
 }
 

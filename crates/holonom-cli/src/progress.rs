@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use holonom::record::Recorder;
-use holonom::simulation::{Observer, Simulation, Verdict};
+use holonom::simulation::{Divisions, Observer, Simulation, Verdict};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::checkpoint::Point;
@@ -81,8 +81,8 @@ impl Observer for Watched<'_, '_> {
         self.recorder.wants_forces()
     }
 
-    fn sees_divisions(&self) -> bool {
-        self.recorder.sees_divisions()
+    fn divisions(&self) -> Divisions {
+        self.recorder.divisions()
     }
 
     fn at_division(&mut self, simulation: &Simulation) {

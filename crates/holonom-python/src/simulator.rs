@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use holonom::model::nearest;
 use holonom::record::{Constraints, Recorder, RecorderMark};
 use holonom::run::RunError;
-use holonom::simulation::{Checkpoint, Method, Observer, Simulation, Status, Verdict};
+use holonom::simulation::{Checkpoint, Divisions, Method, Observer, Simulation, Status, Verdict};
 use holonom_cli::Loaded;
 use holonom_report::Frames;
 use pyo3::exceptions::PyKeyError;
@@ -69,16 +69,21 @@ impl Observer for Watch<'_> {
     }
 
     fn wants_forces(&self) -> bool {
-        self.0.sees_divisions()
+        sees_all(self.0)
     }
 
-    fn sees_divisions(&self) -> bool {
-        self.0.sees_divisions()
+    fn divisions(&self) -> Divisions {
+        if sees_all(self.0) { Divisions::Inside } else { Divisions::Unseen }
     }
 
     fn at_division(&mut self, simulation: &Simulation) {
         self.0.at_division(simulation);
     }
+}
+
+/// Whether a recorder has measures of the whole run.
+fn sees_all(recorder: &Recorder<'_>) -> bool {
+    recorder.divisions() == Divisions::Inside
 }
 
 /// All that a simulation goes on from.
@@ -92,7 +97,7 @@ impl Running {
     /// Looks at the state that was just reached, of which forces were found or not.
     fn arrive(&mut self, are_forces_new: bool) {
         (self.is_row_new, self.is_motion_new, self.are_forces_new) = (false, false, are_forces_new);
-        if self.recorder.sees_divisions() {
+        if sees_all(&self.recorder) {
             // A recorder wants no run to stop.
             let _ = self.recorder.after_step(&self.simulation);
         }
@@ -115,7 +120,7 @@ impl Running {
         let begun = Instant::now();
         let goes_on = (0..count).all(|_| {
             let status = self.simulation.step_observed(&mut Watch(&mut self.recorder));
-            self.arrive(self.recorder.sees_divisions());
+            self.arrive(sees_all(&self.recorder));
             self.judge(status)
         });
         self.is_short = count == 1 && begun.elapsed() < SHORT;

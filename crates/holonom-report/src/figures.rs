@@ -62,14 +62,17 @@ const ROUND_OFF: f64 = 1e-12;
 /// The largest of what acts in the mechanism.
 fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
     let of = |sort: &str| summary.pointer(&format!("/peaks/{sort}")).and_then(Value::as_array).filter(|peaks| !peaks.is_empty());
-    for (sort, name) in PEAKS {
+    for (k, (sort, name)) in PEAKS.into_iter().enumerate() {
         let Some(peaks) = of(sort) else { continue };
         writeln!(out, "<table><caption>{name}: the largest</caption><tbody>")?;
         let is_among_first = |k: usize| peaks[..k].iter().filter(|peak| peak.get("unit") == peaks[k].get("unit")).count() < ROWS;
         let size = |peak: &Value| peak.get("value").and_then(Value::as_f64).map_or(f64::INFINITY, f64::abs);
         let most = peaks.iter().map(size).fold(0.0, f64::max);
         let is_shown = |&k: &usize| is_among_first(k) && (most.is_infinite() || size(&peaks[k]) >= ROUND_OFF * most);
-        for peak in (0..peaks.len()).filter(is_shown).map(|k| &peaks[k]) {
+        let shown: Vec<usize> = (0..peaks.len()).filter(is_shown).collect();
+        let others = summary.pointer(&format!("/peaks/more/{k}")).and_then(Value::as_u64).unwrap_or(0);
+        let are_more = (0..peaks.len()).filter(|k| !is_among_first(*k)).count() as u64 + others;
+        for peak in shown.into_iter().map(|k| &peaks[k]) {
             let text = |key: &str| peak.get(key).map_or(String::new(), |value| html(&format::value(value)));
             let number = |key: &str| format::figure(peak.get(key).and_then(Value::as_f64).unwrap_or(f64::NAN));
             let (value, at) = (number("value"), number("at"));
@@ -78,6 +81,12 @@ fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
                 r#"<tr><th scope="row">{}</th><td class="number">{value} <small>{}</small></td><td class="number"><small>at {at} s</small></td></tr>"#,
                 text("name"),
                 text("unit"),
+            )?;
+        }
+        if are_more > 0 {
+            writeln!(
+                out,
+                r#"<tr><td colspan="3"><small>{are_more} smaller ones: see the picker and <code>summary.json</code></small></td></tr>"#
             )?;
         }
         writeln!(out, "</tbody></table>")?;

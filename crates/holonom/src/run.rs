@@ -76,8 +76,9 @@ impl Model {
     /// simulation was not asked for forces ([`Model::find_reactions`]), and where the bodies share nodes at the joint and the model was not
     /// [told](Model::tell_forces) how to find its force.
     pub fn reaction(&self, simulation: &Simulation, name: &str) -> Option<Reaction> {
-        let joint = self.channels.told().joints.iter().find(|joint| joint.name == name)?;
-        let (force, moment) = joint.wrench(simulation, &simulation.reacting_positions())?;
+        let joint = self.channels.told().joints.iter().position(|joint| joint.name == name)?;
+        simulation.reactions()?;
+        let (force, moment) = self.channels.wrench(joint, simulation)?;
         Some(Reaction { force, moment })
     }
 }

@@ -56,7 +56,8 @@ fn every_metric_meets_the_rows() {
 #[test]
 fn the_form_of_the_projection_tells_which_metric_dissipates() {
     let form = |metric: Metric| {
-        let projection = Projection { position: false, velocity: true, acceleration: false, metric, solve: Solve::Exact, strength: 1.0, shadow: false };
+        let projection =
+            Projection { position: false, velocity: true, acceleration: false, metric, solve: Solve::Exact, strength: 1.0, shadow: false };
         projection_form(&four_bar(2), &projection, 1e7, 0.01).expect("the mass matrix is definite")
     };
     let mass = form(Metric::Mass);

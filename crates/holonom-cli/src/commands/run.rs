@@ -101,8 +101,12 @@ fn figures(value: f64) -> String {
     }
 }
 
-/// The largest of what acts, one after the other.
-fn peaks(of_sort: &Value) -> String {
+/// Sorts of what acts, in the order in which they are counted.
+const SORTS: [&str; 3] = ["drives", "forces", "joints"];
+
+/// The largest of what acts of a sort, one after the other.
+fn peaks(summary: &Value, sort: usize) -> String {
+    let (of_sort, more) = (&summary["peaks"][SORTS[sort]], &summary["peaks"]["more"][sort]);
     let peak = |peak: &Value| {
         let [value, at] = ["value", "at"].map(|key| figures(peak[key].as_f64().unwrap_or(f64::NAN)));
         [peak["name"].as_str().unwrap_or("").to_string(), value, format!("{} at {at} s", peak["unit"].as_str().unwrap_or(""))]
@@ -110,15 +114,18 @@ fn peaks(of_sort: &Value) -> String {
     let peaks: Vec<[String; 3]> = of_sort.as_array().into_iter().flatten().map(peak).collect();
     let width = |k: usize| peaks.iter().map(|peak| peak[k].chars().count()).max().unwrap_or(0);
     let (names, values) = (width(0), width(1));
-    peaks.iter().map(|[name, value, rest]| format!("{name:names$}  {value:>values$} {rest}")).collect::<Vec<_>>().join("\n")
+    let mut lines: Vec<String> = peaks.iter().map(|[name, value, rest]| format!("{name:names$}  {value:>values$} {rest}")).collect();
+    lines.extend(more.as_u64().filter(|more| *more > 0).map(|more| format!("{more} smaller ones")));
+    lines.join("\n")
 }
 
 /// How far each measure goes.
 fn measures(of: &Value) -> String {
     let line = |measure: &Value| {
-        let [min, min_at, max, max_at] = ["min", "min_at", "max", "max_at"].map(|key| figures(measure[key].as_f64().unwrap_or(f64::NAN)));
+        let [min, min_at, max, max_at, last] =
+            ["min", "min_at", "max", "max_at", "last"].map(|key| figures(measure[key].as_f64().unwrap_or(f64::NAN)));
         let unit = measure["unit"].as_str().filter(|unit| *unit != "1").map_or(String::new(), |unit| format!(" {unit}"));
-        format!("{}  {min} at {min_at} s … {max}{unit} at {max_at} s", measure["name"].as_str().unwrap_or(""))
+        format!("{}  {min} at {min_at} s … {max}{unit} at {max_at} s, {last} at the end", measure["name"].as_str().unwrap_or(""))
     };
     of.as_array().into_iter().flatten().map(line).collect::<Vec<_>>().join("\n")
 }
@@ -145,6 +152,20 @@ fn events(of: &Value) -> String {
     lines.join("\n")
 }
 
+/// Which steps were recorded, where not all were. Forces of constraints are not found between them, and so not looked at.
+fn recorded(summary: &Value) -> String {
+    let every = match summary["provenance"]["every"].as_u64() {
+        None | Some(1) => String::new(),
+        Some(every) => format!("; one in {every} recorded"),
+    };
+    let is_sparse = !every.is_empty() || summary["work"]["steps_taken"].as_u64() > summary["steps"].as_u64();
+    let is_shown = ["drives", "joints"].iter().any(|sort| summary["peaks"][sort].as_array().is_some_and(|peaks| !peaks.is_empty()));
+    match is_sparse && is_shown {
+        true => format!("{every}; the largest values of drives and joints are those in the rows recorded"),
+        false => every,
+    }
+}
+
 /// How a run ended.
 fn status(summary: &Value) -> String {
     match summary["stopped_at"].as_f64() {
@@ -158,9 +179,7 @@ pub fn describe(loaded: &Loaded, summary: &Value) -> String {
     let number = |group: &str, key: &str| short(summary[group][key].as_f64().unwrap_or(f64::NAN));
     let time = |key: &str| summary["time"][key].as_f64().map_or("–".into(), measured);
     let mut items = vec![("method", summary["method"]["name"].as_str().unwrap_or("").to_string()), ("status", status(summary))];
-    items.extend(
-        [("drives", "drives"), ("forces", "forces"), ("joints", "joints")].map(|(word, sort)| (word, peaks(&summary["peaks"][sort]))),
-    );
+    items.extend([0, 1, 2].map(|sort| (SORTS[sort], peaks(summary, sort))));
     items.extend([("measures", measures(&summary["peaks"]["measures"])), ("events", events(&summary["events"]))]);
     items.retain(|(_, text)| !text.is_empty());
     items.extend([
@@ -183,10 +202,7 @@ pub fn describe(loaded: &Loaded, summary: &Value) -> String {
                 },
                 number("work", "iterations_per_step"),
                 summary["work"]["rejected_steps"],
-                match summary["provenance"]["every"].as_u64() {
-                    None | Some(1) => String::new(),
-                    Some(every) => format!("; one in {every} recorded, of which the largest values are"),
-                }
+                recorded(summary)
             ),
         ),
         ("energy", format!("{} J at the start, {} J at the end", number("energy", "initial"), number("energy", "final"))),

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use holonom::linalg::Plans;
 use holonom::model::{Model, Value};
 use holonom::record::Constraints;
-use holonom::simulation::{Method, Observer, Simulation, Status, Verdict};
+use holonom::simulation::{Divisions, Method, Observer, Simulation, Status, Verdict};
 use holonom_io::Source;
 
 use super::plan::Plan;
@@ -154,8 +154,8 @@ impl Observer for Interruptible<'_> {
         self.watch.wants_forces()
     }
 
-    fn sees_divisions(&self) -> bool {
-        self.watch.sees_divisions()
+    fn divisions(&self) -> Divisions {
+        self.watch.divisions()
     }
 
     fn at_division(&mut self, simulation: &Simulation) {

@@ -2,7 +2,7 @@
 
 use holonom::model::Model;
 use holonom::record::{Constraints, Recorder};
-use holonom::simulation::{Observer, Simulation, Verdict};
+use holonom::simulation::{Divisions, Observer, Simulation, Verdict};
 
 use super::column::Asked;
 use super::reduction::Gathered;
@@ -101,8 +101,8 @@ impl Observer for Watch<'_> {
         Verdict::GoOn
     }
 
-    fn sees_divisions(&self) -> bool {
-        self.needs_steps
+    fn divisions(&self) -> Divisions {
+        if self.needs_steps { Divisions::Inside } else { Divisions::Unseen }
     }
 
     fn at_division(&mut self, simulation: &Simulation) {

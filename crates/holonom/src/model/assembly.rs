@@ -11,10 +11,10 @@ use super::ends::End;
 use super::entry::Entry;
 use super::fault::{Read, Sink};
 use super::geometry::Vec3;
-use super::joints::{Geometry, JointInfo};
+use super::joints::{Geometry, JointInfo, TransmissionInfo};
 use super::signals::Signals;
 use super::start::{DrivenLength, Target};
-use crate::record::{Anchor, Line, LineKind, RecordedCoupling, RecordedForce, SceneAxis, SceneJoint, SceneLoad, Shows};
+use crate::record::{Anchor, Line, LineKind, RecordedCoupling, RecordedForce, RecordedRod, SceneAxis, SceneJoint, SceneLoad, Shows};
 use crate::system::{Signal, SystemBuilder};
 
 /// The name of the origin.
@@ -113,6 +113,10 @@ pub struct Assembly<'a> {
     pub(in crate::model) efforts: Vec<Effort>,
     /// What couplers exert along the coordinates that they couple.
     pub(in crate::model) couplings: Vec<RecordedCoupling>,
+    /// Couplers whose forces bearings feel.
+    pub(in crate::model) transmissions: Vec<TransmissionInfo>,
+    /// Bars and constraints that keep a distance.
+    pub(in crate::model) rods: Vec<RecordedRod>,
     /// What forces do, and what is to be shown of that which is built.
     pub(in crate::model) forces: Vec<RecordedForce>,
     shows: Shows,
@@ -164,6 +168,8 @@ impl<'a> Assembly<'a> {
             lengths: Vec::new(),
             efforts: Vec::new(),
             couplings: Vec::new(),
+            transmissions: Vec::new(),
+            rods: Vec::new(),
             forces: Vec::new(),
             shows: Shows::Power,
             signals: Signals::default(),

@@ -1,5 +1,7 @@
 //! `[bar.NAME]`: uniform rigid rods between two points, the two-node body of natural coordinates (methods §6).
 
+use std::sync::Arc;
+
 use super::assembly::Assembly;
 use super::ends::{End, difference, from_to};
 use super::entry::Entry;
@@ -7,8 +9,8 @@ use super::fault::{Read, Refused};
 use super::fields::{Keys, List, Number, Place};
 use super::geometry::norm;
 use super::key::Shape;
-use crate::record::LineKind;
-use crate::system::{self, Term};
+use crate::record::{LineKind, RecordedRod};
+use crate::system::{self, Constant, Term};
 
 /// A uniform rigid rod between two points.
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -56,6 +58,7 @@ impl Bar {
         }
         ends.iter().filter_map(|end| end.point).for_each(|point| assembly.points[point].carries_bar = true);
         let half_square = assembly.builder.square(&from_to(a, b));
+        assembly.rods.push(RecordedRod { name: entry.name.into(), row: assembly.builder.rows(), length: Arc::new(Constant(length)) });
         assembly.builder.constant_row(entry.name, half_square, 0.5 * length * length);
         assembly.draw(entry, LineKind::Bar, a, b);
         Ok(BarInfo { name: entry.name.to_string(), ends: places, mass, length })

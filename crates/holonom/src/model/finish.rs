@@ -4,7 +4,9 @@ use super::assembly::{self, Assembly, Axes};
 use super::bodies::frame::Frame;
 use super::bodies::nodes::Member;
 use super::{BarInfo, BodyInfo, Model, Output, PointInfo, RigidBody, Settings, joints};
-use crate::record::{Channels, PointKind, RecordedEffort, RecordedJoint, RecordedPoint, Scene, SceneBody, ScenePoint};
+use crate::record::{
+    Channels, PointKind, RecordedEffort, RecordedJoint, RecordedPoint, RecordedTransmission, Scene, SceneBody, ScenePoint, Transmission,
+};
 use crate::system::Place;
 
 /// Puts together what has been read without a fault.
@@ -24,6 +26,8 @@ pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, 
         loads,
         efforts,
         couplings,
+        rods,
+        transmissions,
         forces,
         signals,
         ..
@@ -71,6 +75,8 @@ pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, 
             forces,
             efforts: recorded_efforts(efforts),
             couplings,
+            rods,
+            transmissions: recorded_transmissions(transmissions, &frames),
             inputs: signals.inputs,
             ..channels
         },
@@ -83,6 +89,29 @@ pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, 
 
 fn recorded_efforts(efforts: Vec<assembly::Effort>) -> Vec<RecordedEffort> {
     efforts.into_iter().map(|assembly::Effort { name, row, length, is_moment }| RecordedEffort { name, row, length, is_moment }).collect()
+}
+
+fn recorded_transmissions(transmissions: Vec<joints::TransmissionInfo>, frames: &[Frame]) -> Vec<RecordedTransmission> {
+    let recorded = |info: joints::TransmissionInfo| {
+        let carrier = match info.carrier {
+            Member::Body(k) => &frames[k],
+            _ => &Frame::Ground,
+        };
+        let kind = match info.kind {
+            Transmission::Rack { radius, slope, .. } => Transmission::Rack { way: carrier.vector(info.way), radius, slope },
+            other => other,
+        };
+        RecordedTransmission {
+            name: info.name,
+            row: info.row,
+            factor: info.factor,
+            joints: info.joints,
+            sides: info.wheels.map(|side| if side == 1 { 1.0 } else { -1.0 }),
+            axis: carrier.vector(info.axis),
+            kind,
+        }
+    };
+    transmissions.into_iter().map(recorded).collect()
 }
 
 /// Points, named points of bodies, and the forces of joints.

@@ -8,7 +8,7 @@ use super::*;
 fn folders() -> [(&'static str, Vec<&'static Kind>, &'static [&'static str]); 4] {
     [
         ("constraints", constraints::KINDS.iter().collect(), &[]),
-        ("joints", joints::kinds().collect(), &["coupler", "curve", "geometry", "pair"]),
+        ("joints", joints::kinds().collect(), &["coupler", "curve", "geometry", "pair", "transmission"]),
         ("drives", drives::KINDS.iter().collect(), &["coordinate", "profile"]),
         (
             "forces",

@@ -9,8 +9,12 @@ use super::force::{self, RecordedForce};
 use super::heading::{Heading, Units};
 use super::measure::{RecordedInput, RecordedMeasure};
 use super::recorder::{COLUMNS, Constraints, MEANINGS};
+use super::transmission::{Push, RecordedTransmission};
 use crate::simulation::{Apart, Simulation};
 use crate::system::{NodeId, Place, Signal, System, Term, place_of, rate_of};
+
+/// Force (N) and moment (N·m).
+type Wrench = ([f64; 3], [f64; 3]);
 
 /// A point whose motion is recorded.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,7 +88,7 @@ impl RecordedJoint {
 
     /// Force (N) on its second body and moment (N·m) on it about the joint's place there, in world axes, at the present state, of which `x`
     /// are the [positions of all nodes](Simulation::reacting_positions). `None` where the simulation finds no forces or bodies share nodes
-    /// at the joint.
+    /// at the joint. What it bears of teeth and belts is not in it ([`Channels::wrenches`]).
     pub fn wrench(&self, simulation: &Simulation, x: &[f64]) -> Option<([f64; 3], [f64; 3])> {
         if !self.is_known {
             return None;
@@ -106,6 +110,17 @@ pub struct RecordedEffort {
     pub length: Option<Arc<dyn Signal>>,
     /// Whether the effort is a moment and not a force.
     pub is_moment: bool,
+}
+
+/// A massless rod or a bar whose tension is recorded: λ of its row, which is one of half the square of its length, times that.
+#[derive(Clone)]
+pub struct RecordedRod {
+    /// With its index where it is repeated.
+    pub name: String,
+    /// Its row among those of the system.
+    pub row: usize,
+    /// Its length, m over time.
+    pub length: Arc<dyn Signal>,
 }
 
 /// What a coupler exerts along a coordinate that it couples, on the second body of its joint: −λ of its row times the factor of the coordinate there.
@@ -138,6 +153,10 @@ pub struct Channels {
     pub efforts: Vec<RecordedEffort>,
     /// Force (N) or moment (N·m) of couplers.
     pub couplings: Vec<RecordedCoupling>,
+    /// Forces of teeth and belts, which the bearings of their wheels feel.
+    pub transmissions: Vec<RecordedTransmission>,
+    /// Tension (N) of bars and of the constraints that keep a distance, that of a bar its mean over the length.
+    pub rods: Vec<RecordedRod>,
     /// The coordinates of joints and bodies, as `hinge.angle`, that are angles (rad) and not displacements (m).
     pub angles: HashSet<String>,
     /// Formulas of the columns, each behind those that it reads.
@@ -289,13 +308,22 @@ impl Channels {
         }
     }
 
-    /// Force and moment of each joint on its second body, about its place there, and what couplers exert.
+    /// Force and moment of each joint on its second body, about its place there, what couplers exert, and tensions.
     pub(super) fn joint_headings(&self) -> impl Iterator<Item = Heading> + '_ {
         let couplings = self.told().couplings.iter().map(|RecordedCoupling { name, is_moment, .. }| {
             let (unit, what) = if *is_moment { ("N·m", "moment") } else { ("N", "force") };
             Heading::new(format!("{name}.effort"), unit, format!("{what} of the coupler along the coordinate"))
         });
-        self.told().joints.iter().flat_map(|joint| joint.headings(&self.axes)).chain(couplings)
+        let tension =
+            |rod: &RecordedRod| Heading::new(format!("{}.force", rod.name), "N", "tension: above zero it pulls its ends together");
+        let pushes = self.told().transmissions.iter().flat_map(|transmission| {
+            let name = &transmission.name;
+            let force =
+                move |axis| Heading::new(format!("{name}.f{axis}"), "N", format!("force on the first wheel, along {axis} of the world"));
+            self.axes.chars().map(force)
+        });
+        let joints = self.told().joints.iter().flat_map(|joint| joint.headings(&self.axes));
+        joints.chain(couplings).chain(pushes).chain(self.told().rods.iter().map(tension))
     }
 
     /// The multiplier of each row of the system, and the force of the constraints on each point that is a free node.
@@ -334,18 +362,51 @@ impl Channels {
         }
     }
 
-    /// Appends the columns of the joints' and couplers' forces; no numbers where bodies share nodes at the joint.
+    /// Appends the columns of the forces of joints, couplers and rods; no numbers where bodies share nodes at the joint.
     pub(super) fn joint_forces(&self, simulation: &Simulation, row: &mut Vec<f64>) {
         let (dim, x) = (self.axes.len(), simulation.reacting_positions());
-        for joint in &self.told().joints {
-            let (force, moment) = joint.wrench(simulation, &x).unwrap_or(([f64::NAN; 3], [f64::NAN; 3]));
+        let pushes = self.told().pushes(simulation, &x);
+        for wrench in self.told().wrenches(simulation, &x, &pushes) {
+            let (force, moment) = wrench.unwrap_or(([f64::NAN; 3], [f64::NAN; 3]));
             let components = [force[0], force[1], force[2], moment[0], moment[1], moment[2]];
             row.extend(RecordedJoint::components(dim).iter().map(|&k| components[k]));
         }
-        let effort = |coupling: &RecordedCoupling| {
-            simulation.reactions().map_or(f64::NAN, |reactions| -coupling.factor * reactions.lambda[coupling.row])
+        let (lambda, t) = (simulation.reactions().map(|reactions| &reactions.lambda), simulation.state().t);
+        let of = |row: usize| lambda.map_or(f64::NAN, |lambda| lambda[row]);
+        row.extend(self.told().couplings.iter().map(|coupling| -coupling.factor * of(coupling.row)));
+        pushes.iter().for_each(|push| row.extend_from_slice(&push.force.as_slice()[..dim]));
+        row.extend(self.told().rods.iter().map(|rod| of(rod.row) * rod.length.at(t)[0]));
+    }
+
+    /// What transmissions do at the present state, of which `x` are the positions of all nodes; of those channels that forces are found in.
+    fn pushes(&self, simulation: &Simulation, x: &[f64]) -> Vec<Push> {
+        let dim = self.axes.len();
+        let of = |transmission: &RecordedTransmission| {
+            let lambda = simulation.reactions().map_or(f64::NAN, |reactions| reactions.lambda[transmission.row]);
+            transmission.push(transmission.joints.map(|joint| self.joints[joint].place(x, dim)), lambda, x, dim)
         };
-        row.extend(self.told().couplings.iter().map(effort));
+        self.transmissions.iter().map(of).collect()
+    }
+
+    /// [`RecordedJoint::wrench`] of all joints, with what they bear of transmissions.
+    fn wrenches(&self, simulation: &Simulation, x: &[f64], pushes: &[Push]) -> Vec<Option<Wrench>> {
+        let mut wrenches: Vec<_> = self.joints.iter().map(|joint| joint.wrench(simulation, x)).collect();
+        for (transmission, push) in self.transmissions.iter().zip(pushes) {
+            for (side, (&joint, [force, moment])) in transmission.joints.iter().zip(push.borne).enumerate() {
+                let Some(own) = &mut wrenches[joint] else { continue };
+                for c in 0..3 {
+                    own.0[c] += transmission.sides[side] * force[c];
+                    own.1[c] += transmission.sides[side] * moment[c];
+                }
+            }
+        }
+        wrenches
+    }
+
+    /// Force and moment of one of the joints whose forces are found, with what it bears of transmissions.
+    pub(crate) fn wrench(&self, joint: usize, simulation: &Simulation) -> Option<Wrench> {
+        let (told, x) = (self.told(), simulation.reacting_positions());
+        told.wrenches(simulation, &x, &told.pushes(simulation, &x)).swap_remove(joint)
     }
 
     /// Appends the columns of the multipliers, and of what the constraints exert on points.

@@ -170,6 +170,27 @@ impl RecordedForce {
         headings
     }
 
+    /// The columns of what it exerts, those together that are components of one force or one moment.
+    pub(super) fn acts(&self, axes: &str) -> Vec<Vec<String>> {
+        let column = |suffix: &str| format!("{}.{suffix}", self.name);
+        match &self.shows {
+            Shows::Power => Vec::new(),
+            Shows::Tension { .. } => vec![vec![column("force")]],
+            Shows::Along(coordinates) => coordinates.iter().map(|along| vec![column(&along.effort[0])]).collect(),
+            Shows::Bushing { coordinates, .. } => {
+                let (forces, moments) = coordinates.split_at(axes.len());
+                [forces, moments].map(|of| of.iter().map(|along| column(&along.effort[0])).collect()).into()
+            }
+            Shows::Load { is_moment, .. } => {
+                let letter = if *is_moment { 't' } else { 'f' };
+                match (axes.len(), is_moment) {
+                    (2, true) => vec![vec![column("t")]],
+                    _ => vec![axes.chars().map(|axis| column(&format!("{letter}{axis}"))).collect()],
+                }
+            }
+        }
+    }
+
     fn values(&self, at: &At<'_>, dim: usize, row: &mut Vec<f64>) {
         let (laws, loads) = (&at.system.laws[self.laws.clone()], &at.system.loads[self.loads.clone()]);
         let responses: Vec<_> = laws.iter().map(|law| at.response(law)).collect();

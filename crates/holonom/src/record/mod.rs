@@ -1,5 +1,6 @@
 //! What is kept of a run: named columns in memory, one row per recorded step, and how the mechanism is drawn.
 
+mod between;
 mod channels;
 mod force;
 mod heading;
@@ -7,8 +8,10 @@ mod measure;
 mod peaks;
 mod recorder;
 mod scene;
+mod transmission;
 
-pub use channels::{Channels, RecordedBody, RecordedCoupling, RecordedEffort, RecordedJoint, RecordedPoint};
+pub use between::Largest;
+pub use channels::{Channels, RecordedBody, RecordedCoupling, RecordedEffort, RecordedJoint, RecordedPoint, RecordedRod};
 pub use force::{Along, Exerts, Lengths, RecordedForce, Shows};
 pub use heading::Heading;
 pub use measure::{Formula, RecordedInput, RecordedMeasure, Running, RunningValue};
@@ -16,6 +19,7 @@ pub(crate) use measure::{MeasureReads, Series};
 pub use peaks::{Extremes, Peak, Peaks};
 pub use recorder::{COLUMNS, Constraints, Recorder, RecorderMark};
 pub use scene::{Anchor, Line, LineKind, PointKind, Scene, SceneAxis, SceneBody, SceneJoint, SceneLoad, ScenePoint, SceneShape};
+pub use transmission::{RecordedTransmission, Transmission};
 
 /// A table of columns of equal length; row 0 is the start.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,6 +27,8 @@ pub struct Recording {
     columns: Vec<Column>,
     /// The columns by their names.
     by_name: Vec<u32>,
+    /// The largest values of forces between the rows, of each that [`Peaks`] has, where that was looked at.
+    pub(crate) between: Vec<Largest>,
 }
 
 /// One channel over time.
@@ -40,7 +46,7 @@ impl Recording {
         let columns: Vec<Column> = headings.into_iter().map(|heading| Column { heading: heading.into(), values: Vec::new() }).collect();
         let mut by_name: Vec<u32> = (0..columns.len() as u32).collect();
         by_name.sort_by_key(|&k| &columns[k as usize].heading.name);
-        Self { columns, by_name }
+        Self { columns, by_name, between: Vec::new() }
     }
 
     /// A table of columns that are there already; none where their numbers or lengths differ.

@@ -5,8 +5,7 @@ use std::borrow::Cow;
 use serde::Serialize;
 
 use super::channels::{Channels, RecordedJoint};
-use super::force::Shows;
-use super::{Column, Recording};
+use super::{Column, Largest, Recording};
 
 /// The largest value of something that acts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -21,6 +20,12 @@ pub struct Peak {
     pub unit: Cow<'static, str>,
     /// When it acts first, s.
     pub at: f64,
+}
+
+impl Peak {
+    fn new(name: &str, value: f64, unit: Cow<'static, str>, at: f64) -> Self {
+        Self { name: name.into(), what: if unit == "N" { "force" } else { "moment" }, value, unit, at }
+    }
 }
 
 /// How far a measure goes.
@@ -49,10 +54,12 @@ pub struct Peaks {
     pub drives: Vec<Peak>,
     /// Of what springs and other forces exert.
     pub forces: Vec<Peak>,
-    /// Of what joints and couplers transmit.
+    /// Of what joints, couplers, bars and rods transmit.
     pub joints: Vec<Peak>,
     /// Of all measures, in the order of their columns.
     pub measures: Vec<Extremes>,
+    /// How many of drives, forces and joints are smaller and not listed.
+    pub more: [usize; 3],
 }
 
 /// Peaks of a sort that are kept.
@@ -65,7 +72,7 @@ const ROUND_OFF: f64 = 1e-9;
 const ROUND_OFF_OF_OTHERS: f64 = 1e-12;
 
 impl Peaks {
-    /// Looks at all recorded rows. What was not recorded, or is not known, has no peak.
+    /// Looks at all recorded rows, and at what was largest of forces between them. What was not recorded, or is not known, has no peak.
     pub fn of(channels: &Channels, recording: &Recording) -> Self {
         let Some(times) = recording.column("t") else { return Self::default() };
         let peak = |name: &str, columns: &[String]| peak(name, columns, times, recording);
@@ -78,28 +85,25 @@ impl Peaks {
         };
         let told = channels.told();
         let drives = told.efforts.iter().filter_map(|effort| peak(&effort.name, &[format!("{}.effort", effort.name)]));
-        let forces = channels.forces.iter().flat_map(|force| {
-            let column = |suffix: &str| format!("{}.{suffix}", force.name);
-            match &force.shows {
-                Shows::Power => Vec::new(),
-                Shows::Tension { .. } => vec![peak(&force.name, &[column("force")])],
-                Shows::Along(along) | Shows::Bushing { coordinates: along, .. } => {
-                    along.iter().map(|along| peak(&force.name, &[column(&along.effort[0])])).collect()
-                }
-                Shows::Load { is_moment, .. } => {
-                    let letter = if *is_moment { 't' } else { 'f' };
-                    let components: Vec<String> = match (channels.axes.len(), is_moment) {
-                        (2, true) => vec![column("t")],
-                        _ => channels.axes.chars().map(|axis| column(&format!("{letter}{axis}"))).collect(),
-                    };
-                    vec![peak(&force.name, &components)]
-                }
+        let groups = channels.forces.iter().flat_map(|force| force.acts(&channels.axes).into_iter().map(|columns| (&force.name, columns)));
+        let forces = groups.enumerate().filter_map(|(k, (name, columns))| {
+            let unit = recording.find(columns.first()?)?.heading.unit.clone();
+            let of_rows = peak(name, &columns);
+            let square = of_rows.as_ref().map_or(0.0, |peak| peak.value * peak.value);
+            match recording.between.get(k).map(Largest::parts) {
+                Some((at, between, value)) if between > (1.0 + ROUND_OFF) * square => Some(Peak::new(name, value, unit, at)),
+                _ => of_rows,
             }
         });
         let drives: Vec<Peak> = drives.collect();
-        let forces: Vec<Peak> = forces.flatten().collect();
+        let forces: Vec<Peak> = forces.collect();
         let couplings = told.couplings.iter().filter_map(|coupling| peak(&coupling.name, &[format!("{}.effort", coupling.name)]));
-        let joints: Vec<Peak> = told.joints.iter().flat_map(joint).flatten().chain(couplings).collect();
+        let pushes = told.transmissions.iter().filter_map(|transmission| {
+            let components: Vec<String> = channels.axes.chars().map(|axis| format!("{}.f{axis}", transmission.name)).collect();
+            peak(&transmission.name, &components)
+        });
+        let rods = told.rods.iter().filter_map(|rod| peak(&rod.name, &[format!("{}.force", rod.name)]));
+        let joints: Vec<Peak> = told.joints.iter().flat_map(joint).flatten().chain(couplings).chain(pushes).chain(rods).collect();
         let span = span(&channels.axes, recording);
         let all = || drives.iter().chain(&forces).chain(&joints);
         // A force that acts across the whole mechanism is compared with moments.
@@ -109,10 +113,13 @@ impl Peaks {
         };
         let floors = if span > 0.0 { [scale("N", 1.0 / span), scale("N·m", span)] } else { [0.0; 2] };
         let is_something = |peak: &Peak| peak.value.abs() > floors[usize::from(peak.unit != "N")];
+        let [(drives, d), (forces, f), (joints, j)] =
+            [&drives, &forces, &joints].map(|peaks| largest(peaks.iter().filter(|peak| is_something(peak)).cloned().collect()));
         Self {
-            drives: largest(drives.into_iter().filter(is_something).collect()),
-            forces: largest(forces.into_iter().filter(is_something).collect()),
-            joints: largest(joints.into_iter().filter(is_something).collect()),
+            drives,
+            forces,
+            joints,
+            more: [d, f, j],
             measures: channels.measures.iter().filter_map(|measure| extremes(&measure.name, times, recording)).collect(),
         }
     }
@@ -152,19 +159,21 @@ fn peak(name: &str, columns: &[String], times: &[f64], recording: &Recording) ->
     let most = (0..times.len()).map(size).fold(0.0, f64::max);
     let (row, square) = (0..times.len()).map(|row| (row, size(row))).find(|(_, size)| *size > 0.0 && *size >= (1.0 - ROUND_OFF) * most)?;
     let value = if let [column] = columns[..] { column.values[row] } else { square.sqrt() };
-    Some(Peak { name: name.into(), what: if unit == "N" { "force" } else { "moment" }, value, unit, at: times[row] })
+    Some(Peak::new(name, value, unit, times[row]))
 }
 
-/// The largest of each unit, as these cannot be compared.
-fn largest(mut peaks: Vec<Peak>) -> Vec<Peak> {
+/// The largest of each unit, as these cannot be compared, and how many there are beside them.
+fn largest(mut peaks: Vec<Peak>) -> (Vec<Peak>, usize) {
     peaks.sort_by(|a, b| (&a.unit, b.value.abs()).partial_cmp(&(&b.unit, a.value.abs())).expect("peaks are numbers"));
-    let mut kept: Vec<Peak> = Vec::new();
+    let (mut kept, mut more): (Vec<Peak>, usize) = (Vec::new(), 0);
     for peak in peaks {
         let mut alike = kept.iter().filter(|kept| kept.unit == peak.unit);
         let is_nothing = alike.next().is_some_and(|largest| peak.value.abs() < ROUND_OFF * largest.value.abs());
-        if !is_nothing && alike.count() + 1 < MOST {
-            kept.push(peak);
+        match (is_nothing, alike.count() + 1 < MOST) {
+            (true, _) => (),
+            (false, true) => kept.push(peak),
+            (false, false) => more += 1,
         }
     }
-    kept
+    (kept, more)
 }

@@ -6,9 +6,10 @@ use std::ops::Range;
 use nalgebra::{Quaternion, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
+use super::between::{Between, Largest};
 use super::measure::{Measures, RunningValue};
 use super::{Channels, Heading, Recording};
-use crate::simulation::{Observer, Simulation, Verdict};
+use crate::simulation::{Divisions, Observer, Simulation, Verdict};
 use crate::system::System;
 
 /// The columns that every recording begins with.
@@ -43,6 +44,9 @@ pub struct RecorderMark {
     /// Of each measure its running values.
     #[serde(default)]
     sums: Vec<Vec<RunningValue>>,
+    /// The largest values of forces between the rows.
+    #[serde(default)]
+    between: Vec<Largest>,
 }
 
 /// What is recorded of the forces of constraints, and of the accelerations, which are found with them.
@@ -68,6 +72,7 @@ pub struct Recorder<'a> {
     resumed: bool,
     constraints: Constraints,
     measures: Measures,
+    between: Between,
     orientations: Vec<UnitQuaternion<f64>>,
     /// Where the columns of accelerations and those of coordinates of joints are.
     accelerations: Range<usize>,
@@ -90,6 +95,7 @@ impl<'a> Recorder<'a> {
         let accelerations = motion..motion + if constraints == Constraints::Nothing { 0 } else { channels.acceleration_headings().len() };
         let coordinates = accelerations.end..accelerations.end + 2 * system.gauges().len();
         let recording = Recording::new(headings);
+        let between = Between::new(&channels.forces, &channels.axes);
         Self {
             row: Vec::with_capacity(recording.columns().len()),
             orientations: vec![UnitQuaternion::identity(); channels.bodies.len()],
@@ -101,6 +107,7 @@ impl<'a> Recorder<'a> {
             resumed: false,
             constraints,
             measures,
+            between,
             accelerations,
             coordinates,
             recording,
@@ -121,6 +128,9 @@ impl<'a> Recorder<'a> {
         for (own, sums) in self.measures.sums.iter_mut().zip(&mark.sums).filter(|(own, sums)| own.len() == sums.len()) {
             own.copy_from_slice(sums);
         }
+        if mark.between.len() == self.between.largest.len() {
+            self.between.largest.copy_from_slice(&mark.between);
+        }
         self
     }
 
@@ -134,7 +144,8 @@ impl<'a> Recorder<'a> {
     /// What a resumed recording goes on from.
     pub fn mark(&self) -> RecorderMark {
         let orientations = self.orientations.iter().map(|q| [q.w, q.i, q.j, q.k]).collect();
-        RecorderMark { seen: self.seen, since: self.since, last: self.last, orientations, sums: self.measures.sums.clone() }
+        let (sums, between) = (self.measures.sums.clone(), self.between.largest.clone());
+        RecorderMark { seen: self.seen, since: self.since, last: self.last, orientations, sums, between }
     }
 
     /// What was recorded so far.
@@ -143,7 +154,8 @@ impl<'a> Recorder<'a> {
     }
 
     /// Ends the recording.
-    pub fn finish(self) -> Recording {
+    pub fn finish(mut self) -> Recording {
+        self.recording.between = self.between.largest;
         self.recording
     }
 
@@ -210,14 +222,19 @@ impl Observer for Recorder<'_> {
         self.measures.are_running() || self.seen.is_multiple_of(self.every)
     }
 
-    fn sees_divisions(&self) -> bool {
-        self.measures.are_running()
+    fn divisions(&self) -> Divisions {
+        match self.measures.are_running() {
+            true => Divisions::Inside,
+            false if self.between.is_needed() => Divisions::Ends,
+            false => Divisions::Unseen,
+        }
     }
 
     fn at_division(&mut self, simulation: &Simulation) {
-        if self.sees_divisions() {
+        if self.measures.are_running() {
             self.fill(simulation);
         }
+        self.between.look(&self.channels.forces, simulation);
     }
 
     fn after_step(&mut self, simulation: &Simulation) -> Verdict {
@@ -238,8 +255,9 @@ impl Observer for Recorder<'_> {
         if is_kept || self.measures.are_running() {
             self.fill(simulation);
         }
-        if is_kept {
-            self.recording.push(&self.row);
+        match is_kept {
+            true => self.recording.push(&self.row),
+            false => self.between.look(&self.channels.forces, simulation),
         }
         self.seen += 1;
         Verdict::GoOn

@@ -103,7 +103,9 @@ impl Simulation {
         shown: &Audit,
         look: &mut Option<&mut Inside<'_>>,
     ) -> Result<bool, Failure> {
-        let (Some((taken, length)), true) = (pilot.last, look.is_some()) else { return Ok(false) };
+        let (Some((taken, length)), Some(everywhere)) = (pilot.last, look.as_ref().map(|inside| inside.everywhere)) else {
+            return Ok(false);
+        };
         let begin = pilot.before.state.t;
         let (low, high) = (from.max(begin), target.min(begin + length));
         if low >= high {
@@ -111,7 +113,7 @@ impl Simulation {
         }
         pilot.front.keep(self);
         let front = self.state.t;
-        let parts = (INSIDE * (high - low) / length - 1e-9).ceil();
+        let parts = if everywhere { (INSIDE * (high - low) / length - 1e-9).ceil() } else { 1.0 };
         let inside = (1..parts as u32).map(|k| low + f64::from(k) * (high - low) / parts);
         let has_switch = pilot.switches.contains(&front.next_down().next_down());
         let last = [(has_switch, (begin + length).next_down().next_down()), (true, front)];

@@ -14,8 +14,13 @@ const MOST_WANTED: u32 = 16;
 /// Units that the parts of a nominal step are counted in: what is left may be three quarters of it, and halved as often.
 const PARTS: u32 = 1 << 24;
 
-/// Looks at the simulation inside a nominal step, and says whether the step ends there.
-pub(super) type Inside<'a> = dyn FnMut(&mut Simulation) -> Result<bool, Failure> + 'a;
+/// Looks at the simulation inside a nominal step.
+pub(super) struct Inside<'a> {
+    /// Looks, and says whether the step ends there.
+    pub look: &'a mut dyn FnMut(&mut Simulation) -> Result<bool, Failure>,
+    /// Whether it looks inside of long parts, too, and not only where parts end.
+    pub everywhere: bool,
+}
 
 impl Simulation {
     /// Takes the nominal step to `target`. Where it is taken in parts, `look` is shown where they end.
@@ -82,7 +87,7 @@ impl Simulation {
 
     /// Whether the nominal step ends at the present state.
     pub(super) fn ends_here(&mut self, look: &mut Option<&mut Inside<'_>>) -> Result<bool, Failure> {
-        look.as_mut().map_or(Ok(false), |look| look(self))
+        look.as_mut().map_or(Ok(false), |inside| (inside.look)(self))
     }
 
     /// One step of the method. Where its result breaks a promise it is iterated until nothing but round-off is left.

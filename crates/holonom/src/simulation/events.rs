@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::advance::Inside;
 use super::bracket::Bracket;
 use super::checkpoint::Moment;
-use super::{Audit, Observer, Simulation};
+use super::{Audit, Divisions, Observer, Simulation};
 use crate::formulation::Failure;
 use crate::system::{Look, Trigger};
 
@@ -77,14 +77,14 @@ impl Simulation {
 
     /// Advances to `target`, or to the first event on the way that ends the run: whether there was one.
     pub(super) fn advance_through_events(&mut self, target: f64, observer: &mut dyn Observer) -> Result<bool, Failure> {
-        let (wants_forces, sees_divisions) = (observer.wants_forces(), observer.sees_divisions());
+        let (wants_forces, divisions) = (observer.wants_forces(), observer.divisions());
         if self.system.events.is_empty() {
             let mut show = |simulation: &mut Self| {
-                simulation.show_division(observer);
+                simulation.show_inside(divisions, observer);
                 Ok(false)
             };
-            let show: Option<&mut Inside<'_>> = if sees_divisions { Some(&mut show) } else { None };
-            return self.advance(target, wants_forces, show).map(|()| false);
+            let mut inside = Inside { look: &mut show, everywhere: divisions == Divisions::Inside };
+            return self.advance(target, wants_forces, (divisions != Divisions::Unseen).then_some(&mut inside)).map(|()| false);
         }
         let system = self.system.clone();
         let shortest = self.shortest(target - self.state.t);
@@ -126,7 +126,7 @@ impl Simulation {
             let next = self.next_sample().unwrap_or(f64::INFINITY);
             let until = if next < target - shortest { next } else { target };
             // Where a sample follows, forces are found when it is taken, unless somebody looks at those before it.
-            let reacts = wants_forces && (sees_divisions || next > until + shortest);
+            let reacts = wants_forces && (divisions == Divisions::Inside || next > until + shortest);
             let crossed = |from: &[f64], to: &[f64]| (0..to.len()).find(|&k| system.events[k].trigger.is_between(from[k], to[k]));
             // Where the step is taken in parts it ends with the part in which something happens.
             let mut low = self.state.t;
@@ -136,12 +136,10 @@ impl Simulation {
                     return Ok(true);
                 }
                 (low, from) = (simulation.state.t, now);
-                if sees_divisions {
-                    simulation.show_division(observer);
-                }
+                simulation.show_inside(divisions, observer);
                 Ok(false)
             };
-            self.advance(until, reacts, Some(&mut look))?;
+            self.advance(until, reacts, Some(&mut Inside { look: &mut look, everywhere: true }))?;
             let to = self.indicate().inspect_err(|_| self.restore(&before))?;
             let (t, k, beside) = match crossed(&from, &to) {
                 Some(k) => self.locate(&before, (low, k), &from, shortest, wants_forces, &|to: &[f64]| crossed(&from, to))?,
@@ -160,9 +158,7 @@ impl Simulation {
                 turned.extend((0..).zip(beside).filter(|&(at, beside)| from[at] == 0.0 && beside != 0.0));
             }
             self.require_no_chatter(k, t, shortest)?;
-            if sees_divisions {
-                self.show_division(observer);
-            }
+            self.show_inside(divisions, observer);
             let stops = self.happen(&happening, t, &mut from)?;
             self.show_division(observer);
             if stops {
@@ -204,6 +200,15 @@ impl Simulation {
             self.update_reactions();
         }
         observer.at_division(self);
+    }
+
+    /// Shows the present state inside a nominal step to an observer that looks there.
+    fn show_inside(&mut self, divisions: Divisions, observer: &mut dyn Observer) {
+        match divisions {
+            Divisions::Unseen => (),
+            Divisions::Ends => observer.at_division(self),
+            Divisions::Inside => self.show_division(observer),
+        }
     }
 
     /// Lets the events happen whose indicators jumped through zero when inputs were set, one after the other and each once, and says whether

@@ -69,6 +69,17 @@ pub enum Verdict {
     Stop,
 }
 
+/// Where an observer looks inside of nominal steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Divisions {
+    /// Nowhere, but for what events do.
+    Unseen,
+    /// Where the parts end that a step is taken in. Forces of the constraints are not found there.
+    Ends,
+    /// There, inside of long parts, and before inputs are set and after, with the forces of the constraints where they are wanted.
+    Inside,
+}
+
 /// Is shown the start and every nominal step.
 pub trait Observer {
     /// Looks at the simulation after a step.
@@ -79,12 +90,12 @@ pub trait Observer {
         true
     }
 
-    /// Looks at the simulation inside a nominal step: where it is taken in parts or parts are long, and before inputs are set there and after.
+    /// Looks at the simulation inside a nominal step.
     fn at_division(&mut self, _simulation: &Simulation) {}
 
-    /// Whether it looks there.
-    fn sees_divisions(&self) -> bool {
-        false
+    /// Where it looks there.
+    fn divisions(&self) -> Divisions {
+        Divisions::Unseen
     }
 }
 

@@ -10,7 +10,7 @@ use crate::model::fields::{Keys, List, Number, Place};
 use crate::model::geometry::norm;
 use crate::model::key::Shape;
 use crate::model::stroke::{apart_at_start, from_start};
-use crate::record::LineKind;
+use crate::record::{LineKind, RecordedRod};
 use crate::system::{Constant, HalfSquare, Signal};
 
 /// keeps two points a distance apart: a massless rod, or with a length that depends on time an actuator
@@ -71,6 +71,7 @@ impl Element for Distance {
             }
         };
         let half_square = assembly.builder.square(&from_to(a, b));
+        assembly.rods.push(RecordedRod { name: entry.name.into(), row: assembly.builder.rows(), length: Arc::clone(&target) });
         assembly.builder.row(entry.name, half_square, Arc::new(HalfSquare(target)));
         assembly.draw(entry, LineKind::Rod, a, b);
         Ok(())

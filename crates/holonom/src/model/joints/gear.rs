@@ -1,10 +1,13 @@
 use super::coupler::{couple, two};
+use super::transmission::{Seats, slope};
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
+use crate::model::geometry::norm;
 use crate::model::key::Shape;
+use crate::record::Transmission;
 
 /// wheels that mesh, or any two coordinates of which one is a multiple of the other
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -48,6 +51,10 @@ pub struct Gear {
     pub joints: List<String>,
     /// how many times the second coordinate the first is; negative for outside gears about parallel axes
     pub ratio: Number,
+    /// angle between what teeth push with and the tangent of the pitch circles; with it the force of the teeth is recorded, and the bearings of
+    /// wheels about parallel axes feel it
+    #[key(unit = "rad", default = "teeth are left out")]
+    pub pressure_angle: Option<Number>,
 }
 
 impl Element for Gear {
@@ -58,6 +65,18 @@ impl Element for Gear {
         let ([first, second], ratio) = (joints?, ratio?);
         if ratio == 0.0 {
             return Err(entry.refuse("ratio", "a ratio of zero locks the first joint and frees the second", "give the ratio of the two"));
+        }
+        if let Some(angle) = entry.optional("pressure_angle", &self.pressure_angle, |angle, entry, key| angle.number(entry, key))? {
+            let slope = slope(entry, angle)?;
+            let seats = Seats::of(assembly, entry, "pressure_angle", [&first, &second])?;
+            let [a, b] = seats.senses;
+            // Both wheels have one velocity at the pitch point.
+            let share = b / (b - a * ratio);
+            if !share.is_finite() || norm(seats.across) == 0.0 {
+                let message = "wheels about one axis, or that turn alike, do not mesh";
+                return Err(entry.refuse_key("pressure_angle", message, "leave `pressure_angle` out, or check the sign of `ratio`"));
+            }
+            seats.record(assembly, entry, 1.0, Transmission::Teeth { share, slope });
         }
         couple(assembly, entry, &[(first, 1.0), (second, -ratio)])
     }

@@ -29,6 +29,7 @@ mod revolute_spherical;
 mod rolling;
 mod screw;
 mod spherical;
+mod transmission;
 mod universal;
 
 pub use constant_velocity::ConstantVelocity;
@@ -57,6 +58,7 @@ pub use revolute_spherical::RevoluteSpherical;
 pub use rolling::Rolling;
 pub use screw::Screw;
 pub use spherical::Spherical;
+pub(super) use transmission::TransmissionInfo;
 pub use universal::Universal;
 
 pub use holonom_derive::Sides;

@@ -1,10 +1,13 @@
 use super::coupler::{couple, two};
+use super::transmission::Seats;
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
+use crate::model::geometry::norm;
 use crate::model::key::Shape;
+use crate::record::Transmission;
 
 /// two wheels with a belt between them
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -52,6 +55,9 @@ pub struct Pulley {
     /// whether the belt crosses itself, so that the wheels turn against each other
     #[key(default = "false")]
     pub crossed: Option<bool>,
+    /// tension of the belt at rest, 0 for a chain; with it the force of the belt is recorded, and the bearings of the wheels feel it
+    #[key(unit = "N", default = "the belt's pull is left out")]
+    pub pretension: Option<Number>,
 }
 
 impl Element for Pulley {
@@ -62,6 +68,18 @@ impl Element for Pulley {
         let radii = self.radii.sizes::<2>(entry, "radii");
         let ([first, second], [r1, r2]) = (joints?, radii?);
         let sign = if self.crossed.unwrap_or(false) { 1.0 } else { -1.0 };
+        let pretension = entry.optional("pretension", &self.pretension, |tension, entry, key| tension.not_negative(entry, key))?;
+        if let Some(pretension) = pretension {
+            let seats = Seats::of(assembly, entry, "pretension", [&first, &second])?;
+            let [a, b] = seats.senses;
+            let rise = if a * b * sign > 0.0 { r1 + r2 } else { r1 - r2 };
+            let distance = norm(seats.across);
+            if distance <= rise.abs() {
+                let message = format!("the axes are {distance} m apart, and no belt goes around both wheels");
+                return Err(entry.refuse("radii", message, "check the radii, and where the joints are"));
+            }
+            seats.record(assembly, entry, r1, Transmission::Belt { radius: r1, rise, pretension });
+        }
         couple(assembly, entry, &[(first, r1), (second, sign * r2)])
     }
 }

@@ -1,10 +1,12 @@
 use super::coupler::{couple, two};
+use super::transmission::{Seats, slope};
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
 use crate::model::key::Shape;
+use crate::record::Transmission;
 
 /// a wheel that rolls along a toothed rail: the displacement of the one joint is the radius times the angle of the other
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -48,6 +50,9 @@ pub struct RackAndPinion {
     /// displacement over angle; negative when they count against each other
     #[key(unit = "m")]
     pub radius: Number,
+    /// angle between what teeth push with and the way of the rack; with it the force of the teeth is recorded, and the bearings feel it
+    #[key(unit = "rad", default = "teeth are left out")]
+    pub pressure_angle: Option<Number>,
 }
 
 impl Element for RackAndPinion {
@@ -59,6 +64,12 @@ impl Element for RackAndPinion {
         let ([angle, displacement], radius) = (joints?, radius?);
         if radius == 0.0 {
             return Err(entry.refuse("radius", "a radius of zero locks the rack and frees the pinion", "give the radius of the pinion"));
+        }
+        if let Some(pressure) = entry.optional("pressure_angle", &self.pressure_angle, |angle, entry, key| angle.number(entry, key))? {
+            let slope = slope(entry, pressure)?;
+            let seats = Seats::of(assembly, entry, "pressure_angle", [&angle, &displacement])?;
+            let [a, b] = seats.senses;
+            seats.record(assembly, entry, -radius, Transmission::Rack { way: Vec::new(), radius: a * b * radius, slope });
         }
         couple(assembly, entry, &[(displacement, 1.0), (angle, -radius)])
     }

@@ -1,0 +1,64 @@
+//! The largest values of forces are those of all steps, not only of the rows that are recorded.
+
+mod common;
+
+use common::model;
+use holonom::model::Model;
+use holonom::record::{Constraints, Peaks, Recorder};
+use holonom::simulation::{Choice, Method, Simulation, Status};
+
+/// A mass that falls 0.1 m onto a buffer of 1e5 N/m.
+fn buffer() -> Model {
+    model(
+        "plane = \"xz\"\n[body.m]\nmass = 1\ninertia = 1\nposition = [0, 0.1]\n\
+         [joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"m\"]\naxis = [0, 1]\n\
+         [force.buffer]\ntype = \"stop\"\njoint = \"rail\"\nlower = -0.1\nstiffness = 1e5\n",
+    )
+}
+
+/// With k s²/2 = m g (h + s) at the lowest place it pushes with k s = m g (1 + √(1 + 2 k h/m g)).
+fn largest() -> f64 {
+    let weight: f64 = 9.81;
+    weight * (1.0 + (1.0 + 2.0 * 1e5 * 0.1 / weight).sqrt())
+}
+
+#[test]
+fn peaks_between_rows_count() {
+    let model = buffer();
+    for (method, accuracy, step, every) in [
+        ("radau", Some(1e-8), 0.05, 1),
+        ("conserving-ggl", Some(1e-6), 0.05, 1),
+        ("ode/dopri5", Some(1e-8), 0.05, 1),
+        ("radau", None, 2e-5, 997),
+    ] {
+        let choice = Choice { accuracy, ..Choice::default().named(method) };
+        let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&choice).unwrap(), step).unwrap();
+        let mut recorder = Recorder::new(&model.channels, &model.system, every, Constraints::Nothing);
+        assert_eq!(simulation.run(0.4, &mut recorder), Status::Completed);
+        let recording = recorder.finish();
+        let of_rows = recording.column("buffer.effort").unwrap().iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+        let peaks = Peaks::of(&model.channels, &recording);
+        let [peak] = &peaks.forces[..] else { panic!("{method}: {:?}", peaks.forces) };
+        println!("{method}: {} N of {} N, in rows {of_rows} N", peak.value, largest());
+        assert!(of_rows < 0.9 * largest(), "{method}: a row has it");
+        // How near a step comes to the largest force is a matter of its length.
+        assert!(peak.value > 0.95 * largest() && peak.value <= (1.0 + 1e-6) * largest(), "{method}: {} N", peak.value);
+    }
+}
+
+/// A run that is resumed knows the largest value of its first part.
+#[test]
+fn peaks_survive_a_checkpoint() {
+    let model = buffer();
+    let method = || Method::resolve(&Choice { accuracy: Some(1e-7), ..Choice::default().named("radau") }).unwrap();
+    let recorder = || Recorder::new(&model.channels, &model.system, 1, Constraints::Nothing);
+    let mut simulation = Simulation::new(model.system.clone(), method(), 0.05).unwrap();
+    let mut first = recorder();
+    assert_eq!(simulation.run(0.25, &mut first), Status::Completed);
+    let (mark, checkpoint, rows) = (first.mark(), simulation.checkpoint(), first.recording().clone());
+    let mark = serde_json::from_str(&serde_json::to_string(&mark).unwrap()).unwrap();
+    let mut second = recorder().resume(&mark).after(rows);
+    let mut resumed = Simulation::resume(model.system.clone(), method(), 0.05, checkpoint).unwrap();
+    assert_eq!(resumed.run(0.3, &mut second), Status::Completed);
+    assert!(Peaks::of(&model.channels, &second.finish()).forces[0].value > 0.95 * largest());
+}

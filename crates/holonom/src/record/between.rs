@@ -1,0 +1,72 @@
+//! The largest values of forces between the rows of a recording: a row may lie far from where a force is largest.
+
+use serde::{Deserialize, Serialize};
+
+use super::force::{self, RecordedForce};
+use crate::simulation::{Simulation, any_number};
+
+/// The state in which something that acts is largest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Largest {
+    /// The sum of the squares of its components there, and its value, which of several components is their size.
+    #[serde(with = "any_number")]
+    values: [f64; 2],
+    /// When, s.
+    t: f64,
+}
+
+impl Largest {
+    /// When it was, s, the square and the value.
+    pub(super) fn parts(&self) -> (f64, f64, f64) {
+        let [square, value] = self.values;
+        (self.t, square, value)
+    }
+}
+
+/// Share of itself by which a square counts as larger than another.
+const ROUND_OFF: f64 = 2e-9;
+
+/// Looks at what forces exert between rows.
+pub(super) struct Between {
+    /// Of each group of columns that make one value their places among the columns of the forces.
+    groups: Vec<Vec<usize>>,
+    /// Of each of them, as far as a state was looked at.
+    pub largest: Vec<Largest>,
+    row: Vec<f64>,
+}
+
+impl Between {
+    /// For the forces of a recording of a model with these axes.
+    pub fn new(forces: &[RecordedForce], axes: &str) -> Self {
+        let (mut groups, mut before) = (Vec::new(), 0);
+        for force in forces {
+            let headings = force.headings(axes);
+            let place = |name: &String| headings.iter().position(|heading| heading.name == *name).expect("what acts is recorded") + before;
+            groups.extend(force.acts(axes).iter().map(|names| names.iter().map(place).collect()));
+            before += headings.len();
+        }
+        let largest = vec![Largest::default(); groups.len()];
+        Self { groups, largest, row: Vec::new() }
+    }
+
+    /// Whether there is anything to look at.
+    pub fn is_needed(&self) -> bool {
+        !self.groups.is_empty()
+    }
+
+    /// Looks at the present state.
+    pub fn look(&mut self, forces: &[RecordedForce], simulation: &Simulation) {
+        if !self.is_needed() {
+            return;
+        }
+        self.row.clear();
+        force::append(forces, simulation, &mut self.row);
+        for (group, largest) in self.groups.iter().zip(&mut self.largest) {
+            let square = group.iter().map(|&k| self.row[k] * self.row[k]).sum::<f64>();
+            if square > (1.0 + ROUND_OFF) * largest.values[0] {
+                let value = if let [one] = group[..] { self.row[one] } else { square.sqrt() };
+                *largest = Largest { values: [square, value], t: simulation.state().t };
+            }
+        }
+    }
+}
