@@ -10,7 +10,7 @@ use cpu_time::ProcessTime;
 use holonom::analysis::{self, Undetermined};
 use holonom::model::{Model, StartChange};
 use holonom::record::{COLUMNS, Channels, Column, Constraints, Peaks, RecordedJoint, Recorder, Recording};
-use holonom::simulation::{Method, Simulation, Status};
+use holonom::simulation::{Method, Simulation, Start, Status};
 use holonom_io::{WriteTable, Writer};
 use holonom_report::{Report, Run};
 use serde_json::{Value, json};
@@ -178,7 +178,8 @@ pub(crate) fn simulate_kept(
         value["time"]["step_us"] = step_us;
     }
     let unknown = unknown_measures(model, watched.recorder.recording());
-    let of_results: Vec<String> = unknown.into_iter().chain(shared_forces(model, &simulation)).collect();
+    let without = rows_without_forces(model, watched.recorder.recording());
+    let of_results: Vec<String> = unknown.into_iter().chain(without).chain(shared_forces(model, &simulation)).collect();
     if !quiet {
         of_results.iter().for_each(|text| note(text));
     }
@@ -239,6 +240,24 @@ fn unknown_measures(model: &Model, recording: &Recording) -> Vec<String> {
         .collect()
 }
 
+/// That rows have no forces of joints, as the position is singular there.
+fn rows_without_forces(model: &Model, recording: &Recording) -> Option<String> {
+    let told = model.channels.told();
+    let of_joints = told.joints.first().map(|joint| format!("{}.f{}", joint.name, &model.axes[..1]));
+    let of_drives = told.efforts.first().map(|effort| format!("{}.effort", effort.name));
+    let name = of_joints.or(of_drives).or(told.rods.first().map(|rod| format!("{}.force", rod.name)))?;
+    let unknown = recording.column(&name)?.iter().zip(recording.column("t")?).filter(|(force, _)| force.is_nan());
+    let times: Vec<f64> = unknown.map(|(_, t)| *t).collect();
+    let first = times.first()?;
+    let rows = if times.len() == 1 { "one row has".into() } else { format!("{} rows have", times.len()) };
+    (times.len() < recording.rows()).then(|| {
+        format!(
+            "{rows} no accelerations and no forces of joints and drives, first at {} s: at a singular position none keep all constraints",
+            short(*first)
+        )
+    })
+}
+
 /// What looks like a slip, and what was put right before the start.
 pub fn notes(loaded: &Loaded, simulation: &Simulation) -> Vec<String> {
     slips(loaded).chain(corrections(&loaded.model, simulation)).collect()
@@ -257,6 +276,7 @@ fn corrections(model: &Model, simulation: &Simulation) -> Vec<String> {
     if start.moved > ROUNDED * size {
         notes.push(format!("positions were moved by up to {:.2e} m onto their constraints", start.moved));
     }
+    notes.extend(nowhere(start));
     let mut changes = model.start_changes(&simulation.state().x, simulation.velocities());
     // That parts start moving for which no velocity was written is what a drive is for.
     changes.retain(|change| !change.was_at_rest);
@@ -264,6 +284,13 @@ fn corrections(model: &Model, simulation: &Simulation) -> Vec<String> {
         notes.push(format!("to meet the constraints, start velocities were changed: {}", changes_in_words(&changes)));
     }
     notes
+}
+
+/// That no motion begins with the velocities of a start.
+pub(crate) fn nowhere(start: &Start) -> Option<String> {
+    let text = "no motion begins with the start velocities: at this singular position no accelerations keep all constraints, and what comes is one way of many \
+                (give the velocities of one of the ways in which it can move from there)";
+    start.leads_nowhere.then(|| text.into())
 }
 
 /// Bodies and points with the change of their velocities at the start.

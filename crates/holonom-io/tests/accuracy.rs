@@ -296,6 +296,22 @@ fn explicit_methods_stay_on_their_rows() {
     }
 }
 
+/// What stands still, or begins to move later, takes steps by any accuracy: there is no energy that could be off.
+#[test]
+fn what_stands_still_is_no_error() {
+    let text = "[body.a]\nmass = 1\ninertia = [0.1, 0.15, 0.2]\nposition = [0.27, 0.42, 0.1]\n\
+                [joint.h]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n";
+    let later = "[force.m]\ntype = \"effort\"\njoint = \"h\"\neffort = \"step(t - 0.5)\"\n";
+    for method in ["radau", "ggl/bdf", "conserving-ggl", "ode/dopri5"] {
+        for (motor, angle) in [("", 0.0), (later, 0.5 * 0.25 / (0.2 + 0.27 * 0.27 + 0.42 * 0.42))] {
+            let choice = Choice { accuracy: Some(1e-6), ..Choice::default().named(method) };
+            let (_, recording) = common::run(&model(&format!("{text}{motor}")), choice, 0.05, 1.0);
+            let found = common::last(&recording, "h.angle");
+            assert!((found - angle).abs() <= 1e-5, "{method}: {found} rad and {angle} rad by hand");
+        }
+    }
+}
+
 /// Where events take samples, steps grow again after each of them.
 #[test]
 fn steps_grow_again_after_samples() {

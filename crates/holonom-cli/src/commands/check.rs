@@ -14,7 +14,7 @@ use crate::found::Found;
 use crate::load::{self, Loaded};
 use crate::message::{listed, unused_parameters};
 use crate::options::CheckArguments;
-use crate::output::{changes_in_words, open_columns};
+use crate::output::{changes_in_words, nowhere, open_columns};
 use crate::table::{list, short};
 
 /// Validates a model and says what it is made of.
@@ -50,6 +50,7 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
     drop(simulation);
     let mut held = Held::new(&plain, load::method(&plain.model, None)?, step)?;
     held.notes.extend(unused_parameters(&loaded.source));
+    held.notes.extend(nowhere(&start));
     let found = &held.rank;
     let near = found.near_singular(&plain.model.system);
     let form = match with_projection {

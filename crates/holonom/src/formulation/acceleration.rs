@@ -20,6 +20,19 @@ use crate::system::System;
 /// for redundant rows.
 const PASSES: usize = 3;
 
+/// Where a row hardly differs from others δ is much of what it adds, and each pass leaves the same share of what is missed: after so many
+/// passes more, all of it is added at once, as of a geometric series.
+const MOST: usize = 15;
+
+/// What is missed is added where it is more than this share of accelerations and of multipliers, and where a pass leaves less of it than this.
+const MATTERS: f64 = 1e-11;
+const SLOWEST: f64 = 0.999;
+
+/// Share of the multipliers that a pass adds where they grow without end, and what rows may be missed by, over the accelerations, where redundant
+/// ones differ from the others by what they are written with.
+const GROWS: f64 = 0.01;
+const MISSED: f64 = 1e-6;
+
 /// Passes end where the next would change less than this share of accelerations and multipliers.
 const ROUNDED: f64 = 0.1 * f64::EPSILON;
 
@@ -50,14 +63,15 @@ impl Newton {
 
     /// Accelerations and multipliers at the end position and velocity that satisfy Φ̈ = 0: the index-1 system (3).
     /// The multipliers start from those in the workspace. They are of the order of the positions and velocities
-    /// whatever these were found by, so that forces can be trusted (methods §17).
-    pub fn react(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
+    /// whatever these were found by, so that forces can be trusted (methods §17). Says whether there are any: velocities at a singular position
+    /// may belong to no motion.
+    pub fn react(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
         system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
         self.react_as_evaluated(system, t, work)
     }
 
     /// The same where the workspace has the evaluation at the end position.
-    pub fn react_as_evaluated(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
+    pub fn react_as_evaluated(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
         let level = std::mem::replace(&mut work.level, Level::ACCELERATION);
         let outcome = self.balance(system, t, None, work);
         work.level = level;
@@ -66,17 +80,18 @@ impl Newton {
 
     /// Accelerations and multipliers at the end position and velocity by the formulation itself, which must be one that
     /// gives them: with rows at acceleration level, or soft.
-    pub fn accelerate(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
+    pub fn accelerate(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
         system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
         match self.settings.multipliers {
-            Multipliers::Penalty(alpha) if work.level.acceleration == 0.0 => self.push(system, t, alpha, work),
+            Multipliers::Penalty(alpha) if work.level.acceleration == 0.0 => self.push(system, t, alpha, work).map(|()| true),
             Multipliers::Penalty(alpha) => self.balance(system, t, Some(alpha), work),
             Multipliers::Augmented(_) => self.balance(system, t, None, work),
         }
     }
 
-    /// Solves the system above at the evaluation of the end; with `penalty` as it stands, otherwise until δ no longer matters.
-    fn balance(&mut self, system: &System, t: f64, penalty: Option<f64>, work: &mut Workspace) -> Result<(), Failure> {
+    /// Solves the system above at the evaluation of the end; with `penalty` as it stands, otherwise until δ no longer matters. Says whether all
+    /// rows are met: at a singular position no acceleration may do that.
+    fn balance(&mut self, system: &System, t: f64, penalty: Option<f64>, work: &mut Workspace) -> Result<bool, Failure> {
         let n = system.coordinates();
         match penalty {
             Some(alpha) => {
@@ -92,7 +107,8 @@ impl Newton {
         work.weigh_levels_at_rest(system, t, 1.0);
         let passes = if penalty.is_some() { 1 } else { PASSES };
         let (leaves, mut before) = (self.rank.proximal_leaves(), [f64::INFINITY; 2]);
-        for _ in 0..passes {
+        let mut are_met = true;
+        for pass in 1..=MOST {
             work.sum_reactions(system, &mut self.unknowns);
             self.solve()?;
             let (steps, multipliers) = self.unknowns.split_at(n);
@@ -103,10 +119,25 @@ impl Newton {
             if (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(leaves) <= ROUNDED * whole[k]) {
                 break;
             }
+            let share = taken[1] / before[1];
             before = taken;
+            if pass % passes == 0 {
+                // Multipliers grow in each pass where rows ask for what the others do not leave.
+                if penalty.is_none() && share >= SLOWEST && taken[1] >= GROWS * whole[1] {
+                    are_met = work.misses(system) <= MISSED;
+                }
+                let matters = (0..2).all(|k| taken[k] > MATTERS * whole[k]);
+                if penalty.is_some() || !matters || share.is_nan() || share >= SLOWEST {
+                    break;
+                }
+                let rest = share / (1.0 - share);
+                work.a.iter_mut().zip(steps).for_each(|(a, step)| *a += rest * step);
+                work.lambda.iter_mut().zip(multipliers).for_each(|(lambda, step)| *lambda += rest * step);
+                before = [f64::INFINITY; 2];
+            }
         }
         work.add_reactions(system);
-        Ok(())
+        Ok(are_met)
     }
 
     /// M a = Q − αGᵀΦ (5).
@@ -136,6 +167,15 @@ impl Workspace {
         force.fill(0.0);
         system.slots.add_forces(system.dim, &self.lambda, &self.end.at.gradient, force);
         force.iter_mut().for_each(|force| *force = -*force);
+    }
+
+    /// By how much the accelerations miss the rows, over the size of both.
+    fn misses(&mut self, system: &System) -> f64 {
+        let Self { phi, rows, a, sampled, scales, .. } = self;
+        rows.copy_from_slice(phi);
+        system.slots.add_along(system.dim, 1.0, &sampled.at.gradient, a, rows);
+        let scaled = |rows: &[f64]| rows.iter().zip(&scales.gradient).fold(0.0, |m, (row, gradient)| f64::max(m, row.abs() / gradient));
+        scaled(rows) / (scaled(phi) + largest(&a[..system.coordinates()]))
     }
 
     /// Leaves minus M a + f + Gᵀλ and minus the rows, `phi` and what the accelerations add to it, in the unknowns, where the forces f were

@@ -1,5 +1,6 @@
 //! Ends of things: points, places of bodies and fixed places, as sums of nodes.
 
+use super::assembly::CONTRADICTION;
 use super::geometry::{add, norm};
 use crate::system::{NodeId, Place, Term};
 
@@ -83,6 +84,20 @@ pub fn subtract(to: &[Term], from: &[Term]) -> Vec<Term> {
 
 /// What a difference leaves of its terms, over their size, that is round-off.
 const GONE: f64 = 1e-12;
+
+/// The same of what two bodies have at a joint, where they may share nodes: nothing where only what was written is off is left, as of the second
+/// hinge of a door. A row of that would turn the smallest of differences into a lock. `size` is that of the mechanism, or of a direction.
+pub fn subtract_shared(to: &[Term], from: &[Term], size: f64) -> Vec<Term> {
+    let mut difference = subtract(to, from);
+    let is_small = |term: &Term| match term.place {
+        Place::Fixed(x) => norm(x) * term.factor.abs().max(term.turn.abs()) <= CONTRADICTION * size,
+        Place::Node(_) => term.factor.abs().max(term.turn.abs()) <= CONTRADICTION,
+    };
+    if difference.iter().all(is_small) {
+        difference.clear();
+    }
+    difference
+}
 
 /// Position of the second end minus that of the first, at the start.
 pub fn difference(from: &End, to: &End) -> [f64; 3] {

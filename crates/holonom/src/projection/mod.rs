@@ -89,7 +89,7 @@ impl Projection {
         for _ in 0..=PASSES {
             system.constraint_values(&work.end.at, time, &mut work.phi);
             let violation = work.scaled_violation();
-            if !(violation < least) {
+            if violation.is_nan() || violation >= least {
                 work.end.x[..n].copy_from_slice(&work.full[..n]);
                 system.evaluate(&work.end.x, time, &work.start.at, &mut work.end.at);
                 break;
@@ -97,7 +97,8 @@ impl Projection {
             if violation <= ROUNDED {
                 break;
             }
-            (least, _) = (violation, work.full[..n].copy_from_slice(&work.end.x[..n]));
+            least = violation;
+            work.full[..n].copy_from_slice(&work.end.x[..n]);
             newton.unknowns[..n].fill(0.0);
             newton.unknowns[n..].iter_mut().zip(&work.phi).for_each(|(unknown, phi)| *unknown = -phi);
             newton.kkt.solve(&mut newton.unknowns);

@@ -322,7 +322,19 @@ impl Simulation {
         let is_of_rows = matches!(failure, Failure::NotConverged { .. } | Failure::Broken { .. } | Failure::Singular(_));
         match is_of_rows.then(|| self.conflict()).flatten() {
             Some(row) => format!("`{row}` asks for a motion that the other constraints do not allow: {what}"),
+            None if is_of_rows => what + &self.disagreement(),
             None => what,
+        }
+    }
+
+    /// That redundant rows may not agree, where there are any.
+    fn disagreement(&self) -> String {
+        match self.redundant_rows() {
+            0 => String::new(),
+            redundant => format!(
+                "; {redundant} of the constraints follow from others: where they differ from these in the last digits that are written, as hinges of a door \
+                 whose axes are a little off, nothing meets them all"
+            ),
         }
     }
 

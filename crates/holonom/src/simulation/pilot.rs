@@ -186,7 +186,7 @@ impl Pilot {
     /// The same by the energy that the step has made or lost, for schemes that err by little but in the same direction in step after step: what is
     /// off in the velocity adds up to a way, which may be many times the length of the mechanism. Round-off counts `amplified` times.
     fn ratio_of_energy(&self, simulation: &Simulation, step: f64, amplified: f64) -> f64 {
-        let Simulation { system, state, audit, work, method, .. } = simulation;
+        let Simulation { system, state, audit, work, method, judge, .. } = simulation;
         // Velocities that no row holds at the end of a step come and go.
         let comes_and_goes = method.integrator.conserves || method.order() <= SYMMETRIC || is_rough(method);
         // What positions off their rows have of energy is no matter of the length of steps.
@@ -194,7 +194,10 @@ impl Pilot {
         if comes_and_goes || drifts {
             return 0.0;
         }
-        let made = audit.made_since(&self.before.audit, amplified, || energy::size(system, work, &state.x));
+        let of_places = || energy::size(system, work, &state.x) + judge.lift(work.scales.length);
+        // What comes on in the whole run by no more than its error may be stands still.
+        let still = judge.motion(self.control.allowed() * work.scales.length);
+        let made = audit.made_since(&self.before.audit, amplified, still, of_places);
         made / (WORSE * self.control.allowed() * step * self.control.share_of_way(work.scales.length))
     }
 

@@ -223,6 +223,16 @@ impl Judge {
         }
     }
 
+    /// Energy of all weight over a length (m), J.
+    pub(super) fn lift(&self, length: f64) -> f64 {
+        self.weight * length
+    }
+
+    /// Energy of all mass at a speed (m/s), J.
+    pub(super) fn motion(&self, speed: f64) -> f64 {
+        0.5 * self.mass * speed * speed
+    }
+
     /// Energy that is nothing beside the energies after a nominal step of length `h` (s), J; `more` are others beside them.
     fn nothing(&self, h: f64, more: f64, after: &Audit, work: &Workspace) -> f64 {
         let length = work.scales.length;

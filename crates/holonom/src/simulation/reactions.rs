@@ -91,7 +91,7 @@ impl Elsewhere {
         work.end.at.copy_from(&work.start.at);
         work.lambda.fill(0.0);
         let outcome = newton.react_as_evaluated(system, state.t, work);
-        reactions.take(system, outcome.is_ok(), work);
+        reactions.take(system, outcome == Ok(true), work);
     }
 }
 
@@ -104,6 +104,7 @@ impl Reactions {
     fn take(&mut self, system: &System, are_known: bool, work: &mut Workspace) {
         if !are_known {
             work.lambda.fill(f64::NAN);
+            work.a.fill(f64::NAN);
         }
         self.lambda.copy_from_slice(&work.lambda);
         self.a.copy_from_slice(&work.a);
@@ -195,7 +196,7 @@ impl Simulation {
                 newton.react_as_evaluated(system, state.t, work)
             }
         };
-        reactions.take(system, outcome.is_ok(), work);
+        reactions.take(system, outcome == Ok(true), work);
         // The next step is the same as if nobody had looked.
         self.hints.restore(&mut self.newton, &mut *self.integrator);
         (self.newton.iterations, self.newton.factorizations) = counters;

@@ -12,6 +12,8 @@ pub struct Start {
     pub moved: f64,
     /// Largest change of the velocity of a node, m/s.
     pub turned: f64,
+    /// Whether no motion begins with the velocities, as at a singular position no accelerations keep all rows then.
+    pub leads_nowhere: bool,
 }
 
 /// What is asked of a start: time, positions and velocities of all nodes (D × nodes), and the impulse (n) by which the momenta as
@@ -111,7 +113,7 @@ pub(super) fn prepare(
     let mut start = Start::default();
     correct_positions(system, asked, newton, work, &mut start)?;
     correct_velocities(system, asked, newton, work, &mut start)?;
-    accelerate(system, method, asked.t, newton, work)?;
+    start.leads_nowhere = !accelerate(system, method, asked.t, newton, work)?;
     work.start.at.copy_from(&work.end.at);
     Ok(start)
 }
@@ -212,8 +214,8 @@ fn correct_velocities(
     }
 }
 
-/// Accelerations and multipliers by the formulation, or where it gives none by the index-1 system (3).
-pub(super) fn accelerate(system: &System, method: &Method, t: f64, newton: &mut Newton, work: &mut Workspace) -> Result<(), StartError> {
+/// Accelerations and multipliers by the formulation, or where it gives none by the index-1 system (3). Says whether all rows are met.
+pub(super) fn accelerate(system: &System, method: &Method, t: f64, newton: &mut Newton, work: &mut Workspace) -> Result<bool, StartError> {
     let outcome = match method.formulation.gives_accelerations() {
         true => newton.accelerate(system, t, work),
         false => newton.react(system, t, work),

@@ -2,7 +2,7 @@
 
 use super::functions::{FUNCTIONS, Function};
 use super::lex::Token;
-use super::names::{self, OF_PLACES, RUNNING};
+use super::names::{self, LOCAL, OF_PLACES, RUNNING};
 use super::parse::Parser;
 use super::{External, Functions, Mistake, Op, Program};
 use crate::model::fault::nearest;
@@ -11,7 +11,7 @@ use crate::model::fault::nearest;
 fn functions() -> impl Iterator<Item = &'static str> + Clone {
     let of_numbers = FUNCTIONS.iter().map(|known| known.0);
     let of_runs = RUNNING.iter().map(|known| known.0).filter(|name| !FUNCTIONS.iter().any(|known| known.0 == *name));
-    of_numbers.chain(of_runs).chain(OF_PLACES.iter().map(|known| known.0))
+    of_numbers.chain(of_runs).chain(OF_PLACES.iter().map(|known| known.0)).chain([LOCAL.0])
 }
 
 /// Functions that other programs have, and how their values are written here.
@@ -66,6 +66,9 @@ impl Parser<'_> {
         }
         if OF_PLACES.iter().any(|known| known.0 == name) {
             return self.of_places(name);
+        }
+        if name == LOCAL.0 {
+            return self.local();
         }
         let function = FUNCTIONS.iter().find(|known| known.0 == name);
         let running = RUNNING.iter().find(|known| known.0 == name);
@@ -142,15 +145,48 @@ impl Parser<'_> {
     fn of_places(&mut self, name: &str) -> Result<(), Mistake> {
         let start = self.tokens[self.at].0;
         let &(_, count, example) = OF_PLACES.iter().find(|known| known.0 == name).expect("it is one of these");
-        let Some(axes) = self.names.axes() else {
-            return Err(self.mistake(
-                format!("`{name}` is of places, and nothing moves here"),
-                "use it in measures, events, and forces of type effort, force, torque, expression, spring and rope",
-            ));
+        let axes = self.axes_of(name, "places")?;
+        let places = self.named(count, &format!("`{name}` takes {count} names of places"), example)?;
+        for (place, begin) in places.iter().filter(|(place, _)| place != "ground") {
+            self.is_place(place, &axes[..1]).map_err(|mistake| Mistake { character: *begin, ..mistake })?;
+        }
+        let places: Vec<String> = places.into_iter().map(|(place, _)| place).collect();
+        self.written_out(start, &names::of_places(name, &places, axes))
+    }
+
+    /// The component of a vector along an axis of a body, such as `local(hub, pin.fx)`, written out as a formula of columns.
+    fn local(&mut self) -> Result<(), Mistake> {
+        let (name, example) = LOCAL;
+        let start = self.tokens[self.at].0;
+        let axes = self.axes_of(name, "what moves")?;
+        let named = self.named(2, &format!("`{name}` takes a body and a component of a vector"), example)?;
+        let [(body, of_body), (component, of_vector)] = &named[..] else { unreachable!("two were asked for") };
+        self.is_place(body, &axes[..1]).map_err(|mistake| Mistake { character: *of_body, ..mistake })?;
+        // A quaternion is no vector.
+        let axis = component.chars().last().filter(|_| !component.contains(".q")).and_then(|letter| axes.find(letter));
+        let Some((k, vector)) = axis.map(|k| (k, &component[..component.len() - 1])) else {
+            let message = format!("`{component}` is no component along an axis of the model");
+            return Err(Mistake::new(*of_vector, message, format!("write {example}")));
         };
-        let wrong = |at: usize| Mistake::new(at, format!("`{name}` takes {count} names of places"), format!("write {example}"));
+        self.written_out(start, &names::local(body, vector, k, axes))
+    }
+
+    /// Letters of the axes, for a function of what moves.
+    fn axes_of(&self, name: &str, what: &str) -> Result<&'static str, Mistake> {
+        self.names.axes().ok_or_else(|| {
+            self.mistake(
+                format!("`{name}` is of {what}, and nothing moves here"),
+                "use it in measures, events, and forces of type effort, force, torque, expression, spring and rope",
+            )
+        })
+    }
+
+    /// Names in brackets, and where they begin.
+    fn named(&mut self, count: usize, wanted: &str, example: &str) -> Result<Vec<(String, usize)>, Mistake> {
+        let start = self.tokens[self.at].0;
+        let wrong = |at: usize| Mistake::new(at, wanted, format!("write {example}"));
         self.at += 2;
-        let (mut places, mut begins) = (Vec::new(), Vec::new());
+        let mut names = Vec::new();
         for k in 0..count {
             if k > 0 {
                 match self.peek() {
@@ -158,19 +194,20 @@ impl Parser<'_> {
                     _ => return Err(wrong(start)),
                 }
             }
+            let begin = self.tokens[self.at].0;
             match self.peek() {
-                Token::Name(place) => places.push(place.clone()),
-                _ => return Err(wrong(self.tokens[self.at].0)),
+                Token::Name(name) => names.push((name.clone(), begin)),
+                _ => return Err(wrong(begin)),
             }
-            begins.push(self.tokens[self.at].0);
             self.at += 1;
         }
         self.close()?;
-        for (place, &begin) in places.iter().zip(&begins).filter(|(place, _)| *place != "ground") {
-            self.is_place(place, &axes[..1]).map_err(|mistake| Mistake { character: begin, ..mistake })?;
-        }
-        let text = names::of_places(name, &places, axes);
-        let written = Program::parse_with(&text, self.variables, self.names, self.scope);
+        Ok(names)
+    }
+
+    /// Emits a formula that stands for what was written from `start` on.
+    fn written_out(&mut self, start: usize, text: &str) -> Result<(), Mistake> {
+        let written = Program::parse_with(text, self.variables, self.names, self.scope);
         let program = written.map_err(|inner| Mistake { character: start, ..inner })?;
         program.ops.into_iter().try_for_each(|op| self.emit(op))
     }

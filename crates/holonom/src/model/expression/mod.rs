@@ -99,7 +99,7 @@ pub fn number_called(name: &str) -> Option<&'static str> {
 
 /// Whether a function of places or of a whole run has this name, which a table or a function of a program would hide.
 pub fn is_of_what_moves(name: &str) -> bool {
-    names::OF_PLACES.iter().any(|known| known.0 == name) || names::RUNNING.iter().any(|known| known.0 == name)
+    names::OF_PLACES.iter().any(|known| known.0 == name) || names::LOCAL.0 == name || names::RUNNING.iter().any(|known| known.0 == name)
 }
 
 /// A name with the indices in its brackets worked out: `link[i-1].x` becomes `link[2].x`.

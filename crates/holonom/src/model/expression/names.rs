@@ -57,6 +57,28 @@ pub(super) const RUNNING: &[(&str, Running)] =
 pub(super) const OF_PLACES: &[(&str, usize, &str)] =
     &[("distance", 2, "distance(A, B)"), ("speed", 2, "speed(A, B)"), ("angle", 3, "angle(A, B, C)")];
 
+/// The function of a vector's component in the axes of a body, and how it is written.
+pub(super) const LOCAL: (&str, &str) = ("local", "local(BODY, BODY.ax), or local(BODY, JOINT.fx)");
+
+/// The component along axis `k` of a body of the vector whose components have names that begin with `vector`, as a formula of them and of the
+/// body's orientation.
+pub(super) fn local(body: &str, vector: &str, k: usize, axes: &str) -> String {
+    let component = |axis: char| format!("'{vector}{axis}'");
+    // Column k of the matrix from body axes to the world's, by the quaternion or in the plane by the angle.
+    let q = |letter: usize| format!("'{body}.q{}'", ['w', 'x', 'y', 'z'][letter]);
+    let entry = |j: usize| match axes.len() {
+        2 if j == k => format!("cos('{body}.angle')"),
+        2 => format!("{}sin('{body}.angle')", if j < k { "-" } else { "" }),
+        _ if j == k => format!("(1-2*({}^2+{}^2))", q((k + 1) % 3 + 1), q((k + 2) % 3 + 1)),
+        _ => {
+            let (third, sign) = (3 - j - k, if (j + 1) % 3 == k { '-' } else { '+' });
+            format!("2*({}*{}{sign}{}*{})", q(j + 1), q(k + 1), q(0), q(third + 1))
+        }
+    };
+    let parts = axes.chars().enumerate().map(|(j, axis)| format!("({})*{}", entry(j), component(axis)));
+    parts.collect::<Vec<_>>().join("+")
+}
+
 /// A function of places as a formula of their coordinates: a distance, its rate, or the angle at the second of three places.
 pub(super) fn of_places(name: &str, places: &[String], axes: &str) -> String {
     let component = |place: &str, letters: &str| if place == "ground" { "0".to_string() } else { format!("'{place}.{letters}'") };

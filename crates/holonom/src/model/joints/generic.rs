@@ -11,7 +11,7 @@ use crate::model::key::Shape;
 #[derive(Clone, Debug, PartialEq, Keys, Sides)]
 #[kind(
     name = "generic",
-    equations = "x: d·x_A = 0, y: d·y_A = 0, z: d·z_A = 0, rx: y_A·z_B = 0, ry: z_A·x_B = 0, rz: x_A·y_B = 0",
+    equations = "x: d·x_A = 0, y: d·y_A = 0, z: d·z_A = 0, rx: y_A·z_B = 0, ry: z_A·x_B = 0, rz: x_A·y_B = 0; of two with one free axis f_B·m_A = 0 and f_B·n_A = 0",
     example = r#"
 [body.load]
 mass = 1
@@ -55,10 +55,15 @@ impl Joint for Generic {
                 false => pair.displacement(LOCKS[k], k),
             }
         }
+        let free: Vec<usize> = (0..3).filter(|&k| !locks[3 + k]).collect();
         for k in (0..3).filter(|&k| locks[3 + k]) {
-            pair.perpendicular((k + 2) % 3, (k + 1) % 3);
+            match free[..] {
+                // At a quarter turn about the free axis the others' own rows would be those of one lock.
+                [free] => pair.perpendicular(free, 3 - k - free),
+                _ => pair.perpendicular((k + 2) % 3, (k + 1) % 3),
+            }
         }
-        if let ([free], 2) = (&(0..3).filter(|&k| !locks[3 + k]).collect::<Vec<_>>()[..], locks[3..].iter().filter(|lock| **lock).count()) {
+        if let [free] = free[..] {
             let form = pair.angle_between([(free + 1) % 3, (free + 2) % 3]);
             pair.coordinate("angle", form, true);
         }

@@ -5,7 +5,7 @@ use super::{AnyJoint, Feature};
 use crate::model::assembly::{Assembly, GROUND};
 use crate::model::bodies::frame::Frame;
 use crate::model::bodies::nodes::Member;
-use crate::model::ends::{End, fixed, subtract};
+use crate::model::ends::{End, fixed, subtract_shared};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::geometry::{Vec3, unit};
@@ -131,7 +131,7 @@ impl Pair<'_, '_> {
     /// d = r_B − r_A between the places of the joint.
     pub fn d(&self) -> Vec<Term> {
         let [a, b] = [0, 1].map(|side| self.frames[side].point(self.geometry.at[side]));
-        subtract(&b, &a)
+        subtract_shared(&b, &a, self.assembly.builder.size())
     }
 
     /// The direction k of the triad u, v, w on a side.
@@ -162,7 +162,7 @@ impl Pair<'_, '_> {
 
     /// e_k(B)·e_l(A) = 0. Where the two bodies share one of the two directions, each of them keeps this anyway.
     pub fn perpendicular(&mut self, k: usize, l: usize) {
-        let is_shared = |m: usize| subtract(&self.e(Side::A, m), &self.e(Side::B, m)).is_empty();
+        let is_shared = |m: usize| subtract_shared(&self.e(Side::A, m), &self.e(Side::B, m), 1.0).is_empty();
         let implied = is_shared(k) || is_shared(l);
         let invariant = self.assembly.builder.dot(&self.e(Side::B, k), &self.e(Side::A, l));
         self.row(invariant, 0.0, implied);

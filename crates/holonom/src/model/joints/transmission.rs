@@ -92,7 +92,7 @@ impl Seats {
 
 /// Tangent of a pressure angle.
 pub(super) fn slope(entry: &Entry<'_>, angle: f64) -> Read<f64> {
-    if angle >= 0.0 && angle < std::f64::consts::FRAC_PI_2 {
+    if (0.0..std::f64::consts::FRAC_PI_2).contains(&angle) {
         return Ok(angle.tan());
     }
     Err(entry.refuse("pressure_angle", format!("a pressure angle of {angle} rad is none"), "it is at least 0 and below 90*deg"))

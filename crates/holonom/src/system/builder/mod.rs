@@ -123,6 +123,11 @@ impl SystemBuilder {
         }
     }
 
+    /// The size of the mechanism that was set, m.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
     /// Sets the size of the mechanism (m) where its nodes may not show it, as those of a single body at the origin.
     pub fn set_size(&mut self, size: f64) {
         self.size = size;

@@ -1,0 +1,86 @@
+//! Forces beside positions where bars come to lie in a line, and exactly there, against statics.
+
+mod common;
+
+use common::model;
+use holonom::simulation::{Choice, Method, Simulation};
+
+/// Two bars in a flat arch bear (m g/2)/sag of thrust, however flat it is.
+#[test]
+fn a_flat_arch_has_the_thrust_of_statics() {
+    for sag in [1e-2, 1e-3, 1e-4, 5e-5, 3e-5, 2e-5, 1.5e-5] {
+        let text = format!(
+            "plane = \"xy\"\ngravity = [0, -10]\n[body.a]\nmass = 1\ninertia = 0.1\nposition = [-0.5, {half}]\n\
+             [body.b]\nmass = 1\ninertia = 0.1\nposition = [0.5, {half}]\n\
+             [joint.A]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [-1, 0]\n\
+             [joint.B]\ntype = \"revolute\"\nbetween = [\"ground\", \"b\"]\nat = [1, 0]\n\
+             [joint.C]\ntype = \"revolute\"\nbetween = [\"a\", \"b\"]\nat = [0, {full}]\n[output]\nreactions = true\n",
+            half = -0.5 * sag,
+            full = -sag
+        );
+        for method in ["conserving-ggl", "radau"] {
+            let model = model(&text);
+            let simulation = common::simulation(&model, method, 0.01);
+            let (thrust, expected) = (model.reaction(&simulation, "A").unwrap().force[0].abs(), 10.0 * 0.5 / sag);
+            assert!((thrust / expected - 1.0).abs() < 1e-5, "{method}, sag {sag} m: {thrust} N, and {expected} N by hand");
+        }
+    }
+}
+
+/// A parallelogram of two cranks of 1 m and a coupler of 2 kg, of which one is driven; at 90° all lie in line.
+fn parallelogram(rates: [f64; 2], start: f64, drive: &str) -> String {
+    let (s, c) = start.sin_cos();
+    let crank = |name: &str, x: f64, rate: f64| {
+        format!(
+            "[body.{name}]\nmass = 1\ninertia = 0.1\nposition = [{}, {}]\norientation = {{ angle = {start} }}\nangular_velocity = {rate}\nvelocity = [{}, {}]\n\
+             [joint.{}]\ntype = \"revolute\"\nbetween = [\"ground\", \"{name}\"]\nat = [{x}, 0]\n",
+            x + 0.5 * c,
+            0.5 * s,
+            -0.5 * rate * s,
+            0.5 * rate * c,
+            name.to_uppercase()
+        )
+    };
+    let mean = 0.5 * (rates[0] + rates[1]);
+    format!(
+        "plane = \"xz\"\n{}{}[body.k]\nmass = 2\ninertia = 0.2\nposition = [{}, {s}]\nvelocity = [{}, {}]\nangular_velocity = {}\n\
+         [joint.P]\ntype = \"revolute\"\nbetween = [\"a\", \"k\"]\nat = [{c}, {s}]\n\
+         [joint.Q]\ntype = \"revolute\"\nbetween = [\"b\", \"k\"]\nat = [{}, {s}]\n{drive}",
+        crank("a", 0.0, rates[0]),
+        crank("b", 1.0, rates[1]),
+        c + 0.5,
+        -mean * s,
+        mean * c,
+        rates[1] - rates[0],
+        c + 1.0
+    )
+}
+
+/// The moment of a motor that turns it at a steady rate is that of the weights, right up to the line, and has no number on it.
+#[test]
+fn a_motor_has_its_moment_beside_a_dead_centre() {
+    let drive = "[drive.m]\ntype = \"angle\"\njoint = \"A\"\nprofile = \"t\"\n";
+    for beside in [1e-2, 1e-3, 1e-4] {
+        let text = parallelogram([1.0, 1.0], -beside, drive);
+        let (_, recording) = common::run_every(&common::model_with_forces(&text), "conserving-ggl", beside / 4.0, beside / 2.0, 1);
+        for (row, effort) in recording.column("m.effort").unwrap().iter().enumerate() {
+            let angle = -beside + beside / 4.0 * row as f64;
+            let expected = (0.5 + 0.5 + 2.0) * 9.81 * angle.cos();
+            assert!((effort / expected - 1.0).abs() < 1e-4, "{beside} rad: {effort} N·m in row {row}, and {expected} N·m by hand");
+        }
+    }
+}
+
+/// Flat cranks turn both with the same rate, or the second alone, as the second derivative of the coupler's length says, a² − a b = 0: other rates belong to no
+/// motion, which the start knows.
+#[test]
+fn a_start_knows_whether_a_motion_begins_with_it() {
+    for (rates, begins) in
+        [([1.0, 1.0], true), ([0.0, 1.0], true), ([0.0, 0.0], true), ([1.0, 0.5], false), ([1.0, 0.0], false), ([1.0, -1.0], false)]
+    {
+        let text = format!("gravity = [0, 0]\n{}", parallelogram(rates, 0.0, ""));
+        let choice = Choice::default().named("conserving-ggl");
+        let simulation = Simulation::new(model(&text).system.clone(), Method::resolve(&choice).unwrap(), 0.01).unwrap();
+        assert_eq!(simulation.start().leads_nowhere, !begins, "{rates:?}");
+    }
+}
