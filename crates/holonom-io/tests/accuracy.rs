@@ -312,6 +312,19 @@ fn what_stands_still_is_no_error() {
     }
 }
 
+/// Where a curve turns back within a millimetre, short steps change what it is a function of by next to nothing, and keep the energy all the same.
+#[test]
+fn tight_bends_keep_the_energy() {
+    let text = "plane = \"xy\"\n[point.b]\nmass = 1\nposition = [0, 0]\nvelocity = [-5.708187251030109, -0.5777401567176609]\n\
+                [joint.c]\ntype = \"point-on-curve\"\nbetween = [\"ground\", \"b\"]\nat = [0, 0]\nclosed = false\n\
+                curve = [[0, 0], [-1.7549823431045186, -0.21193929814961443], [-1.006418519537844, -0.19209572406803743]]\n";
+    for method in ["conserving-ggl", "conserving"] {
+        let choice = Choice { accuracy: Some(1e-4), ..Choice::default().named(method) };
+        let (simulation, _) = common::run(&model(text), choice, 0.02, 0.4);
+        assert!(simulation.audit().energy_summary().max_drift < 1e-9, "{method}");
+    }
+}
+
 /// Where events take samples, steps grow again after each of them.
 #[test]
 fn steps_grow_again_after_samples() {

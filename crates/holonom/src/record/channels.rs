@@ -88,7 +88,7 @@ impl RecordedJoint {
 
     /// Force (N) on its second body and moment (N·m) on it about the joint's place there, in world axes, at the present state, of which `x`
     /// are the [positions of all nodes](Simulation::reacting_positions). `None` where the simulation finds no forces or bodies share nodes
-    /// at the joint. What it bears of teeth and belts is not in it ([`Channels::wrenches`]).
+    /// at the joint. What it bears of teeth and belts is not in it.
     pub fn wrench(&self, simulation: &Simulation, x: &[f64]) -> Option<([f64; 3], [f64; 3])> {
         if !self.is_known {
             return None;

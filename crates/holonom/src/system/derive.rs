@@ -120,8 +120,8 @@ fn derive(value: &[f64], result: f64, evaluate: impl Fn(&[HyperDual64]) -> Hyper
     out
 }
 
-/// Change of the arguments, over their size, below which the quotient of the discrete derivative would be round-off; the
-/// derivative half way is then as exact.
+/// Change of the arguments, over their size, below which the quotient of the discrete derivative would be round-off; the mean of the
+/// derivative by Simpson's rule is then as exact, also where the function bends within a thousandth of them.
 pub(crate) const NO_CHANGE: f64 = 1e-6;
 
 /// The discrete derivative of a smooth function: D = g'(π̄) + (Δg − g'(π̄)·Δπ)/‖Δπ‖² Δπ, and what it changes by with the
@@ -150,10 +150,18 @@ pub(super) fn quotient(from: &[f64], to: &[f64], derivatives: impl Fn(Place, &[f
     out.hessian.iter_mut().flatten().for_each(|h| *h *= 0.5);
     let square = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>();
     let size = square(&change);
-    if size <= NO_CHANGE * NO_CHANGE * square(&middle) {
+    let is_small = size <= NO_CHANGE * NO_CHANGE * square(&middle);
+    if size == 0.0 {
         return out;
     }
     let (start, end) = (derivatives(Place::Start, from), derivatives(Place::End, to));
+    if is_small {
+        for i in 0..m {
+            out.gradient[i] = (start.gradient[i] + 4.0 * half.gradient[i] + end.gradient[i]) / 6.0;
+            (0..m).for_each(|j| out.hessian[i][j] = (2.0 * half.hessian[i][j] + end.hessian[i][j]) / 6.0);
+        }
+        return out;
+    }
     let along: f64 = (0..m).map(|i| half.gradient[i] * change[i]).sum();
     let quotient = (end.value - start.value - along) / size;
     for j in 0..m {
