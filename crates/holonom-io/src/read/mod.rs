@@ -253,7 +253,9 @@ impl Files for FilesBeside {
     fn numbers(&self, name: &str) -> Result<Arc<NumberFile>, String> {
         once(&self.numbers, name, || {
             let bytes = self.bytes(name, LARGEST_NUMBERS)?;
-            let read = Columns::read(&bytes, |_, _, cell| cell.parse().ok()).map_err(|error| format!("`{name}`: {error}"))?;
+            // Whether a cell that is empty matters is a matter of its column.
+            let number = |cell: &str| if cell.trim().is_empty() { Some(f64::NAN) } else { cell.parse().ok() };
+            let read = Columns::read(&bytes, |_, _, cell| number(cell)).map_err(|error| format!("`{name}`: {error}"))?;
             Ok(NumberFile { names: read.names, columns: read.columns })
         })
     }

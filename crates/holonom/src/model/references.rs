@@ -227,7 +227,10 @@ impl Assembly<'_> {
         }
         let cure = match nearest(&full, self.points.iter().map(|point| point.name.as_str()).chain([GROUND])) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => format!("add [point.{base}], or name one that is there"),
+            None => match split_place(base) {
+                Some((body, place)) => format!("name {place} in [body.{body}.points]; such places have no index"),
+                None => format!("add [point.{base}], or name one that is there"),
+            },
         };
         Err(entry.refuse(spot, format!("there is no point `{full}`"), cure))
     }

@@ -249,6 +249,12 @@ impl<'a, 'b> Reader<'a, 'b> {
     }
 }
 
+/// Whether the column of a thing is a force, a moment, a power or an acceleration.
+fn is_of_all_that_acts(column: &str) -> bool {
+    let of_axis = |first: &str| column.strip_prefix(first).is_some_and(|axis| ["x", "y", "z"].contains(&axis));
+    ["force", "effort", "power", "t", "alpha"].contains(&column) || ["a", "alpha", "f", "t", "r"].into_iter().any(of_axis)
+}
+
 impl Names for Reader<'_, '_> {
     fn variable(&mut self, name: &str) -> Result<Option<usize>, Mistake> {
         if let Some(known) = self.readings.names[0].iter().position(|known| known == name) {
@@ -281,6 +287,18 @@ impl Names for Reader<'_, '_> {
         };
         if let Some(leaf) = leaf {
             return Ok(Some(self.leaf(name, leaf)));
+        }
+        if let Some((_, column)) = name.rsplit_once('.')
+            && is_of_all_that_acts(column)
+        {
+            let message = format!(
+                "`{name}` cannot be read here: forces and accelerations follow from all that acts, and only measures may read them"
+            );
+            return Err(Mistake::new(
+                0,
+                message,
+                "write it by positions and velocities: what a spring pulls with is STIFFNESS*(distance(A, B) - LENGTH)",
+            ));
         }
         if name.contains('.') {
             let names = self.names();

@@ -261,11 +261,14 @@ impl Channels {
 
     /// The columns of the coordinates of joints, `names`, and their rates.
     pub(super) fn coordinate_headings<'a>(&'a self, names: &'a [String]) -> impl Iterator<Item = Heading> + 'a {
-        names.iter().flat_map(|name| {
+        let bodies: HashSet<&str> = self.bodies.iter().filter(|_| self.axes.len() == 2).map(|body| body.name.as_str()).collect();
+        names.iter().flat_map(move |name| {
             let is_angle = self.angles.contains(name);
             let (units, what) = (Units::of(is_angle), if is_angle { "angle" } else { "displacement" });
+            let is_of_body = name.strip_suffix(".angle").is_some_and(|owner| bodies.contains(owner));
+            let from = if is_of_body { "from the first axis of the model" } else { "from the pose that is written" };
             [
-                Heading::new(name.clone(), units.value, format!("{what}, from the pose that is written")),
+                Heading::new(name.clone(), units.value, format!("{what}, {from}")),
                 Heading::new(format!("{name}_rate"), units.rate, format!("rate of the {what}")),
             ]
         })
