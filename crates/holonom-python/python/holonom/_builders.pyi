@@ -427,7 +427,7 @@ class Builders:
     ) -> Entry:
         """Adds a joint of the kind ``generic``: any of the six motions of two bodies against each other locked, along and about three axes of the first body; locks of rotation hold for any others, but two alone are those of a joint with one free axis: locked rx and ry leave rz.
 
-        Equations: x: d·x_A = 0, y: d·y_A = 0, z: d·z_A = 0, rx: y_A·z_B = 0, ry: z_A·x_B = 0, rz: x_A·y_B = 0
+        Equations: x: d·x_A = 0, y: d·y_A = 0, z: d·z_A = 0, rx: y_A·z_B = 0, ry: z_A·x_B = 0, rz: x_A·y_B = 0; of two with one free axis f_B·m_A = 0 and f_B·n_A = 0
 
         between: the two bodies, or a body and "ground"
         at: where it sits at the start: a place, "BODY.POINT", or one for each body [m]
@@ -469,6 +469,7 @@ class Builders:
         *,
         joints: Sequence[str],
         ratio: Number,
+        pressure_angle: Number | None = None,
         repeat: str | None = None,
     ) -> Entry:
         """Adds a joint of the kind ``gear``: wheels that mesh, or any two coordinates of which one is a multiple of the other.
@@ -477,6 +478,7 @@ class Builders:
 
         joints: two joints, or coordinates of joints as "JOINT.angle" or "JOINT.displacement"
         ratio: how many times the second coordinate the first is; negative for outside gears about parallel axes
+        pressure_angle: angle between what teeth push with and the tangent of the pitch circles; with it the force of the teeth is recorded, and the bearings of wheels about parallel axes feel it [rad]; default: teeth are left out
         repeat: makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"; default: one entry
         """
 
@@ -487,6 +489,7 @@ class Builders:
         *,
         joints: Sequence[str],
         radius: Number,
+        pressure_angle: Number | None = None,
         repeat: str | None = None,
     ) -> Entry:
         """Adds a joint of the kind ``rack-and-pinion``: a wheel that rolls along a toothed rail: the displacement of the one joint is the radius times the angle of the other.
@@ -495,6 +498,7 @@ class Builders:
 
         joints: two joints, or coordinates of joints as "JOINT.angle" or "JOINT.displacement"
         radius: displacement over angle; negative when they count against each other [m]
+        pressure_angle: angle between what teeth push with and the way of the rack; with it the force of the teeth is recorded, and the bearings feel it [rad]; default: teeth are left out
         repeat: makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"; default: one entry
         """
 
@@ -506,6 +510,7 @@ class Builders:
         joints: Sequence[str],
         radii: Numbers,
         crossed: bool | None = None,
+        pretension: Number | None = None,
         repeat: str | None = None,
     ) -> Entry:
         """Adds a joint of the kind ``pulley``: two wheels with a belt between them.
@@ -515,6 +520,7 @@ class Builders:
         joints: two joints, or coordinates of joints as "JOINT.angle" or "JOINT.displacement"
         radii: radii of the two wheels [m]
         crossed: whether the belt crosses itself, so that the wheels turn against each other; default: false
+        pretension: tension of the belt at rest, 0 for a chain; with it the force of the belt is recorded, and the bearings of the wheels feel it [N]; default: the belt's pull is left out
         repeat: makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"; default: one entry
         """
 
