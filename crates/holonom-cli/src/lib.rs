@@ -13,6 +13,7 @@ mod items;
 mod keeper;
 mod load;
 mod message;
+mod notes;
 mod options;
 mod output;
 mod progress;
@@ -32,8 +33,9 @@ pub use commands::stability::largest_steps;
 pub use failure::Failure;
 pub use found::Found;
 pub use load::{Loaded, example, require_key, run_failure};
+pub use notes::notes;
 use options::{Cli, Command};
-pub use output::{Finished, Order, notes, simulate, table_writers};
+pub use output::{Finished, Order, simulate, table_writers};
 pub use sweep::{Complaint, Ending, Line, Plan, Store, Study, Vary};
 
 /// Does what was typed, of which the first word is the program, and says how that ended.

@@ -13,8 +13,8 @@ use crate::failure::Failure;
 use crate::found::Found;
 use crate::load::{self, Loaded};
 use crate::message::{listed, unused_parameters};
+use crate::notes::{changes_in_words, nowhere, open_columns};
 use crate::options::CheckArguments;
-use crate::output::{changes_in_words, nowhere, open_columns};
 use crate::table::{list, short};
 
 /// Validates a model and says what it is made of.

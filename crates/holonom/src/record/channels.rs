@@ -3,18 +3,17 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::UnitQuaternion;
 
+use super::body::RecordedBody;
 use super::force::{self, RecordedForce};
 use super::heading::{Heading, Units};
+use super::joint::{RecordedJoint, Wrench};
 use super::measure::{RecordedInput, RecordedMeasure};
 use super::recorder::{COLUMNS, Constraints, MEANINGS};
 use super::transmission::{Push, RecordedTransmission};
 use crate::simulation::{Apart, Simulation};
 use crate::system::{NodeId, Place, Signal, System, Term, place_of, rate_of};
-
-/// Force (N) and moment (N·m).
-type Wrench = ([f64; 3], [f64; 3]);
 
 /// A point whose motion is recorded.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,80 +22,6 @@ pub struct RecordedPoint {
     pub name: String,
     /// The nodes it is made of.
     pub terms: Vec<Term>,
-}
-
-/// A body whose motion is recorded.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RecordedBody {
-    /// With its index where it is repeated.
-    pub name: String,
-    /// Its centre of mass.
-    pub centre: Vec<Term>,
-    /// Orthogonal unit vectors in body axes, with their nodes: three, two of a plate, one of a rod and in the plane.
-    pub directions: Vec<([f64; 3], Vec<Term>)>,
-    /// From body axes to the world's at the start, which says how a rod is turned about itself.
-    pub start: Matrix3<f64>,
-}
-
-/// A joint whose force is recorded.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RecordedJoint {
-    /// With its index where it is repeated.
-    pub name: String,
-    /// Its rows among those of the system.
-    pub rows: std::ops::Range<usize>,
-    /// Whether these rows are all that holds it: where its bodies share nodes, its force is not known.
-    pub is_known: bool,
-    /// The nodes of its second body, or of the first where the second is the ground, and whether they are points.
-    pub nodes: Vec<(NodeId, bool)>,
-    /// 1 when they are those of the second body, −1 when of the first.
-    pub sign: f64,
-    /// Its place on the second body.
-    pub at: Vec<Term>,
-}
-
-impl RecordedJoint {
-    /// Which components of force (0 to 2) and moment (3 to 5) are recorded, in space or in the plane.
-    fn components(dim: usize) -> &'static [usize] {
-        if dim == 2 { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] }
-    }
-
-    /// These components with the endings of their columns.
-    pub fn columns(axes: &str) -> Vec<(usize, String)> {
-        let ending = |k: usize| match (axes.len(), k) {
-            (2, 5) => "t".to_string(),
-            _ => format!("{}{}", if k < 3 { 'f' } else { 't' }, char::from(axes.as_bytes()[k % 3])),
-        };
-        Self::components(axes.len()).iter().map(|&k| (k, ending(k))).collect()
-    }
-
-    fn headings(&self, axes: &str) -> impl Iterator<Item = Heading> {
-        let (name, letters) = (self.name.clone(), axes.to_string());
-        Self::columns(axes).into_iter().map(move |(k, ending)| {
-            let along = letters.chars().nth(k % 3).filter(|_| k < 3 || letters.len() == 3);
-            let along = along.map_or(String::new(), |axis| format!(", along {axis} of the world"));
-            let (unit, what) =
-                if k < 3 { ("N", "force on the second body") } else { ("N·m", "moment on the second body about the joint") };
-            Heading::new(format!("{name}.{ending}"), unit, format!("{what}{along}"))
-        })
-    }
-
-    /// Where it is at the positions `x` of all nodes in the world, m.
-    pub fn place(&self, x: &[f64], dim: usize) -> [f64; 3] {
-        place_of(&self.at, x, dim)
-    }
-
-    /// Force (N) on its second body and moment (N·m) on it about the joint's place there, in world axes, at the present state, of which `x`
-    /// are the [positions of all nodes](Simulation::reacting_positions). `None` where the simulation finds no forces or bodies share nodes
-    /// at the joint. What it bears of teeth and belts is not in it.
-    pub fn wrench(&self, simulation: &Simulation, x: &[f64]) -> Option<([f64; 3], [f64; 3])> {
-        if !self.is_known {
-            return None;
-        }
-        let about = self.place(x, simulation.system().dimension());
-        let (force, moment) = simulation.wrench(self.rows.clone(), &self.nodes, about)?;
-        Some((force.map(|f| self.sign * f), moment.map(|m| self.sign * m)))
-    }
 }
 
 /// A drive whose effort is recorded: −λ of its row, times a length where the row is one of half a square.
@@ -429,72 +354,4 @@ fn node(point: &RecordedPoint) -> Option<NodeId> {
         [Term { place: Place::Node(node), factor: 1.0, turn: 0.0 }] => Some(node),
         _ => None,
     }
-}
-
-impl RecordedBody {
-    /// Velocity of the centre (m/s) and angular velocity (rad/s, of a rod that across it) at positions `x` and velocities `v` of all
-    /// nodes.
-    pub fn velocity(&self, x: &[f64], v: &[f64], dim: usize) -> [Vector3<f64>; 2] {
-        let spin = match (&self.directions[..], dim) {
-            ([(_, terms)], _) => Vector3::from(place_of(terms, x, dim)).cross(&Vector3::from(rate_of(terms, v, dim))),
-            _ => self.turned(x, v).1,
-        };
-        [rate_of(&self.centre, v, dim).into(), spin]
-    }
-
-    /// Angular acceleration (rad/s², of a rod that across it) at positions `x`, velocities `v` and accelerations `a` of all nodes.
-    fn angular_acceleration(&self, x: &[f64], v: &[f64], a: &[f64], dim: usize) -> Vector3<f64> {
-        let of = |terms: &[Term]| {
-            (Vector3::from(place_of(terms, x, dim)), Vector3::from(rate_of(terms, v, dim)), Vector3::from(rate_of(terms, a, dim)))
-        };
-        let directions: Vec<_> = self.directions.iter().map(|(_, terms)| of(terms)).collect();
-        match directions[..] {
-            [(e, _, bend)] => e.cross(&bend),
-            [(e, e_rate, e_bend), (f, f_rate, f_bend)] => {
-                let (g, bend) = (e.cross(&f), e_bend.cross(&f) + 2.0 * e_rate.cross(&f_rate) + e.cross(&f_bend));
-                0.5 * (e.cross(&e_bend) + f.cross(&f_bend) + g.cross(&bend))
-            }
-            // ë = α × e + ω × (ω × e), the last part of which has no sum.
-            _ => 0.5 * directions.iter().map(|(e, _, bend)| e.cross(bend)).sum::<Vector3<f64>>(),
-        }
-    }
-
-    /// Where its centre is at the positions `x` of all nodes in the world, m.
-    pub fn place(&self, x: &[f64], dim: usize) -> Vector3<f64> {
-        place_of(&self.centre, x, dim).into()
-    }
-
-    /// From body axes to the world's at the positions `x` of all nodes, in space.
-    pub fn orientation(&self, x: &[f64]) -> Matrix3<f64> {
-        self.turned(x, &vec![0.0; x.len()]).0.to_rotation_matrix().into_inner()
-    }
-
-    /// Orientation and angular velocity in space.
-    fn turned(&self, x: &[f64], v: &[f64]) -> (UnitQuaternion<f64>, Vector3<f64>) {
-        let world: Vec<Vector3<f64>> = self.directions.iter().map(|(_, terms)| place_of(terms, x, 3).into()).collect();
-        let rates: Vec<Vector3<f64>> = self.directions.iter().map(|(_, terms)| rate_of(terms, v, 3).into()).collect();
-        let local: Vec<Vector3<f64>> = self.directions.iter().map(|&(local, _)| local.into()).collect();
-        match world[..] {
-            [axis] => {
-                // Of a rod the turn about itself is not known: the shortest from the start.
-                let turn = Rotation3::rotation_between(&(self.start * local[0]), &axis).unwrap_or_else(Rotation3::identity);
-                (quaternion(turn.into_inner() * self.start), axis.cross(&rates[0]))
-            }
-            [e, f] => {
-                let (g, rate) = (e.cross(&f), rates[0].cross(&f) + e.cross(&rates[1]));
-                let matrix =
-                    Matrix3::from_columns(&[e, f, g]) * Matrix3::from_columns(&[local[0], local[1], local[0].cross(&local[1])]).transpose();
-                (quaternion(matrix), 0.5 * (e.cross(&rates[0]) + f.cross(&rates[1]) + g.cross(&rate)))
-            }
-            [e, f, g] => {
-                let matrix = Matrix3::from_columns(&[e, f, g]) * Matrix3::from_columns(&[local[0], local[1], local[2]]).transpose();
-                (quaternion(matrix), 0.5 * (e.cross(&rates[0]) + f.cross(&rates[1]) + g.cross(&rates[2])))
-            }
-            _ => unreachable!("a body in space has one to three directions"),
-        }
-    }
-}
-
-fn quaternion(matrix: Matrix3<f64>) -> UnitQuaternion<f64> {
-    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix))
 }

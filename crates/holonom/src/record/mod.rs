@@ -1,9 +1,11 @@
 //! What is kept of a run: named columns in memory, one row per recorded step, and how the mechanism is drawn.
 
 mod between;
+mod body;
 mod channels;
 mod force;
 mod heading;
+mod joint;
 mod measure;
 mod peaks;
 mod recorder;
@@ -11,9 +13,11 @@ mod scene;
 mod transmission;
 
 pub use between::Largest;
-pub use channels::{Channels, RecordedBody, RecordedCoupling, RecordedEffort, RecordedJoint, RecordedPoint, RecordedRod};
+pub use body::RecordedBody;
+pub use channels::{Channels, RecordedCoupling, RecordedEffort, RecordedPoint, RecordedRod};
 pub use force::{Along, Exerts, Lengths, RecordedForce, Shows};
 pub use heading::Heading;
+pub use joint::RecordedJoint;
 pub use measure::{Formula, RecordedInput, RecordedMeasure, Running, RunningValue};
 pub(crate) use measure::{MeasureReads, Series};
 pub use peaks::{Extremes, Peak, Peaks};

@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-use super::channels::{Channels, RecordedJoint};
+use super::channels::Channels;
+use super::joint::RecordedJoint;
 use super::{Column, Largest, Recording};
 
 /// The largest value of something that acts.

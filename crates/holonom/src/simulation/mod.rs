@@ -15,6 +15,7 @@ mod no_value;
 mod pilot;
 mod promise;
 mod reactions;
+mod reason;
 mod sight;
 mod start;
 mod state;
@@ -38,7 +39,7 @@ pub use words::MethodError;
 
 use std::sync::Arc;
 
-use crate::formulation::{Failure, Independence, Newton, Workspace, independent};
+use crate::formulation::{Independence, Newton, Workspace, independent};
 use crate::integrator::Integrator;
 use crate::system::{Evaluation, GaugeValues, System};
 use checkpoint::{Grid, Hints};
@@ -104,9 +105,6 @@ impl<F: FnMut(&Simulation) -> Verdict> Observer for F {
         self(simulation)
     }
 }
-
-/// A row that is missed by less than this share of the mechanism's size is not to blame for a step that fails.
-const BLAMED: f64 = 1e-10;
 
 /// A method at work on a system. Everything a step needs is allocated when it is made.
 pub struct Simulation {
@@ -301,41 +299,6 @@ impl Simulation {
 
     fn interrupted(&self) -> Status {
         Status::Stopped { at: self.state.t, reason: "interrupted".into() }
-    }
-
-    fn reason(&mut self, failure: Failure) -> String {
-        let Workspace { phi, scales, .. } = &self.work;
-        let missed = phi.iter().zip(&scales.gradient).map(|(phi, g)| phi.abs() / (g * scales.length));
-        let worst = missed.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        // A row at round-off is not to blame.
-        let worst = worst.filter(|(_, missed)| missed.is_nan() || *missed >= BLAMED);
-        let row = worst.map_or(String::new(), |(k, _)| format!("; the worst row is `{}` with {:.1e}", self.system.row_names[k], phi[k]));
-        let t = self.state.t;
-        if matches!(failure, Failure::NotFinite | Failure::TooSmall | Failure::JumpsBack { .. })
-            && let Some(force) = self.force_without_value()
-        {
-            return format!(
-                "the force of `{force}` has no value there (a formula is outside its domain, or a table outside its range) at t = {t:.6} s"
-            );
-        }
-        let what = format!("{} at t = {t:.6} s{row}", failure.describe(&self.system));
-        let is_of_rows = matches!(failure, Failure::NotConverged { .. } | Failure::Broken { .. } | Failure::Singular(_));
-        match is_of_rows.then(|| self.conflict()).flatten() {
-            Some(row) => format!("`{row}` asks for a motion that the other constraints do not allow: {what}"),
-            None if is_of_rows => what + &self.disagreement(),
-            None => what,
-        }
-    }
-
-    /// That redundant rows may not agree, where there are any.
-    fn disagreement(&self) -> String {
-        match self.redundant_rows() {
-            0 => String::new(),
-            redundant => format!(
-                "; {redundant} of the constraints follow from others: where they differ from these in the last digits that are written, as hinges of a door \
-                 whose axes are a little off, nothing meets them all"
-            ),
-        }
     }
 
     /// The system that is simulated.

@@ -1,0 +1,135 @@
+//! What is said of a run beside its results: slips in the model, what was put right before the start, and what has no value or more than one.
+
+use std::collections::HashSet;
+
+use holonom::analysis::{self, Undetermined};
+use holonom::model::{Model, StartChange};
+use holonom::record::{Channels, RecordedJoint, Recording};
+use holonom::simulation::{Method, Simulation, Start};
+
+use crate::load::Loaded;
+use crate::message::{listed, unused_parameters};
+use crate::table::short;
+
+/// Positions over the size of the mechanism that round-off moves at the start.
+const ROUNDED: f64 = 1e-12;
+
+/// Most rows for which a run says which forces are not unique: it takes a time that grows with their cube.
+const FEW_ROWS: usize = 200;
+
+/// Which of the forces that a run has recorded redundant rows leave undetermined.
+pub fn shared_forces(model: &Model, simulation: &Simulation) -> Option<String> {
+    simulation.reactions()?;
+    let free = analysis::undetermined_of(simulation, FEW_ROWS).filter(|free| free.count() > 0)?;
+    let open = open_columns(&free, model.channels.told(), &simulation.reacting_positions(), model);
+    let named = (!open.is_empty()).then(|| listed(&open))?;
+    Some(format!(
+        "redundant constraints leave open how they share forces: of {named} one way of many is shown (a bushing in place of a joint decides it)"
+    ))
+}
+
+/// Components of forces and moments of joints, efforts of drives and couplers, and tensions of rods, that are left undetermined, `world` being where the
+/// nodes are: `hinge.fy .tx`, `motor.effort`.
+pub fn open_columns(free: &Undetermined<'_>, channels: &Channels, world: &[f64], model: &Model) -> Vec<String> {
+    let mut open = Vec::new();
+    for joint in &channels.joints {
+        let unique = free.are_unique(&joint.rows, &joint.nodes, free.system().of_world(joint.place(world, model.dimension)));
+        let columns = RecordedJoint::columns(model.axes);
+        let columns: Vec<&str> = columns.iter().filter(|(k, _)| !unique[*k]).map(|(_, column)| column.as_str()).collect();
+        if !columns.is_empty() {
+            open.push(format!("{}.{}", joint.name, columns.join(" .")));
+        }
+    }
+    let shared: HashSet<usize> = free.rows().into_iter().collect();
+    let efforts = channels.efforts.iter().map(|effort| (&effort.name, effort.row));
+    let couplings = channels.couplings.iter().map(|coupling| (&coupling.name, coupling.row));
+    let efforts = efforts.chain(couplings).filter(|(_, row)| shared.contains(row));
+    open.extend(efforts.map(|(name, _)| format!("{name}.effort")));
+    let pushes = channels.transmissions.iter().filter(|push| shared.contains(&push.row));
+    open.extend(pushes.map(|push| format!("{}.f{}", push.name, model.axes.chars().map(String::from).collect::<Vec<_>>().join(" .f"))));
+    let rods = channels.rods.iter().filter(|rod| shared.contains(&rod.row));
+    open.extend(rods.map(|rod| format!("{}.force", rod.name)));
+    open
+}
+
+/// Measures that have no value in some rows.
+pub fn unknown_measures(model: &Model, recording: &Recording) -> Vec<String> {
+    let rows = recording.rows();
+    let count = |name: &String| recording.column(name).map_or(0, |values| values.iter().filter(|value| value.is_nan()).count());
+    let of_measures = model.channels.measures.iter().map(|measure| (&measure.name, count(&measure.name)));
+    let without = of_measures.filter(|(_, count)| *count > 0);
+    without
+        .map(|(name, count)| format!("the measure `{name}` has no value in {count} of {rows} rows: a formula is outside its domain there"))
+        .collect()
+}
+
+/// That rows have no forces of joints, as the position is singular there.
+pub fn rows_without_forces(model: &Model, recording: &Recording) -> Option<String> {
+    let told = model.channels.told();
+    let of_joints = told.joints.first().map(|joint| format!("{}.f{}", joint.name, &model.axes[..1]));
+    let of_drives = told.efforts.first().map(|effort| format!("{}.effort", effort.name));
+    let name = of_joints.or(of_drives).or(told.rods.first().map(|rod| format!("{}.force", rod.name)))?;
+    let unknown = recording.column(&name)?.iter().zip(recording.column("t")?).filter(|(force, _)| force.is_nan());
+    let times: Vec<f64> = unknown.map(|(_, t)| *t).collect();
+    let first = times.first()?;
+    let rows = if times.len() == 1 { "one row has".into() } else { format!("{} rows have", times.len()) };
+    (times.len() < recording.rows()).then(|| {
+        format!(
+            "{rows} no accelerations and no forces of joints and drives, first at {} s: at a singular position none keep all constraints",
+            short(*first)
+        )
+    })
+}
+
+/// What looks like a slip, and what was put right before the start.
+pub fn notes(loaded: &Loaded, simulation: &Simulation) -> Vec<String> {
+    slips(loaded).chain(corrections(&loaded.model, simulation)).collect()
+}
+
+/// What looks like a slip in a model, or in how it is run.
+pub fn slips(loaded: &Loaded) -> impl Iterator<Item = String> {
+    unused_parameters(&loaded.source).into_iter().chain(loaded.model.notes.clone())
+}
+
+/// What was put right before the start.
+pub fn corrections(model: &Model, simulation: &Simulation) -> Vec<String> {
+    let mut notes = Vec::new();
+    let start = simulation.start();
+    let size = simulation.state().x.iter().fold(0.0, |most: f64, x| x.abs().max(most));
+    if start.moved > ROUNDED * size {
+        notes.push(format!("positions were moved by up to {:.2e} m onto their constraints", start.moved));
+    }
+    notes.extend(nowhere(start));
+    let mut changes = model.start_changes(&simulation.state().x, simulation.velocities());
+    // That parts start moving for which no velocity was written is what a drive is for.
+    changes.retain(|change| !change.was_at_rest);
+    if !changes.is_empty() {
+        notes.push(format!("to meet the constraints, start velocities were changed: {}", changes_in_words(&changes)));
+    }
+    notes
+}
+
+/// Accuracies below this take schemes of order 2 ten times the steps for two digits, where one of order 5 takes four times as many.
+const FINE: f64 = 1e-6;
+
+/// That another method would take far fewer steps.
+pub fn costly(method: &Method) -> Option<String> {
+    let accuracy = method.accuracy.filter(|accuracy| *accuracy < FINE && method.order() == 2)?;
+    Some(format!("`{}` is of order 2, and takes very many steps for an accuracy of {}: `radau` takes few", method.name, short(accuracy)))
+}
+
+/// That no motion begins with the velocities of a start.
+pub fn nowhere(start: &Start) -> Option<String> {
+    let text = "no motion begins with the start velocities: at this singular position no accelerations keep all constraints, and what comes is one way of many \
+                (give the velocities of one of the ways in which it can move from there)";
+    start.leads_nowhere.then(|| text.into())
+}
+
+/// Bodies and points with the change of their velocities at the start.
+pub fn changes_in_words(changes: &[StartChange]) -> String {
+    let words = changes.iter().map(|change| match change.angular_velocity > 0.0 {
+        true => format!("`{}` by {} m/s and {} rad/s", change.name, short(change.velocity), short(change.angular_velocity)),
+        false => format!("`{}` by {} m/s", change.name, short(change.velocity)),
+    });
+    listed(&words.collect::<Vec<_>>())
+}

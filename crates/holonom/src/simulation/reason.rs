@@ -1,0 +1,45 @@
+//! Why a run stopped, in words.
+
+use super::Simulation;
+use crate::formulation::{Failure, Workspace};
+
+/// A row that is missed by less than this share of the mechanism's size is not to blame for a step that fails.
+const BLAMED: f64 = 1e-10;
+
+impl Simulation {
+    /// Why a run stopped, in words.
+    pub(super) fn reason(&mut self, failure: Failure) -> String {
+        let Workspace { phi, scales, .. } = &self.work;
+        let missed = phi.iter().zip(&scales.gradient).map(|(phi, g)| phi.abs() / (g * scales.length));
+        let worst = missed.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        // A row at round-off is not to blame.
+        let worst = worst.filter(|(_, missed)| missed.is_nan() || *missed >= BLAMED);
+        let row = worst.map_or(String::new(), |(k, _)| format!("; the worst row is `{}` with {:.1e}", self.system.row_names[k], phi[k]));
+        let t = self.state.t;
+        if matches!(failure, Failure::NotFinite | Failure::TooSmall | Failure::JumpsBack { .. })
+            && let Some(force) = self.force_without_value()
+        {
+            return format!(
+                "the force of `{force}` has no value there (a formula is outside its domain, or a table outside its range) at t = {t:.6} s"
+            );
+        }
+        let what = format!("{} at t = {t:.6} s{row}", failure.describe(&self.system));
+        let is_of_rows = matches!(failure, Failure::NotConverged { .. } | Failure::Broken { .. } | Failure::Singular(_));
+        match is_of_rows.then(|| self.conflict()).flatten() {
+            Some(row) => format!("`{row}` asks for a motion that the other constraints do not allow: {what}"),
+            None if is_of_rows => what + &self.disagreement(),
+            None => what,
+        }
+    }
+
+    /// That redundant rows may not agree, where there are any.
+    fn disagreement(&self) -> String {
+        match self.redundant_rows() {
+            0 => String::new(),
+            redundant => format!(
+                "; {redundant} of the constraints follow from others: where they differ from these in the last digits that are written, as hinges of a door \
+                 whose axes are a little off, nothing meets them all"
+            ),
+        }
+    }
+}
