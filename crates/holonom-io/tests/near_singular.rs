@@ -84,3 +84,36 @@ fn a_start_knows_whether_a_motion_begins_with_it() {
         assert_eq!(simulation.start().leads_nowhere, !begins, "{rates:?}");
     }
 }
+
+/// What stands still on more hinges than it needs has forces, of nothing, in every row: what round-off makes of its velocities is no motion
+/// that leads nowhere, in any unit and for any mass.
+#[test]
+fn what_stands_still_has_forces() {
+    for (length, mass, place) in [(1e-3, 1.0, 1e4), (1.0, 1e6, 0.0), (1e3, 1e-6, 0.0), (1e3, 1.0, 1e4), (1e3, 1e6, 0.0)] {
+        let at = |x: f64, y: f64, z: f64| format!("[{}, {}, {}]", length * (x + place), length * y, length * z);
+        let inertia = |share: f64| format!("[{}, {}, {}]", 3.0 * share, 2.5 * share, 1.5 * share);
+        let square = mass * length * length;
+        let mut text = format!(
+            "gravity = [0, 0, 0]\n[body.door]\nmass = {mass}\ninertia = {}\nposition = {}\n\
+             [body.knob]\nmass = {}\ninertia = {}\nposition = {}\n\
+             [joint.screw]\ntype = \"fixed\"\nbetween = [\"door\", \"knob\"]\nat = {}\n\
+             [joint.pin]\ntype = \"spherical\"\nbetween = [\"door\", \"knob\"]\nat = {}\n[output]\nreactions = true\n",
+            inertia(square),
+            at(0.5, 0.25, 0.5),
+            1e-6 * mass,
+            inertia(1e-8 * square),
+            at(1.0, 0.5, 0.5),
+            at(1.0, 0.5, 0.5),
+            at(1.0, 0.5, 0.625)
+        );
+        for k in 0..4 {
+            let place = at(0.0, 0.0, 0.25 * f64::from(k));
+            text += &format!("[joint.h{k}]\ntype = \"revolute\"\nbetween = [\"ground\", \"door\"]\nat = {place}\naxis = [0, 0, 1]\n");
+        }
+        let (_, recording) = common::run_every(&model(&text), "conserving-ggl", 0.005, 0.05, 1);
+        for name in ["h0.fx", "screw.fz", "door.ax", "knob.alphaz"] {
+            let column = recording.column(name).unwrap();
+            assert!(column.iter().all(|value| value.is_finite()), "{length} m, {mass} kg, {place} away, {name}: {column:?}");
+        }
+    }
+}

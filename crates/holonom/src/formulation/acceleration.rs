@@ -33,6 +33,10 @@ const SLOWEST: f64 = 0.999;
 const GROWS: f64 = 0.01;
 const MISSED: f64 = 1e-6;
 
+/// How many times more the accelerations may be off than the velocities are off the rows, each over its size: what round-off makes of what stands
+/// still is no motion, and no accelerations keep it on all rows.
+const FOLLOWS: f64 = 100.0;
+
 /// Passes end where the next would change less than this share of accelerations and multipliers.
 const ROUNDED: f64 = 0.1 * f64::EPSILON;
 
@@ -124,7 +128,7 @@ impl Newton {
             if pass % passes == 0 {
                 // Multipliers grow in each pass where rows ask for what the others do not leave.
                 if penalty.is_none() && share >= SLOWEST && taken[1] >= GROWS * whole[1] {
-                    are_met = work.misses(system) <= MISSED;
+                    are_met = work.misses(system) <= MISSED.max(FOLLOWS * work.strays(system, t));
                 }
                 let matters = (0..2).all(|k| taken[k] > MATTERS * whole[k]);
                 if penalty.is_some() || !matters || share.is_nan() || share >= SLOWEST {
@@ -171,11 +175,16 @@ impl Workspace {
 
     /// By how much the accelerations miss the rows, over the size of both.
     fn misses(&mut self, system: &System) -> f64 {
-        let Self { phi, rows, a, sampled, scales, .. } = self;
+        let Self { phi, rows, a, sampled, .. } = self;
         rows.copy_from_slice(phi);
         system.slots.add_along(system.dim, 1.0, &sampled.at.gradient, a, rows);
-        let scaled = |rows: &[f64]| rows.iter().zip(&scales.gradient).fold(0.0, |m, (row, gradient)| f64::max(m, row.abs() / gradient));
-        scaled(rows) / (scaled(phi) + largest(&a[..system.coordinates()]))
+        self.scaled(&self.rows) / (self.scaled(&self.phi) + largest(&self.a[..system.coordinates()]))
+    }
+
+    /// By how much the velocities at the end are off the rows, over their size; nothing where there are none.
+    fn strays(&mut self, system: &System, t: f64) -> f64 {
+        self.rate_violation(system, t);
+        (self.scaled(&self.rows) / largest(&self.end.v)).max(0.0)
     }
 
     /// Leaves minus M a + f + Gᵀλ and minus the rows, `phi` and what the accelerations add to it, in the unknowns, where the forces f were

@@ -272,7 +272,11 @@ impl Workspace {
 
     /// Largest |Φ_k| in units of length: each row over its own gradient.
     pub fn scaled_violation(&self) -> f64 {
-        let scaled = self.phi.iter().zip(&self.scales.gradient).map(|(phi, scale)| phi.abs() / scale);
-        scaled.fold(0.0, f64::max) / self.scales.length
+        self.scaled(&self.phi) / self.scales.length
+    }
+
+    /// The largest of some numbers of the rows, each over the size of its row's gradient.
+    pub fn scaled(&self, rows: &[f64]) -> f64 {
+        rows.iter().zip(&self.scales.gradient).map(|(row, scale)| row.abs() / scale).fold(0.0, f64::max)
     }
 }

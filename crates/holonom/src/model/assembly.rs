@@ -11,10 +11,12 @@ use super::ends::End;
 use super::entry::Entry;
 use super::fault::{Read, Sink};
 use super::geometry::Vec3;
-use super::joints::{Geometry, JointInfo, TransmissionInfo};
+use super::joints::{Geometry, JointInfo};
 use super::signals::Signals;
 use super::start::{DrivenLength, Target};
-use crate::record::{Anchor, Line, LineKind, RecordedCoupling, RecordedForce, RecordedRod, SceneAxis, SceneJoint, SceneLoad, Shows};
+use crate::record::{
+    Anchor, Line, LineKind, RecordedCoupling, RecordedForce, RecordedRod, RecordedTransmission, SceneAxis, SceneJoint, SceneLoad, Shows,
+};
 use crate::system::{Signal, SystemBuilder};
 
 /// The name of the origin.
@@ -114,7 +116,7 @@ pub struct Assembly<'a> {
     /// What couplers exert along the coordinates that they couple.
     pub(in crate::model) couplings: Vec<RecordedCoupling>,
     /// Couplers whose forces bearings feel.
-    pub(in crate::model) transmissions: Vec<TransmissionInfo>,
+    pub(in crate::model) transmissions: Vec<RecordedTransmission>,
     /// Bars and constraints that keep a distance.
     pub(in crate::model) rods: Vec<RecordedRod>,
     /// What forces do, and what is to be shown of that which is built.

@@ -4,9 +4,7 @@ use super::assembly::{self, Assembly, Axes};
 use super::bodies::frame::Frame;
 use super::bodies::nodes::Member;
 use super::{BarInfo, BodyInfo, Model, Output, PointInfo, RigidBody, Settings, joints};
-use crate::record::{
-    Channels, PointKind, RecordedEffort, RecordedJoint, RecordedPoint, RecordedTransmission, Scene, SceneBody, ScenePoint, Transmission,
-};
+use crate::record::{Channels, PointKind, RecordedEffort, RecordedJoint, RecordedPoint, Scene, SceneBody, ScenePoint};
 use crate::system::Place;
 
 /// Puts together what has been read without a fault.
@@ -76,7 +74,7 @@ pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, 
             efforts: recorded_efforts(efforts),
             couplings,
             rods,
-            transmissions: recorded_transmissions(transmissions, &frames),
+            transmissions,
             inputs: signals.inputs,
             ..channels
         },
@@ -89,29 +87,6 @@ pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, 
 
 fn recorded_efforts(efforts: Vec<assembly::Effort>) -> Vec<RecordedEffort> {
     efforts.into_iter().map(|assembly::Effort { name, row, length, is_moment }| RecordedEffort { name, row, length, is_moment }).collect()
-}
-
-fn recorded_transmissions(transmissions: Vec<joints::TransmissionInfo>, frames: &[Frame]) -> Vec<RecordedTransmission> {
-    let recorded = |info: joints::TransmissionInfo| {
-        let carrier = match info.carrier {
-            Member::Body(k) => &frames[k],
-            _ => &Frame::Ground,
-        };
-        let kind = match info.kind {
-            Transmission::Rack { radius, slope, .. } => Transmission::Rack { way: carrier.vector(info.way), radius, slope },
-            other => other,
-        };
-        RecordedTransmission {
-            name: info.name,
-            row: info.row,
-            factor: info.factor,
-            joints: info.joints,
-            sides: info.wheels.map(|side| if side == 1 { 1.0 } else { -1.0 }),
-            axis: carrier.vector(info.axis),
-            kind,
-        }
-    };
-    transmissions.into_iter().map(recorded).collect()
 }
 
 /// Points, named points of bodies, and the forces of joints.

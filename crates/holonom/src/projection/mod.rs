@@ -218,7 +218,6 @@ impl Projection {
             Level::Velocity => work.rate_violation(system, time),
             Level::Acceleration => work.acceleration_violation(system, time),
         }
-        let scaled = work.rows.iter().zip(&work.scales.gradient).map(|(row, scale)| row.abs() / scale);
-        scaled.fold(0.0, f64::max)
+        work.scaled(&work.rows)
     }
 }

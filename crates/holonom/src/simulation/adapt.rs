@@ -171,7 +171,7 @@ impl Simulation {
             let planned = pilot.control.step;
             pilot.control.accept(step, ratio);
             pilot.last = Some((taken, step));
-            pilot.patience.renew();
+            pilot.patience.rejected = 0;
             pilot.sight = std::mem::take(sight);
             if has_bend || step < 0.5 * planned {
                 // How long the step to a bend was, or what was left to a time, says nothing of the next one.

@@ -103,13 +103,6 @@ const SLOW_LOOKS: u32 = 1000;
 /// Steps between two times at which something changes abruptly: a pulse that is nothing at both is seen.
 pub(super) const BETWEEN: f64 = 4.0;
 
-impl Patience {
-    /// Begins anew after a step that was taken.
-    pub fn renew(&mut self) {
-        self.rejected = 0;
-    }
-}
-
 impl Pilot {
     pub fn new(system: &System, method: &Method, newton: &Newton, state: &State, gauges: &GaugeValues, audit: &Audit) -> Option<Box<Self>> {
         let mut measured = Measured::default();
@@ -170,10 +163,7 @@ impl Pilot {
         let ratio = self.control.ratio(taken, step, t, &self.v, 1.0, &mut simulation.work);
         let of_energy = self.ratio_of_energy(simulation, step, 1.0);
         // Errors of explicit schemes grow there, too, and may be far more than their estimate, which the energy shows.
-        if integrator.is_explicit() {
-            return ratio.max(of_energy);
-        }
-        if ratio.max(of_energy) <= 1.0 {
+        if integrator.is_explicit() || ratio.max(of_energy) <= 1.0 {
             return ratio.max(of_energy);
         }
         self.count_redundant(&simulation.system, &simulation.state);

@@ -180,7 +180,7 @@ fn correct_velocities(
     for pass in 0..PASSES {
         work.rate_violation(system, asked.t);
         let before = violation;
-        violation = work.rows.iter().zip(&work.scales.gradient).fold(0.0, |m, (row, scale)| f64::max(m, row.abs() / scale));
+        violation = work.scaled(&work.rows);
         // What rows ask for that move is a velocity, too.
         size = size.max(violation);
         let is_met = violation <= ROUND_OFF * size;

@@ -5,7 +5,6 @@ use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
-use crate::model::geometry::norm;
 use crate::model::key::Shape;
 use crate::record::Transmission;
 
@@ -72,8 +71,8 @@ impl Element for Gear {
             let [a, b] = seats.senses;
             // Both wheels have one velocity at the pitch point.
             let share = b / (b - a * ratio);
-            if !share.is_finite() || norm(seats.across) == 0.0 {
-                let message = "wheels about one axis, or that turn alike, do not mesh";
+            if !share.is_finite() || seats.distance == 0.0 || !second.is_angle {
+                let message = "wheels about one axis, or that turn alike, do not mesh, and a rail is no wheel";
                 return Err(entry.refuse_key("pressure_angle", message, "leave `pressure_angle` out, or check the sign of `ratio`"));
             }
             seats.record(assembly, entry, 1.0, Transmission::Teeth { share, slope });

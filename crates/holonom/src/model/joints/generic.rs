@@ -65,7 +65,7 @@ impl Joint for Generic {
         }
         if let [free] = free[..] {
             let form = pair.angle_between([(free + 1) % 3, (free + 2) % 3]);
-            pair.coordinate("angle", form, true);
+            pair.coordinate_about("angle", form, true, Some(free));
         }
         Ok(())
     }

@@ -58,7 +58,6 @@ pub use revolute_spherical::RevoluteSpherical;
 pub use rolling::Rolling;
 pub use screw::Screw;
 pub use spherical::Spherical;
-pub(super) use transmission::TransmissionInfo;
 pub use universal::Universal;
 
 pub use holonom_derive::Sides;

@@ -23,6 +23,8 @@ pub struct Coordinate {
     pub form: Form,
     /// Whether it is an angle (rad) and not a displacement (m).
     pub is_angle: bool,
+    /// The direction of the joint's triad that it is about or along, where it is one.
+    pub about: Option<usize>,
 }
 
 /// A joint of the model.
@@ -227,13 +229,13 @@ impl Pair<'_, '_> {
     /// The angle of B against A about the axis, as a coordinate.
     pub fn angle(&mut self) {
         let form = self.angle_between([1, 2]);
-        self.coordinate("angle", form, true);
+        self.coordinate_about("angle", form, true, Some(0));
     }
 
     /// The displacement d·e_k(A), as a coordinate.
     pub fn displacement(&mut self, name: &'static str, k: usize) {
         let form = Form::Product([self.d(), self.e(Side::A, k)]);
-        self.coordinate(name, form, false);
+        self.coordinate_about(name, form, false, Some(k));
     }
 
     /// Adds the displacements across u, measured as `JOINT.x` and `JOINT.y`: x goes the way of that axis of the model which is nearest to being at
@@ -248,7 +250,12 @@ impl Pair<'_, '_> {
 
     /// Adds a coordinate, measured as `JOINT.NAME`: an angle in rad, or a displacement in m.
     pub fn coordinate(&mut self, name: &'static str, form: Form, is_angle: bool) {
-        self.coordinates.push(Coordinate { joint: self.entry.name.to_string(), name, form, is_angle });
+        self.coordinate_about(name, form, is_angle, None);
+    }
+
+    /// The same of one that is about or along a direction of the triad.
+    pub fn coordinate_about(&mut self, name: &'static str, form: Form, is_angle: bool, about: Option<usize>) {
+        self.coordinates.push(Coordinate { joint: self.entry.name.to_string(), name, form, is_angle, about });
     }
 
     /// The angle from e_k(A) to e_k(B), positive from k to l; in the plane from u to its quarter turn.

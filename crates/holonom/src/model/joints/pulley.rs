@@ -5,7 +5,6 @@ use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
-use crate::model::geometry::norm;
 use crate::model::key::Shape;
 use crate::record::Transmission;
 
@@ -73,7 +72,7 @@ impl Element for Pulley {
             let seats = Seats::of(assembly, entry, "pretension", [&first, &second])?;
             let [a, b] = seats.senses;
             let rise = if a * b * sign > 0.0 { r1 + r2 } else { r1 - r2 };
-            let distance = norm(seats.across);
+            let distance = seats.distance;
             if distance <= rise.abs() {
                 let message = format!("the axes are {distance} m apart, and no belt goes around both wheels");
                 return Err(entry.refuse("radii", message, "check the radii, and where the joints are"));

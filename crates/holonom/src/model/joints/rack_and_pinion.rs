@@ -69,7 +69,8 @@ impl Element for RackAndPinion {
             let slope = slope(entry, pressure)?;
             let seats = Seats::of(assembly, entry, "pressure_angle", [&angle, &displacement])?;
             let [a, b] = seats.senses;
-            seats.record(assembly, entry, -radius, Transmission::Rack { way: Vec::new(), radius: a * b * radius, slope });
+            let way = seats.way(assembly);
+            seats.record(assembly, entry, -radius, Transmission::Rack { way, radius: a * b * radius, slope });
         }
         couple(assembly, entry, &[(displacement, 1.0), (angle, -radius)])
     }

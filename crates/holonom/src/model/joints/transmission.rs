@@ -1,38 +1,24 @@
 //! Where the wheels of a coupler sit, so that the forces of teeth and belts count in their bearings (methods §17).
 
 use super::pair::{Coordinate, JointInfo};
-use crate::model::assembly::Assembly;
+use crate::model::assembly::{Assembly, CONTRADICTION};
 use crate::model::bodies::nodes::Member;
-use crate::model::entry::Entry;
+use crate::model::entry::{Entry, Spot};
 use crate::model::fault::Read;
 use crate::model::geometry::{Vec3, cross, dot, norm, scale, subtract};
-use crate::record::Transmission;
-
-/// A coupler whose forces are recorded, in reference coordinates.
-pub struct TransmissionInfo {
-    pub name: String,
-    pub row: usize,
-    pub factor: f64,
-    /// Its joints among those of the model.
-    pub joints: [usize; 2],
-    /// Which side of each joint the wheel is on.
-    pub wheels: [usize; 2],
-    pub carrier: Member,
-    pub axis: Vec3,
-    /// The way of a rack.
-    pub way: Vec3,
-    pub kind: Transmission,
-}
+use crate::record::{RecordedTransmission, Transmission};
+use crate::system::Term;
 
 /// How the two joints of a coupler sit on the part that carries both.
 pub(super) struct Seats {
     joints: [usize; 2],
-    wheels: [usize; 2],
+    /// 1 where the wheel (or the rack) is the second body of its joint, −1 where it is the first.
+    sides: [f64; 2],
     carrier: Member,
     /// The axis of the first joint, and that of the second or its way.
     axes: [Vec3; 2],
-    /// From the first joint to the second, across the axis of the first, m.
-    pub across: Vec3,
+    /// From the first joint to the second, across the axis of the first, m; nothing where both have one axis.
+    pub distance: f64,
     /// 1 where the coordinate of a joint counts the way its wheel turns about the axis of the first (the way a rack goes), else −1.
     pub senses: [f64; 2],
 }
@@ -44,21 +30,23 @@ impl Seats {
     /// Of joints that turn about parallel axes, or of one that turns and one that slides at right angles to that axis; `key` asks for them.
     pub fn of(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &'static str, coordinates: [&Coordinate; 2]) -> Read<Self> {
         let infos: [&JointInfo; 2] = {
-            let spot = |k: usize| crate::model::entry::Spot { key: "joints", item: Some(k) };
+            let spot = |k| Spot { key: "joints", item: Some(k) };
             [assembly.joint(entry, spot(0), &coordinates[0].joint)?, assembly.joint(entry, spot(1), &coordinates[1].joint)?]
         };
         let slides = !coordinates[1].is_angle;
-        let is_known = |coordinate: &Coordinate| ["angle", "displacement"].contains(&coordinate.name);
         let [first, second] = infos.map(|info| info.geometry.members);
         let common: Vec<Member> = first.into_iter().filter(|member| second.contains(member)).collect();
-        let ([carrier], true) = (&common[..], coordinates.iter().all(|coordinate| is_known(coordinate))) else {
-            let message =
-                format!("`{}` and `{}` are not two joints with one axis each on one part that carries both", infos[0].name, infos[1].name);
+        let ([carrier], [Some(first), Some(second)], true) = (&common[..], coordinates.map(|known| known.about), coordinates[0].is_angle)
+        else {
+            let message = format!(
+                "`{}` and `{}` are not two axles, or an axle and a rail, on one part that carries both",
+                infos[0].name, infos[1].name
+            );
             return Err(entry.refuse_key(key, message, format!("leave `{key}` out: then bearings do not feel the coupler")));
         };
-        let wheels = infos.map(|info| usize::from(info.geometry.members[0] == *carrier));
+        let sides = infos.map(|info| if info.geometry.members[0] == *carrier { 1.0 } else { -1.0 });
         let is_planar = assembly.dimension() == 2;
-        let axes = infos.map(|info| info.geometry.triad[0][0]);
+        let axes = [(infos[0], first), (infos[1], second)].map(|(info, about)| info.geometry.triad[0][about]);
         let [axis, other] = match (is_planar, slides) {
             (true, false) => [[0.0, 0.0, 1.0]; 2],
             (true, true) => [[0.0, 0.0, 1.0], axes[1]],
@@ -70,23 +58,27 @@ impl Seats {
             return Err(entry.refuse_key(key, format!("{what}, and where teeth touch is not known"), format!("leave `{key}` out")));
         }
         let apart = subtract(infos[1].geometry.at[0], infos[0].geometry.at[0]);
-        let side = |k: usize| if wheels[k] == 1 { 1.0 } else { -1.0 };
-        let places = infos.map(|info| assembly.joint_names[&info.name]);
+        let across = norm(subtract(apart, scale(axis, dot(axis, apart))));
         Ok(Self {
-            joints: places,
-            wheels,
+            joints: infos.map(|info| assembly.joint_names[&info.name]),
+            sides,
             carrier: *carrier,
             axes: [axis, other],
-            across: subtract(apart, scale(axis, dot(axis, apart))),
-            senses: [side(0), side(1) * if slides { 1.0 } else { cosine.signum() }],
+            distance: if across > CONTRADICTION * assembly.builder.size() { across } else { 0.0 },
+            senses: [sides[0], sides[1] * if slides { 1.0 } else { cosine.signum() }],
         })
+    }
+
+    /// The way of a rack, as a direction of the carrier.
+    pub fn way(&self, assembly: &Assembly<'_>) -> Vec<Term> {
+        assembly.frame(self.carrier).vector(self.axes[1])
     }
 
     /// Has the forces recorded of a coupler whose row comes next and has this factor of the first coordinate.
     pub fn record(self, assembly: &mut Assembly<'_>, entry: &Entry<'_>, factor: f64, kind: Transmission) {
-        let Self { joints, wheels, carrier, axes: [axis, way], .. } = self;
+        let axis = if assembly.dimension() == 2 { Vec::new() } else { assembly.frame(self.carrier).vector(self.axes[0]) };
         let (name, row) = (entry.name.to_string(), assembly.builder.rows());
-        assembly.transmissions.push(TransmissionInfo { name, row, factor, joints, wheels, carrier, axis, way, kind });
+        assembly.transmissions.push(RecordedTransmission { name, row, factor, joints: self.joints, sides: self.sides, axis, kind });
     }
 }
 
