@@ -77,7 +77,6 @@ impl Model {
     /// [told](Model::tell_forces) how to find its force.
     pub fn reaction(&self, simulation: &Simulation, name: &str) -> Option<Reaction> {
         let joint = self.channels.told().joints.iter().position(|joint| joint.name == name)?;
-        simulation.reactions()?;
         let (force, moment) = self.channels.wrench(joint, simulation)?;
         Some(Reaction { force, moment })
     }

@@ -59,13 +59,20 @@ impl Between {
         if !self.is_needed() {
             return;
         }
-        self.row.clear();
-        force::append(forces, simulation, &mut self.row);
+        let mut row = std::mem::take(&mut self.row);
+        row.clear();
+        force::append(forces, simulation, &mut row);
+        self.see(&row, simulation.state().t);
+        self.row = row;
+    }
+
+    /// Looks at a row that begins with the columns of the forces, at the time `t` (s).
+    pub fn see(&mut self, row: &[f64], t: f64) {
         for (group, largest) in self.groups.iter().zip(&mut self.largest) {
-            let square = group.iter().map(|&k| self.row[k] * self.row[k]).sum::<f64>();
+            let square = group.iter().map(|&k| row[k] * row[k]).sum::<f64>();
             if square > (1.0 + ROUND_OFF) * largest.values[0] {
-                let value = if let [one] = group[..] { self.row[one] } else { square.sqrt() };
-                *largest = Largest { values: [square, value], t: simulation.state().t };
+                let value = if let [one] = group[..] { row[one] } else { square.sqrt() };
+                *largest = Largest { values: [square, value], t };
             }
         }
     }

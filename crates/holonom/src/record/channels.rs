@@ -293,48 +293,43 @@ impl Channels {
     /// Appends the columns of the forces of joints, couplers and rods; no numbers where bodies share nodes at the joint.
     pub(super) fn joint_forces(&self, simulation: &Simulation, row: &mut Vec<f64>) {
         let (dim, x) = (self.axes.len(), simulation.reacting_positions());
-        let pushes = self.told().pushes(simulation, &x);
-        for wrench in self.told().wrenches(simulation, &x, &pushes) {
-            let (force, moment) = wrench.unwrap_or(([f64::NAN; 3], [f64::NAN; 3]));
-            let components = [force[0], force[1], force[2], moment[0], moment[1], moment[2]];
-            row.extend(RecordedJoint::components(dim).iter().map(|&k| components[k]));
+        let (told, first, components) = (self.told(), row.len(), RecordedJoint::components(dim));
+        for joint in &told.joints {
+            let wrench = joint.wrench(simulation, &x).unwrap_or(([f64::NAN; 3], [f64::NAN; 3]));
+            row.extend(components.iter().map(|&k| component(wrench, k)));
+        }
+        let pushes: Vec<Push> = told.transmissions.iter().map(|transmission| told.push(transmission, simulation, &x)).collect();
+        for (transmission, push) in told.transmissions.iter().zip(&pushes) {
+            for (joint, wrench) in transmission.borne(push) {
+                let own = &mut row[first + joint * components.len()..];
+                own.iter_mut().zip(components).for_each(|(own, &k)| *own += component(wrench, k));
+            }
         }
         let (lambda, t) = (simulation.reactions().map(|reactions| &reactions.lambda), simulation.state().t);
         let of = |row: usize| lambda.map_or(f64::NAN, |lambda| lambda[row]);
-        row.extend(self.told().couplings.iter().map(|coupling| -coupling.factor * of(coupling.row)));
+        row.extend(told.couplings.iter().map(|coupling| -coupling.factor * of(coupling.row)));
         pushes.iter().for_each(|push| row.extend_from_slice(&push.force.as_slice()[..dim]));
-        row.extend(self.told().rods.iter().map(|rod| of(rod.row) * rod.length.at(t)[0]));
+        row.extend(told.rods.iter().map(|rod| of(rod.row) * rod.length.at(t)[0]));
     }
 
-    /// What transmissions do at the present state, of which `x` are the positions of all nodes; of those channels that forces are found in.
-    fn pushes(&self, simulation: &Simulation, x: &[f64]) -> Vec<Push> {
+    /// What one of the transmissions of these channels does at the present state, of which `x` are the positions of all nodes.
+    fn push(&self, transmission: &RecordedTransmission, simulation: &Simulation, x: &[f64]) -> Push {
         let dim = self.axes.len();
-        let of = |transmission: &RecordedTransmission| {
-            let lambda = simulation.reactions().map_or(f64::NAN, |reactions| reactions.lambda[transmission.row]);
-            transmission.push(transmission.joints.map(|joint| self.joints[joint].place(x, dim)), lambda, x, dim)
-        };
-        self.transmissions.iter().map(of).collect()
+        let lambda = simulation.reactions().map_or(f64::NAN, |reactions| reactions.lambda[transmission.row]);
+        transmission.push(transmission.joints.map(|joint| self.joints[joint].place(x, dim)), lambda, x, dim)
     }
 
-    /// [`RecordedJoint::wrench`] of all joints, with what they bear of transmissions.
-    fn wrenches(&self, simulation: &Simulation, x: &[f64], pushes: &[Push]) -> Vec<Option<Wrench>> {
-        let mut wrenches: Vec<_> = self.joints.iter().map(|joint| joint.wrench(simulation, x)).collect();
-        for (transmission, push) in self.transmissions.iter().zip(pushes) {
-            for (side, (&joint, [force, moment])) in transmission.joints.iter().zip(push.borne).enumerate() {
-                let Some(own) = &mut wrenches[joint] else { continue };
-                for c in 0..3 {
-                    own.0[c] += transmission.sides[side] * force[c];
-                    own.1[c] += transmission.sides[side] * moment[c];
-                }
-            }
-        }
-        wrenches
-    }
-
-    /// Force and moment of one of the joints whose forces are found, with what it bears of transmissions.
+    /// Force and moment of one of the joints whose forces are found, as [`RecordedJoint::wrench`] has it, with what it bears of transmissions.
     pub(crate) fn wrench(&self, joint: usize, simulation: &Simulation) -> Option<Wrench> {
         let (told, x) = (self.told(), simulation.reacting_positions());
-        told.wrenches(simulation, &x, &told.pushes(simulation, &x)).swap_remove(joint)
+        let mut sum = told.joints[joint].wrench(simulation, &x)?;
+        for transmission in told.transmissions.iter().filter(|transmission| transmission.joints.contains(&joint)) {
+            let push = told.push(transmission, simulation, &x);
+            for (_, (force, moment)) in transmission.borne(&push).filter(|(on, _)| *on == joint) {
+                (0..3).for_each(|c| (sum.0[c], sum.1[c]) = (sum.0[c] + force[c], sum.1[c] + moment[c]));
+            }
+        }
+        Some(sum)
     }
 
     /// Appends the columns of the multipliers, and of what the constraints exert on points.
@@ -346,6 +341,11 @@ impl Channels {
             row.extend_from_slice(&reactions.force[node.index() * dim..(node.index() + 1) * dim]);
         }
     }
+}
+
+/// A component of a force (0 to 2) and a moment (3 to 5).
+fn component((force, moment): Wrench, k: usize) -> f64 {
+    if k < 3 { force[k] } else { moment[k - 3] }
 }
 
 /// The node that a point is, where it is one.

@@ -231,10 +231,13 @@ impl Observer for Recorder<'_> {
     }
 
     fn at_division(&mut self, simulation: &Simulation) {
-        if self.measures.are_running() {
-            self.fill(simulation);
+        match self.measures.are_running() {
+            true => {
+                self.fill(simulation);
+                self.between.see(&self.row[self.coordinates.end..], simulation.state().t);
+            }
+            false => self.between.look(&self.channels.forces, simulation),
         }
-        self.between.look(&self.channels.forces, simulation);
     }
 
     fn after_step(&mut self, simulation: &Simulation) -> Verdict {
@@ -252,12 +255,12 @@ impl Observer for Recorder<'_> {
         if is_kept {
             self.last = std::mem::take(&mut self.since);
         }
-        if is_kept || self.measures.are_running() {
-            self.fill(simulation);
-        }
         match is_kept {
-            true => self.recording.push(&self.row),
-            false => self.between.look(&self.channels.forces, simulation),
+            true => {
+                self.fill(simulation);
+                self.recording.push(&self.row);
+            }
+            false => self.at_division(simulation),
         }
         self.seen += 1;
         Verdict::GoOn

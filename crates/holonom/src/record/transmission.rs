@@ -3,6 +3,7 @@
 
 use nalgebra::Vector3;
 
+use super::joint::Wrench;
 use crate::system::{Term, place_of};
 
 /// A coupler between two joints on one carrier whose forces are known.
@@ -10,7 +11,7 @@ use crate::system::{Term, place_of};
 pub struct RecordedTransmission {
     /// Of the coupler.
     pub name: String,
-    /// Its row among those of the system, and the factor of the first coordinate in it.
+    /// Its row among those of the system.
     pub row: usize,
     /// The factor of the first coordinate in the row.
     pub factor: f64,
@@ -63,6 +64,12 @@ pub(super) struct Push {
 }
 
 impl RecordedTransmission {
+    /// What each of its joints bears of it beside its own rows: force (N) on the joint's second body, and moment (N·m) about its place.
+    pub(super) fn borne(&self, push: &Push) -> impl Iterator<Item = (usize, Wrench)> {
+        let of = |k: usize| (self.joints[k], push.borne[k].map(|part| (self.sides[k] * part).into()));
+        [0, 1].map(of).map(|(joint, [force, moment])| (joint, (force, moment))).into_iter()
+    }
+
     /// What it does where the axes of its joints are at `places` and its row has the multiplier `lambda`; `x` are the positions of all nodes.
     pub(super) fn push(&self, places: [[f64; 3]; 2], lambda: f64, x: &[f64], dim: usize) -> Push {
         let axis = if dim == 2 { Vector3::z() } else { direction(&self.axis, x) };
