@@ -87,4 +87,5 @@ pub const JOINTS: &[Shot] = &[
     joint("rack-and-pinion", 0.3),
     joint("pulley", 0.3),
     joint("linear", 0.3),
+    joint("cam", 0.2),
 ];

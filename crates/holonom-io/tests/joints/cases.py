@@ -156,6 +156,7 @@ COUPLERS = {
     "rack-and-pinion": lambda keys, q: q["j2.displacement"] - keys["radius"] * q["j1.angle"],
     "pulley": pulley,
     "linear": lambda keys, q: sum(term["factor"] * q[term["joint"]] for term in keys["terms"]),
+    "cam": lambda keys, q: q["j2.displacement"] - eval(keys["lift"], {"q": q["j1.angle"]}),
 }
 
 
@@ -219,6 +220,7 @@ def all_cases():
     terms = [dict(joint="j1.angle", factor=0.5), dict(joint="j1.displacement", factor=2.0), dict(joint="j2.angle", factor=-0.8)]
     both = {"slide": {6: -0.25, 7: 0.4}, "turn": {6: 1.0}}
     yield coupled(35, "linear", "linear", dict(terms=terms), [("cylindrical", both), ("revolute", {"turn": {7: 1.0}})], 2)
+    yield coupled(36, "cam", "cam", dict(joints=["j1", "j2"], lift="0.25*q"), [rack[0], ("prismatic", {"slide": {6: 0.25}})], 1)
     yield rolling(41)
     yield rolling(42, "rolling-on-body", ground=False)
     for seed, function in [(9, spherical), (1, revolute), (1, cylindrical), (10, universal), (2, point_on_line)]:

@@ -6,6 +6,7 @@
 use super::bodies::Files;
 use super::expression::{Mistake, Scope};
 use super::fault::{Fault, Read, Refused, Sink, suggest};
+use super::key::REPEAT;
 use super::value::{Table, Value, item_path, key_path};
 
 /// A key of an entry, or an item of the list there.
@@ -118,6 +119,7 @@ impl<'a> Entry<'a> {
         let cure = match what {
             "a number" => "write a number such as 1.5, or an expression in quotes",
             "true or false" => "write true or false, without quotes",
+            "a text" if spot.key == REPEAT.name => "write an index and its range, such as repeat = \"i = 1 to 4\"",
             "a text" | "texts" => "put it in quotes",
             "a list" | "a list of three numbers, or in a planar model one number" => {
                 "put the items in square brackets, with commas between them"

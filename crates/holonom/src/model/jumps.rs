@@ -1,7 +1,9 @@
-//! Motions that are told by formulas of time and change abruptly: what could follow them has no finite speed or acceleration.
+//! Motions that are told by formulas and change abruptly: what could follow them has no finite speed or acceleration.
+
+use num_dual::Dual2_64;
 
 use super::bodies::short;
-use super::expression::{Program, TimeProgram};
+use super::expression::Program;
 use crate::system::{Signal, zeros};
 
 /// Change over the largest value of a run that is taken for round-off.
@@ -12,21 +14,55 @@ const LOOKS: u32 = 200;
 
 /// Says where a motion first jumps in a run, or else where its rate does.
 pub(super) fn jump(motion: Program, end: f64) -> Option<String> {
-    let mut times: Vec<f64> = motion.switches(0).into_iter().flat_map(|switch| zeros(&TimeProgram(switch), end)).collect();
-    times.sort_by(f64::total_cmp);
-    let motion = TimeProgram(motion);
-    let largest = |k: usize| (0..=LOOKS).map(|look| motion.at(end * f64::from(look) / f64::from(LOOKS))[k].abs()).fold(0.0, f64::max);
-    let jump = |k: usize, what: fn(String, String) -> String| {
-        let least = ROUNDED * largest(k);
+    let motion = Way { program: motion, sense: 1.0 };
+    let times = motion.switches(end);
+    let found = |k: usize| motion.first_jump(&times, k, end).map(|(t, by)| (short(t), short(by)));
+    let jumps = |(t, by)| format!("it jumps by {by} at {t} s, which nothing can follow: let it change over some steps");
+    let turns = |(t, by)| format!("its rate jumps by {by} per s at {t} s, which is a blow: round it off");
+    found(0).map(jumps).or_else(|| found(1).map(turns))
+}
+
+/// Where, up to `reach` on both sides of zero, a function of one number or its slope jumps.
+pub(super) fn corner(function: &Program, reach: f64) -> Option<f64> {
+    [1.0, -1.0].into_iter().find_map(|sense| {
+        let way = Way { program: function.clone(), sense };
+        let places = way.switches(reach);
+        (0..2).find_map(|k| way.first_jump(&places, k, reach)).map(|(at, _)| sense * at)
+    })
+}
+
+/// A function of one number along its positive or its negative side.
+struct Way {
+    program: Program,
+    sense: f64,
+}
+
+impl Way {
+    /// Where it may jump or have a corner, in order.
+    fn switches(&self, end: f64) -> Vec<f64> {
+        let ways = self.program.switches(0).into_iter().map(|program| Self { program, ..*self });
+        let mut found: Vec<f64> = ways.flat_map(|switch| zeros(&switch, end)).collect();
+        found.sort_by(f64::total_cmp);
+        found
+    }
+
+    /// Where its k-th derivative first jumps, and by how much.
+    fn first_jump(&self, places: &[f64], k: usize, end: f64) -> Option<(f64, f64)> {
+        let largest = (0..=LOOKS).map(|look| self.at(end * f64::from(look) / f64::from(LOOKS))[k].abs()).fold(0.0, f64::max);
         let by = |t: f64| {
             // Across the zero, which is some roundings after it.
             let after = (0..4).fold(t, |t, _| t.next_up());
-            motion.at(after)[k] - motion.at(t)[k]
+            self.at(after)[k] - self.at(t)[k]
         };
-        times.iter().map(|&t| (t, by(t))).find(|(_, by)| by.abs() > least).map(|(t, by)| what(short(by), short(t)))
-    };
-    jump(0, |by, t| format!("it jumps by {by} at {t} s, which nothing can follow: let it change over some steps"))
-        .or_else(|| jump(1, |by, t| format!("its rate jumps by {by} per s at {t} s, which is a blow: round it off")))
+        places.iter().map(|&t| (t, by(t))).find(|(_, by)| by.abs() > ROUNDED * largest)
+    }
+}
+
+impl Signal for Way {
+    fn at(&self, t: f64) -> [f64; 3] {
+        let value = self.program.evaluate(&[Dual2_64::new(self.sense * t, 1.0, 0.0)]);
+        [value.re, self.sense * value.v1, value.v2]
+    }
 }
 
 #[cfg(test)]
@@ -53,6 +89,16 @@ mod tests {
             let found = jump(Program::parse(text, &["t"], &Scope::default()).unwrap(), end);
             assert_eq!(found.is_some(), words.is_some(), "{text}: {found:?}");
             assert!(found.unwrap_or_default().contains(words.unwrap_or_default()), "{text}");
+        }
+    }
+
+    #[test]
+    fn corners_are_found_on_both_sides_of_the_start() {
+        for (text, at) in
+            [("abs(q - 0.3)", Some(0.3)), ("max(q, -0.7)", Some(-0.7)), ("step(q + 2)", Some(-2.0)), ("min(q, 9)", None), ("q^2", None)]
+        {
+            let found = corner(&Program::parse(text, &["q"], &Scope::default()).unwrap(), 5.0);
+            assert_eq!(found.map(|q| (q * 1e9).round() / 1e9), at, "{text}");
         }
     }
 }

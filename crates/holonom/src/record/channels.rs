@@ -57,6 +57,8 @@ pub struct RecordedCoupling {
     pub row: usize,
     /// Of the coordinate in the row.
     pub factor: f64,
+    /// Where the row has a function of the coordinate, which of its parts that is: the factor is times its slope.
+    pub curve: Option<usize>,
     /// Whether the coordinate is an angle.
     pub is_moment: bool,
 }
@@ -307,7 +309,10 @@ impl Channels {
         }
         let (lambda, t) = (simulation.reactions().map(|reactions| &reactions.lambda), simulation.state().t);
         let of = |row: usize| lambda.map_or(f64::NAN, |lambda| lambda[row]);
-        row.extend(told.couplings.iter().map(|coupling| -coupling.factor * of(coupling.row)));
+        let (system, at) = simulation.reacting();
+        let share =
+            |coupling: &RecordedCoupling| coupling.factor * coupling.curve.map_or(1.0, |part| system.slope_in_row(coupling.row, part, at));
+        row.extend(told.couplings.iter().map(|coupling| -share(coupling) * of(coupling.row)));
         pushes.iter().for_each(|push| row.extend_from_slice(&push.force.as_slice()[..dim]));
         row.extend(told.rods.iter().map(|rod| of(rod.row) * rod.length.at(t)[0]));
     }

@@ -2,7 +2,7 @@
 
 use num_dual::{Dual64, HyperDual64};
 
-use super::{Differentiated, MAX_ARGUMENTS, Number};
+use super::{Differentiated, MAX_ARGUMENTS, Number, Signal};
 
 /// A smooth function of some invariants, written once over any number type; [`Differentiated`] takes its derivatives.
 pub trait SmoothFunction: Send + Sync {
@@ -22,6 +22,15 @@ pub struct Derivatives {
 }
 
 impl Derivatives {
+    /// Of a function of this one number: `value` is its value, `slope` its derivative by the number, and `turn` how that changes with each argument.
+    pub(super) fn chained(&self, value: f64, slope: f64, turn: impl Fn(usize) -> f64) -> Self {
+        let mut out = Self { value, gradient: self.gradient.map(|g| slope * g), hessian: self.hessian.map(|line| line.map(|h| slope * h)) };
+        for (line, g) in out.hessian.iter_mut().zip(self.gradient) {
+            line.iter_mut().enumerate().for_each(|(k, h)| *h += g * turn(k));
+        }
+        out
+    }
+
     /// Σ_j ∂g_j/∂π_i r_j with the gradient g_j: how a rate changes with an argument.
     #[inline]
     pub(crate) fn bend(&self, i: usize, rates: &[f64; MAX_ARGUMENTS]) -> f64 {
@@ -128,6 +137,19 @@ pub(crate) const NO_CHANGE: f64 = 1e-6;
 /// second position.
 pub(super) fn difference(smooth: &dyn Smooth, from: &[f64], to: &[f64]) -> Derivatives {
     quotient(from, to, |_, value| smooth.derivatives(value))
+}
+
+/// The discrete derivative Δf/Δq of a function of one number, and what it changes by with the second place. Where the quotient would be
+/// round-off, it is the mean of the derivative by Simpson's rule.
+pub(super) fn chord(curve: &dyn Signal, from: f64, to: f64) -> (f64, f64) {
+    let change = to - from;
+    if change.abs() <= NO_CHANGE * from.abs().max(to.abs()) {
+        let [start, middle, end] = [from, 0.5 * (from + to), to].map(|q| curve.at(q));
+        return ((start[1] + 4.0 * middle[1] + end[1]) / 6.0, (2.0 * middle[2] + end[2]) / 6.0);
+    }
+    let ([first, ..], [last, slope, _]) = (curve.at(from), curve.at(to));
+    let chord = (last - first) / change;
+    (chord, (slope - chord) / change)
 }
 
 /// Where between two positions a function is taken.

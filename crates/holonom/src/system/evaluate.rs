@@ -76,6 +76,15 @@ impl System {
         }
     }
 
+    /// The slope of a part of a row that is a function of one coordinate, by that.
+    ///
+    /// # Panics
+    /// When it is none.
+    pub(crate) fn slope_in_row(&self, row: usize, part: usize, at: &Evaluation) -> f64 {
+        let Quantity::Function(id) = self.rows[row].quantity else { panic!("a row of a function") };
+        self.functions.slope(id, part, &at.value, &at.functions)
+    }
+
     /// The slots of a quantity.
     pub(crate) fn slots_of(&self, quantity: Quantity) -> std::ops::Range<usize> {
         match quantity {

@@ -1,5 +1,5 @@
-//! Functions of invariants that are no quadratic forms themselves: sums of invariants, of angles and of smooth functions
-//! of them. Rows, laws and outputs take them like invariants.
+//! Functions of invariants that are no quadratic forms themselves: sums of invariants, of angles, of curves over these and of smooth
+//! functions. Rows, laws and outputs take them like invariants.
 //!
 //! A function of invariants keeps what they keep: it does not change under rigid motion, and its discrete derivative,
 //! with D·Δπ = Δg, makes momenta and energy exact (methods §8).
@@ -7,8 +7,8 @@
 use std::sync::Arc;
 
 use super::angle::{angle_at, angle_between};
-use super::derive::{Place, difference, quotient};
-use super::{Derivatives, Followed, InvariantId, Invariants, MAX_ARGUMENTS, Pfaffian, Smooth};
+use super::derive::{Place, chord, difference, quotient};
+use super::{Derivatives, Followed, InvariantId, Invariants, MAX_ARGUMENTS, Pfaffian, Signal, Smooth};
 
 /// A function of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +47,13 @@ pub enum Part {
         cosine: InvariantId,
         /// ρ sin θ, with the same ρ.
         sine: InvariantId,
+    },
+    /// A function of one coordinate: of an invariant, an angle or a followed number.
+    Curve {
+        /// The coordinate.
+        of: Box<Self>,
+        /// Its value and two derivatives by the coordinate.
+        curve: Arc<dyn Signal>,
     },
     /// A smooth function of some invariants.
     Smooth {
@@ -114,12 +121,8 @@ impl Functions {
     pub fn add(&mut self, invariants: &Invariants, parts: &[(Part, f64)]) -> FunctionId {
         let mut function = Function { summands: Vec::new(), base: Vec::new(), slot: self.source.len(), slots: 0, angle: self.start.len() };
         for (part, factor) in parts {
-            let of = match part {
-                Part::Invariant(id) => vec![*id],
-                Part::Angle { cosine, sine } => vec![*cosine, *sine],
-                Part::Smooth { of, .. } | Part::Followed { of, .. } | Part::Pfaffian { of, .. } => of.clone(),
-            };
-            if matches!(part, Part::Angle { .. } | Part::Followed { .. }) {
+            let of = part.arguments();
+            if part.is_followed() {
                 self.start.push(0.0);
             }
             let summand = Summand { part: part.clone(), factor: *factor, first: function.base.len(), arguments: of.len() };
@@ -195,27 +198,19 @@ impl Functions {
             *local = Derivatives::default();
             let mut angle = function.angle;
             for summand in &function.summands {
-                let mut part = match &summand.part {
-                    Part::Invariant(id) => identity(pi[id.0 as usize]),
-                    Part::Angle { cosine, sine } => {
-                        let (c, s) = (pi[cosine.0 as usize], pi[sine.0 as usize]);
-                        let part = angle_at(c, s, out.angle[angle]);
-                        out.angle[angle] = part.value;
-                        angle += 1;
-                        part
-                    }
-                    Part::Smooth { of, function } => function.derivatives(&pick(of, pi)[..of.len()]),
-                    Part::Pfaffian { of, form } => form.derivatives(&pick(of, pi)[..of.len()]),
-                    Part::Followed { of, function } => {
-                        let value = &pick(of, pi)[..of.len()];
-                        out.angle[angle] = function.locate(value, out.angle[angle]);
-                        angle += 1;
-                        function.derivatives(value, out.angle[angle - 1])
-                    }
-                };
+                let mut part = summand.part.at(pi, &mut out.angle[angle..]);
+                angle += usize::from(summand.part.is_followed());
                 summand.add(&mut part, local);
             }
         }
+    }
+
+    /// The slope of a part that is a curve, by its coordinate, at the invariants `pi`.
+    pub fn slope(&self, id: FunctionId, part: usize, pi: &[f64], values: &FunctionValues) -> f64 {
+        let function = &self.items[id.0 as usize];
+        let followed = function.angle + function.summands[..part].iter().filter(|summand| summand.part.is_followed()).count();
+        let Part::Curve { of, curve } = &function.summands[part].part else { panic!("the part is a curve") };
+        curve.at(of.at(pi, &mut values.angle[followed..].to_vec()).value)[1]
     }
 
     /// Discrete derivatives between two positions, and values half way.
@@ -227,37 +222,8 @@ impl Functions {
             *local = Derivatives::default();
             let mut angle = function.angle;
             for summand in &function.summands {
-                let mut part = match &summand.part {
-                    Part::Invariant(_) => identity(0.0),
-                    Part::Angle { cosine, sine } => {
-                        angle += 1;
-                        angle_between(pi.map(|pi| [pi[cosine.0 as usize], pi[sine.0 as usize]]))
-                    }
-                    // The mean of the ends: momenta and energy need no more, as Σ f_i Δπ_i vanishes.
-                    Part::Pfaffian { of, form } => {
-                        let [start, end] = pi.map(|pi| form.derivatives(&pick(of, pi)[..of.len()]));
-                        let mut mean = Derivatives::default();
-                        for i in 0..of.len() {
-                            mean.gradient[i] = 0.5 * (start.gradient[i] + end.gradient[i]);
-                            mean.hessian[i] = end.hessian[i].map(|h| 0.5 * h);
-                        }
-                        mean
-                    }
-                    Part::Followed { of, function } => {
-                        let ([start, end], m) = (pi.map(|pi| pick(of, pi)), of.len());
-                        let at = [from.angle[angle], to.angle[angle]];
-                        angle += 1;
-                        quotient(&start[..m], &end[..m], |place, value| match place {
-                            Place::Start => function.derivatives(value, at[0]),
-                            Place::End => function.derivatives(value, at[1]),
-                            Place::Middle => function.derivatives(value, function.locate(value, 0.5 * (at[0] + at[1]))),
-                        })
-                    }
-                    Part::Smooth { of, function } => {
-                        let [from, to] = pi.map(|pi| pick(of, pi));
-                        difference(function.as_ref(), &from[..of.len()], &to[..of.len()])
-                    }
-                };
+                let mut part = summand.part.between(pi, [&from.angle[angle..], &to.angle[angle..]]);
+                angle += usize::from(summand.part.is_followed());
                 summand.add(&mut part, local);
             }
             local.value = 0.5 * (from.local[k].value + to.local[k].value);
@@ -283,6 +249,87 @@ impl Functions {
                 for c in 0..dim {
                     out[s * dim + c] = factor * inner[from + c] + bend * gradient[from + c];
                 }
+            }
+        }
+    }
+}
+
+impl Part {
+    /// The invariants that it depends on, in order.
+    fn arguments(&self) -> Vec<InvariantId> {
+        match self {
+            Self::Invariant(id) => vec![*id],
+            Self::Angle { cosine, sine } => vec![*cosine, *sine],
+            Self::Curve { of, .. } => of.arguments(),
+            Self::Smooth { of, .. } | Self::Followed { of, .. } | Self::Pfaffian { of, .. } => of.clone(),
+        }
+    }
+
+    /// Whether it has a number that is followed, as the turns of an angle.
+    fn is_followed(&self) -> bool {
+        match self {
+            Self::Curve { of, .. } => of.is_followed(),
+            _ => matches!(self, Self::Angle { .. } | Self::Followed { .. }),
+        }
+    }
+
+    /// Value and derivatives at the invariants `pi`. What is followed is the first of `followed`, and is found from there.
+    fn at(&self, pi: &[f64], followed: &mut [f64]) -> Derivatives {
+        match self {
+            Self::Invariant(id) => identity(pi[id.0 as usize]),
+            Self::Angle { cosine, sine } => {
+                let part = angle_at(pi[cosine.0 as usize], pi[sine.0 as usize], followed[0]);
+                followed[0] = part.value;
+                part
+            }
+            Self::Curve { of, curve } => {
+                let inner = of.at(pi, followed);
+                let [value, slope, bend] = curve.at(inner.value);
+                inner.chained(value, slope, |k| bend * inner.gradient[k])
+            }
+            Self::Smooth { of, function } => function.derivatives(&pick(of, pi)[..of.len()]),
+            Self::Pfaffian { of, form } => form.derivatives(&pick(of, pi)[..of.len()]),
+            Self::Followed { of, function } => {
+                let value = &pick(of, pi)[..of.len()];
+                followed[0] = function.locate(value, followed[0]);
+                function.derivatives(value, followed[0])
+            }
+        }
+    }
+
+    /// The discrete derivative between two positions; what is followed is the first of `followed` at each.
+    fn between(&self, pi: [&[f64]; 2], followed: [&[f64]; 2]) -> Derivatives {
+        match self {
+            Self::Invariant(_) => identity(0.0),
+            Self::Angle { cosine, sine } => angle_between(pi.map(|pi| [pi[cosine.0 as usize], pi[sine.0 as usize]])),
+            Self::Curve { of, curve } => {
+                let end = |k: usize| of.at(pi[k], &mut followed[k].get(..1).map_or([0.0], |first| [first[0]]));
+                let [from, to] = [0, 1].map(end);
+                let (slope, turn) = chord(curve.as_ref(), from.value, to.value);
+                of.between(pi, followed).chained(0.0, slope, |k| turn * to.gradient[k])
+            }
+            // The mean of the ends: momenta and energy need no more, as Σ f_i Δπ_i vanishes.
+            Self::Pfaffian { of, form } => {
+                let [start, end] = pi.map(|pi| form.derivatives(&pick(of, pi)[..of.len()]));
+                let mut mean = Derivatives::default();
+                for i in 0..of.len() {
+                    mean.gradient[i] = 0.5 * (start.gradient[i] + end.gradient[i]);
+                    mean.hessian[i] = end.hessian[i].map(|h| 0.5 * h);
+                }
+                mean
+            }
+            Self::Followed { of, function } => {
+                let ([start, end], m) = (pi.map(|pi| pick(of, pi)), of.len());
+                let at = followed.map(|followed| followed[0]);
+                quotient(&start[..m], &end[..m], |place, value| match place {
+                    Place::Start => function.derivatives(value, at[0]),
+                    Place::End => function.derivatives(value, at[1]),
+                    Place::Middle => function.derivatives(value, function.locate(value, 0.5 * (at[0] + at[1]))),
+                })
+            }
+            Self::Smooth { of, function } => {
+                let [from, to] = pi.map(|pi| pick(of, pi));
+                difference(function.as_ref(), &from[..of.len()], &to[..of.len()])
             }
         }
     }

@@ -5,6 +5,7 @@ use crate::model::entry::{Entry, Spot};
 use crate::model::fault::{Read, suggest};
 use crate::model::references::split_place;
 use crate::record::RecordedCoupling;
+use crate::system::Part;
 
 use super::pair::Coordinate;
 
@@ -64,7 +65,6 @@ pub(super) fn two(assembly: &Assembly<'_>, entry: &Entry<'_>, texts: &[String], 
 /// Adds the row Σ factor · coordinate = 0.
 pub(super) fn couple(assembly: &mut Assembly<'_>, entry: &Entry<'_>, terms: &[(Coordinate, f64)]) -> Read<()> {
     let parts: Vec<_> = terms.iter().map(|(coordinate, factor)| (assembly.builder.part(&coordinate.form), *factor)).collect();
-    let sum = assembly.builder.sum(&parts);
     let mut factors: Vec<(&Coordinate, f64)> = Vec::new();
     for (coordinate, factor) in terms {
         match factors.iter_mut().find(|(known, _)| known.joint == coordinate.joint && known.name == coordinate.name) {
@@ -72,13 +72,24 @@ pub(super) fn couple(assembly: &mut Assembly<'_>, entry: &Entry<'_>, terms: &[(C
             None => factors.push((coordinate, *factor)),
         }
     }
-    let row = assembly.builder.rows();
-    assembly.couplings.extend(factors.into_iter().map(|(coordinate, factor)| RecordedCoupling {
-        name: format!("{}.{}.{}", entry.name, coordinate.joint, coordinate.name),
-        row,
-        factor,
-        is_moment: coordinate.is_angle,
-    }));
-    assembly.builder.constant_row(entry.name, sum, 0.0);
+    factors.into_iter().for_each(|(coordinate, factor)| record(assembly, entry, coordinate, factor, None));
+    hold(assembly, entry, &parts, 0.0);
     Ok(())
+}
+
+/// Adds the row Σ factor · part = target.
+pub(super) fn hold(assembly: &mut Assembly<'_>, entry: &Entry<'_>, parts: &[(Part, f64)], target: f64) {
+    let sum = assembly.builder.sum(parts);
+    assembly.builder.constant_row(entry.name, sum, target);
+}
+
+/// Has recorded what the row that is added next exerts along a coordinate, whose factor there is times the slope of the part `curve`.
+pub(super) fn record(assembly: &mut Assembly<'_>, entry: &Entry<'_>, coordinate: &Coordinate, factor: f64, curve: Option<usize>) {
+    assembly.couplings.push(RecordedCoupling {
+        name: format!("{}.{}.{}", entry.name, coordinate.joint, coordinate.name),
+        row: assembly.builder.rows(),
+        factor,
+        curve,
+        is_moment: coordinate.is_angle,
+    });
 }

@@ -7,6 +7,7 @@ mod curve;
 mod geometry;
 pub(super) mod pair;
 
+mod cam;
 mod constant_velocity;
 mod cylindrical;
 mod distance;
@@ -32,6 +33,7 @@ mod spherical;
 mod transmission;
 mod universal;
 
+pub use cam::Cam;
 pub use constant_velocity::ConstantVelocity;
 pub use coupler::coordinate;
 pub use cylindrical::Cylindrical;
@@ -192,7 +194,8 @@ pub const JOINTS: &[Kind] = &[
 ];
 
 /// Couplers of the coordinates of other joints.
-pub const COUPLERS: &[Kind] = &[Kind::of::<Gear>(), Kind::of::<RackAndPinion>(), Kind::of::<Pulley>(), Kind::of::<Linear>()];
+pub const COUPLERS: &[Kind] =
+    &[Kind::of::<Gear>(), Kind::of::<RackAndPinion>(), Kind::of::<Pulley>(), Kind::of::<Linear>(), Kind::of::<Cam>()];
 
 /// All that `type` may say.
 pub fn kinds() -> impl Iterator<Item = &'static Kind> {
