@@ -205,3 +205,50 @@ fn a_force_without_a_value_is_named() {
         }
     }
 }
+
+/// A contact that is written with a clip inside a clip, whose outer one stays at zero on one side, and an event at the kink itself: the block comes
+/// back as from a spring.
+#[test]
+fn clips_in_clips_and_events_at_kinks_are_landed_on() {
+    let place = -(0.5 - std::f64::consts::PI / 1e4_f64.sqrt());
+    let inside = "max(b.x, 0)";
+    let forms = [
+        format!("max({inside}, 0)"),
+        format!("abs({inside})"),
+        format!("{inside}*step({inside})"),
+        format!("sqrt({inside})*sqrt({inside})"),
+    ];
+    let methods = [("radau", 1e-9), ("ggl/bdf", 1e-7), ("conserving-ggl", 1e-6), ("generalized-alpha", 1e-6), ("ode/dopri5", 1e-8)];
+    for form in forms {
+        let force = format!("type = \"effort\"\njoint = \"rail\"\neffort = \"-1e4*{form}\"");
+        for event in ["", "[event.touch]\nwhen = \"b.x\"\n", "[event.turn]\nwhen = \"1 + b.x^2 - 1\"\n[event.leave]\nwhen = \"-b.x\"\n"] {
+            for (method, accuracy) in methods {
+                let [x] = last(&(block(-0.5, 1.0, &force) + event), method, accuracy, 0.03, 1.0, ["b.x"]);
+                let off = (x - place).abs();
+                assert!(off <= 10.0 * accuracy, "{form}, {event}, {method}: off by {off:e} m");
+            }
+        }
+    }
+}
+
+/// Three shoes on a hub that spins up touch their drum at the same time but for rounding, and an event waits for one of them: all stay alike, and
+/// where they are is the same with the event and without.
+#[test]
+fn several_bends_at_one_time_are_passed() {
+    let shoes = "plane = \"xy\"\n[body.hub]\nmass = 0.5\ninertia = 4e-4\nposition = [0, 0]\n[body.shoe]\nrepeat = \"i = 0 to 2\"\nmass = 0.18\n\
+                 inertia = 6e-5\nposition = [\"0.055*cos(i*tau/3)\", \"0.055*sin(i*tau/3)\"]\n[joint.shaft]\ntype = \"revolute\"\n\
+                 between = [\"ground\", \"hub\"]\nat = [0, 0]\n[joint.slide]\nrepeat = \"i = 0 to 2\"\ntype = \"prismatic\"\nbetween = [\"hub\", \"shoe[i]\"]\n\
+                 axis = [\"cos(i*tau/3)\", \"sin(i*tau/3)\"]\n[force.lining]\nrepeat = \"i = 0 to 2\"\ntype = \"effort\"\njoint = \"slide[i]\"\n\
+                 effort = \"-4e5*max(q - 0.004, 0)\"\n[drive.engine]\ntype = \"angle\"\njoint = \"shaft\"\nprofile = \"50*t^2\"\n";
+    let event = "[event.bite]\nwhen = \"slide[0].displacement - 0.004\"\n";
+    for (method, accuracy) in [("radau", 1e-9), ("radau", 1e-6), ("ggl/bdf", 1e-7), ("conserving-ggl", 1e-5), ("ode/dopri5", 1e-8)] {
+        let names = ["slide[0].displacement", "slide[1].displacement", "slide[2].displacement"];
+        let [without, with] = ["", event].map(|event| last(&[shoes, event].concat(), method, accuracy, 1e-3, 0.15, names));
+        for k in 0..3 {
+            assert!(
+                (with[k] - without[0]).abs() <= 20.0 * accuracy * 0.1,
+                "{method}, {accuracy:e}: {with:?} m, and {without:?} m without the event"
+            );
+        }
+    }
+}

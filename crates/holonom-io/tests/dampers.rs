@@ -107,3 +107,42 @@ fn dampers_keep_order_two() {
         }
     }
 }
+
+/// Compositions go back in time in parts of their step, where a damper makes energy: steps that are too long for that are divided, so that a bushing
+/// only takes energy and the end is that of small steps; where no part is short enough, the run stops and says so.
+#[test]
+fn compositions_make_no_energy_of_dampers() {
+    let held = |c: f64| {
+        format!(
+            "plane = \"xy\"\n[body.a]\nmass = 0.1\ninertia = 0.0015\nposition = [0, 0]\nvelocity = [1, 0]\nangular_velocity = 2\n\
+             [force.f]\ntype = \"bushing\"\nbetween = [\"ground\", \"a\"]\nat = [1, 0.3]\nstiffness = [300, 200, 40]\n\
+             damping = [{c}, {c}, {}]\n",
+            0.2 * c
+        )
+    };
+    for c in [0.5, 1.5, 5.0, 31.623] {
+        let end = |simulation: &Simulation| [simulation.state().x[0], simulation.velocities()[0]];
+        let mut small = Simulation::new(model(&held(c)).system, named("radau"), 1e-4).unwrap();
+        assert_eq!(small.step_to(0.3), Status::Completed);
+        let exact = end(&small);
+        for (method, within) in [("ggl/conserving-ggl-4", 2e-4), ("ggl/conserving-ggl-6", 1e-6), ("lagrange-3/conserving-4", 2e-4)] {
+            for step in [0.01, 0.005, 0.0025] {
+                let mut simulation = Simulation::new(model(&held(c)).system, named(method), step).unwrap();
+                let first = simulation.audit().energy();
+                let mut most = first;
+                let status = simulation.run(0.3, &mut |now: &Simulation| {
+                    most = most.max(now.audit().energy());
+                    Verdict::GoOn
+                });
+                assert_eq!(status, Status::Completed, "{method}, {c} N·s/m, {step} s");
+                assert!(most <= first * (1.0 + 1e-12), "{method}, {c} N·s/m, {step} s: {most} J of {first} J");
+                for (here, exact) in end(&simulation).into_iter().zip(exact) {
+                    assert!((here - exact).abs() < within, "{method}, {c} N·s/m, {step} s: {here}, and {exact} with small steps");
+                }
+            }
+        }
+    }
+    let mut simulation = Simulation::new(model(&held(1e5)).system, named("ggl/conserving-ggl-6"), 0.01).unwrap();
+    let Status::Stopped { reason, .. } = simulation.run(1.0, &mut |_: &Simulation| Verdict::GoOn) else { panic!("it came through") };
+    assert!(reason.contains("goes back in time in parts of its step, and `f` is too strong a damper"), "{reason}");
+}

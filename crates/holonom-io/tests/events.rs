@@ -241,3 +241,20 @@ fn a_relay_that_chatters_ends_the_run() {
         }
     }
 }
+
+/// Two events that are closer together than a millionth of a step, right behind a nominal time, happen one after the other as they do in time,
+/// whatever their order in the file.
+#[test]
+fn close_events_happen_in_the_order_of_time() {
+    let early = "[event.early]\nwhen = \"p.x - 0.5\"\nset = { n = \"n + 1\" }\n";
+    let late = "[event.late]\nwhen = \"t - 0.5 - 1e-9\"\nset = { n = \"2*n\" }\n";
+    for (first, second) in [(early, late), (late, early)] {
+        let text = format!("plane = \"xy\"\n[point.p]\nmass = 1\nposition = [0, 0]\nvelocity = [1, 0]\n[input.n]\n{first}{second}");
+        for (method, accuracy) in [("radau", Some(1e-6)), ("radau", None), ("conserving-ggl", None), ("ode/dop853", Some(1e-8))] {
+            let choice = Choice { accuracy, ..Choice::default().named(method) };
+            let mut simulation = Simulation::new(model(&text).system, Method::resolve(&choice).unwrap(), 0.1).unwrap();
+            assert_eq!(simulation.run(1.0, &mut |_: &Simulation| Verdict::GoOn), Status::Completed);
+            assert_eq!(simulation.input("n"), Some(2.0), "{method}, {accuracy:?}");
+        }
+    }
+}

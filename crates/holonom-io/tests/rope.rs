@@ -203,3 +203,66 @@ fn a_drum_lets_out_what_the_weight_pulls() {
         }
     }
 }
+
+/// A damped rope of which one stretch keeps its length, as a rod holds both its ends: order 2 as without, and whatever the entries' order, as what
+/// rounding leaves of the rate of that stretch says nothing of the damper.
+#[test]
+fn a_stretch_that_keeps_its_length_leaves_the_order() {
+    let text = "plane = \"xy\"\ngravity = [0, -9.81]\n[point.a]\nmass = 1\nposition = [1, 0]\n[point.load]\nmass = 1\nposition = [1.2, -1]\n\
+                [constraint.rod]\ntype = \"distance\"\nbetween = [\"ground\", \"a\"]\n[force.r]\ntype = \"rope\"\nbetween = [\"ground\", \"load\"]\n\
+                through = [\"a\"]\nlength = 1.9\nstiffness = 2000\ndamping = 20\n";
+    let place = |method: &str, step: f64| common::last(&run(&model(text), Choice::default().named(method), step, 0.016).1, "load.y");
+    let exact = place("radau", 1e-4);
+    for method in ["conserving-ggl", "conserving", "conserving-projected"] {
+        let [coarse, fine] = [1e-3, 5e-4].map(|step| (place(method, step) - exact).abs());
+        assert!(coarse < 2e-5 && ((coarse / fine).log2() - 2.0).abs() < 0.1, "{method}: {coarse:e} m, and {fine:e} m with half the step");
+    }
+}
+
+/// The kink where the tension of a damped rope ends while it is still longer than its length, and where a stop lets go of what leaves it fast: steps
+/// by accuracy end there. The rope's motion is a damped vibration and then a free flight.
+#[test]
+fn the_end_of_a_damped_tension_is_landed_on() {
+    let rope = "plane = \"xy\"\ngravity = [0, 0]\n[point.m]\nmass = 1\nposition = [1.074, 0]\nvelocity = [0.05, 0]\n\
+                [force.r]\ntype = \"rope\"\nbetween = [\"ground\", \"m\"]\nlength = 1\nstiffness = 387.0\ndamping = 2.44\n";
+    let stop = |force: &str| {
+        format!(
+            "plane = \"xy\"\ngravity = [0, 0]\n[body.b]\nmass = 1\ninertia = 1\nposition = [0.3, 0]\nvelocity = [-1, 0]\n\
+             [joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"b\"]\naxis = [1, 0]\n{force}"
+        )
+    };
+    let by_kind = stop(
+        "[force.s]\ntype = \"stop\"\njoint = \"rail\"\nlower = -0.2\nstiffness = 49\ndissipation = 1.83\n[force.f]\ntype = \"effort\"\njoint = \"rail\"\neffort = \"20\"\n",
+    );
+    let by_formula =
+        stop("[force.s]\ntype = \"effort\"\njoint = \"rail\"\neffort = \"20 + 49*max(0, -0.2 - q)*max(0, 1 - 1.83*q_rate)\"\n");
+    // m ẍ + c ẋ + k p = 0 until c ẋ + k p is zero.
+    let (k, c): (f64, f64) = (387.0, 2.44);
+    let rate = f64::sqrt(k - 0.25 * c * c);
+    let at = |t: f64| {
+        let ([p, v], decay) = ([0.074, 0.05], (-0.5 * c * t).exp());
+        let b = (v + 0.5 * c * p) / rate;
+        let (sine, cosine) = (rate * t).sin_cos();
+        let place = decay * (p * cosine + b * sine);
+        [place, decay * rate * (b * cosine - p * sine) - 0.5 * c * place]
+    };
+    let (mut low, mut high) = (0.05, 0.1);
+    for _ in 0..200 {
+        let t = 0.5 * (low + high);
+        let [p, v] = at(t);
+        *(if k * p + c * v > 0.0 { &mut low } else { &mut high }) = t;
+    }
+    let [p, v] = at(low);
+    let free = 1.0 + p + v * (0.3 - low);
+    let place = |text: &str, method: &str, accuracy: f64, end: f64, name: &str| {
+        let choice = Choice { accuracy: Some(accuracy), ..Choice::default().named(method) };
+        common::last(&run(&model(text), choice, 0.01, end).1, name)
+    };
+    let alone = place(&by_formula, "ode/dop853", 1e-11, 1.0, "b.x");
+    for (method, accuracy) in [("radau", 1e-5), ("radau", 1e-7), ("radau", 1e-8), ("ggl/bdf", 1e-7), ("ode/dopri5", 1e-8)] {
+        let off = (place(rope, method, accuracy, 0.3, "m.x") - free).abs();
+        assert!(off <= 10.0 * accuracy, "{method}, {accuracy:e}: the rope is off by {off:e} m");
+        let off = (place(&by_kind, method, accuracy, 1.0, "b.x") - alone).abs();
+        assert!(off <= 10.0 * accuracy, "{method}, {accuracy:e}: the stop is off by {off:e} m");
+    }
+}

@@ -203,3 +203,24 @@ fn the_smallest_change_of_velocities_leaves_momenta() {
 fn model_simulation(model: &Model) -> Simulation {
     Simulation::new(model.system.clone(), Method::resolve(&Choice::default()).unwrap(), 1e-3).unwrap()
 }
+
+/// A cylinder gets as long as it takes, also where a motor turns another joint that begins elsewhere: its drive waits for it there.
+#[test]
+fn a_cylinder_follows_beside_a_motor() {
+    let arm = "plane = \"xz\"\n[body.a]\nmass = 1\ninertia = 1\nposition = [0.5, 0]\npoints = { lug = [0, 0.3] }\n\
+               [body.b]\nmass = 1\ninertia = 1\nposition = [1, 0.5]\npoints = { eye = [0, 0] }\n\
+               [joint.shoulder]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0]\n\
+               [joint.elbow]\ntype = \"revolute\"\nbetween = [\"a\", \"b\"]\nat = [1, 0]\n\
+               [drive.motor]\ntype = \"angle\"\njoint = \"shoulder\"\nprofile = \"0.2*t\"\n\
+               [drive.cylinder]\ntype = \"distance\"\nbetween = [\"a.lug\", \"b.eye\"]\nstroke = \"0.1*t\"\n\
+               [start]\nshoulder.angle = 0.5\nelbow.angle = 0.3\n";
+    let recording = run(&common::model(arm), 1e-2, 0.5);
+    let column = |name: &str| recording.column(name).unwrap();
+    let [shoulder, elbow, length] = ["shoulder.angle", "elbow.angle", "cylinder.length"].map(column);
+    let far = |elbow: f64| (0.5 - 0.5 * elbow.sin()).hypot(0.5 * elbow.cos() - 0.3);
+    for (k, t) in column("t").iter().enumerate() {
+        assert!((shoulder[k] - 0.5 - 0.2 * t).abs() < 1e-12 && (length[k] - far(0.3) - 0.1 * t).abs() < 1e-12, "{t} s");
+        assert!((far(elbow[k]) - length[k]).abs() < 1e-12, "{t} s");
+    }
+    assert!((elbow[0] - 0.3).abs() < 1e-12);
+}

@@ -17,6 +17,13 @@ pub fn kinetic_difference(system: &System, v: &[f64], before: &[f64], scratch: &
     system.mass.half_product(system.dim, v, scratch) + system.mass.half_product(system.dim, before, scratch)
 }
 
+/// What rows that move did in a projection of `before` to `v` in the metric of the mass, J: its impulses along their motion. It is the change of
+/// the kinetic energy but for ½ Δvᵀ M Δv, which projections take.
+pub fn work_of_projection(system: &System, v: &[f64], before: &[f64], scratch: &mut [f64]) -> f64 {
+    let change = kinetic_difference(system, v, before, scratch);
+    change + system.mass.half_product(system.dim, scratch, scratch)
+}
+
 /// Potential energy of gravity and of the laws, and with a penalty that of the rows (14), J.
 pub fn potential(system: &System, weight: &[f64], x: &[f64], at: &Evaluation, penalty: Option<(f64, &[f64])>) -> f64 {
     let mut energy: f64 = weight.iter().zip(x).map(|(w, x)| w * x).sum();
@@ -128,6 +135,21 @@ pub fn power(system: &System, t: f64, v: &[f64], a: &[f64], work: &Workspace) ->
         sum += lambda * system.explicit_rate(row, &work.sampled.at, t);
     }
     sum
+}
+
+/// Power of moving rows and of known motion at the start of a step, as far as it comes of multipliers and accelerations, W.
+pub fn power_of_rows(system: &System, t: f64, work: &mut Workspace) -> f64 {
+    let (n, dim) = (system.coordinates(), system.dim);
+    let Workspace { full, lambda, start, a, .. } = work;
+    full.fill(0.0);
+    system.slots.add_forces(dim, lambda, &start.at.gradient, full);
+    let mut sum: f64 = (n..full.len()).map(|i| full[i] * start.v[i]).sum();
+    for node in system.free..system.nodes() {
+        for (b, mass) in system.mass.row(node) {
+            sum += mass.product(&start.v[node * dim..(node + 1) * dim], &a[b * dim..(b + 1) * dim]);
+        }
+    }
+    sum + lambda.iter().enumerate().map(|(row, lambda)| lambda * system.explicit_rate(row, &start.at, t)).sum::<f64>()
 }
 
 /// Σ F·motion over the loads on free nodes.

@@ -150,7 +150,12 @@ impl Source {
         let mut model = self.model_with(changes)?;
         if model.shares_nodes() && model.output.reactions != Some(false) {
             let apart = [changes, &[("output.reactions", Value::Bool(true))]].concat();
-            model.tell_forces(self.model_with(&apart)?);
+            if !model.tell_forces(self.model_with(&apart)?) {
+                let message =
+                    "the parts are so small beside their distances that rounding decides which places are the same: joints have no forces";
+                let cure = "write the model nearer to the origin, or leave the forces of joints out: reactions = false in [output]";
+                return Err(Faults(vec![Fault::new("joint", "", message, cure)]));
+            }
         }
         Ok(model)
     }

@@ -6,6 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::failure::Failure;
 use super::newton::Newton;
 use super::workspace::Workspace;
 use crate::system::{Evaluation, Law, LawEntry, MAX_ARGUMENTS, Reach, Response, System};
@@ -23,6 +24,10 @@ const GROWTH: f64 = 1.25;
 
 /// Arguments of laws whose z is found together; of more it is taken by the masses of nodes.
 const MOST: usize = 64;
+
+/// Farthest that a composition goes back through a damper, in z: what that makes of a velocity, (1 + z/2)/(1 − z/2), the other parts take back up
+/// to there, and it has no bound at 2.
+const BACK: f64 = 1.0;
 
 /// How much less than the mass of a node the mass that a damper feels there may be, where it is not found.
 const LIGHTER: f64 = 4.0;
@@ -77,9 +82,12 @@ pub struct Fit {
 
 impl Newton {
     /// Finds for each dissipative law at which share of a step of length `h` (s) it takes its rates.
-    pub fn fit_dampers(&mut self, system: &System, start: f64, h: f64, work: &mut Workspace) {
+    ///
+    /// # Errors
+    /// Where a composition goes back in time through a damper so strong that the whole step could make energy of nothing.
+    pub fn fit_dampers(&mut self, system: &System, start: f64, h: f64, work: &mut Workspace) -> Result<(), Failure> {
         if !work.forces.dissipative {
-            return;
+            return Ok(());
         }
         let mut dampers = std::mem::take(&mut work.forces.damping);
         let mut count = 0;
@@ -89,6 +97,11 @@ impl Newton {
         }
         bound_by_nodes(system, &mut dampers, work);
         // A composition goes back in some of its steps, where nothing rings.
+        let share = if self.fit.share > 0.0 { self.fit.share } else { LIGHTER };
+        if let Some(law) = dampers.iter().position(|damping| -h * share * damping.speed > BACK) {
+            work.forces.damping = dampers;
+            return Err(Failure::GoesBack { law });
+        }
         if dampers.iter().any(|damping| h * damping.speed > NOTICED) {
             // In real time every step does the same work.
             let may_find = count <= MOST && self.settings.iterations.is_none();
@@ -99,6 +112,7 @@ impl Newton {
             damping.late = if z > 2.0 { 1.0 - 2.0 / z } else { 0.0 };
         }
         work.forces.damping = dampers;
+        Ok(())
     }
 
     /// Replaces the bounds by what rows and other masses make of them, which is found once in a while.
@@ -190,13 +204,19 @@ struct Braking {
 impl Braking {
     fn of(system: &System, law: &LawEntry, t: f64, at: &Evaluation, v: &[f64]) -> Self {
         let ([values, rate], m) = (system.arguments_and_rates(law, at, v), law.arguments.len());
-        let [along, against] = [rate, rate.map(|rate| -rate)].map(|rate| {
+        let respond = |rate: &[f64; MAX_ARGUMENTS]| {
             let mut response = Response::default();
             law.law.at(&values[..m], &rate[..m], t, &mut response);
             response
-        });
-        let power = std::array::from_fn(|i| 0.5 * (along.force[i] - against.force[i]) * rate[i]);
-        Self { rate, slope: std::array::from_fn(|i| along.by_rate[i][i]), power }
+        };
+        let along = respond(&rate);
+        // Each rate turns round alone: the force along one that hardly moves is that of the others.
+        let power = |i: usize| {
+            let mut turned = rate;
+            turned[i] = -turned[i];
+            if i < m { 0.5 * (along.force[i] - respond(&turned).force[i]) * rate[i] } else { 0.0 }
+        };
+        Self { rate, slope: std::array::from_fn(|i| along.by_rate[i][i]), power: std::array::from_fn(power) }
     }
 }
 

@@ -57,6 +57,11 @@ pub enum Failure {
         /// All there was to move, J.
         supply: f64,
     },
+    /// A composition goes back in time through a damper that is too strong for that.
+    GoesBack {
+        /// Which of the system's laws.
+        law: usize,
+    },
     /// A recorded angle turns so far in a step that its turns are not counted for sure.
     Turned {
         /// Which of the system's gauges.
@@ -118,6 +123,10 @@ impl Failure {
             ),
             Self::Ringing { law, taken, supply } => format!(
                 "the step turns round what `{}` brakes, which would take {taken:.1e} J of the {supply:.1e} J that could move: it is too long for a damper so strong (shorter steps help, or conserving-ggl and radau, where dampers do not ring)",
+                system.laws[law].name
+            ),
+            Self::GoesBack { law } => format!(
+                "the method goes back in time in parts of its step, and `{}` is too strong a damper for that (shorter steps help, or conserving-ggl and radau, which only go ahead)",
                 system.laws[law].name
             ),
             Self::Turned { gauge, by } => {

@@ -13,7 +13,7 @@ impl Integrator for Conserving {
         // λ = αΦ̄ in the penalty formulation: its energy ½αΦ² is then kept (14).
         let rows = if matches!(newton.settings.multipliers, Multipliers::Penalty(_)) { RowsAt::Mean } else { self.rows };
         let stage = midpoint_kinematics(system, start, step, Sampling::Between, rows, work);
-        newton.fit_dampers(system, start, step, work);
+        newton.fit_dampers(system, start, step, work)?;
         solve(system, &stage, newton, work)?;
         finish(system, step, work);
         work.settle(system, &stage);

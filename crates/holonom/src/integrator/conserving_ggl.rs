@@ -44,7 +44,7 @@ impl Integrator for ConservingGgl {
     fn step(&mut self, system: &System, start: f64, step: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
         let (n, h) = (system.coordinates(), step);
         let stage = midpoint_kinematics(system, start, h, Sampling::Between, RowsAt::End, work);
-        newton.fit_dampers(system, start, h, work);
+        newton.fit_dampers(system, start, h, work)?;
         let both = &mut self.stabilized;
         let memory = Memory::of(system, &mut work.memory);
         let follows = is_same_length(h, *memory.step);

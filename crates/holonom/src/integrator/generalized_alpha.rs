@@ -65,7 +65,7 @@ impl GeneralizedAlpha {
             work.end.v[i] = work.sampled.v[i];
             work.memory[i] = (auxiliary - new) / h;
         }
-        Ok(Step { stage, work: Work::AtEnds, estimate: None })
+        Ok(Step { stage, work: Work::AtEnds(0.0), estimate: None })
     }
 }
 

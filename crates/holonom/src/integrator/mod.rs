@@ -66,8 +66,8 @@ pub struct Step {
 /// Where the work that is done on the system in a step is to be read from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Work {
-    /// The mean of the power at both ends.
-    AtEnds,
+    /// The mean of the power at both ends, and what the forces at the start did beyond those of the end of the step before, J.
+    AtEnds(f64),
     /// The forces of the stage along the step, and what known motion did beyond them, J.
     Between(f64),
     /// Known already, J.

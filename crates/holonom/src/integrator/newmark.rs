@@ -36,6 +36,6 @@ impl Integrator for Newmark {
             work.end.v[i] += h * gamma * work.a[i];
         }
         work.settle(system, &stage);
-        Ok(Step { stage, work: Work::AtEnds, estimate: None })
+        Ok(Step { stage, work: Work::AtEnds(0.0), estimate: None })
     }
 }

@@ -2,6 +2,7 @@
 //! §15). Forces that depend on velocity are taken at the drift's, implicitly in the first kick.
 
 use super::{Integrator, Step, Work};
+use crate::energy;
 use crate::formulation::{Failure, Newton, RowsAt, Sampling, Stage, Workspace, solve};
 use crate::system::System;
 
@@ -20,6 +21,7 @@ impl Integrator for Rattle {
             work.prediction.offset[i] = 0.0;
             work.d[i] = h * work.start.v[i] + inertia * work.a[i];
         }
+        let before = if system.is_driven() { energy::power_of_rows(system, start, work) } else { 0.0 };
         // The first kick takes place at the start, the rows at the end.
         let Workspace { sampled, a, .. } = work;
         system.place_known(start, &mut sampled.x, &mut sampled.v, a);
@@ -27,8 +29,16 @@ impl Integrator for Rattle {
         system.place_known(stage.end(), &mut end.x, &mut end.v, full);
         solve(system, &stage, newton, work)?;
         work.place(&stage);
+        let extra = if system.is_driven() {
+            for i in 0..n {
+                work.a[i] = (work.sampled.v[i] - work.start.v[i]) / (0.5 * h);
+            }
+            0.5 * h * (energy::power_of_rows(system, start, work) - before)
+        } else {
+            0.0
+        };
         kick(system, &stage, newton, work)?;
-        Ok(Step { stage: Stage { sampling: Sampling::End, ..stage }, work: Work::AtEnds, estimate: None })
+        Ok(Step { stage: Stage { sampling: Sampling::End, ..stage }, work: Work::AtEnds(extra), estimate: None })
     }
 }
 

@@ -11,11 +11,10 @@ impl Model {
         self.joints.iter().any(|joint| joint.is_shared)
     }
 
-    /// Takes the forces of all joints and drives from the same model with `reactions = true` in `[output]`, in which no bodies share nodes.
-    ///
-    /// # Panics
-    /// When that is another model.
-    pub fn tell_forces(&mut self, apart: Self) {
+    /// Takes the forces of all joints and drives from the same model with `reactions = true` in `[output]`, in which no bodies share nodes. Says
+    /// whether that could be done: another model has other nodes, and so has one in which rounding decides which places are the same.
+    #[must_use]
+    pub fn tell_forces(&mut self, apart: Self) -> bool {
         let mut nodes = vec![Vec::new(); apart.system.free];
         let mut put = |place: &Place, terms: Vec<Term>| {
             if let Place::Node(node) = place
@@ -31,7 +30,10 @@ impl Model {
             let Frame::Body { basis, .. } = other else { continue };
             basis.iter().for_each(|node| put(&node.place, if node.is_point { own.point(node.at) } else { own.vector(node.at) }));
         }
-        assert!(nodes.iter().all(|terms| !terms.is_empty()), "each node is one of a point or of a body");
-        self.channels.apart = Some((Apart::new(apart.system, nodes), apart.channels).into());
+        let is_whole = nodes.iter().all(|terms| !terms.is_empty());
+        if is_whole {
+            self.channels.apart = Some((Apart::new(apart.system, nodes), apart.channels).into());
+        }
+        is_whole
     }
 }

@@ -173,6 +173,8 @@ fn released(builder: &SystemBuilder, targets: &[Target], lengths: &[DrivenLength
     for (length, there) in lengths.iter().zip(distances(builder, lengths, efforts)) {
         held.retarget(length.row, Arc::new(HalfSquare(Arc::new(Constant(there)))));
     }
+    // Their drives wait for them where they are put.
+    targets.iter().filter_map(|target| target.row).for_each(|row| held.retarget(row, Arc::new(Constant(0.0))));
     // How many more rows are redundant where coordinates are led.
     let more = |without: Option<usize>| {
         let count = |mut builder: SystemBuilder| {

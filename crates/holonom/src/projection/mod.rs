@@ -75,6 +75,11 @@ enum Level {
 }
 
 impl Projection {
+    /// Whether it is the full projection in the metric of the mass.
+    pub fn is_by_mass(&self) -> bool {
+        self.metric == Metric::Mass && self.solve == Solve::Exact && self.strength == 1.0
+    }
+
     /// Projects the positions at the end of a workspace's step, where the rows are evaluated. The matrix stays that of the positions as they
     /// were found, from which a step drifts by its error only. At a singular position, where that does not bring them closer to the rows,
     /// they stay where they are.

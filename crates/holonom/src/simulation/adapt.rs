@@ -2,10 +2,11 @@
 //! output.
 
 use super::advance::Inside;
-use super::events::LOCATED;
+use super::control::KEEPING;
+use super::events::{LOCATED, SHORTEST};
 use super::landing::Landing;
 use super::pilot::{OFTEN, Pilot, SMALLEST_SHARE};
-use super::sight::{INSIDE, REACHED};
+use super::sight::INSIDE;
 use super::{Audit, Simulation, start};
 use crate::formulation::Failure;
 use crate::integrator::{Step, Work};
@@ -158,11 +159,15 @@ impl Simulation {
             landing = pilot.sight.stop_before(step, &self.system);
         }
         let has_bend = matches!(landing, Landing::OnBend(_));
-        if has_bend || pilot.sight.corners.iter().any(|bend| bend.abs() == REACHED) {
+        if has_bend || pilot.sight.reached.contains(&true) {
             // What jumps where the step ends, or where it begins, is known.
             self.work.estimate.loads = 0.0;
         }
-        let ratio = outcome.as_ref().map_or(f64::INFINITY, |taken| pilot.ratio(self, taken, step));
+        let mut ratio = outcome.as_ref().map_or(f64::INFINITY, |taken| pilot.ratio(self, taken, step));
+        if step < SHORTEST * pilot.control.step && ratio.is_finite() {
+            // What is left to a bend or to a time may be so short that only rounding errs.
+            ratio = ratio.min(KEEPING);
+        }
         if let (Ok(taken), Landing::Between(sight) | Landing::OnBend(sight), true) = (outcome, &mut landing, ratio <= 1.0) {
             if pilot.redundant > 0 && pilot.patience.attempts.is_multiple_of(OFTEN) {
                 pilot.count_redundant(&self.system, &self.state);
@@ -186,10 +191,13 @@ impl Simulation {
         pilot.before.restore(self);
         self.audit.reject(&self.newton);
         match landing {
-            Landing::AtOnce => {
+            Landing::AtOnce { again } => {
                 self.pass_bend(&pilot.sight, step);
                 self.begin_anew();
-                pilot.control.forget(&self.state);
+                // Several bends at one place ask once.
+                if again || !pilot.control.begins() {
+                    pilot.control.forget(&self.state);
+                }
                 return Ok(false);
             }
             Landing::TooLong(longest) => {

@@ -130,7 +130,7 @@ impl Simulation {
         method.projection.apply(system, target, step, &mut self.newton, work)?;
         audit.projected(system, method, &self.found_v, accounts, target, work);
         self.judge.velocities(system, target, step, work)?;
-        audit.closed(system, method, target, &self.newton, work);
+        audit.closed(system, method, &self.found_a, target, &self.newton, work);
         self.judge.accelerations(step, work)?;
         let of_laws = if self.judge.holds_energy() { energy::size(system, work, &work.end.x) } else { 0.0 };
         self.judge.energy(system, step, [&self.audit, &audit], of_laws, work)?;

@@ -212,9 +212,9 @@ impl Audit {
     pub(super) fn integrated(&mut self, system: &System, taken: &Step, t: f64, work: &mut Workspace) -> Accounts {
         self.taken += 1;
         let done = match taken.work {
-            Work::AtEnds => {
+            Work::AtEnds(extra) => {
                 let power = energy::power(system, t, &work.end.v, &work.a, work);
-                let done = 0.5 * taken.stage.step * (self.power + power);
+                let done = 0.5 * taken.stage.step * (self.power + power) + extra;
                 self.power = power;
                 done
             }
@@ -259,7 +259,10 @@ impl Audit {
         if method.projection.velocity {
             let change = energy::kinetic_difference(system, &work.end.v, before, &mut work.full);
             if !method.projection.shadow {
-                self.projection_total += change;
+                let is_pushed = system.is_driven() && method.projection.is_by_mass();
+                let pushed = if is_pushed { energy::work_of_projection(system, &work.end.v, before, &mut work.full) } else { 0.0 };
+                self.work += pushed;
+                self.projection_total += change - pushed;
                 self.kinetic = energy::kinetic(system, &work.end.v);
             }
         }
@@ -267,9 +270,15 @@ impl Audit {
         self.phi_dot = norm(&work.rows);
     }
 
-    /// Books the violation of projected accelerations, and what the step took.
-    pub(super) fn closed(&mut self, system: &System, method: &Method, target: f64, newton: &Newton, work: &mut Workspace) {
+    /// Books the violation of projected accelerations, which were `before`, and what the step took.
+    pub(super) fn closed(&mut self, system: &System, method: &Method, before: &[f64], target: f64, newton: &Newton, work: &mut Workspace) {
         if method.projection.acceleration {
+            if system.is_driven() && method.projection.is_by_mass() {
+                // The next step begins with the multipliers of these: along their motion the rows give what all that moves gets.
+                let change = work.full.iter_mut().zip(work.a.iter().zip(before));
+                change.for_each(|(change, (after, before))| *change = after - before);
+                self.power += 2.0 * system.mass.half_product(system.dim, &work.end.v, &work.full);
+            }
             work.acceleration_violation(system, target);
             self.phi_ddot = norm(&work.rows);
         }

@@ -20,6 +20,12 @@ const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 /// How many times that is rounded in differences of many states.
 const TERMS: f64 = 8.0;
 
+/// The share of it in velocities that are no differences of positions.
+const OWN_ROUNDED: f64 = 0.1;
+
+/// Where nothing is seen of errors, one step in so many asks whether longer ones do.
+const ASKED: u32 = 16;
+
 /// Ratio of error and allowance that leaves the step about as it is.
 pub(super) const KEEPING: f64 = 0.5;
 
@@ -43,6 +49,11 @@ pub(super) struct Control {
     order: u8,
     in_use: u8,
     estimate: Estimate,
+    /// Share of the round-off of positions over the step that velocities have.
+    rounded: f64,
+    /// Whether the last attempt showed nothing but round-off near a singular position, and how many such steps were accepted in a row.
+    is_rounded: bool,
+    unseen: u32,
     /// Length of the run, s, over which errors may add up to the accuracy.
     pub span: f64,
     /// Step to try next, s.
@@ -60,11 +71,15 @@ pub(super) struct Control {
 
 impl Control {
     pub(super) fn new(accuracy: f64, order: u8, estimate: Estimate, n: usize) -> Self {
+        let rounded = if estimate == Estimate::History { 1.0 } else { OWN_ROUNDED };
         Self {
             accuracy,
             order,
             in_use: order,
             estimate,
+            rounded,
+            is_rounded: false,
+            unseen: 0,
             span: 0.0,
             step: 0.0,
             last_ratio: 1.0,
@@ -147,7 +162,7 @@ impl Control {
         let above = |error: f64, noise: f64| if error > noise { error } else { 0.0 };
         let mut position = error(&work.estimate.q) / work.scales.length;
         let mut velocity = (error(&work.estimate.v) / self.speed).max(of_loads);
-        let of_velocity = noise * (work.scales.length / (h * self.speed)).max(1.0);
+        let of_velocity = noise * (self.rounded * work.scales.length / (h * self.speed)).max(1.0);
         let is_noise = position <= noise && velocity.max(WORSE * of_loads) <= of_velocity;
         if amplified > 1.0 {
             (position, velocity) = (above(position, noise), above(velocity, of_velocity));
@@ -159,6 +174,11 @@ impl Control {
         let error = if order > estimated { size.powf(f64::from(order + 1) / f64::from(estimated + 1)) } else { size };
         self.in_use = order;
         let ratio = (error / (self.allowed() * h)).max(LEAST);
+        // Schemes that go on from the step before err where its length changes to and fro.
+        self.is_rounded = size == 0.0 && self.estimate == Estimate::History;
+        if self.is_rounded {
+            return KEEPING;
+        }
         if is_noise { ratio.min(KEEPING) } else { ratio }
     }
 
@@ -189,6 +209,10 @@ impl Control {
         self.last_ratio = ratio;
         if !(1.0 / WORTH..WORTH).contains(&factor) {
             self.step = h * factor.clamp(0.2, 2.0);
+        }
+        self.unseen = if self.is_rounded { self.unseen + 1 } else { 0 };
+        if self.is_rounded && self.unseen.is_multiple_of(ASKED) {
+            self.step = 2.0 * h;
         }
     }
 

@@ -123,26 +123,27 @@ impl Simulation {
             }
             turned.drain(..).for_each(|(at, beside)| from[at] = f64::MIN_POSITIVE.copysign(beside));
             let before = self.moment();
+            let begin = before.t();
             let next = self.next_sample().unwrap_or(f64::INFINITY);
             let until = if next < target - shortest { next } else { target };
             // Where a sample follows, forces are found when it is taken, unless somebody looks at those before it.
             let reacts = wants_forces && (divisions == Divisions::Inside || next > until + shortest);
             let crossed = |from: &[f64], to: &[f64]| (0..to.len()).find(|&k| system.events[k].trigger.is_between(from[k], to[k]));
             // Where the step is taken in parts it ends with the part in which something happens.
-            let mut low = self.state.t;
+            let (mut low, mut lower) = (self.state.t, self.state.t);
             let mut look = |simulation: &mut Self| {
                 let now = simulation.indicate()?;
                 if crossed(&from, &now).is_some() {
                     return Ok(true);
                 }
-                (low, from) = (simulation.state.t, now);
+                (lower, low, from) = (low, simulation.state.t, now);
                 simulation.show_inside(divisions, observer);
                 Ok(false)
             };
             self.advance(until, reacts, Some(&mut Inside { look: &mut look, everywhere: true }))?;
             let to = self.indicate().inspect_err(|_| self.restore(&before))?;
             let (t, k, beside) = match crossed(&from, &to) {
-                Some(k) => self.locate(&before, (low, k), &from, shortest, wants_forces, &|to: &[f64]| crossed(&from, to))?,
+                Some(k) => self.locate(before, [lower, low], k, &from, shortest, wants_forces, &|to: &[f64]| crossed(&from, to))?,
                 None => {
                     from = to;
                     continue;
@@ -151,7 +152,7 @@ impl Simulation {
             let now = self.indicate()?;
             let happens = |at: usize| at == k || system.events[at].trigger.is_between(from[at], now[at]);
             let happening: Vec<usize> = (0..now.len()).filter(|&at| happens(at)).collect();
-            if self.state.t > before.t() {
+            if self.state.t > begin {
                 from = now;
             } else {
                 // What went through zero here, and turned round when inputs were set, may go through it again.
@@ -313,18 +314,26 @@ impl Simulation {
     }
 
     /// Goes to where the first event happens in the part that began at `before` and in which the k-th has happened after the time `low`, and
-    /// says when that is, which it is, and what the indicators are just behind.
+    /// says when that is, which it is, and what the indicators are just behind. All that comes before `lower` is done once.
+    #[expect(clippy::too_many_arguments)] // what is known of the event and of the part
     fn locate(
         &mut self,
-        before: &Moment,
-        (low, mut k): (f64, usize),
+        mut before: Moment,
+        [lower, low]: [f64; 2],
+        mut k: usize,
         from: &[f64],
         shortest: f64,
         wants_forces: bool,
         crossed: &dyn Fn(&[f64]) -> Option<usize>,
     ) -> Result<(f64, usize, Vec<f64>), Failure> {
-        let (begin, end) = (before.t(), self.state.t);
+        let end = self.state.t;
         let mut beside = self.indicate()?;
+        if lower > before.t() && low - lower > 2.0 * shortest {
+            self.restore(&before);
+            self.advance(lower, wants_forces, None)?;
+            before = self.moment();
+        }
+        let begin = before.t();
         // None has happened at its beginning, and the k-th has at its end.
         let mut bracket = Bracket::new([low, end], [from[k], beside[k]]);
         let width = (LOCATED * (end - begin)).max(f64::EPSILON * end.abs());
@@ -334,14 +343,18 @@ impl Simulation {
                 break;
             }
             if bracket.high - begin <= 1.5 * shortest {
-                // Over so short a time all that moves goes straight.
-                self.restore(before);
-                return Ok((bracket.secant(), k, beside));
+                // Over so short a time all that moves goes straight: the first of those that happen in it is the one.
+                self.restore(&before);
+                let happens = |at: &usize| self.system.events[*at].trigger.is_between(from[*at], beside[*at]);
+                let time = |at: usize| (Bracket::new([begin, bracket.high], [from[at], beside[at]]).secant(), at);
+                let first = (0..beside.len()).filter(happens).map(time).min_by(|a, b| a.0.total_cmp(&b.0));
+                let (t, k) = first.unwrap_or((bracket.secant(), k));
+                return Ok((t, k, beside));
             }
             here = bracket.next(width).max(begin + shortest).min(bracket.high);
-            self.restore(before);
+            self.restore(&before);
             self.advance(here, wants_forces, None)?;
-            let now = self.indicate().inspect_err(|_| self.restore(before))?;
+            let now = self.indicate().inspect_err(|_| self.restore(&before))?;
             match crossed(&now) {
                 Some(other) => {
                     bracket.at_low = if other == k { bracket.at_low } else { from[other] };
@@ -355,7 +368,7 @@ impl Simulation {
         let high = bracket.high;
         let lands = if end - high < shortest { end } else { high };
         if here != lands {
-            self.restore(before);
+            self.restore(&before);
             self.advance(lands, wants_forces, None)?;
         }
         Ok((high, k, beside))

@@ -4,7 +4,7 @@ use super::Simulation;
 use super::bracket::Bracket;
 use super::events::{LOCATED, MOST_TRIES, SHORTEST};
 use super::pilot::{BETWEEN, Pilot, SMALLEST_SHARE};
-use super::sight::{INSIDE, Passed, REACHED, Sight};
+use super::sight::{INSIDE, Passed, Sight};
 use crate::formulation::Failure;
 use crate::integrator::Step;
 use crate::system::{Bends, System};
@@ -15,8 +15,8 @@ pub(super) enum Landing {
     Between(Sight),
     /// Where one does.
     OnBend(Sight),
-    /// Not at all, as a force bends where it begins.
-    AtOnce,
+    /// Not at all, as a force bends where it begins; whether it had bent there already.
+    AtOnce { again: bool },
     /// Not at all, as it may be so long only, s: a force that bent where it began bends again before it ends, as if it had not bent; or a peak of
     /// one is shorter than it.
     TooLong(f64),
@@ -28,12 +28,12 @@ impl Sight {
     /// Where a step that failed ends as far as can be told from where it began: a force that jumps at its end may allow none.
     pub fn stop_before(&mut self, step: f64, system: &System) -> Landing {
         let left = |bend: usize| self.left(bend, SHORTEST * step, system);
-        let soon = (0..self.corners.len()).map(|bend| (bend, left(bend))).filter(|(_, left)| (0.0..2.0 * step).contains(left));
+        let soon = (0..self.corners.len())
+            .filter(|&bend| !self.reached[bend])
+            .map(|bend| (bend, left(bend)))
+            .filter(|(_, left)| (0.0..2.0 * step).contains(left));
         match soon.min_by(|a, b| a.1.total_cmp(&b.1)) {
-            Some((bend, left)) if left <= SHORTEST * step => {
-                self.corners[bend] = REACHED.copysign(-self.corners[bend]);
-                Landing::AtOnce
-            }
+            Some((bend, left)) if left <= SHORTEST * step => Landing::AtOnce { again: self.pass(bend, step, system) },
             // What moves gets faster, too.
             Some((_, left)) => Landing::TooLong(if left < step { 0.99 * left } else { 0.5 * step }),
             None => Landing::Failed,
@@ -47,7 +47,7 @@ impl Sight {
         if step > INSIDE * least && before.is_gone(&self, share, &self.peaks, system) {
             return Landing::TooLong(share * step);
         }
-        self.reach(bend, before);
+        self.reach(bend, before, step, system);
         Landing::OnBend(self)
     }
 }
@@ -60,6 +60,10 @@ impl Simulation {
         let mut at = self.sight();
         let (begin, whole) = (pilot.before.state.t, *step);
         let least = 2.0 * SMALLEST_SHARE * pilot.control.span;
+        // Over so short a way from a bend to a time, such as that of an event there, what has bent is where it was but for rounding.
+        if whole < SHORTEST * pilot.control.step && from.reached.contains(&true) {
+            return Ok(Landing::Between(at));
+        }
         // What begins where something changes is as long as a peak that begins there.
         let is_new = pilot.control.begins() && whole > INSIDE * least;
         if is_new && from.is_gone(&at, 1.0 / INSIDE, &from.peaks, &system) {
@@ -78,10 +82,9 @@ impl Simulation {
         };
         let left = whole * Bracket::new(first.shares, first.values).secant();
         if left <= SHORTEST * whole {
-            from.corners[first.bend] = REACHED.copysign(-from.corners[first.bend]);
-            return Ok(Landing::AtOnce);
+            return Ok(Landing::AtOnce { again: from.pass(first.bend, whole, &system) });
         }
-        if from.corners[first.bend].abs() == REACHED {
+        if from.reached[first.bend] {
             return Ok(Landing::TooLong(left / BETWEEN));
         }
         let (mut bend, mut passed) = (first.bend, Some(first));
@@ -118,6 +121,9 @@ impl Simulation {
                     next
                 }
             };
+            if next <= begin {
+                return Ok(Landing::AtOnce { again: from.pass(bend, whole, &system) });
+            }
             pilot.before.restore(self);
             self.audit.reject(&self.newton);
             *step = next - begin;
@@ -136,7 +142,7 @@ impl Simulation {
         }
         let reached = |hop: &f64| {
             let ahead = self.system.bends(&sight.seen.ahead(*hop)).corners;
-            sight.corners.iter().zip(ahead).all(|(bend, ahead)| bend.abs() != REACHED || (*bend > 0.0) == (ahead > 0.0))
+            (0..ahead.len()).all(|bend| !sight.reached[bend] || (sight.corners[bend] > 0.0) == (ahead[bend] > 0.0))
         };
         let mut hops = std::iter::successors(Some(LOCATED * step), |hop| Some(2.0 * hop)).take_while(|hop| *hop <= SHORTEST * step);
         let Some(hop) = hops.find(reached) else { return };
@@ -153,6 +159,6 @@ impl Simulation {
     pub(super) fn sight(&self) -> Sight {
         let seen = self.system.see(self.look());
         let Bends { corners, peaks } = self.system.bends(&seen);
-        Sight { seen, corners, peaks }
+        Sight { seen, reached: vec![false; corners.len()], corners, peaks }
     }
 }

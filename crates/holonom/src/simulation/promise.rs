@@ -10,7 +10,7 @@ use super::audit::Audit;
 use crate::energy;
 use crate::formulation::{Failure, Independence, Iteration, Level, Multipliers, RowsAt, Workspace, taken_of_turned};
 use crate::linalg::largest;
-use crate::projection::{Metric, Solve};
+use crate::projection::Solve;
 use crate::system::{GaugeValues, System};
 
 /// Something that holds after every step, whatever the mechanism and the step.
@@ -57,13 +57,12 @@ impl Method {
         }
         let goes_on = projection.velocity && !projection.shadow;
         let projects = projection.solve == Solve::Exact && projection.strength == 1.0;
-        let by_mass = projection.metric == Metric::Mass;
         let is_exact = settings.iteration == Iteration::Newton && self.parameters.rows == RowsAt::End;
         let is_soft = matches!(settings.multipliers, Multipliers::Penalty(_));
         if self.integrator.conserves && is_exact && !is_soft {
             match goes_on {
                 false => kept.extend([Promise::Energy, Promise::Momenta]),
-                true if by_mass && projects => kept.extend([Promise::FallingEnergy, Promise::Momenta]),
+                true if projection.is_by_mass() => kept.extend([Promise::FallingEnergy, Promise::Momenta]),
                 true => (),
             }
         }

@@ -1,6 +1,7 @@
 //! Why a run stopped, in words.
 
 use super::Simulation;
+use super::no_value::Lack;
 use crate::formulation::{Failure, Workspace};
 
 /// A row that is missed by less than this share of the mechanism's size is not to blame for a step that fails.
@@ -17,11 +18,13 @@ impl Simulation {
         let row = worst.map_or(String::new(), |(k, _)| format!("; the worst row is `{}` with {:.1e}", self.system.row_names[k], phi[k]));
         let t = self.state.t;
         if matches!(failure, Failure::NotFinite | Failure::TooSmall | Failure::JumpsBack { .. })
-            && let Some(force) = self.force_without_value()
+            && let Some((force, lack)) = self.force_without_value()
         {
-            return format!(
-                "the force of `{force}` has no value there (a formula is outside its domain, or a table outside its range) at t = {t:.6} s"
-            );
+            let what = match lack {
+                Lack::Value => "has no value there (a formula is outside its domain, or a table outside its range)",
+                Lack::Slope => "has no slope there (as a root has none at zero, nor a power below 1: round it off, as sqrt(x + small))",
+            };
+            return format!("the force of `{force}` {what} at t = {t:.6} s");
         }
         let what = format!("{} at t = {t:.6} s{row}", failure.describe(&self.system));
         let is_of_rows = matches!(failure, Failure::NotConverged { .. } | Failure::Broken { .. } | Failure::Singular(_));

@@ -2,18 +2,19 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::system::{Crossing, Seen, System};
+use crate::system::{Seen, System};
 
 /// Places at which the inside of a step is looked at: one of order 8 may be a turn long.
 pub(super) const INSIDE: f64 = 8.0;
 
-/// What is seen of forces that bend: what they depend on, the numbers that go through zero at their corners (next to nothing of one that has been
-/// reached, with the sign that it has behind), and the logarithms that are largest where they have peaks.
+/// What is seen of forces that bend: what they depend on, the numbers that go through zero at their corners (of one that has been reached with the
+/// sign that it has behind), and the logarithms that are largest where they have peaks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Sight {
     pub seen: Seen,
     #[serde(with = "super::any_number")]
     pub corners: Vec<f64>,
+    pub reached: Vec<bool>,
     #[serde(with = "super::any_number")]
     pub peaks: Vec<f64>,
 }
@@ -35,7 +36,7 @@ impl Sight {
         }
         let look = |share: f64| if share < 1.0 { system.bends(&self.seen.between(&at.seen, share)).corners } else { at.corners.clone() };
         let passed = |from: f64, last: &[f64], share: f64, bends: &[f64]| {
-            let bend = (0..bends.len()).find(|&k| Crossing::Both.is_between(self.corners[k], bends[k]))?;
+            let bend = (0..bends.len()).find(|&k| self.is_passed(k, bends[k]))?;
             Some(Passed { bend, shares: [from, share], values: [last[bend], bends[bend]] })
         };
         let mut before = self.corners.clone();
@@ -94,7 +95,7 @@ impl Sight {
 
     /// Whether a force has bent so much later, s, as what it depends on moves now.
     pub fn is_beyond(&self, bend: usize, later: f64, system: &System) -> bool {
-        Crossing::Both.is_between(self.corners[bend], system.bends(&self.seen.ahead(later)).corners[bend])
+        self.is_passed(bend, system.bends(&self.seen.ahead(later)).corners[bend])
     }
 
     /// The first force that has.
@@ -103,7 +104,7 @@ impl Sight {
             return None;
         }
         let ahead = system.bends(&self.seen.ahead(later)).corners;
-        (0..ahead.len()).find(|&bend| self.corners[bend].abs() != REACHED && Crossing::Both.is_between(self.corners[bend], ahead[bend]))
+        (0..ahead.len()).find(|&bend| !self.reached[bend] && self.is_passed(bend, ahead[bend]))
     }
 
     /// How long it takes until a force bends, s, as what it depends on moves now and for a while, s; no number where nothing tells.
@@ -111,15 +112,43 @@ impl Sight {
         a_while * self.corners[bend] / (self.corners[bend] - system.bends(&self.seen.ahead(a_while)).corners[bend])
     }
 
-    /// Counts a bend as reached, on the way from `before`, and all that are the same.
-    pub fn reach(&mut self, bend: usize, before: &Self) {
-        let (here, behind) = (self.corners[bend], REACHED.copysign(-before.corners[bend]));
-        self.corners.iter_mut().filter(|now| **now == here).for_each(|now| *now = behind);
+    /// Whether the number of a bend is on the other side of zero now. One that stays at zero there, as what is clipped does, passes it where it is
+    /// clipped; one that was reached a little before zero is back where it is farther from there than it was.
+    fn is_passed(&self, bend: usize, now: f64) -> bool {
+        let from = self.corners[bend];
+        let is_beyond = (from < 0.0 && now > 0.0) || (from > 0.0 && now < 0.0);
+        is_beyond && (!self.reached[bend] || now.abs() > BACK * from.abs())
+    }
+
+    /// Counts a bend as reached, on the way from `before` that took `step` s, and all that are the same.
+    pub fn reach(&mut self, bend: usize, before: &Self, step: f64, system: &System) {
+        self.same(bend, step, system).into_iter().for_each(|k| self.turn(k, -before.corners[k]));
+    }
+
+    /// Counts a bend that is reached at the beginning of a step of length `step` (s) as passed, and all that are the same. Says whether it had been
+    /// reached: what passes it comes back.
+    pub fn pass(&mut self, bend: usize, step: f64, system: &System) -> bool {
+        let comes_back = self.reached[bend];
+        self.same(bend, step, system).into_iter().for_each(|k| self.turn(k, -self.corners[k]));
+        comes_back
+    }
+
+    /// The bends whose numbers are those of one of them but for the sign, here and where what they depend on would be a step later: beside zero
+    /// others may have the same digits.
+    fn same(&self, bend: usize, step: f64, system: &System) -> Vec<usize> {
+        let looks = [self.seen.ahead(0.0), self.seen.ahead(step)].map(|seen| system.bends(&seen).corners);
+        let sign = |k: usize| looks.iter().all(|at| at[k] == at[bend]) || looks.iter().all(|at| at[k] == -at[bend]);
+        (0..self.corners.len()).filter(|&k| k == bend || sign(k)).collect()
+    }
+
+    fn turn(&mut self, bend: usize, behind: f64) {
+        self.corners[bend] = self.corners[bend].abs().max(f64::MIN_POSITIVE).copysign(behind);
+        self.reached[bend] = true;
     }
 }
 
-/// The number of a bend that has been reached, with the sign that it has behind.
-pub(super) const REACHED: f64 = f64::MIN_POSITIVE;
+/// What was reached is back where it is so many times farther from zero than it was then.
+const BACK: f64 = 2.0;
 
 /// By how much the logarithm of a peak is higher than at both ends of a step that does not see it.
 const HIDDEN: f64 = 1.0;

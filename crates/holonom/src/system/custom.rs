@@ -1,13 +1,41 @@
 //! Constraints and forces that no invariant expresses: functions of coordinates and time, differentiated by dual numbers.
 
-use num_dual::{Dual2_64, Dual64, DualNum, HyperDual64};
+use num_dual::{Dual, Dual2_64, Dual64, DualNum, HyperDual64};
 
 use super::{Bend, Load};
 
 /// A number that carries derivatives along, or a plain one.
-pub trait Number: DualNum<Primitive = f64> + Copy {}
+pub trait Number: DualNum<Primitive = f64> + Copy {
+    /// Whether all derivatives are zero.
+    fn is_constant(&self) -> bool;
+}
 
-impl<N: DualNum<Primitive = f64> + Copy> Number for N {}
+impl Number for f64 {
+    fn is_constant(&self) -> bool {
+        true
+    }
+}
+
+impl<N: Number> Number for Dual<N>
+where
+    Self: DualNum<Primitive = f64>,
+{
+    fn is_constant(&self) -> bool {
+        self.re.is_constant() && self.eps.re() == 0.0 && self.eps.is_constant()
+    }
+}
+
+impl Number for Dual2_64 {
+    fn is_constant(&self) -> bool {
+        self.v1 == 0.0 && self.v2 == 0.0
+    }
+}
+
+impl Number for HyperDual64 {
+    fn is_constant(&self) -> bool {
+        self.eps1 == 0.0 && self.eps2 == 0.0 && self.eps1eps2 == 0.0
+    }
+}
 
 /// Constraint rows Φ(q, t) as an engine sees them: values and derivatives. Made from a [`ConstraintFunction`] by
 /// [`Differentiated`], or written by hand.

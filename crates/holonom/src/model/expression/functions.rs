@@ -80,7 +80,7 @@ impl Function {
             Self::Exp => x.exp(),
             Self::Ln => x.ln(),
             Self::Log10 => x.log10(),
-            Self::Sqrt => x.sqrt(),
+            Self::Sqrt => real_power(x, 0.5),
             Self::Abs => {
                 if real < 0.0 {
                     -x
@@ -149,12 +149,13 @@ pub(super) fn integer_power<N: Number>(x: N, n: i32) -> N {
 
 /// x^p for a constant p that is no integer.
 pub(super) fn real_power<N: Number>(x: N, p: f64) -> N {
+    if x.re() == 0.0 && (p > 1.0 || (p > 0.0 && x.is_constant())) {
+        // The general rule makes 0·∞ of this. What grows without bound here is at most the second derivative, and nothing of a number that is
+        // clipped to zero.
+        return N::from(0.0);
+    }
     if p == 0.5 {
         return x.sqrt();
-    }
-    if x.re() == 0.0 && p > 1.0 {
-        // The general rule makes 0·∞ of this. What grows without bound here is at most the second derivative.
-        return N::from(0.0);
     }
     if p < 0.0 && x.re() == f64::INFINITY {
         return N::from(0.0);

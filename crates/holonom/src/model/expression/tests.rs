@@ -151,6 +151,10 @@ fn powers_of_zero_and_of_negative_numbers_are_right() {
     assert_eq!(at("x^3", -2.0), Dual64::new(-8.0, 12.0));
     assert_eq!(at("pow(x, 3)", -2.0), Dual64::new(-8.0, 12.0));
     assert!(at("x^1.5", -1.0).re.is_nan());
+    for clipped in ["max(x, 0)^0.1", "sqrt(max(x, 0))", "max(x, 0)^0.5", "max(x, 0)*max(x, 0)^0.1"] {
+        assert_eq!(at(clipped, -1.0), Dual64::new(0.0, 0.0), "{clipped}");
+    }
+    assert!(!at("sqrt(x)", 0.0).eps.is_finite());
 }
 
 #[test]

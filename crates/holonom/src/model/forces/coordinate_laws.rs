@@ -160,6 +160,12 @@ impl Impact {
 }
 
 impl Law for Impact {
+    /// Where what goes out in contact gets as fast as 1/d.
+    fn bends(&self, value: &[f64], rate: &[f64], _t: f64, note: &mut dyn FnMut(Bend)) {
+        let is_in_contact = self.buffer.beyond(value[0]) > 0.0;
+        note(Bend::Corner(if is_in_contact { self.buffer.sign * rate[0] + 1.0 / self.dissipation } else { 0.0 }));
+    }
+
     fn conservative(&self) -> bool {
         false
     }

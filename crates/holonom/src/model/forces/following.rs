@@ -186,13 +186,21 @@ impl RopeLoad {
         }
         sum
     }
+
+    /// What its spring and its damper pull with.
+    fn tension<N: AnyNumber>(&self, [stretch, speed]: [N; 2], read: &[N]) -> N {
+        self.stiffness.at(read) * stretch + self.damping.at(read) * speed
+    }
 }
 
 impl ForceFunction for RopeLoad {
     fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(Bend)) {
         let read = read(&self.readings, x, v, t);
         [&self.length, &self.stiffness, &self.damping].into_iter().for_each(|key| key.bends(&read, note));
-        note(Bend::Corner(self.stretch(x, v, t)[0]));
+        let [stretch, speed] = self.stretch(x, v, t);
+        note(Bend::Corner(stretch));
+        // Where a taut rope would begin to push.
+        note(Bend::Corner(if stretch > 0.0 { self.tension([stretch, speed], &read) } else { 0.0 }));
     }
 
     fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
@@ -201,8 +209,7 @@ impl ForceFunction for RopeLoad {
         if stretch.re() <= 0.0 {
             return;
         }
-        let read = read(&self.readings, x, v, t);
-        let tension = self.stiffness.at(&read) * stretch + self.damping.at(&read) * speed;
+        let tension = self.tension([stretch, speed], &read(&self.readings, x, v, t));
         if tension.re() <= 0.0 {
             return;
         }

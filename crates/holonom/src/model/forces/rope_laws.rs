@@ -33,6 +33,13 @@ impl Strands {
         let whole: f64 = lengths.iter().zip(self.factors).map(|(&value, factor)| factor * length(value).0).sum();
         whole - self.free - drum.first().map_or(0.0, |q| self.radius * q)
     }
+
+    /// The rate of that, m/s.
+    fn speed(&self, value: &[f64], rate: &[f64]) -> f64 {
+        let (lengths, drum) = rate.split_at(self.lengths);
+        let whole: f64 = lengths.iter().zip(value).zip(self.factors).map(|((&rate, &value), factor)| factor * rate / length(value).0).sum();
+        whole - drum.first().map_or(0.0, |rate| self.radius * rate)
+    }
 }
 
 /// A step of a rope.
@@ -79,6 +86,9 @@ pub(super) trait Pull: Send + Sync {
 
     /// Tension between two positions, and its derivative by the length at the second.
     fn between(&self, change: &Change) -> [f64; 2];
+
+    /// What goes through zero where the tension bends, of a rope that is longer than its free length by `beyond`, m, where it is slack by less.
+    fn corner(&self, beyond: f64, speed: f64) -> f64;
 }
 
 /// V = ½ k p² with the stretch p = max(ℓ − L, 0).
@@ -103,6 +113,10 @@ impl Pull for Elastic {
     fn between(&self, change: &Change) -> [f64; 2] {
         let ([share, bend], mean) = (change.share(), 0.5 * (change.stretch[0] + change.stretch[1]));
         [self.stiffness * mean * share, self.stiffness * (0.5 * change.slope() * share + mean * bend)]
+    }
+
+    fn corner(&self, beyond: f64, _speed: f64) -> f64 {
+        beyond
     }
 }
 
@@ -134,6 +148,11 @@ impl Pull for Damping {
         let [tension, slope] = if tension >= least { [tension, damping] } else { [least, -0.5 * self.stiffness * change.slope()] };
         [share * tension, share * slope + bend * tension]
     }
+
+    /// All tension of a taut rope: where that is nothing the rope would begin to push.
+    fn corner(&self, beyond: f64, speed: f64) -> f64 {
+        if beyond > 0.0 { self.damping * speed + self.stiffness * beyond } else { 0.0 }
+    }
 }
 
 /// A tension along all stretches of a taut rope.
@@ -151,11 +170,8 @@ impl<P: Pull> Law for Taut<P> {
         self.pull.conservative()
     }
 
-    /// The damping bends where the tension does.
-    fn bends(&self, value: &[f64], _rate: &[f64], _t: f64, note: &mut dyn FnMut(Bend)) {
-        if self.pull.conservative() {
-            note(Bend::Corner(self.strands.beyond(value)));
-        }
+    fn bends(&self, value: &[f64], rate: &[f64], _t: f64, note: &mut dyn FnMut(Bend)) {
+        note(Bend::Corner(self.pull.corner(self.strands.beyond(value), self.strands.speed(value, rate))));
     }
 
     fn at(&self, value: &[f64], rate: &[f64], _t: f64, out: &mut Response) {
