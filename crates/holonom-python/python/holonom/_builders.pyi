@@ -540,6 +540,24 @@ class Builders:
         repeat: makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"; default: one entry
         """
 
+    def cam(
+        self,
+        name: str,
+        /,
+        *,
+        joints: Sequence[str],
+        lift: Number,
+        repeat: str | None = None,
+    ) -> Entry:
+        """Adds a joint of the kind ``cam``: a coordinate that follows another by a formula or a table: a cam with a groove, a Geneva wheel, gears that are not round.
+
+        Equations: q_2 − f(q_1) + f(0) = 0, angles counted over any number of turns
+
+        joints: two joints, or coordinates of joints as "JOINT.angle" or "JOINT.displacement": the one that leads, and the one that follows
+        lift: the second coordinate over the first, q; only its differences count, as both are zero at the start [m or rad]
+        repeat: makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"; default: one entry
+        """
+
     def constraint_distance(
         self,
         name: str,
