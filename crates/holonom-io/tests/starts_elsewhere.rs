@@ -224,3 +224,19 @@ fn a_cylinder_follows_beside_a_motor() {
     }
     assert!((elbow[0] - 0.3).abs() < 1e-12);
 }
+
+/// What no joint ties to the ground is moved by a start, and a note says by how much: both parts of a platform with a turret turn against each other.
+#[test]
+fn a_start_says_what_it_moves_that_nothing_ties() {
+    let parts = |between: &str| {
+        format!(
+            "gravity = [0, 0, 0]\n[body.platform]\nmass = 10\ninertia = [1, 1, 1]\nposition = [0, 0, 0]\n[body.turret]\nmass = 10\n\
+             inertia = [1, 1, 1]\nposition = [0, 0, 0]\n[joint.slew]\ntype = \"revolute\"\nbetween = [\"platform\", \"turret\"]\nat = [0, 0, 0]\n\
+             axis = [0, 0, 1]\n{between}[start.slew]\nangle = 1.0\n"
+        )
+    };
+    let notes = common::model(&parts("")).notes;
+    assert!(notes.iter().any(|note| note.contains("`platform` by 0 m and 0.5 rad, `turret` by 0 m and 0.5 rad")), "{notes:?}");
+    let tied = "[joint.base]\ntype = \"revolute\"\nbetween = [\"ground\", \"platform\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n";
+    assert!(common::model(&parts(tied)).notes.is_empty());
+}

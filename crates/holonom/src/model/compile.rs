@@ -5,6 +5,7 @@ use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
+use super::adrift;
 use super::assembly::{Assembly, Axes};
 use super::bodies::nodes::{self, Member};
 use super::bodies::{Files, RigidBody};
@@ -77,6 +78,11 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
             drop(assembly);
             let _: Refused = sink.report(|| Fault::new("start", "start", message, cure));
             return Err(sink.finish().expect_err("there is a fault"));
+        }
+        if starts.iter().any(start::Target::is_placed)
+            && let Some(message) = adrift::moved(&assembly)
+        {
+            sink.note("start", || message);
         }
         let title = description.model.title.clone().unwrap_or_default();
         let mut model = finish::finish(assembly, title, settings, output, bars);

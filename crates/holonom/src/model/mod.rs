@@ -9,6 +9,7 @@ pub mod drives;
 pub mod forces;
 pub mod joints;
 
+mod adrift;
 mod apart;
 mod assembly;
 mod bars;

@@ -3,8 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::advance::Inside;
-use super::bracket::Bracket;
-use super::checkpoint::Moment;
 use super::{Audit, Divisions, Observer, Simulation};
 use crate::formulation::Failure;
 use crate::system::{Look, Trigger};
@@ -313,69 +311,8 @@ impl Simulation {
         self.steps = self.steps.min(first.1 + 1);
     }
 
-    /// Goes to where the first event happens in the part that began at `before` and in which the k-th has happened after the time `low`, and
-    /// says when that is, which it is, and what the indicators are just behind. All that comes before `lower` is done once.
-    #[expect(clippy::too_many_arguments)] // what is known of the event and of the part
-    fn locate(
-        &mut self,
-        mut before: Moment,
-        [lower, low]: [f64; 2],
-        mut k: usize,
-        from: &[f64],
-        shortest: f64,
-        wants_forces: bool,
-        crossed: &dyn Fn(&[f64]) -> Option<usize>,
-    ) -> Result<(f64, usize, Vec<f64>), Failure> {
-        let end = self.state.t;
-        let mut beside = self.indicate()?;
-        if lower > before.t() && low - lower > 2.0 * shortest {
-            self.restore(&before);
-            self.advance(lower, wants_forces, None)?;
-            before = self.moment();
-        }
-        let begin = before.t();
-        // None has happened at its beginning, and the k-th has at its end.
-        let mut bracket = Bracket::new([low, end], [from[k], beside[k]]);
-        let width = (LOCATED * (end - begin)).max(f64::EPSILON * end.abs());
-        let mut here = end;
-        for _ in 0..MOST_TRIES {
-            if bracket.high - bracket.low <= width {
-                break;
-            }
-            if bracket.high - begin <= 1.5 * shortest {
-                // Over so short a time all that moves goes straight: the first of those that happen in it is the one.
-                self.restore(&before);
-                let happens = |at: &usize| self.system.events[*at].trigger.is_between(from[*at], beside[*at]);
-                let time = |at: usize| (Bracket::new([begin, bracket.high], [from[at], beside[at]]).secant(), at);
-                let first = (0..beside.len()).filter(happens).map(time).min_by(|a, b| a.0.total_cmp(&b.0));
-                let (t, k) = first.unwrap_or((bracket.secant(), k));
-                return Ok((t, k, beside));
-            }
-            here = bracket.next(width).max(begin + shortest).min(bracket.high);
-            self.restore(&before);
-            self.advance(here, wants_forces, None)?;
-            let now = self.indicate().inspect_err(|_| self.restore(&before))?;
-            match crossed(&now) {
-                Some(other) => {
-                    bracket.at_low = if other == k { bracket.at_low } else { from[other] };
-                    bracket = bracket.narrowed(here, now[other], true);
-                    k = other;
-                    beside = now;
-                }
-                None => bracket = bracket.narrowed(here, now[k], false),
-            }
-        }
-        let high = bracket.high;
-        let lands = if end - high < shortest { end } else { high };
-        if here != lands {
-            self.restore(&before);
-            self.advance(lands, wants_forces, None)?;
-        }
-        Ok((high, k, beside))
-    }
-
     /// Values of all indicators at the present state.
-    fn indicate(&self) -> Result<Vec<f64>, Failure> {
+    pub(super) fn indicate(&self) -> Result<Vec<f64>, Failure> {
         let found = self.system.indicators(self.look());
         match found.iter().position(|found| found.is_nan()) {
             Some(event) => Err(Failure::NoIndicator { event }),

@@ -10,6 +10,7 @@ mod conflict;
 mod control;
 mod events;
 mod landing;
+mod locate;
 mod method;
 mod no_value;
 mod pilot;

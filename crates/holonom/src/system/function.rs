@@ -4,11 +4,7 @@
 //! A function of invariants keeps what they keep: it does not change under rigid motion, and its discrete derivative,
 //! with D·Δπ = Δg, makes momenta and energy exact (methods §8).
 
-use std::sync::Arc;
-
-use super::angle::{angle_at, angle_between};
-use super::derive::{Place, chord, difference, quotient};
-use super::{Derivatives, Followed, InvariantId, Invariants, MAX_ARGUMENTS, Pfaffian, Signal, Smooth};
+use super::{Derivatives, InvariantId, Invariants, MAX_ARGUMENTS, Part};
 
 /// A function of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,49 +29,6 @@ impl From<FunctionId> for Quantity {
     fn from(id: FunctionId) -> Self {
         Self::Function(id)
     }
-}
-
-/// A summand of a function.
-#[derive(Clone)]
-pub enum Part {
-    /// An invariant.
-    Invariant(InvariantId),
-    /// The angle whose cosine and sine are two invariants, times whatever they have in common. It is counted over any
-    /// number of turns from where it was.
-    Angle {
-        /// ρ cos θ, with any ρ > 0.
-        cosine: InvariantId,
-        /// ρ sin θ, with the same ρ.
-        sine: InvariantId,
-    },
-    /// A function of one coordinate: of an invariant, an angle or a followed number.
-    Curve {
-        /// The coordinate.
-        of: Box<Self>,
-        /// Its value and two derivatives by the coordinate.
-        curve: Arc<dyn Signal>,
-    },
-    /// A smooth function of some invariants.
-    Smooth {
-        /// Its arguments, in order.
-        of: Vec<InvariantId>,
-        /// Its value and derivatives by them.
-        function: Arc<dyn Smooth>,
-    },
-    /// A condition on the rates of some invariants.
-    Pfaffian {
-        /// The invariants π_i, in order.
-        of: Vec<InvariantId>,
-        /// The coefficients f_i(π) in Σ f_i π̇_i = 0.
-        form: Arc<dyn Pfaffian>,
-    },
-    /// A function of some invariants with a number that is followed.
-    Followed {
-        /// Its arguments, in order.
-        of: Vec<InvariantId>,
-        /// Finds the number, and value and derivatives where it is known.
-        function: Arc<dyn Followed>,
-    },
 }
 
 #[derive(Clone)]
@@ -254,87 +207,6 @@ impl Functions {
     }
 }
 
-impl Part {
-    /// The invariants that it depends on, in order.
-    fn arguments(&self) -> Vec<InvariantId> {
-        match self {
-            Self::Invariant(id) => vec![*id],
-            Self::Angle { cosine, sine } => vec![*cosine, *sine],
-            Self::Curve { of, .. } => of.arguments(),
-            Self::Smooth { of, .. } | Self::Followed { of, .. } | Self::Pfaffian { of, .. } => of.clone(),
-        }
-    }
-
-    /// Whether it has a number that is followed, as the turns of an angle.
-    fn is_followed(&self) -> bool {
-        match self {
-            Self::Curve { of, .. } => of.is_followed(),
-            _ => matches!(self, Self::Angle { .. } | Self::Followed { .. }),
-        }
-    }
-
-    /// Value and derivatives at the invariants `pi`. What is followed is the first of `followed`, and is found from there.
-    fn at(&self, pi: &[f64], followed: &mut [f64]) -> Derivatives {
-        match self {
-            Self::Invariant(id) => identity(pi[id.0 as usize]),
-            Self::Angle { cosine, sine } => {
-                let part = angle_at(pi[cosine.0 as usize], pi[sine.0 as usize], followed[0]);
-                followed[0] = part.value;
-                part
-            }
-            Self::Curve { of, curve } => {
-                let inner = of.at(pi, followed);
-                let [value, slope, bend] = curve.at(inner.value);
-                inner.chained(value, slope, |k| bend * inner.gradient[k])
-            }
-            Self::Smooth { of, function } => function.derivatives(&pick(of, pi)[..of.len()]),
-            Self::Pfaffian { of, form } => form.derivatives(&pick(of, pi)[..of.len()]),
-            Self::Followed { of, function } => {
-                let value = &pick(of, pi)[..of.len()];
-                followed[0] = function.locate(value, followed[0]);
-                function.derivatives(value, followed[0])
-            }
-        }
-    }
-
-    /// The discrete derivative between two positions; what is followed is the first of `followed` at each.
-    fn between(&self, pi: [&[f64]; 2], followed: [&[f64]; 2]) -> Derivatives {
-        match self {
-            Self::Invariant(_) => identity(0.0),
-            Self::Angle { cosine, sine } => angle_between(pi.map(|pi| [pi[cosine.0 as usize], pi[sine.0 as usize]])),
-            Self::Curve { of, curve } => {
-                let end = |k: usize| of.at(pi[k], &mut followed[k].get(..1).map_or([0.0], |first| [first[0]]));
-                let [from, to] = [0, 1].map(end);
-                let (slope, turn) = chord(curve.as_ref(), from.value, to.value);
-                of.between(pi, followed).chained(0.0, slope, |k| turn * to.gradient[k])
-            }
-            // The mean of the ends: momenta and energy need no more, as Σ f_i Δπ_i vanishes.
-            Self::Pfaffian { of, form } => {
-                let [start, end] = pi.map(|pi| form.derivatives(&pick(of, pi)[..of.len()]));
-                let mut mean = Derivatives::default();
-                for i in 0..of.len() {
-                    mean.gradient[i] = 0.5 * (start.gradient[i] + end.gradient[i]);
-                    mean.hessian[i] = end.hessian[i].map(|h| 0.5 * h);
-                }
-                mean
-            }
-            Self::Followed { of, function } => {
-                let ([start, end], m) = (pi.map(|pi| pick(of, pi)), of.len());
-                let at = followed.map(|followed| followed[0]);
-                quotient(&start[..m], &end[..m], |place, value| match place {
-                    Place::Start => function.derivatives(value, at[0]),
-                    Place::End => function.derivatives(value, at[1]),
-                    Place::Middle => function.derivatives(value, function.locate(value, 0.5 * (at[0] + at[1]))),
-                })
-            }
-            Self::Smooth { of, function } => {
-                let [from, to] = pi.map(|pi| pick(of, pi));
-                difference(function.as_ref(), &from[..of.len()], &to[..of.len()])
-            }
-        }
-    }
-}
-
 impl Summand {
     /// Adds the derivatives of this part to those of the function.
     fn add(&self, part: &mut Derivatives, sum: &mut Derivatives) {
@@ -346,16 +218,4 @@ impl Summand {
             }
         }
     }
-}
-
-pub(super) fn pick(ids: &[InvariantId], values: &[f64]) -> [f64; MAX_ARGUMENTS] {
-    let mut picked = [0.0; MAX_ARGUMENTS];
-    ids.iter().zip(&mut picked).for_each(|(id, out)| *out = values[id.0 as usize]);
-    picked
-}
-
-fn identity(value: f64) -> Derivatives {
-    let mut out = Derivatives { value, ..Derivatives::default() };
-    out.gradient[0] = 1.0;
-    out
 }

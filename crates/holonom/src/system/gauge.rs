@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::Followed;
-use super::function::Part;
+use super::part::Part;
 use super::{FunctionValues, Functions, Invariants, System, SystemBuilder, Term};
 
 /// A joint coordinate, before it is a quantity of a system.

@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::Entry;
-use crate::model::expression::Program;
+use crate::model::expression::{Program, names_in};
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, Number};
 use crate::model::key::Shape;
@@ -36,6 +36,7 @@ pub struct Expression {
 impl Element for Expression {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let dim = assembly.dimension();
+        self.require_no_coordinate(entry)?;
         let mut readings = Readings::new(dim, Reading::default());
         let value = self.value.formula_reading(entry, "value", &["t"], &mut Reader::new(assembly, entry, &mut readings))?;
         if let Some(name) = readings.first_but_positions() {
@@ -72,6 +73,25 @@ impl Element for Expression {
         })?;
         assembly.builder.custom_rows(entry.name, &nodes, rows);
         Ok(())
+    }
+}
+
+impl Expression {
+    /// Refuses coordinates of joints: constraints are made before these.
+    fn require_no_coordinate(&self, entry: &Entry<'_>) -> Read<()> {
+        let Number::Formula(text) = &self.value else { return Ok(()) };
+        let is_coordinate = |name: &String| [".angle", ".displacement"].iter().any(|end| name.ends_with(end));
+        match names_in(text).into_iter().find(is_coordinate) {
+            None => Ok(()),
+            Some(name) => {
+                let message = format!("`{name}` is a coordinate, and a constraint is of positions of points and bodies, and of t");
+                Err(entry.refuse(
+                    "value",
+                    message,
+                    "tie coordinates of joints with a coupler: a [joint.NAME] of type = \"linear\" or \"cam\"",
+                ))
+            }
+        }
     }
 }
 

@@ -44,6 +44,9 @@ pub(super) fn lex(text: &str) -> Result<Vec<(usize, Token)>, Mistake> {
             ',' => Token::Comma,
             '*' if characters.get(k) == Some(&'*') => return Err(Mistake::new(start, "`**` is no operator", "powers are written with ^")),
             '+' | '-' | '*' | '/' | '^' => Token::Operator(c),
+            '.' if start > 0 && characters[start - 1] == '\'' => {
+                return Err(Mistake::new(start, "single quotes stand round a whole name", "write 'NAME.COLUMN', as 'left-strut.force'"));
+            }
             '0'..='9' | '.' => {
                 k = end_of_number(&characters, start);
                 let text: String = characters[start..k].iter().collect();

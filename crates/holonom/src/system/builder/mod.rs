@@ -4,8 +4,9 @@ mod finish;
 
 use std::sync::Arc;
 
-use super::function::{FunctionId, Functions, Part, Quantity};
+use super::function::{FunctionId, Functions, Quantity};
 use super::gauge::{Form, Gauges};
+use super::part::Part;
 use super::{
     Constant, CustomEntry, CustomRows, Event, InvariantId, Invariants, Law, LawEntry, Load, LoadEntry, MAX_ARGUMENTS, MassBlock, Reading,
     Row, Sense, Signal,
