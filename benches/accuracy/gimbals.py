@@ -44,6 +44,7 @@ def gimbals(ring, miss):
         return [alpha, y[5], gamma, 0.0, 0.0, -rotor * s * alpha * gamma / (ring + rotor)]
 
     def truth(times, nudge=0.0):
+        # Were both outer rates nudged alike, the way beside the lock would stay what it is.
         _, _, _, a, b, g = np.array(start) + nudge * np.array([0, 0, 0, 1, 1, -1])
         tilt = lean + nudge
         momenta = [(2 * ring + rotor) * a + rotor * math.cos(tilt) * g, rotor * (g + math.cos(tilt) * a)]

@@ -71,11 +71,10 @@ fn what_follows_moves_as_in_one_coordinate() {
                 // Far away places are rounded to so much more.
                 let within = share + if far > 0.0 { 1e-8 } else { 0.0 };
                 assert!((found - q).abs() < within * q, "{kinds:?}, {length}, {mass}, {far}, {method}: {found}, and {q} in one coordinate");
-                let q_now = last(&recording, own[0]) / length;
                 let along = last(&recording, &format!("cam.second.{other}.effort")) / (mass * length);
                 let back = last(&recording, &format!("cam.first.{}.effort", own[1])) / (mass * length);
                 assert!((along - effort).abs() < 100.0 * within * effort.abs(), "{kinds:?}, {method}: {along}, and {effort} by hand");
-                let expected = -wave(q_now)[1] * along;
+                let expected = -wave(found)[1] * along;
                 assert!(
                     (back - expected).abs() < 100.0 * within.min(1e-8) * expected.abs(),
                     "{kinds:?}, {method}: {back}, and {expected} by the slope"

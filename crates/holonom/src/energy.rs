@@ -9,19 +9,12 @@ pub fn kinetic(system: &System, v: &[f64]) -> f64 {
     system.mass.half_product(system.dim, v, v)
 }
 
-/// Kinetic energy of `v` minus that of `before`, as (29) has it, J.
+/// Kinetic energy of `v` minus that of `before`, as (29) has it, J. Leaves v − before in `scratch`.
 pub fn kinetic_difference(system: &System, v: &[f64], before: &[f64], scratch: &mut [f64]) -> f64 {
     for ((out, v), b) in scratch.iter_mut().zip(v).zip(before) {
         *out = v - b;
     }
     system.mass.half_product(system.dim, v, scratch) + system.mass.half_product(system.dim, before, scratch)
-}
-
-/// What rows that move did in a projection of `before` to `v` in the metric of the mass, J: its impulses along their motion. It is the change of
-/// the kinetic energy but for ½ Δvᵀ M Δv, which projections take.
-pub fn work_of_projection(system: &System, v: &[f64], before: &[f64], scratch: &mut [f64]) -> f64 {
-    let change = kinetic_difference(system, v, before, scratch);
-    change + system.mass.half_product(system.dim, scratch, scratch)
 }
 
 /// Potential energy of gravity and of the laws, and with a penalty that of the rows (14), J.
@@ -118,7 +111,7 @@ pub fn work_between(system: &System, stage: &Stage, work: &Workspace) -> f64 {
 
 /// Power of everything that [`work_between`] counts, at a state with its accelerations, W. Needs the state sampled.
 pub fn power(system: &System, t: f64, v: &[f64], a: &[f64], work: &Workspace) -> f64 {
-    let (n, dim) = (system.coordinates(), system.dim);
+    let n = system.coordinates();
     let mut sum = loads_along(system, work, |i| v[i]);
     for (law, response) in system.laws.iter().zip(&work.forces.responses).filter(|(law, _)| !law.law.conservative()) {
         for (k, id) in law.invariants.iter().enumerate() {
@@ -126,30 +119,31 @@ pub fn power(system: &System, t: f64, v: &[f64], a: &[f64], work: &Workspace) ->
         }
     }
     sum += (n..v.len()).map(|i| work.forces.sum[i] * v[i]).sum::<f64>();
+    add_power_of_known(system, t, &work.sampled.at, v, a, &work.lambda, sum)
+}
+
+/// Adds to a sum the power that known motion gives to masses with the accelerations `a`, and that of rows that depend on time with the multipliers
+/// λ, W.
+fn add_power_of_known(system: &System, t: f64, at: &Evaluation, v: &[f64], a: &[f64], lambda: &[f64], mut sum: f64) -> f64 {
+    let dim = system.dim;
     for node in system.free..system.nodes() {
         for (b, mass) in system.mass.row(node) {
             sum += mass.product(&v[node * dim..(node + 1) * dim], &a[b * dim..(b + 1) * dim]);
         }
     }
-    for (row, &lambda) in work.lambda.iter().enumerate() {
-        sum += lambda * system.explicit_rate(row, &work.sampled.at, t);
+    for (row, &lambda) in lambda.iter().enumerate() {
+        sum += lambda * system.explicit_rate(row, at, t);
     }
     sum
 }
 
 /// Power of moving rows and of known motion at the start of a step, as far as it comes of multipliers and accelerations, W.
 pub fn power_of_rows(system: &System, t: f64, work: &mut Workspace) -> f64 {
-    let (n, dim) = (system.coordinates(), system.dim);
     let Workspace { full, lambda, start, a, .. } = work;
     full.fill(0.0);
-    system.slots.add_forces(dim, lambda, &start.at.gradient, full);
-    let mut sum: f64 = (n..full.len()).map(|i| full[i] * start.v[i]).sum();
-    for node in system.free..system.nodes() {
-        for (b, mass) in system.mass.row(node) {
-            sum += mass.product(&start.v[node * dim..(node + 1) * dim], &a[b * dim..(b + 1) * dim]);
-        }
-    }
-    sum + lambda.iter().enumerate().map(|(row, lambda)| lambda * system.explicit_rate(row, &start.at, t)).sum::<f64>()
+    system.slots.add_forces(system.dim, lambda, &start.at.gradient, full);
+    let sum = (system.coordinates()..full.len()).map(|i| full[i] * start.v[i]).sum();
+    add_power_of_known(system, t, &start.at, &start.v, a, lambda, sum)
 }
 
 /// Σ F·motion over the loads on free nodes.

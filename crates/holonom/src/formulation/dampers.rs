@@ -96,7 +96,7 @@ impl Newton {
             count += law.arguments.len();
         }
         bound_by_nodes(system, &mut dampers, work);
-        // A composition goes back in some of its steps, where nothing rings.
+        // A composition goes back in some of its steps. Nothing rings there, but dampers make energy.
         let share = if self.fit.share > 0.0 { self.fit.share } else { LIGHTER };
         if let Some(law) = dampers.iter().position(|damping| -h * share * damping.speed > BACK) {
             work.forces.damping = dampers;

@@ -48,8 +48,8 @@ pub(super) fn moved(assembly: &Assembly<'_>) -> Option<String> {
     }
     (!moved.is_empty()).then(|| {
         format!(
-            "bodies that no joint ties to the ground were moved, as little as they can be in the metric of the mass: {} (a joint to the ground with a \
-             coordinate of its own keeps one where it is)",
+            "bodies that no joint ties to the ground were moved, as little as they can be in the metric of the mass: {} (they stay where they are \
+             in a file that is written in the pose in which the run begins)",
             moved.join(", ")
         )
     })

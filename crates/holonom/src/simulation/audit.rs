@@ -260,7 +260,8 @@ impl Audit {
             let change = energy::kinetic_difference(system, &work.end.v, before, &mut work.full);
             if !method.projection.shadow {
                 let is_pushed = system.is_driven() && method.projection.is_by_mass();
-                let pushed = if is_pushed { energy::work_of_projection(system, &work.end.v, before, &mut work.full) } else { 0.0 };
+                // What its impulses do along rows that move is all but −½ Δvᵀ M Δv.
+                let pushed = if is_pushed { change + energy::kinetic(system, &work.full) } else { 0.0 };
                 self.work += pushed;
                 self.projection_total += change - pushed;
                 self.kinetic = energy::kinetic(system, &work.end.v);
@@ -274,7 +275,7 @@ impl Audit {
     pub(super) fn closed(&mut self, system: &System, method: &Method, before: &[f64], target: f64, newton: &Newton, work: &mut Workspace) {
         if method.projection.acceleration {
             if system.is_driven() && method.projection.is_by_mass() {
-                // The next step begins with the multipliers of these: along their motion the rows give what all that moves gets.
+                // The next step begins with these, whose rows give vᵀ M Δa more power: Δλ goes with M Δa = −Gᵀ Δλ, and Φ̇ = 0.
                 let change = work.full.iter_mut().zip(work.a.iter().zip(before));
                 change.for_each(|(change, (after, before))| *change = after - before);
                 self.power += 2.0 * system.mass.half_product(system.dim, &work.end.v, &work.full);

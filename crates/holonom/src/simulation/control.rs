@@ -49,8 +49,6 @@ pub(super) struct Control {
     order: u8,
     in_use: u8,
     estimate: Estimate,
-    /// Share of the round-off of positions over the step that velocities have.
-    rounded: f64,
     /// Whether the last attempt showed nothing but round-off near a singular position, and how many such steps were accepted in a row.
     is_rounded: bool,
     unseen: u32,
@@ -71,13 +69,11 @@ pub(super) struct Control {
 
 impl Control {
     pub(super) fn new(accuracy: f64, order: u8, estimate: Estimate, n: usize) -> Self {
-        let rounded = if estimate == Estimate::History { 1.0 } else { OWN_ROUNDED };
         Self {
             accuracy,
             order,
             in_use: order,
             estimate,
-            rounded,
             is_rounded: false,
             unseen: 0,
             span: 0.0,
@@ -162,7 +158,9 @@ impl Control {
         let above = |error: f64, noise: f64| if error > noise { error } else { 0.0 };
         let mut position = error(&work.estimate.q) / work.scales.length;
         let mut velocity = (error(&work.estimate.v) / self.speed).max(of_loads);
-        let of_velocity = noise * (self.rounded * work.scales.length / (h * self.speed)).max(1.0);
+        let differs = self.estimate == Estimate::History;
+        let rounded = if differs { 1.0 } else { OWN_ROUNDED };
+        let of_velocity = noise * (rounded * work.scales.length / (h * self.speed)).max(1.0);
         let is_noise = position <= noise && velocity.max(WORSE * of_loads) <= of_velocity;
         if amplified > 1.0 {
             (position, velocity) = (above(position, noise), above(velocity, of_velocity));
@@ -175,7 +173,7 @@ impl Control {
         self.in_use = order;
         let ratio = (error / (self.allowed() * h)).max(LEAST);
         // Schemes that go on from the step before err where its length changes to and fro.
-        self.is_rounded = size == 0.0 && self.estimate == Estimate::History;
+        self.is_rounded = amplified > 1.0 && size == 0.0 && differs;
         if self.is_rounded {
             return KEEPING;
         }

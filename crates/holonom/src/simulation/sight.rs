@@ -136,9 +136,9 @@ impl Sight {
     /// The bends whose numbers are those of one of them but for the sign, here and where what they depend on would be a step later: beside zero
     /// others may have the same digits.
     fn same(&self, bend: usize, step: f64, system: &System) -> Vec<usize> {
-        let looks = [self.seen.ahead(0.0), self.seen.ahead(step)].map(|seen| system.bends(&seen).corners);
-        let sign = |k: usize| looks.iter().all(|at| at[k] == at[bend]) || looks.iter().all(|at| at[k] == -at[bend]);
-        (0..self.corners.len()).filter(|&k| k == bend || sign(k)).collect()
+        let looks = [&self.seen, &self.seen.ahead(step)].map(|seen| system.bends(seen).corners);
+        let is_same = |k: usize| looks.iter().all(|at| at[k] == at[bend]) || looks.iter().all(|at| at[k] == -at[bend]);
+        (0..self.corners.len()).filter(|&k| k == bend || is_same(k)).collect()
     }
 
     fn turn(&mut self, bend: usize, behind: f64) {

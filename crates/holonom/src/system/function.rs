@@ -4,6 +4,7 @@
 //! A function of invariants keeps what they keep: it does not change under rigid motion, and its discrete derivative,
 //! with D·Δπ = Δg, makes momenta and energy exact (methods §8).
 
+use super::part::first_of;
 use super::{Derivatives, InvariantId, Invariants, MAX_ARGUMENTS, Part};
 
 /// A function of a system.
@@ -163,7 +164,7 @@ impl Functions {
         let function = &self.items[id.0 as usize];
         let followed = function.angle + function.summands[..part].iter().filter(|summand| summand.part.is_followed()).count();
         let Part::Curve { of, curve } = &function.summands[part].part else { panic!("the part is a curve") };
-        curve.at(of.at(pi, &mut values.angle[followed..].to_vec()).value)[1]
+        curve.at(of.at(pi, &mut first_of(&values.angle[followed..])).value)[1]
     }
 
     /// Discrete derivatives between two positions, and values half way.

@@ -98,7 +98,7 @@ impl Part {
             Self::Invariant(_) => identity(0.0),
             Self::Angle { cosine, sine } => angle_between(pi.map(|pi| [pi[cosine.0 as usize], pi[sine.0 as usize]])),
             Self::Curve { of, curve } => {
-                let end = |k: usize| of.at(pi[k], &mut followed[k].get(..1).map_or([0.0], |first| [first[0]]));
+                let end = |k: usize| of.at(pi[k], &mut first_of(followed[k]));
                 let [from, to] = [0, 1].map(end);
                 let (slope, turn) = chord(curve.as_ref(), from.value, to.value);
                 of.between(pi, followed).chained(0.0, slope, |k| turn * to.gradient[k])
@@ -130,7 +130,12 @@ impl Part {
     }
 }
 
-pub(super) fn pick(ids: &[InvariantId], values: &[f64]) -> [f64; MAX_ARGUMENTS] {
+/// The first of some numbers, if there is one.
+pub(super) fn first_of(numbers: &[f64]) -> [f64; 1] {
+    [numbers.first().copied().unwrap_or_default()]
+}
+
+fn pick(ids: &[InvariantId], values: &[f64]) -> [f64; MAX_ARGUMENTS] {
     let mut picked = [0.0; MAX_ARGUMENTS];
     ids.iter().zip(&mut picked).for_each(|(id, out)| *out = values[id.0 as usize]);
     picked
