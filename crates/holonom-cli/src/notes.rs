@@ -55,12 +55,20 @@ pub fn open_columns(free: &Undetermined<'_>, channels: &Channels, world: &[f64],
 /// Measures that have no value in some rows.
 pub fn unknown_measures(model: &Model, recording: &Recording) -> Vec<String> {
     let rows = recording.rows();
-    let count = |name: &String| recording.column(name).map_or(0, |values| values.iter().filter(|value| value.is_nan()).count());
+    let count = |name: &String| recording.column(name).map_or(0, |values| values.iter().filter(|value| !value.is_finite()).count());
     let of_measures = model.channels.measures.iter().map(|measure| (&measure.name, count(&measure.name)));
     let without = of_measures.filter(|(_, count)| *count > 0);
     without
-        .map(|(name, count)| format!("the measure `{name}` has no value in {count} of {rows} rows: a formula is outside its domain there"))
+        .map(|(name, count)| {
+            format!("the measure `{name}` has no finite value in {count} of {rows} rows: a formula is outside its domain there")
+        })
         .collect()
+}
+
+/// Whether a force has no value in a row.
+fn lacks_force(model: &Model, recording: &Recording, row: usize) -> bool {
+    let names = model.channels.forces.iter().flat_map(|force| force.acts(model.axes)).flatten();
+    names.filter_map(|name| recording.column(&name)).any(|values| values[row].is_nan())
 }
 
 /// That rows have no forces of joints, as the position is singular there.
@@ -69,14 +77,59 @@ pub fn rows_without_forces(model: &Model, recording: &Recording) -> Option<Strin
     let of_joints = told.joints.first().map(|joint| format!("{}.f{}", joint.name, &model.axes[..1]));
     let of_drives = told.efforts.first().map(|effort| format!("{}.effort", effort.name));
     let name = of_joints.or(of_drives).or(told.rods.first().map(|rod| format!("{}.force", rod.name)))?;
-    let unknown = recording.column(&name)?.iter().zip(recording.column("t")?).filter(|(force, _)| force.is_nan());
-    let times: Vec<f64> = unknown.map(|(_, t)| *t).collect();
+    let times = recording.column("t")?;
+    let unknown = recording.column(&name)?.iter().enumerate().filter(|(row, force)| force.is_nan() && !lacks_force(model, recording, *row));
+    let times: Vec<f64> = unknown.map(|(row, _)| times[row]).collect();
     let first = times.first()?;
     let rows = if times.len() == 1 { "one row has".into() } else { format!("{} rows have", times.len()) };
     (times.len() < recording.rows()).then(|| {
         format!(
             "{rows} no accelerations and no forces of joints and drives, first at {} s: at a singular position none keep all constraints",
             short(*first)
+        )
+    })
+}
+
+/// Share of the energy that could move from which on it is said that a method has made or lost it.
+const LOST: f64 = 0.01;
+
+/// That a method has made or lost much of the energy.
+pub fn lost_energy(simulation: &Simulation) -> Option<String> {
+    let (audit, energy) = (simulation.audit(), simulation.audit().energy_summary());
+    let ([_, supply], made) = (audit.supply(), energy.integrator_total + energy.projection_total);
+    let did = if made > 0.0 { "made" } else { "lost" };
+    (made.abs() > LOST * supply && supply > 0.0).then(|| {
+        format!(
+            "the method has {did} {} J of the {} J that could move: shorter steps show what that changes, and conserving-ggl keeps the energy",
+            short(made.abs()),
+            short(supply)
+        )
+    })
+}
+
+/// Share of itself by which a rotation lags from which on that is said.
+const LAG: f64 = 0.01;
+
+/// That steps are long for what spins: schemes of order 2 turn it by a twelfth of the cube of the angle too little in each (methods §8.1).
+pub fn long_turns(model: &Model, method: &Method, step: f64, recording: &Recording) -> Option<String> {
+    if method.accuracy.is_some() || method.order() > 2 {
+        return None;
+    }
+    let fastest = |columns: &[String]| -> f64 {
+        let columns: Vec<&[f64]> = columns.iter().filter_map(|name| recording.column(name)).collect();
+        let square = |row: usize| columns.iter().map(|values| values[row] * values[row]).sum::<f64>();
+        (0..recording.rows()).map(square).fold(0.0, f64::max).sqrt()
+    };
+    let of_bodies = model.bodies.iter().map(|body| (&body.name, ["wx", "wy", "wz"].map(|w| format!("{}.{w}", body.name)).to_vec()));
+    let rate = |name: &String| vec![format!("{name}_rate")];
+    let of_joints = model.system.gauges().iter().filter(|gauge| gauge.ends_with("angle")).map(|gauge| (gauge, rate(gauge)));
+    let speeds = of_bodies.chain(of_joints).map(|(name, columns)| (name, step * fastest(&columns)));
+    let (name, turn) = speeds.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let lag = turn * turn / 12.0;
+    (lag > LAG).then(|| {
+        format!(
+            "`{name}` turns by {turn:.2} rad in a step: what spins freely so fast lags by {:.0} % with a method of order 2 (a shorter step, or gauss)",
+            100.0 * lag
         )
     })
 }
@@ -120,9 +173,13 @@ pub fn costly(method: &Method) -> Option<String> {
 
 /// That no motion begins with the velocities of a start.
 pub fn nowhere(start: &Start) -> Option<String> {
-    let text = "no motion begins with the start velocities: at this singular position no accelerations keep all constraints, and what comes is one way of many \
-                (give the velocities of one of the ways in which it can move from there)";
-    start.leads_nowhere.then(|| text.into())
+    let text = match &start.conflict {
+        Some(row) => format!("`{row}` asks for a motion that the other constraints do not allow"),
+        None => "no motion begins with the start velocities: at this singular position no accelerations keep all constraints, and what comes is one way of \
+                 many (give the velocities of one of the ways in which it can move from there)"
+            .into(),
+    };
+    start.leads_nowhere.then_some(text)
 }
 
 /// Bodies and points with the change of their velocities at the start.

@@ -22,7 +22,7 @@ use crate::folder::{Folder, holds};
 use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
 use crate::message::note;
-use crate::notes::{corrections, costly, rows_without_forces, shared_forces, slips, unknown_measures};
+use crate::notes::{corrections, costly, long_turns, lost_energy, rows_without_forces, shared_forces, slips, unknown_measures};
 use crate::options::Destination;
 use crate::progress::Watched;
 use crate::provenance::Provenance;
@@ -177,7 +177,9 @@ pub(crate) fn simulate_kept(
     }
     let unknown = unknown_measures(model, watched.recorder.recording());
     let without = rows_without_forces(model, watched.recorder.recording());
-    let of_results: Vec<String> = unknown.into_iter().chain(without).chain(shared_forces(model, &simulation)).collect();
+    let turns = long_turns(model, simulation.method(), step, watched.recorder.recording());
+    let of_steps = lost_energy(&simulation).filter(|_| status == Status::Completed).into_iter().chain(turns);
+    let of_results: Vec<String> = unknown.into_iter().chain(without).chain(shared_forces(model, &simulation)).chain(of_steps).collect();
     if !quiet {
         of_results.iter().for_each(|text| note(text));
     }

@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::f64::consts::PI;
+
 use common::model;
 use holonom::simulation::{Choice, Method, Simulation};
 
@@ -114,6 +116,36 @@ fn what_stands_still_has_forces() {
         for name in ["h0.fx", "screw.fz", "door.ax", "knob.alphaz"] {
             let column = recording.column(name).unwrap();
             assert!(column.iter().all(|value| value.is_finite()), "{length} m, {mass} kg, {place} away, {name}: {column:?}");
+        }
+    }
+}
+
+/// Two shafts at a universal joint 1e-6 short of a right angle, the one turning and the other at rest: where they change places both angles go round a
+/// corner of that radius. Long steps do not pass it on the way straight on.
+#[test]
+fn steps_by_accuracy_do_not_pass_a_corner_unseen() {
+    let short = 1e-6_f64;
+    let bend = PI / 2.0 - short;
+    let (along, across) = ([bend.cos(), bend.sin(), 0.0], [-bend.sin(), bend.cos(), 0.0]);
+    for k in 0..12 {
+        let second = -0.05 - 0.12 * f64::from(k);
+        let first = (short.sin() * second.tan()).atan();
+        let pins = [[0.0, first.cos(), first.sin()], [-second.sin() * across[0], -second.sin() * across[1], second.cos()]];
+        let text = format!(
+            "gravity = [0, 0, 0]\n[body.one]\nmass = 1\ninertia = [1, 1, 1]\nposition = [0, 0, 0]\n\
+             [body.two]\nmass = 1\ninertia = [1, 1, 1]\nposition = [0, 0, 0]\nangular_velocity = {along:?}\n\
+             [joint.first]\ntype = \"revolute\"\nbetween = [\"ground\", \"one\"]\nat = [0, 0, 0]\naxis = [1, 0, 0]\n\
+             [joint.second]\ntype = \"revolute\"\nbetween = [\"ground\", \"two\"]\nat = [0, 0, 0]\naxis = {along:?}\n\
+             [joint.cross]\ntype = \"universal\"\nbetween = [\"one\", \"two\"]\nat = [0, 0, 0]\naxes = {pins:?}\n"
+        );
+        let model = model(&text);
+        for method in ["radau", "ggl/bdf", "ode/dopri5", "ode/dop853"] {
+            let choice = Choice { accuracy: Some(1e-3), ..Choice::default().named(method) };
+            let recording = common::run(&model, choice, 0.2, 4.0).1;
+            // The first turns as long as the second does not, at the same speed.
+            let expected = 4.0 - (PI / 2.0 - second);
+            let found = common::last(&recording, "first.angle");
+            assert!((found - expected).abs() < 1e-2, "{method} from {second}: {found} rad in place of {expected}");
         }
     }
 }

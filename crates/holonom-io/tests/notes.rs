@@ -115,3 +115,21 @@ fn motions_that_jump_and_long_steps_are_noted() {
     assert_eq!(driven("0", "1", "end = 2\nstep = 3"), ["simulation.step: the step of 3 s is longer than the run of 2 s"]);
     assert_eq!(driven("step(t - 1)", "1", "step = 3"), [""; 0], "the end is not known");
 }
+
+/// A stop that is in contact from the start is noted, also where a start has moved its joint.
+#[test]
+fn a_stop_that_pushes_from_the_start_is_noted() {
+    let flap = |stop: &str, start: &str| {
+        let text = format!(
+            "plane = \"xy\"\n[body.flap]\nmass = 1\ninertia = 0.1\nposition = [0.5, 0]\n\
+             [joint.h]\ntype = \"revolute\"\nbetween = [\"ground\", \"flap\"]\nat = [0, 0]\n\
+             [force.s]\ntype = \"stop\"\njoint = \"h\"\nstiffness = 1e4\n{stop}\n{start}"
+        );
+        model(&text).notes
+    };
+    let lower = "force.s.lower: `h.angle` starts at 0, below its limit 0.1: the stop pushes with 1000 N·m from the start";
+    assert_eq!(flap("lower = 0.1", ""), [lower]);
+    let upper = "force.s.upper: `h.angle` starts at 0.5, above its limit 0.2: the stop pushes with 3000 N·m from the start";
+    assert_eq!(flap("lower = 0.1\nupper = 0.2", "[start.h]\nangle = 0.5\n"), [upper]);
+    assert_eq!(flap("lower = -0.1\nupper = 0", ""), [""; 0]);
+}

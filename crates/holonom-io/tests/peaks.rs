@@ -9,11 +9,15 @@ use holonom::simulation::{Choice, Method, Simulation, Status};
 
 /// A mass that falls 0.1 m onto a buffer of 1e5 N/m.
 fn buffer() -> Model {
-    model(
+    buffer_and("")
+}
+
+fn buffer_and(more: &str) -> Model {
+    model(&format!(
         "plane = \"xz\"\n[body.m]\nmass = 1\ninertia = 1\nposition = [0, 0.1]\n\
          [joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"m\"]\naxis = [0, 1]\n\
-         [force.buffer]\ntype = \"stop\"\njoint = \"rail\"\nlower = -0.1\nstiffness = 1e5\n",
-    )
+         [force.buffer]\ntype = \"stop\"\njoint = \"rail\"\nlower = -0.1\nstiffness = 1e5\n{more}",
+    ))
 }
 
 /// With k s²/2 = m g (h + s) at the lowest place it pushes with k s = m g (1 + √(1 + 2 k h/m g)).
@@ -43,6 +47,30 @@ fn peaks_between_rows_count() {
         assert!(of_rows < 0.9 * largest(), "{method}: a row has it");
         // How near a step comes to the largest force is a matter of its length.
         assert!(peak.value > 0.95 * largest() && peak.value <= (1.0 + 1e-6) * largest(), "{method}: {} N", peak.value);
+    }
+}
+
+/// Measures go as far as they do in any step; what has no finite value is left out of that.
+#[test]
+fn extremes_of_measures_are_those_of_all_steps() {
+    let text = "[measure.push]\nvalue = \"buffer.effort\"\n[measure.rise]\nvalue = \"m.az\"\n[measure.level]\nvalue = \"ln(abs(m.vz))\"\n";
+    let model = buffer_and(text);
+    for (method, accuracy, step, every) in [("radau", Some(1e-8), 0.05, 1), ("ode/dopri5", Some(1e-8), 0.05, 1), ("radau", None, 2e-5, 997)]
+    {
+        let choice = Choice { accuracy, ..Choice::default().named(method) };
+        let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&choice).unwrap(), step).unwrap();
+        model.find_reactions(&mut simulation);
+        let mut recorder = Recorder::new(&model.channels, &model.system, every, Constraints::Joints);
+        assert_eq!(simulation.run(0.4, &mut recorder), Status::Completed);
+        let peaks = Peaks::of(&model.channels, &recorder.finish());
+        let [push, rise, level] = &peaks.measures[..] else { panic!("{:?}", peaks.measures) };
+        println!("{method}: {push:?} {rise:?} {level:?}");
+        assert_eq!(push.max, peaks.forces[0].value.abs(), "{method}");
+        assert!((push.max_at - peaks.forces[0].at).abs() < 1e-12 && push.min.abs() < 1e-9, "{method}");
+        // In its lowest place it is thrown up by k s/m − g.
+        assert!((rise.max - (push.max - 9.81)).abs() < 1e-6 * push.max && (rise.min + 9.81).abs() < 1e-9, "{method}: {rise:?}");
+        // At rest it has no speed.
+        assert!(level.min.is_finite() && level.max < 1.0, "{method}: {level:?}");
     }
 }
 

@@ -240,3 +240,28 @@ fn a_start_says_what_it_moves_that_nothing_ties() {
     let tied = "[joint.base]\ntype = \"revolute\"\nbetween = [\"ground\", \"platform\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n";
     assert!(common::model(&parts(tied)).notes.is_empty());
 }
+
+/// Coordinates of joints with several: a plate on a table and a shaft at a universal joint begin where they are put.
+#[test]
+fn joints_with_several_coordinates_begin_where_they_are_put() {
+    let text = "gravity = [0, 0, 0]\n[body.plate]\nmass = 1\ninertia = [0.1, 0.1, 0.2]\nposition = [0, 0, 0]\n\
+                [body.shaft]\nmass = 1\ninertia = [0.1, 0.1, 0.2]\nposition = [2, 0, 0]\n\
+                [joint.table]\ntype = \"planar\"\nbetween = [\"ground\", \"plate\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n\
+                [joint.cross]\ntype = \"universal\"\nbetween = [\"ground\", \"shaft\"]\nat = [2, 0, 0]\naxes = [[1, 0, 0], [0, 1, 0]]\n\
+                [start.table]\nx = 0.1\ny = -0.2\nangle = 0.3\ny_rate = 0.5\n[start.cross]\nangle1 = 0.4\nangle2 = -0.2\nangle2_rate = 2\n";
+    let recording = run(&model_with_forces(text), 0.01, 0.01);
+    let first = |name: &str| recording.column(name).unwrap()[0];
+    let expected = [
+        ("table.x", 0.1),
+        ("table.y", -0.2),
+        ("table.angle", 0.3),
+        ("table.y_rate", 0.5),
+        ("table.x_rate", 0.0),
+        ("cross.angle1", 0.4),
+        ("cross.angle2", -0.2),
+        ("cross.angle2_rate", 2.0),
+    ];
+    for (name, value) in expected {
+        assert!((first(name) - value).abs() < 1e-12, "{name}: {}", first(name));
+    }
+}

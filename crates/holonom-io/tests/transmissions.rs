@@ -75,6 +75,47 @@ fn bearings_bear_what_teeth_push() {
     }
 }
 
+/// The same ring with its pinion, the ring named first: 30 N·m on it push with 100 N across, and the rim outwards.
+#[test]
+fn a_ring_that_is_named_first_is_pushed_outwards() {
+    let apart = 100.0 * f64::to_radians(20.0).tan();
+    for (signs, turned) in WAYS {
+        let coupler = format!("type = \"gear\"\nratio = {}\npressure_angle = \"20*deg\"", product(signs, turned) / 3.0);
+        // 10 N·m on the ring of 0.3 m.
+        let recording = run(&pair(0.2, signs, turned, &coupler, -10.0 / 3.0), 0.02);
+        let (a, b) = (borne(&recording, "a", turned[0]), borne(&recording, "b", turned[1]));
+        let on_ring = [apart / 3.0, -100.0 / 3.0, 0.0];
+        close("teeth", &first(&recording, &["mesh.fx", "mesh.fy", "mesh.fz"]), &on_ring);
+        close("ring", &a, &on_ring.map(|f| -f));
+        close("pinion", &b, &on_ring);
+    }
+}
+
+/// Wheels whose joints have their places beside each other along the axes, on a carrier that is free: what it bears turns it as Newton and Euler say.
+#[test]
+fn wheels_beside_each_other_turn_their_carrier_by_all_that_it_bears() {
+    for coupler in ["type = \"gear\"\nratio = -2\npressure_angle = \"20*deg\"", "type = \"pulley\"\nradii = [0.1, 0.05]\npretension = 20"] {
+        let text = format!(
+            "gravity = [0, 0, 0]\n[body.carrier]\nmass = 1\ninertia = [0.1, 0.1, 0.1]\nposition = [0, 0, 0]\n\
+             [body.a]\nmass = 1\ninertia = [0.01, 0.01, 0.02]\nposition = [0, 0, 0]\n\
+             [body.b]\nmass = 1\ninertia = [0.01, 0.01, 0.02]\nposition = [0.3, 0, 0.1]\n\
+             [joint.one]\ntype = \"revolute\"\nbetween = [\"carrier\", \"a\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n\
+             [joint.two]\ntype = \"revolute\"\nbetween = [\"carrier\", \"b\"]\nat = [0.3, 0, 0.1]\naxis = [0, 0, 1]\n\
+             [joint.mesh]\njoints = [\"one\", \"two\"]\n{coupler}\n[force.e]\ntype = \"effort\"\njoint = \"one\"\neffort = 3\n"
+        );
+        let recording = run(&text, 0.02);
+        let of = |name: &str| -> Vec<f64> {
+            first(&recording, &["x", "y", "z"].map(|axis| format!("{name}{axis}")).each_ref().map(String::as_str))
+        };
+        let ([f, m], [g, n]) = (["one.f", "one.t"].map(of), ["two.f", "two.t"].map(of));
+        let arm = [0.3, 0.0, 0.1];
+        let moment = |k: usize| -(m[k] + n[k] + arm[(k + 1) % 3] * g[(k + 2) % 3] - arm[(k + 2) % 3] * g[(k + 1) % 3]);
+        let turned = [moment(0), moment(1), moment(2) - 3.0];
+        close(coupler, &turned, &of("carrier.alpha").iter().map(|alpha| 0.1 * alpha).collect::<Vec<_>>());
+        assert!(f.iter().chain(&g).any(|f| f.abs() > 1.0));
+    }
+}
+
 /// A belt over wheels of 0.1 and 0.2 m, 0.5 m apart, rises by 0.1 m where it is open and by 0.3 m where it crosses itself: the strand that pulls has
 /// 100 N more than the other, which has none of a chain.
 #[test]

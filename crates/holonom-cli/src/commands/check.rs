@@ -50,7 +50,8 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
     drop(simulation);
     let mut held = Held::new(&plain, load::method(&plain.model, None)?, step)?;
     held.notes.extend(unused_parameters(&loaded.source));
-    held.notes.extend(nowhere(&start));
+    // What asks for too much has a line of its own.
+    held.notes.extend(nowhere(&start).filter(|_| held.conflict.is_none()));
     let found = &held.rank;
     let near = found.near_singular(&plain.model.system);
     let form = match with_projection {

@@ -60,7 +60,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
     if output.to.json {
         println!("{}", serde_json::to_string_pretty(&summaries).expect("a summary is plain data"));
     } else if !output.to.quiet {
-        let differences = describe_differences(&plan.columns, &compared);
+        let differences = describe_columns(&plan.columns, &compared);
         println!("{}\n{}{differences}\n\nresults in {}", plan.title, describe(&summaries), folder.path.display());
     }
     Ok(if interrupted.load(Ordering::Relaxed) { ExitCode::from(STOPPED) } else { ExitCode::SUCCESS })
@@ -84,7 +84,7 @@ pub fn side_by_side(runs: &[(String, &Loaded, &Finished)], columns: &[String]) -
     }
     tell_differences(columns, &mut compared);
     let summaries: Vec<&Value> = compared.iter().map(|one| &one.summary).collect();
-    let text = format!("{}{}", describe(&summaries), describe_differences(columns, &compared));
+    let text = format!("{}{}", describe(&summaries), describe_columns(columns, &compared));
     Ok(Found { value: json!(summaries), text })
 }
 
@@ -156,19 +156,22 @@ fn run<'a>(one: &'a Compared, plan: &'a Plan) -> Run<'a> {
     Run { label: &one.label, recording: &one.recording, scene, summary: &one.summary }
 }
 
-/// How far the columns asked for are from those of the first, below the table of runs.
-fn describe_differences(columns: &[String], compared: &[Compared]) -> String {
-    let Some((first, others)) = compared.split_first().filter(|_| !columns.is_empty()) else { return String::new() };
+/// How far the columns asked for go in each run, and how far they are from those of the first, below the table of runs.
+fn describe_columns(columns: &[String], compared: &[Compared]) -> String {
+    let Some(first) = compared.first().filter(|_| !columns.is_empty()) else { return String::new() };
     let rows = columns.iter().flat_map(|column| {
         let unit = first.recording.find(column).map_or("1", |column| &*column.heading.unit);
         let heading = if unit == "1" { column.clone() } else { format!("{column} ({unit})") };
-        others.iter().map(move |other| {
-            let number = |key: &str| digits(other.summary["differences"][column.as_str()][key].as_f64().unwrap_or(f64::NAN));
-            vec![heading.clone(), other.label.clone(), number("largest"), number("at"), number("rms")]
+        compared.iter().map(move |one| {
+            let values = one.recording.column(column).unwrap_or_default().iter().copied().filter(|value| value.is_finite());
+            let [least, largest] = values.fold([f64::NAN; 2], |[least, largest], value| [value.min(least), value.max(largest)]).map(digits);
+            let number = |key: &str| digits(one.summary["differences"][column.as_str()][key].as_f64().unwrap_or(f64::NAN));
+            vec![heading.clone(), one.label.clone(), least, largest, number("largest"), number("at"), number("rms")]
         })
     });
     let rows: Vec<Vec<String>> = rows.collect();
-    format!("\n\n{}", table(&["difference", &format!("to {}", first.label), "largest", "at s", "rms"], &rows))
+    let header = ["column", "run", "least", "largest", &format!("difference to {}", first.label), "at s", "rms"];
+    format!("\n\n{}", table(&header, &rows))
 }
 
 /// A table of all runs, and why those stopped that did.

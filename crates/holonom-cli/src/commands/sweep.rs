@@ -14,13 +14,14 @@ use crate::load;
 use crate::options::SweepArguments;
 use crate::output::table_writers;
 use crate::progress::{interrupt_flag, runs_bar};
-use crate::sweep::{Ending, JOURNAL, Line, Plan, Store, Study};
+use crate::sweep::{Answers, Ending, JOURNAL, Line, Plan, Store, Study};
 use crate::table::{list, measured};
 
 /// Runs every run of a plan that its journal does not hold yet, and writes the table of all.
 pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
     let writers = table_writers(&arguments.formats)?;
     let plan = Plan::new(arguments)?;
+    let varied = plan.varied.len();
     let mut overrides = load::overrides(&arguments.model.set);
     overrides.number("simulation.step", arguments.method.step.as_deref());
     overrides.number("simulation.accuracy", arguments.method.accuracy.as_deref());
@@ -37,7 +38,12 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
         store.finish(&study, &table, &writers, (!arguments.no_report).then_some(overrides.given()))?;
     }
     let any_completed = study.count(&table, Ending::Completed) > 0;
-    tell(arguments, &store, &summary(&name, &study, &table, &spent), is_whole);
+    let answers = Answers::new(&table, varied, columns.len());
+    let mut summary = summary(&name, &study, &table, &spent);
+    if !columns.is_empty() {
+        summary["columns"] = answers.values();
+    }
+    tell(arguments, &store, &summary, &answers, is_whole);
     // Whatever was asked not to be said, a status of failure has its reason.
     if !arguments.to.quiet || !any_completed {
         tell_failures(&study.failures(&table), any_completed);
@@ -87,7 +93,7 @@ fn summary(name: &str, study: &Study, table: &Table, spent: &Spent) -> Value {
 }
 
 /// Says how it went.
-fn tell(arguments: &SweepArguments, store: &Store, summary: &Value, is_whole: bool) {
+fn tell(arguments: &SweepArguments, store: &Store, summary: &Value, answers: &Answers<'_>, is_whole: bool) {
     if !is_whole {
         eprintln!("interrupted: {JOURNAL} holds the finished runs, and the same command goes on");
     }
@@ -95,7 +101,8 @@ fn tell(arguments: &SweepArguments, store: &Store, summary: &Value, is_whole: bo
         println!("{}", serde_json::to_string_pretty(summary).expect("a summary is plain data"));
     } else if !arguments.to.quiet {
         let folder = store.path().unwrap_or(".".as_ref());
-        println!("{}\n\nresults in {}", describe(summary), folder.display());
+        let answers = answers.words().filter(|_| is_whole).map_or(String::new(), |words| format!("\n\n{words}"));
+        println!("{}{answers}\n\nresults in {}", describe(summary), folder.display());
     }
 }
 

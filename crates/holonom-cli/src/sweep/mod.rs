@@ -1,5 +1,6 @@
 //! Independent runs of one model that differ in some of its keys.
 
+mod answers;
 mod check;
 mod column;
 mod journal;
@@ -13,6 +14,7 @@ mod study;
 mod vary;
 mod watch;
 
+pub use answers::Answers;
 pub use plan::Plan;
 pub use run::Ending;
 pub use store::{JOURNAL, Store};

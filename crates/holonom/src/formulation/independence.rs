@@ -122,6 +122,11 @@ impl Independence {
         }
     }
 
+    /// Gradients of all rows (D a slot) when last measured, of length one.
+    pub fn gradients(&self) -> &[f64] {
+        &self.at.gradient
+    }
+
     /// The least share of a row when last measured, without as many of the least as are `redundant`; 1 where there is no other. The shares are in no
     /// order then.
     pub fn weakest(&mut self, redundant: usize) -> f64 {

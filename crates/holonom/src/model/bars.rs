@@ -10,7 +10,7 @@ use super::fields::{Keys, List, Number, Place};
 use super::geometry::norm;
 use super::key::Shape;
 use crate::record::{LineKind, RecordedRod};
-use crate::system::{self, Constant, Term};
+use crate::system::{self, Constant};
 
 /// A uniform rigid rod between two points.
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -53,8 +53,8 @@ impl Bar {
         }
         let places = a.place().zip(b.place()).map(|(a, b)| [a, b]);
         match places {
-            Some(places) => add_mass(assembly, places, mass),
-            None => add_mass_of_terms(assembly, [&a.terms, &b.terms], mass),
+            Some(places) => add_mass(assembly, &ends, places, mass),
+            None => add_mass_of_terms(assembly, &ends, mass),
         }
         ends.iter().filter_map(|end| end.point).for_each(|point| assembly.points[point].carries_bar = true);
         let half_square = assembly.builder.square(&from_to(a, b));
@@ -71,23 +71,42 @@ fn zero_length(entry: &Entry<'_>, [a, b]: &[End; 2]) -> Refused {
 }
 
 /// The same where ends are sums of nodes: with x = Σ (f + g J) x_i each product of two ends is one of all their nodes.
-fn add_mass_of_terms(assembly: &mut Assembly<'_>, ends: [&[Term]; 2], mass: f64) {
+fn add_mass_of_terms(assembly: &mut Assembly<'_>, ends: &[End; 2], mass: f64) {
     for (k, l, share) in [(0, 0, mass / 3.0), (1, 1, mass / 3.0), (0, 1, mass / 6.0)] {
-        for (i, a) in ends[k].iter().enumerate() {
+        for (i, a) in ends[k].terms.iter().enumerate() {
             // Of an end with itself each pair of nodes once, as a block comes with its transpose.
-            for b in &ends[l][if k == l { i } else { 0 }..] {
+            for b in &ends[l].terms[if k == l { i } else { 0 }..] {
                 let m = share * (a.factor * b.factor + a.turn * b.turn);
                 let s = share * (a.factor * b.turn - a.turn * b.factor);
                 let twice = k != l && a.place == b.place;
-                assembly.builder.couple(a.place, b.place, if twice { 2.0 * m } else { m }, if twice { 0.0 } else { s });
+                let (m, s) = if twice { (2.0 * m, 0.0) } else { (m, s) };
+                let velocities = [velocity(assembly, &ends[k], a.place), velocity(assembly, &ends[l], b.place)];
+                assembly.builder.couple([a.place, b.place], m, s, velocities);
             }
         }
     }
-    ends.iter().for_each(|end| end.iter().for_each(|&term| assembly.builder.weight(term, 0.5 * mass)));
+    ends.iter().for_each(|end| end.terms.iter().for_each(|&term| assembly.builder.weight(term, 0.5 * mass)));
 }
 
-fn add_mass(assembly: &mut Assembly<'_>, [a, b]: [system::Place; 2], mass: f64) {
-    assembly.builder.mass(a, a, mass / 3.0);
-    assembly.builder.mass(b, b, mass / 3.0);
-    assembly.builder.mass(a, b, mass / 6.0);
+fn add_mass(assembly: &mut Assembly<'_>, ends: &[End; 2], [a, b]: [system::Place; 2], mass: f64) {
+    let [of_a, of_b] = [velocity(assembly, &ends[0], a), velocity(assembly, &ends[1], b)];
+    for (places, share, velocities) in
+        [([a, a], mass / 3.0, [of_a, of_a]), ([b, b], mass / 3.0, [of_b, of_b]), ([a, b], mass / 6.0, [of_a, of_b])]
+    {
+        assembly.builder.couple(places, share, 0.0, velocities);
+        let both = if places[0] == places[1] { &places[..1] } else { &places[..] };
+        both.iter().for_each(|&place| assembly.builder.weight((place, 1.0).into(), share));
+    }
+}
+
+/// Velocity at the start of a node that an end is made of, m/s: that which the body of the end is written with there. Others that share the node may
+/// be written with another one.
+fn velocity(assembly: &Assembly<'_>, end: &End, place: system::Place) -> [f64; 3] {
+    match (end.body, place) {
+        (Some(body), system::Place::Node(node)) => {
+            let (body, at) = (&assembly.bodies[body], assembly.builder.position_of(node));
+            if assembly.builder.is_direction(node) { body.rate_of(at) } else { body.velocity_at(at) }
+        }
+        _ => assembly.builder.velocity_of(place),
+    }
 }

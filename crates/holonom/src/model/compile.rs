@@ -23,7 +23,7 @@ use super::settings::{Output, Settings};
 use super::signals::{Formula, Signals};
 use super::tables::Tables;
 use super::value::{Table, Value, key_path};
-use super::{GRAVITY, Model, SCHEMA, finish, measure, parameters, points, start, tables};
+use super::{GRAVITY, Model, SCHEMA, finish, measure, parameters, points, spinless, start, tables};
 use crate::record::Constraints;
 use crate::system::{self, SystemBuilder};
 
@@ -83,6 +83,11 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
             && let Some(message) = adrift::moved(&assembly)
         {
             sink.note("start", || message);
+        }
+        if let Some(fault) = spinless::refuse(&assembly) {
+            drop(assembly);
+            let _: Refused = sink.report(|| fault);
+            return Err(sink.finish().expect_err("there is a fault"));
         }
         let title = description.model.title.clone().unwrap_or_default();
         let mut model = finish::finish(assembly, title, settings, output, bars);

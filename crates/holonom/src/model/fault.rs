@@ -155,7 +155,9 @@ pub fn nearest_few<'a>(name: &str, known: impl IntoIterator<Item = &'a str>, mos
     let wanted = plain(name);
     let is_near = |&(distance, candidate): &(usize, &str)| {
         let limit = (NEAR * wanted.chars().count().max(candidate.chars().count()) as f64) as usize;
-        distance <= limit.max(1)
+        // Names of which no letter is the same have nothing in common.
+        let all = wanted.chars().count().max(candidate.chars().count());
+        distance <= limit.max(1) && distance < all
     };
     let distances = known.into_iter().map(|candidate| (strsim::osa_distance(&wanted, &plain(candidate)), candidate));
     let mut sorted: Vec<(usize, &str)> = distances.collect();
@@ -188,6 +190,7 @@ mod tests {
         assert_eq!(nearest("m3", ["m1", "other"]), Some("m1"));
         assert_eq!(nearest("stiffness", ["x", "damping"]), None);
         assert_eq!(nearest("anything", []), None);
+        assert_eq!(nearest("π", ["e", "t"]), None);
         assert_eq!(nearest_few("car.azz", ["t", "car.ax", "car.az", "car.vx", "wheel.az"], 3), ["car.az", "car.ax", "car.vx"]);
     }
 

@@ -38,13 +38,18 @@ pub fn unit(k: usize) -> Vec3 {
     std::array::from_fn(|c| f64::from(u8::from(c == k)))
 }
 
+/// What components of a unit vector may differ by that were turned.
+const ROUNDED: f64 = 1e-9;
+
 /// Unit vectors at right angles to a unit vector and to each other: two in space, one in the plane. With u they are
 /// right-handed.
 pub fn across(u: Vec3, dim: usize) -> Vec<Vec3> {
     if dim == 2 {
         return vec![[-u[1], u[0], 0.0]];
     }
-    let least = (0..3).min_by(|&a, &b| u[a].abs().total_cmp(&u[b].abs())).expect("three components");
+    let smallest = u.iter().fold(f64::INFINITY, |m, u| m.min(u.abs()));
+    // The first of those that are alike but for rounding.
+    let least = (0..3).find(|&k| u[k].abs() <= smallest + ROUNDED).unwrap_or(0);
     let first = cross(u, unit(least));
     let first = scale(first, 1.0 / norm(first));
     vec![first, cross(u, first)]

@@ -9,6 +9,10 @@ use crate::system::{Signal, zeros};
 /// Change over the largest value of a run that is taken for round-off.
 const ROUNDED: f64 = 1e-9;
 
+/// Share of the way that is looked at for what rises steeply behind a place, and of its rise there that a jump has at once.
+const STEEP: f64 = 1e-10;
+const JUMPED: f64 = 0.5;
+
 /// Values that the largest is found of.
 const LOOKS: u32 = 200;
 
@@ -49,12 +53,14 @@ impl Way {
     /// Where its k-th derivative first jumps, and by how much.
     fn first_jump(&self, places: &[f64], k: usize, end: f64) -> Option<(f64, f64)> {
         let largest = (0..=LOOKS).map(|look| self.at(end * f64::from(look) / f64::from(LOOKS))[k].abs()).fold(0.0, f64::max);
-        let by = |t: f64| {
-            // Across the zero, which is some roundings after it.
-            let after = (0..4).fold(t, |t, _| t.next_up());
-            self.at(after)[k] - self.at(t)[k]
+        let across = |t: f64, after: f64| self.at(after)[k] - self.at(t)[k];
+        let jump = |&t: &f64| {
+            // Across the zero, which is some roundings after it. What rises steeply there, as a root does, has risen by more a little farther on.
+            let by = across(t, (0..4).fold(t, |t, _| t.next_up()));
+            let is_jump = by.abs() > ROUNDED * largest && by.abs() > JUMPED * across(t, t + STEEP * t.abs().max(end)).abs();
+            is_jump.then_some((t, by))
         };
-        places.iter().map(|&t| (t, by(t))).find(|(_, by)| by.abs() > ROUNDED * largest)
+        places.iter().find_map(jump)
     }
 }
 
@@ -81,6 +87,8 @@ mod tests {
             ("step(t - 1)*(t - 1)^2", 2.0, None),
             ("step(t - 1)*(1 - cos(t - 1)) + 1e9", 2.0, None),
             ("max(t, -1)", 2.0, None),
+            ("0.1*max(0, t - 1)^1.5", 2.0, None),
+            ("0.1*max(0, t - 1)^1.01 + 1e-3*max(0, t - 0.5)", 2.0, Some("its rate jumps by 0.001 per s at 0.5 s")),
             ("sin(t)", 2.0, None),
             ("atan2(sin(5*t), cos(5*t))", 1.0, Some("it jumps by -6.28")),
             ("atan2(t - 0.5, 1)", 1.0, None),

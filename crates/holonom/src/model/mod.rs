@@ -37,6 +37,7 @@ mod repeat;
 mod schema;
 mod settings;
 mod signals;
+mod spinless;
 mod spline;
 mod start;
 mod stroke;

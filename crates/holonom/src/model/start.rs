@@ -21,12 +21,42 @@ pub struct Start {
     /// displacement of the joint at the start, counted from the pose that is written
     #[key(unit = "m", default = "as it comes")]
     pub displacement: Option<Number>,
+    /// first angle of a universal joint at the start, in the same way
+    #[key(unit = "rad", default = "as it comes")]
+    pub angle1: Option<Number>,
+    /// second angle of a universal joint at the start, in the same way
+    #[key(unit = "rad", default = "as it comes")]
+    pub angle2: Option<Number>,
+    /// displacement along x at the start, of a joint that leaves that free, in the same way
+    #[key(unit = "m", default = "as it comes")]
+    pub x: Option<Number>,
+    /// displacement along y at the start, of a joint that leaves that free, in the same way
+    #[key(unit = "m", default = "as it comes")]
+    pub y: Option<Number>,
+    /// displacement along z at the start, of a joint that leaves that free, in the same way
+    #[key(unit = "m", default = "as it comes")]
+    pub z: Option<Number>,
     /// rate of the angle at the start
     #[key(unit = "rad/s", default = "as it comes")]
     pub angle_rate: Option<Number>,
     /// rate of the displacement at the start
     #[key(unit = "m/s", default = "as it comes")]
     pub displacement_rate: Option<Number>,
+    /// rate of `angle1` at the start
+    #[key(unit = "rad/s", default = "as it comes")]
+    pub angle1_rate: Option<Number>,
+    /// rate of `angle2` at the start
+    #[key(unit = "rad/s", default = "as it comes")]
+    pub angle2_rate: Option<Number>,
+    /// rate of `x` at the start
+    #[key(unit = "m/s", default = "as it comes")]
+    pub x_rate: Option<Number>,
+    /// rate of `y` at the start
+    #[key(unit = "m/s", default = "as it comes")]
+    pub y_rate: Option<Number>,
+    /// rate of `z` at the start
+    #[key(unit = "m/s", default = "as it comes")]
+    pub z_rate: Option<Number>,
 }
 
 /// A coordinate, and what it and its rate are at the start, where they are given.
@@ -68,15 +98,27 @@ pub(super) fn profile(assembly: &mut Assembly<'_>, coordinate: &Coordinate, prof
     }
 }
 
+/// What a coordinate is at the start.
+pub(super) fn value(assembly: &Assembly<'_>, coordinate: &Coordinate) -> f64 {
+    let of = |target: &&Target| target.coordinate.joint == coordinate.joint && target.coordinate.name == coordinate.name;
+    assembly.starts.iter().find(of).and_then(|target| target.value).unwrap_or(0.0)
+}
+
 impl Start {
     /// Adds the coordinates of the joint that the entry is called after to those that are moved.
     pub(super) fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let given = [
             ("angle", &self.angle, "angle_rate", &self.angle_rate),
             ("displacement", &self.displacement, "displacement_rate", &self.displacement_rate),
+            ("angle1", &self.angle1, "angle1_rate", &self.angle1_rate),
+            ("angle2", &self.angle2, "angle2_rate", &self.angle2_rate),
+            ("x", &self.x, "x_rate", &self.x_rate),
+            ("y", &self.y, "y_rate", &self.y_rate),
+            ("z", &self.z, "z_rate", &self.z_rate),
         ];
         if given.iter().all(|(_, value, _, rate)| value.is_none() && rate.is_none()) {
-            return Err(entry.refuse_all("nothing is said of the start", "give `angle` or `displacement`, or a rate of these"));
+            let cure = "give a coordinate of the joint, as `angle` or `displacement`, or its rate, as `angle_rate`";
+            return Err(entry.refuse_all("nothing is said of the start", cure));
         }
         for (key, value, rate_key, rate) in given {
             let (value, rate) = (entry.optional(key, value, Number::number)?, entry.optional(rate_key, rate, Number::number)?);

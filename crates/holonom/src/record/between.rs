@@ -1,4 +1,4 @@
-//! The largest values of forces between the rows of a recording: a row may lie far from where a force is largest.
+//! The largest values of forces and measures between the rows of a recording: a row may lie far from where one is largest.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +25,34 @@ impl Largest {
 
 /// Share of itself by which a square counts as larger than another.
 const ROUND_OFF: f64 = 2e-9;
+
+/// How far a measure has gone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Bounds {
+    /// Its smallest value and when, s, and its largest; none before there was a number.
+    sides: Option<[(f64, f64); 2]>,
+}
+
+impl Bounds {
+    /// Takes the number at a time (s) in, if it is one.
+    pub(super) fn see(&mut self, value: f64, t: f64) {
+        if !value.is_finite() {
+            return;
+        }
+        let [lowest, highest] = self.sides.get_or_insert([(value, t); 2]);
+        if value < lowest.0 {
+            *lowest = (value, t);
+        }
+        if value > highest.0 {
+            *highest = (value, t);
+        }
+    }
+
+    /// Its smallest value and when, s, and its largest.
+    pub(super) fn sides(&self) -> Option<[(f64, f64); 2]> {
+        self.sides
+    }
+}
 
 /// Looks at what forces exert between rows.
 pub(super) struct Between {

@@ -171,7 +171,7 @@ impl RecordedForce {
     }
 
     /// The columns of what it exerts, those together that are components of one force or one moment.
-    pub(super) fn acts(&self, axes: &str) -> Vec<Vec<String>> {
+    pub fn acts(&self, axes: &str) -> Vec<Vec<String>> {
         let column = |suffix: &str| format!("{}.{suffix}", self.name);
         match &self.shows {
             Shows::Power => Vec::new(),

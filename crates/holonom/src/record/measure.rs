@@ -1,10 +1,12 @@
 //! Measures: formulas of the columns of a recording, with running values.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::simulation::any_number;
+use super::between::Bounds;
+use crate::simulation::{Divisions, any_number};
 
 /// A formula of some numbers.
 pub trait Formula: Send + Sync {
@@ -130,6 +132,8 @@ pub(super) struct Measures {
     places: Vec<Vec<Option<Place>>>,
     /// Of each measure the sums of its series.
     pub sums: Vec<Vec<RunningValue>>,
+    /// How far each has gone.
+    pub bounds: Vec<Bounds>,
     /// Room for variables.
     values: Vec<f64>,
 }
@@ -152,19 +156,31 @@ impl Measures {
         Self {
             places: measures.iter().map(|measure| measure.reads.iter().map(place).collect()).collect(),
             sums: measures.iter().map(|measure| vec![RunningValue::default(); measure.series.len()]).collect(),
+            bounds: vec![Bounds::default(); measures.len()],
             values: Vec::new(),
             measures: measures.to_vec(),
         }
     }
 
-    /// Whether some are of the whole run, so that every step counts.
-    pub fn are_running(&self) -> bool {
+    /// Where else than in the rows they are looked at: what is of the whole run, or read among the columns of accelerations and of forces of
+    /// constraints `found` for it, inside of long steps, too.
+    pub fn divisions(&self, found: &[Range<usize>]) -> Divisions {
+        let is_found = |place: &Option<Place>| matches!(place, Some(Place::Column(k)) if found.iter().any(|found| found.contains(k)));
+        match () {
+            () if self.measures.is_empty() => Divisions::Unseen,
+            () if self.are_running() || self.places.iter().flatten().any(is_found) => Divisions::Inside,
+            () => Divisions::Ends,
+        }
+    }
+
+    fn are_running(&self) -> bool {
         self.sums.iter().any(|sums| !sums.is_empty())
     }
 
     /// Appends their values to a row that begins with the time.
     pub fn append(&mut self, row: &mut Vec<f64>) {
-        for ((measure, places), sums) in self.measures.iter().zip(&self.places).zip(&mut self.sums) {
+        let own = self.sums.iter_mut().zip(&mut self.bounds);
+        for ((measure, places), (sums, bounds)) in self.measures.iter().zip(&self.places).zip(own) {
             self.values.clear();
             for place in places {
                 let value = match *place {
@@ -179,7 +195,9 @@ impl Measures {
                 };
                 self.values.push(value);
             }
-            row.push(measure.formula.evaluate(&self.values));
+            let value = measure.formula.evaluate(&self.values);
+            bounds.see(value, row[0]);
+            row.push(value);
         }
     }
 }

@@ -12,7 +12,7 @@ mod recorder;
 mod scene;
 mod transmission;
 
-pub use between::Largest;
+pub use between::{Bounds, Largest};
 pub use body::RecordedBody;
 pub use channels::{Channels, RecordedCoupling, RecordedEffort, RecordedPoint, RecordedRod};
 pub use force::{Along, Exerts, Lengths, RecordedForce, Shows};
@@ -33,6 +33,8 @@ pub struct Recording {
     by_name: Vec<u32>,
     /// The largest values of forces between the rows, of each that [`Peaks`] has, where that was looked at.
     pub(crate) between: Vec<Largest>,
+    /// How far each measure has gone, rows or not.
+    pub(crate) bounds: Vec<Bounds>,
 }
 
 /// One channel over time.
@@ -50,7 +52,7 @@ impl Recording {
         let columns: Vec<Column> = headings.into_iter().map(|heading| Column { heading: heading.into(), values: Vec::new() }).collect();
         let mut by_name: Vec<u32> = (0..columns.len() as u32).collect();
         by_name.sort_by_key(|&k| &columns[k as usize].heading.name);
-        Self { columns, by_name, between: Vec::new() }
+        Self { columns, by_name, between: Vec::new(), bounds: Vec::new() }
     }
 
     /// A table of columns that are there already; none where their numbers or lengths differ.

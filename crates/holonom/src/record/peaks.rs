@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::channels::Channels;
 use super::joint::RecordedJoint;
-use super::{Column, Largest, Recording};
+use super::{Bounds, Column, Largest, Recording};
 
 /// The largest value of something that acts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -121,7 +121,12 @@ impl Peaks {
             forces,
             joints,
             more: [d, f, j],
-            measures: channels.measures.iter().filter_map(|measure| extremes(&measure.name, times, recording)).collect(),
+            measures: channels
+                .measures
+                .iter()
+                .enumerate()
+                .filter_map(|(k, measure)| extremes(k, &measure.name, times, recording))
+                .collect(),
         }
     }
 }
@@ -138,15 +143,16 @@ fn span(axes: &str, recording: &Recording) -> f64 {
     axes.chars().map(along).fold(0.0, f64::max)
 }
 
-/// How far a column goes; none where it has no numbers.
-fn extremes(name: &str, times: &[f64], recording: &Recording) -> Option<Extremes> {
+/// How far a measure goes, between the rows, too; none where it has no numbers.
+fn extremes(measure: usize, name: &str, times: &[f64], recording: &Recording) -> Option<Extremes> {
     let column = recording.find(name)?;
-    let rows = || column.values.iter().copied().zip(times.iter().copied()).filter(|(value, _)| !value.is_nan());
-    let (lowest, highest) = rows().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (value, _)| (value.min(low), value.max(high)));
+    let rows = || column.values.iter().copied().zip(times.iter().copied()).filter(|(value, _)| value.is_finite());
+    let between = || recording.bounds.get(measure).and_then(Bounds::sides);
+    let all = || rows().chain(between().into_iter().flatten());
+    let (lowest, highest) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (value, _)| (value.min(low), value.max(high)));
     // Not of the size: far from the origin a place changes by a small share of itself.
-    let range = highest - lowest;
-    let equal = if range.is_finite() { ROUND_OFF * range } else { 0.0 };
-    let first = |of: f64| rows().find(|(value, _)| *value == of || (value - of).abs() <= equal).map(|(_, t)| t);
+    let equal = ROUND_OFF * (highest - lowest);
+    let first = |of: f64| all().find(|(value, _)| (value - of).abs() <= equal).map(|(_, t)| t);
     let (min_at, max_at) = (first(lowest)?, first(highest)?);
     let (unit, last) = (column.heading.unit.clone(), *column.values.last()?);
     Some(Extremes { name: name.into(), unit, min: lowest, min_at, max: highest, max_at, last })

@@ -6,7 +6,7 @@ use std::ops::Range;
 use nalgebra::{Quaternion, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 
-use super::between::{Between, Largest};
+use super::between::{Between, Bounds, Largest};
 use super::measure::{Measures, RunningValue};
 use super::{Channels, Heading, Recording};
 use crate::simulation::{Divisions, Observer, Simulation, Verdict};
@@ -47,6 +47,9 @@ pub struct RecorderMark {
     /// The largest values of forces between the rows.
     #[serde(default)]
     between: Vec<Largest>,
+    /// How far measures have gone.
+    #[serde(default)]
+    bounds: Vec<Bounds>,
 }
 
 /// What is recorded of the forces of constraints, and of the accelerations, which are found with them.
@@ -72,6 +75,8 @@ pub struct Recorder<'a> {
     resumed: bool,
     constraints: Constraints,
     measures: Measures,
+    /// Where they are looked at beside the rows.
+    divisions: Divisions,
     between: Between,
     orientations: Vec<UnitQuaternion<f64>>,
     /// Where the columns of accelerations and those of coordinates of joints are.
@@ -90,12 +95,18 @@ impl<'a> Recorder<'a> {
     fn of(channels: Cow<'a, Channels>, system: &System, every: u64, constraints: Constraints) -> Self {
         let mut headings = channels.headings(system, constraints);
         let measures = Measures::new(&channels.measures, headings.iter().map(|heading| heading.name.as_str()));
+        let before = headings.len();
         headings.extend(channels.measures.iter().map(|measure| Heading::new(&measure.name, measure.unit.clone(), &measure.meaning)));
         let motion = COLUMNS.len() + channels.motion_headings().len();
         let accelerations = motion..motion + if constraints == Constraints::Nothing { 0 } else { channels.acceleration_headings().len() };
         let coordinates = accelerations.end..accelerations.end + 2 * system.gauges().len();
-        let recording = Recording::new(headings);
+        let joints = coordinates.end + channels.force_headings().len() + channels.inputs.len()..before;
         let between = Between::new(&channels.forces, &channels.axes);
+        let divisions = match measures.divisions(&[accelerations.clone(), joints]) {
+            Divisions::Unseen if between.is_needed() => Divisions::Ends,
+            divisions => divisions,
+        };
+        let recording = Recording::new(headings);
         Self {
             row: Vec::with_capacity(recording.columns().len()),
             orientations: vec![UnitQuaternion::identity(); channels.bodies.len()],
@@ -107,6 +118,7 @@ impl<'a> Recorder<'a> {
             resumed: false,
             constraints,
             measures,
+            divisions,
             between,
             accelerations,
             coordinates,
@@ -131,6 +143,9 @@ impl<'a> Recorder<'a> {
         if mark.between.len() == self.between.largest.len() {
             self.between.largest.copy_from_slice(&mark.between);
         }
+        if mark.bounds.len() == self.measures.bounds.len() {
+            self.measures.bounds.copy_from_slice(&mark.bounds);
+        }
         self
     }
 
@@ -144,8 +159,8 @@ impl<'a> Recorder<'a> {
     /// What a resumed recording goes on from.
     pub fn mark(&self) -> RecorderMark {
         let orientations = self.orientations.iter().map(|q| [q.w, q.i, q.j, q.k]).collect();
-        let (sums, between) = (self.measures.sums.clone(), self.between.largest.clone());
-        RecorderMark { seen: self.seen, since: self.since, last: self.last, orientations, sums, between }
+        let (sums, between, bounds) = (self.measures.sums.clone(), self.between.largest.clone(), self.measures.bounds.clone());
+        RecorderMark { seen: self.seen, since: self.since, last: self.last, orientations, sums, between, bounds }
     }
 
     /// What was recorded so far.
@@ -155,7 +170,7 @@ impl<'a> Recorder<'a> {
 
     /// Ends the recording.
     pub fn finish(mut self) -> Recording {
-        self.recording.between = self.between.largest;
+        (self.recording.between, self.recording.bounds) = (self.between.largest, self.measures.bounds);
         self.recording
     }
 
@@ -219,24 +234,20 @@ impl<'a> Recorder<'a> {
 
 impl Observer for Recorder<'_> {
     fn wants_forces(&self) -> bool {
-        self.measures.are_running() || self.seen.is_multiple_of(self.every)
+        self.divisions == Divisions::Inside || self.seen.is_multiple_of(self.every)
     }
 
     fn divisions(&self) -> Divisions {
-        match self.measures.are_running() {
-            true => Divisions::Inside,
-            false if self.between.is_needed() => Divisions::Ends,
-            false => Divisions::Unseen,
-        }
+        self.divisions
     }
 
     fn at_division(&mut self, simulation: &Simulation) {
-        match self.measures.are_running() {
-            true => {
+        match self.channels.measures.is_empty() {
+            false => {
                 self.fill(simulation);
                 self.between.see(&self.row[self.coordinates.end..], simulation.state().t);
             }
-            false => self.between.look(&self.channels.forces, simulation),
+            true => self.between.look(&self.channels.forces, simulation),
         }
     }
 

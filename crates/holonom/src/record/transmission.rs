@@ -77,15 +77,19 @@ impl RecordedTransmission {
         let moment = -self.factor * lambda * self.sides[0];
         let [first, second] = places.map(Vector3::from);
         let apart = second - first;
-        let apart = apart - axis * axis.dot(&apart);
+        // Both wheels lie in the plane across the axis through the place of the first joint: that of the second bears a moment where it is beside it.
+        let beside = axis * axis.dot(&apart);
+        let apart = apart - beside;
         let (distance, along) = (apart.norm(), apart.normalize());
         let across = axis.cross(&along);
         let nothing = Vector3::zeros();
-        let both = |force: Vector3<f64>| Push { force, borne: [[-force, nothing], [force, nothing]] };
+        let both = |force: Vector3<f64>| Push { force, borne: [[-force, nothing], [force, force.cross(&beside)]] };
         match &self.kind {
             Transmission::Teeth { share, slope } => {
                 let push = moment / (share * distance);
-                both(push * across - share.signum() * slope * push.abs() * along)
+                // Teeth push each other apart: a wheel outside of the other, or inside of a ring, towards its own axis, the rim of a ring outwards.
+                let apart = if *share > 1.0 { 1.0 } else { -share.signum() };
+                both(push * across + apart * slope * push.abs() * along)
             }
             Transmission::Belt { radius, rise, pretension } => {
                 let (difference, rise) = (moment / radius, rise / distance);

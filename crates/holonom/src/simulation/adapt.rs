@@ -153,6 +153,10 @@ impl Simulation {
         let outcome = self.substep(step, target).and_then(|mut taken| {
             landing = self.land_on_bend(&mut taken, &mut step, pilot)?;
             self.smooth(step, pilot)?;
+            if matches!(landing, Landing::Between(_)) && self.lands_before_singular(&mut taken, &mut step, pilot)? {
+                landing = self.land_on_bend(&mut taken, &mut step, pilot)?;
+                self.smooth(step, pilot)?;
+            }
             Ok(taken)
         });
         if outcome.is_err() {

@@ -117,6 +117,11 @@ impl Control {
         self.last_ratio = 1.0;
     }
 
+    /// The accuracy that is asked for.
+    pub(super) fn accuracy(&self) -> f64 {
+        self.accuracy
+    }
+
     /// Local errors that are allowed, over the size of the mechanism and the step, 1/s.
     pub(super) fn allowed(&self) -> f64 {
         self.accuracy / self.span

@@ -13,6 +13,7 @@ mod landing;
 mod locate;
 mod method;
 mod no_value;
+mod passage;
 mod pilot;
 mod promise;
 mod reactions;
@@ -189,7 +190,11 @@ impl Simulation {
         if let Some([_, measured]) = asked.angles {
             state.measured.copy_from_slice(measured);
         }
-        Ok(Self { start, ..Self::assemble(system, method, integrator, step, newton, work, state) })
+        let mut simulation = Self { start, ..Self::assemble(system, method, integrator, step, newton, work, state) };
+        if simulation.start.leads_nowhere {
+            simulation.start.conflict = simulation.conflict().map(str::to_string);
+        }
+        Ok(simulation)
     }
 
     fn assemble(

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::control::Control;
+use super::passage::Place;
 use super::sight::Sight;
 use super::{Audit, Method, Simulation, State};
 use crate::energy;
@@ -21,7 +22,7 @@ const LEAST_SHARE: f64 = 1e-10;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Moment {
     pub state: State,
-    v: Vec<f64>,
+    pub v: Vec<f64>,
     a: Vec<f64>,
     measured: Measured,
     audit: Audit,
@@ -58,6 +59,10 @@ pub(super) struct Pilot {
     pub smooth: Option<Projection>,
     /// Velocities (D × nodes) that errors are estimated from.
     pub v: Vec<f64>,
+    /// Room for looks inside of a step.
+    pub place: Place,
+    /// How far, by the root of the least that a row adds to the others, no singular position is at least.
+    pub clear: f64,
     /// The start of the last step, and its end, where integration goes on.
     pub before: Moment,
     pub front: Moment,
@@ -83,6 +88,9 @@ pub(super) struct Patience {
     /// Looks one after the other at which they had hardly come on.
     slow: u32,
 }
+
+/// How much longer than the shortest the way of a row may be that turns.
+const FURTHER: f64 = 1.5;
 
 /// Largest share of the energy to move that a step may make or lose, in units of the accuracy it is allowed.
 const WORSE: f64 = 20.0;
@@ -125,6 +133,8 @@ impl Pilot {
             end: state.t,
             smooth,
             v: state.v.clone(),
+            place: Place { x: state.x.clone(), gradient: independence.gradients().to_vec() },
+            clear: 0.0,
             before: moment(),
             front: moment(),
             last: None,
@@ -150,6 +160,9 @@ pub(super) struct Flight {
     redundant: usize,
     patience: Patience,
     sight: Sight,
+    /// How far no singular position is at least.
+    #[serde(default)]
+    clear: f64,
 }
 
 impl Pilot {
@@ -203,6 +216,30 @@ impl Pilot {
         self.redundant = self.redundant.min(self.independence.count_redundant(system, &state.x, state.t));
     }
 
+    /// The root of the least that a row adds to the others at the positions `x` and the time `t`, but for those that are redundant everywhere.
+    pub fn root_of_weakest(&mut self, system: &System, x: &[f64], t: f64) -> f64 {
+        self.independence.count_redundant(system, x, t);
+        self.independence.weakest(self.redundant).sqrt()
+    }
+
+    /// Keeps the gradients of all rows, of length one, where that was found last.
+    pub fn keep_gradients(&self, kept: &mut Vec<f64>) {
+        kept.clear();
+        kept.extend_from_slice(self.independence.gradients());
+    }
+
+    /// By how much a row has turned at most since then, rad.
+    pub fn turned(&self, system: &System, kept: &[f64]) -> f64 {
+        let now = self.independence.gradients();
+        let turned = |slots: &std::ops::Range<usize>| {
+            let place = slots.start * system.dim..slots.end * system.dim;
+            now[place.clone()].iter().zip(&kept[place]).map(|(now, before)| (now - before) * (now - before)).sum::<f64>()
+        };
+        // The arc of half the chord, and a way that bends is longer; half a turn and more is any.
+        let chord = system.slots.rows.iter().map(turned).fold(0.0, f64::max).sqrt();
+        if chord < 1.0 { 2.0 * (0.5 * chord).asin() * FURTHER } else { f64::INFINITY }
+    }
+
     /// Begins anew at the present state, where inputs were set: what was found beyond it was of others.
     pub fn begin_anew(&mut self, simulation: &Simulation) {
         self.v.copy_from_slice(&simulation.shown_v);
@@ -252,13 +289,14 @@ impl Pilot {
             redundant: self.redundant,
             patience: self.patience,
             sight: self.sight.clone(),
+            clear: self.clear,
         }
     }
 
     /// Goes on from there. An integrator with dense output takes the last step once more, to know what is inside it.
     pub fn take_over(&mut self, flight: Flight, simulation: &mut Simulation) {
-        let Flight { control, end, v, before, front, length, redundant, patience, sight } = flight;
-        (self.redundant, self.patience, self.sight) = (redundant, patience, sight);
+        let Flight { control, end, v, before, front, length, redundant, patience, sight, clear } = flight;
+        (self.redundant, self.patience, self.sight, self.clear) = (redundant, patience, sight, clear);
         (self.control, self.end, self.v, self.before, self.front) = (control, end, v, before, front);
         simulation.work.estimate.allowed = self.control.allowed();
         if let (Some(length), true) = (length, simulation.method.integrator.dense) {
@@ -275,7 +313,7 @@ impl Pilot {
 }
 
 /// Whether nothing holds the velocities on the rows.
-fn is_rough(method: &Method) -> bool {
+pub(super) fn is_rough(method: &Method) -> bool {
     method.formulation.is_at_position() && !method.projection.velocity
 }
 

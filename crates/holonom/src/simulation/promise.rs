@@ -296,6 +296,8 @@ impl Judge {
         }
         std::mem::swap(&mut work.phi, &mut work.rows);
         work.size_rates(system);
+        // What moves fast across a row errs along it by a rounding of its speed.
+        work.rows.iter_mut().zip(&work.scales.gradient).for_each(|(size, g)| *size = size.max(g * speed));
         self.compare_near_singular(Promise::Velocity, work.scales.length / h.abs(), system, t, work)
     }
 

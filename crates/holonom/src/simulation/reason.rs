@@ -28,7 +28,8 @@ impl Simulation {
         }
         let what = format!("{} at t = {t:.6} s{row}", failure.describe(&self.system));
         let is_of_rows = matches!(failure, Failure::NotConverged { .. } | Failure::Broken { .. } | Failure::Singular(_));
-        match is_of_rows.then(|| self.conflict()).flatten() {
+        // What cannot move has no step that is short enough either.
+        match (is_of_rows || failure == Failure::TooSmall).then(|| self.conflict()).flatten() {
             Some(row) => format!("`{row}` asks for a motion that the other constraints do not allow: {what}"),
             None if is_of_rows => what + &self.disagreement(),
             None => what,

@@ -14,6 +14,8 @@ pub struct Start {
     pub turned: f64,
     /// Whether no motion begins with the velocities, as at a singular position no accelerations keep all rows then.
     pub leads_nowhere: bool,
+    /// The row, by name, that asks for a motion which the others do not allow, where no motion begins for that.
+    pub conflict: Option<String>,
 }
 
 /// What is asked of a start: time, positions and velocities of all nodes (D × nodes), and the impulse (n) by which the momenta as
@@ -141,7 +143,9 @@ fn correct_positions(
         newton.unknowns[n..].iter_mut().zip(&work.phi).for_each(|(unknown, phi)| *unknown = -phi);
         newton.kkt.solve(&mut newton.unknowns);
         work.end.x[..n].iter_mut().zip(&newton.unknowns).for_each(|(x, step)| *x += step);
-        start.moved = work.end.x.iter().zip(asked.x).fold(0.0, |m, (x, x0)| f64::max(m, (x - x0).abs()));
+        let apart = |(x, x0): (&[f64], &[f64])| x.iter().zip(x0).map(|(x, x0)| (x - x0) * (x - x0)).sum::<f64>();
+        let ways = work.end.x.chunks_exact(system.dim).zip(asked.x.chunks_exact(system.dim)).map(apart);
+        start.moved = ways.fold(0.0, f64::max).sqrt();
         if start.moved.is_nan() || start.moved > LARGEST_MOVE * work.scales.length {
             system.evaluate_again(asked.x, asked.t, &mut work.end.at);
             system.constraint_values(&work.end.at, asked.t, &mut work.phi);

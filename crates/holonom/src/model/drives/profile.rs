@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::model::bodies::short;
 use crate::model::entry::{Entry, Spot, all};
 use crate::model::expression::{Program, TimeProgram};
 use crate::model::fault::Read;
@@ -146,6 +147,31 @@ impl ProfileTable {
             return Err(entry.refuse(Spot { key: "table", item: Some(k) }, message, "let the times rise from row to row"));
         }
         entry.sink.switches.borrow_mut().extend(knots.iter().map(|&knot| Program::since(knot)));
-        Ok(if ends? == Some("rest") { Spline::resting(knots, values) } else { Spline::natural(knots, values) })
+        let [least, most] = range(values.iter().copied());
+        let inside: Vec<f64> =
+            knots.windows(2).flat_map(|pair| (1..LOOKS).map(|k| pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(LOOKS))).collect();
+        let spline = if ends? == Some("rest") { Spline::resting(knots, values) } else { Spline::natural(knots, values) };
+        let [lowest, highest] = range(inside.into_iter().map(|t| spline.evaluate(t)));
+        if (least - lowest).max(highest - most) > SWINGS * (most - least) {
+            entry.note(
+                "table",
+                format!(
+                    "between its points this goes from {} to {}, beyond what is written, as a spline swings where steps differ (a [table.NAME] with \
+                     interpolation = \"monotone\" does not: profile = \"NAME(t)\")",
+                    short(lowest.min(least)),
+                    short(highest.max(most))
+                ),
+            );
+        }
+        Ok(spline)
     }
+}
+
+/// Places between two points of a table that are looked at, and share of the range of its values beyond which a spline swings.
+const LOOKS: u32 = 16;
+const SWINGS: f64 = 0.1;
+
+/// The least and the largest of some numbers.
+fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| [least.min(value), most.max(value)])
 }

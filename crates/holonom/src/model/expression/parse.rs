@@ -164,7 +164,14 @@ impl Parser<'_> {
                 Ok(())
             }
             Token::End => Err(self.mistake("a closing bracket is missing at the end", "add a )")),
-            Token::Comma => Err(self.mistake("there is no further argument here", "decimal numbers have a point: 0.5")),
+            Token::Comma => {
+                let is_number = |at: usize| matches!(self.tokens.get(at), Some((_, Token::Number(_))));
+                let cure = match is_number(self.at - 1) && is_number(self.at + 1) {
+                    true => "decimal numbers have a point: 0.5",
+                    false => "remove the comma and what follows it, or call another function",
+                };
+                Err(self.mistake("there is no further argument here", cure))
+            }
             _ => Err(self.mistake("an operator or a closing bracket is missing here", self.as_product())),
         }
     }
@@ -234,6 +241,8 @@ impl Parser<'_> {
             );
         }
         let cure = match nearest(name, known.iter().copied().chain(of_mechanism.iter().map(String::as_str))) {
+            _ if name == "π" => "write pi".into(),
+            Some(near) if near.contains('-') => format!("did you mean '{near}'? A name with a hyphen stands in single quotes here"),
             Some(near) => format!("did you mean `{near}`?"),
             None if name.contains('.') => suggest(name, of_mechanism.iter().map(String::as_str)),
             None => {

@@ -3,11 +3,13 @@ use std::sync::Arc;
 use super::coordinate_laws::{Buffer, Impact};
 use super::joint::acted_on;
 use crate::model::assembly::Assembly;
+use crate::model::bodies::short;
 use crate::model::element::Element;
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, Number};
 use crate::model::joints::coordinate;
+use crate::model::start;
 
 /// buffers at the ends of a joint's way: springs that act beyond its limits only, with what an impact takes out
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -70,6 +72,20 @@ impl Element for Stop {
                 return Err(entry.refuse("lower", format!("the lower limit {lower} is not below the upper one {upper}"), "exchange them"));
             }
             _ => (),
+        }
+        let at_start = start::value(assembly, &coordinate);
+        for (key, limit, sign, side) in [("lower", lower, -1.0, "below"), ("upper", upper, 1.0, "above")] {
+            let Some(limit) = limit.filter(|limit| sign * (at_start - limit) > 0.0) else { continue };
+            let force = short(stiffness * (at_start - limit).abs());
+            let (name, unit) = (format!("{}.{}", coordinate.joint, coordinate.name), if coordinate.is_angle { "N·m" } else { "N" });
+            let limit = short(limit);
+            entry.note(
+                key,
+                format!(
+                    "`{name}` starts at {}, {side} its limit {limit}: the stop pushes with {force} {unit} from the start",
+                    short(at_start)
+                ),
+            );
         }
         let q = acted_on(assembly, &coordinate);
         for (limit, sign) in [(lower, -1.0), (upper, 1.0)] {

@@ -152,7 +152,8 @@ fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> 
     for (k, member) in members.iter().enumerate() {
         if matches!(member, Member::Point(_)) && layout.turns(k) {
             let message = format!("`{}` is a point, and a {} joint needs a body there", names[k], joint.name());
-            return Err(entry.refuse(spot(k), message, "name a [body.NAME], or use a joint that holds points only"));
+            let cure = "name a [body.NAME], or hold the point by a spherical joint (in space) or a constraint of type \"fixed\"";
+            return Err(entry.refuse(spot(k), message, cure));
         }
     }
     let moves = |member: &Member| match member {

@@ -177,13 +177,13 @@ impl SystemBuilder {
         NodeId((self.free + self.motions.len()) as u32 - 1)
     }
 
-    /// Adds the block m 1 + s J (kg) to (a, b) of the mass matrix, and its transpose to (b, a), of something that moves with the nodes as they
-    /// are; without weight.
-    pub fn couple(&mut self, a: Place, b: Place, m: f64, s: f64) {
+    /// Adds the block m 1 + s J (kg) to (a, b) of the mass matrix, and its transpose to (b, a), of something that moves as if `a` and `b` had these
+    /// velocities at the start, m/s; without weight.
+    pub fn couple(&mut self, [a, b]: [Place; 2], m: f64, s: f64, [of_a, of_b]: [[f64; 3]; 2]) {
         self.inertia(a, b, m, s);
-        self.moves(a, b, m, s, self.velocity_of(b));
+        self.moves(a, b, m, s, of_b);
         if a != b {
-            self.moves(b, a, m, -s, self.velocity_of(a));
+            self.moves(b, a, m, -s, of_a);
         }
     }
 
@@ -198,7 +198,21 @@ impl SystemBuilder {
         }
     }
 
-    fn velocity_of(&self, place: Place) -> [f64; 3] {
+    /// Whether a node is a direction.
+    pub fn is_direction(&self, node: NodeId) -> bool {
+        // They are known in the order in which they were added.
+        self.directions.binary_search(&node.0).is_ok()
+    }
+
+    /// Position of a node at the start, m.
+    pub fn position_of(&self, node: NodeId) -> [f64; 3] {
+        let mut position = [0.0; 3];
+        position[..self.dim].copy_from_slice(&self.position[node.index() * self.dim..(node.index() + 1) * self.dim]);
+        position
+    }
+
+    /// Velocity of a place at the start as it is known so far, m/s.
+    pub fn velocity_of(&self, place: Place) -> [f64; 3] {
         let mut velocity = [0.0; 3];
         if let Place::Node(node) = place {
             velocity[..self.dim].copy_from_slice(&self.velocity[node.index() * self.dim..(node.index() + 1) * self.dim]);
@@ -383,7 +397,10 @@ impl SystemBuilder {
 
     /// Whether a part is written with a velocity.
     pub fn is_moving(&self) -> bool {
-        self.velocity.iter().chain(self.moving.iter().flat_map(|part| &part.velocity)).any(|velocity| *velocity != 0.0)
+        self.velocity[..self.free * self.dim]
+            .iter()
+            .chain(self.moving.iter().flat_map(|part| &part.velocity))
+            .any(|velocity| *velocity != 0.0)
     }
 
     /// Where the nodes are; D numbers each, m.

@@ -1,0 +1,94 @@
+//! What a sweep was made for, on the terminal: the columns that were asked for.
+
+use holonom_io::{Cells, Table};
+use serde_json::{Value, json};
+
+use crate::table::{short, table as grid};
+
+/// Most runs of which all are told; of more, where each column is least and where it is largest.
+const FEW: usize = 20;
+
+/// The columns of a sweep that were asked for, beside what was varied.
+pub struct Answers<'a> {
+    table: &'a Table,
+    /// How many keys were varied, whose columns follow that of the number of the run.
+    varied: usize,
+    /// The first of the columns that were asked for.
+    first: usize,
+}
+
+/// Where a column is least or largest.
+#[derive(Clone, Copy)]
+struct Side {
+    row: usize,
+    value: f64,
+}
+
+impl<'a> Answers<'a> {
+    /// Of a table whose last `asked` columns were asked for.
+    pub fn new(table: &'a Table, varied: usize, asked: usize) -> Self {
+        Self { table, varied, first: table.columns.len() - asked }
+    }
+
+    fn name(&self, column: usize) -> &str {
+        &self.table.columns[column].0
+    }
+
+    fn number(&self, column: usize, row: usize) -> Option<f64> {
+        match &self.table.columns[column].1 {
+            Cells::Numbers(values) => values[row],
+            _ => None,
+        }
+    }
+
+    /// Where a column is least and where it is largest; none where it has no numbers.
+    fn sides(&self, column: usize) -> Option<[Side; 2]> {
+        let all = || (0..self.table.rows()).filter_map(|row| self.number(column, row).map(|value| Side { row, value }));
+        let mut all = all().filter(|side| side.value.is_finite());
+        let first = all.next()?;
+        Some(all.fold([first; 2], |[least, most], side| {
+            [if side.value < least.value { side } else { least }, if side.value > most.value { side } else { most }]
+        }))
+    }
+
+    /// What was varied in a run, as it is written behind `--set`.
+    fn settings(&self, row: usize) -> String {
+        let of_key = |column: usize| format!("{}={}", self.name(column), self.table.columns[column].1.text(row));
+        (1..=self.varied).map(of_key).collect::<Vec<_>>().join(" ")
+    }
+
+    /// As people read them; nothing where nothing was asked for.
+    pub fn words(&self) -> Option<String> {
+        let asked = self.first..self.table.columns.len();
+        if asked.is_empty() {
+            return None;
+        }
+        if self.table.rows() <= FEW {
+            let shown: Vec<usize> = (1..=self.varied).chain(asked).collect();
+            let header: Vec<&str> = shown.iter().map(|&column| self.name(column)).collect();
+            let cell = |column: usize, row: usize| match self.number(column, row) {
+                Some(value) => short(value),
+                None if column >= self.first => "–".into(),
+                None => self.table.columns[column].1.text(row),
+            };
+            let rows: Vec<Vec<String>> =
+                (0..self.table.rows()).map(|row| shown.iter().map(|&column| cell(column, row)).collect()).collect();
+            return Some(grid(&header, &rows));
+        }
+        let lines = asked.filter_map(|column| Some((column, self.sides(column)?))).flat_map(|(column, [least, most])| {
+            let line = |what: &str, side: Side| vec![format!("{} {what}", self.name(column)), short(side.value), self.settings(side.row)];
+            [line("least", least), line("largest", most)]
+        });
+        Some(grid(&["column", "value", "where"], &lines.collect::<Vec<_>>()))
+    }
+
+    /// For programs: of each column the least value and the largest, and the runs that have them.
+    pub fn values(&self) -> Value {
+        let of_column = |column: usize| {
+            let [least, most] = self.sides(column)?;
+            let values = json!({ "min": least.value, "min_run": least.row + 1, "max": most.value, "max_run": most.row + 1 });
+            Some((self.name(column).to_string(), values))
+        };
+        (self.first..self.table.columns.len()).filter_map(of_column).collect::<serde_json::Map<_, _>>().into()
+    }
+}
