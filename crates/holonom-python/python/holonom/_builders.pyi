@@ -1143,16 +1143,36 @@ class Builders:
         *,
         angle: Number | None = None,
         displacement: Number | None = None,
+        angle1: Number | None = None,
+        angle2: Number | None = None,
+        x: Number | None = None,
+        y: Number | None = None,
+        z: Number | None = None,
         angle_rate: Number | None = None,
         displacement_rate: Number | None = None,
+        angle1_rate: Number | None = None,
+        angle2_rate: Number | None = None,
+        x_rate: Number | None = None,
+        y_rate: Number | None = None,
+        z_rate: Number | None = None,
         repeat: str | None = None,
     ) -> Entry:
         """Adds an entry of ``[start.NAME]``: where a joint is at the start: the mechanism is moved there before it runs.
 
         angle: angle of the joint at the start, counted from the pose that is written; less than half a turn [rad]; default: as it comes
         displacement: displacement of the joint at the start, counted from the pose that is written [m]; default: as it comes
+        angle1: first angle of a universal joint at the start, in the same way [rad]; default: as it comes
+        angle2: second angle of a universal joint at the start, in the same way [rad]; default: as it comes
+        x: displacement along x at the start, of a joint that leaves that free, in the same way [m]; default: as it comes
+        y: displacement along y at the start, of a joint that leaves that free, in the same way [m]; default: as it comes
+        z: displacement along z at the start, of a joint that leaves that free, in the same way [m]; default: as it comes
         angle_rate: rate of the angle at the start [rad/s]; default: as it comes
         displacement_rate: rate of the displacement at the start [m/s]; default: as it comes
+        angle1_rate: rate of `angle1` at the start [rad/s]; default: as it comes
+        angle2_rate: rate of `angle2` at the start [rad/s]; default: as it comes
+        x_rate: rate of `x` at the start [m/s]; default: as it comes
+        y_rate: rate of `y` at the start [m/s]; default: as it comes
+        z_rate: rate of `z` at the start [m/s]; default: as it comes
         repeat: makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"; default: one entry
         """
 
