@@ -290,3 +290,20 @@ fn columns_that_were_asked_for_are_shown() {
     // Without a question there is no answer.
     assert!(!prints(&folder, "sweep oscillator.toml --vary parameters.n=1,2 --out plain", 0).contains("max(m.x)"));
 }
+
+/// When an event happens is a column, empty where it does not.
+#[test]
+fn times_of_events_are_columns() {
+    let folder = folder();
+    // From 0.1 m beside the middle it comes there after a quarter of its period.
+    fs::write(folder.path().join("m.toml"), format!("{OSCILLATOR}[event.middle]\nwhen = \"1 - m.x\"\n")).unwrap();
+    let output = sweep(&folder, "m.toml", "time(middle), max(m.x)", "--vary parameters.n=0.125,1,2 --out a --quiet");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let times = cells(&folder, "a", "time(middle)");
+    assert_eq!(times[0], "");
+    for (time, n) in times[1..].iter().zip([1.0, 2.0]) {
+        assert!((time.parse::<f64>().unwrap() - 0.25 / n).abs() < 1e-6, "{times:?}");
+    }
+    let refused = sweep(&folder, "m.toml", "time(midle)", "--vary parameters.n=1,2 --out b");
+    assert!(text(&refused.stderr).contains("did you mean `middle`?"), "{}", text(&refused.stderr));
+}

@@ -149,3 +149,21 @@ fn steps_by_accuracy_do_not_pass_a_corner_unseen() {
         }
     }
 }
+
+/// A jack of which more is asked than the lever gives way is named where the run stops, whatever fails there; and no redundant rows
+/// are blamed.
+#[test]
+fn a_drive_beyond_its_reach_is_named() {
+    let text = "plane = \"xz\"\n[body.lever]\nmass = 10\nshape = { rod = 1 }\nposition = [0.5, 0]\npoints = { lug = [0.3, 0] }\n\
+                [joint.pivot]\ntype = \"revolute\"\nbetween = [\"ground\", \"lever\"]\nat = [0, 0]\n\
+                [drive.jack]\ntype = \"distance\"\nbetween = [[0, -0.4], \"lever.lug\"]\nstroke = \"0.1*t\"\n";
+    // It is √0.8 m long, and 1.2 m where the lever stands up: 3.0557 s later.
+    let model = model(text);
+    for method in ["conserving-ggl", "conserving", "radau", "gauss", "ggl/bdf"] {
+        let mut simulation = common::simulation(&model, method, 0.01);
+        let status = simulation.run(4.0, &mut |_: &Simulation| holonom::simulation::Verdict::GoOn);
+        let holonom::simulation::Status::Stopped { at, reason } = status else { panic!("{method}: {status:?}") };
+        assert!((3.0..3.1).contains(&at), "{method}: {at} s, {reason}");
+        assert!(reason.starts_with("`jack` ") && !reason.contains("a door"), "{method}: {reason}");
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use holonom::model::{Fault, Faults, Model, Value};
+use holonom::model::{Fault, Faults, Model, Value, nearest};
 use holonom::record::{COLUMNS, Constraints, Recorder};
 use holonom_io::Source;
 
@@ -199,6 +199,16 @@ fn columns(model: &Model, asked: Vec<Asked>) -> Result<Columns, Failure> {
     let recorders = LEVELS.map(|level| recorder(model, level));
     let (mut all, mut steps, mut forces) = (Takes::default(), false, false);
     for Asked { of, function, .. } in &asked {
+        if *function == Function::TimeOf {
+            if !model.system.event_names().any(|name| name == of) {
+                let cure = match nearest(of, model.system.event_names()) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => "name an [event.NAME] of the model".into(),
+                };
+                return Err(Failure::usage(format!("there is no event `{of}`"), cure));
+            }
+            continue;
+        }
         let Some(takes) = Takes::of(of, model, &recorders) else { return Err(unknown(of, recorders[recorded(model)].recording())) };
         if takes.level > recorded(model) {
             return Err(Failure::usage(format!("runs of this model do not record `{of}`"), "give --set output.reactions=true"));
@@ -212,6 +222,9 @@ fn columns(model: &Model, asked: Vec<Asked>) -> Result<Columns, Failure> {
 
 /// Units of columns, which functions of them keep.
 fn units(asked: &[Asked], recorder: &Recorder<'_>) -> Vec<String> {
-    let unit = |asked: &Asked| recorder.recording().find(&asked.of).map_or("1".into(), |column| column.heading.unit.to_string());
+    let unit = |asked: &Asked| match asked.function {
+        Function::TimeOf => "s".into(),
+        _ => recorder.recording().find(&asked.of).map_or("1".into(), |column| column.heading.unit.to_string()),
+    };
     asked.iter().map(unit).collect()
 }

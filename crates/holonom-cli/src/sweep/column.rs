@@ -1,4 +1,4 @@
-//! A column of the table as it is typed: a column of the trajectory, or a function of one over the run, such as `max(chassis.az)`.
+//! A column of the table as it is typed: a column of the trajectory, a function of one over the run, such as `max(chassis.az)`, or the time of an event.
 
 use holonom::model::nearest;
 
@@ -10,7 +10,7 @@ use crate::failure::Failure;
 pub struct Asked {
     /// As it was typed: what the column is called.
     pub text: String,
-    /// The column of the trajectory.
+    /// The column of the trajectory, or the event.
     pub of: String,
     /// Whether its size is meant, without its sign.
     pub is_absolute: bool,
@@ -19,7 +19,7 @@ pub struct Asked {
 }
 
 const CURE: &str = "write a column of the trajectory such as chassis.az, or max(chassis.az), min(…), mean(…), rms(…), last(…), \
-                    at(chassis.az, 2.5), and abs(…) inside these";
+                    at(chassis.az, 2.5), and abs(…) inside these, or time(EVENT)";
 
 impl Asked {
     /// The last value of a column of the trajectory.
@@ -44,17 +44,18 @@ impl Asked {
                 }
                 (Function::At(t), inner.trim())
             }
+            "time" => (Function::TimeOf, inner),
             name => match Function::NAMED.iter().find(|(known, _)| *known == name) {
                 Some((_, function)) => (*function, inner),
                 None => {
-                    let known = Function::NAMED.iter().map(|(known, _)| *known).chain(["at", "abs"]);
+                    let known = Function::NAMED.iter().map(|(known, _)| *known).chain(["at", "abs", "time"]);
                     let near = nearest(name, known).map_or(CURE.to_string(), |near| format!("did you mean `{near}`?"));
                     return Err(Failure::usage(format!("there is no function `{name}` of columns"), near));
                 }
             },
         };
         let (is_absolute, of) = match call(inner).map_err(refuse)? {
-            Some(("abs", inner)) => (true, inner),
+            Some(("abs", inner)) if function != Function::TimeOf => (true, inner),
             Some(_) => return Err(refuse("has a function inside that is not abs(…)")),
             None => (false, inner),
         };
@@ -91,6 +92,7 @@ mod tests {
         assert_eq!(read("abs(m2.x)"), ("m2.x".into(), true, Function::Last));
         assert_eq!(read("max(abs(strut.force))"), ("strut.force".into(), true, Function::Running(Running::Max)));
         assert_eq!(read("at( abs( m2.x ) , 1e-1 )"), ("m2.x".into(), true, Function::At(0.1)));
+        assert_eq!(read("time(lands)"), ("lands".into(), false, Function::TimeOf));
         assert_eq!(Asked::parse("rms( m2.x )").unwrap().text, "rms( m2.x )");
     }
 
@@ -106,6 +108,7 @@ mod tests {
             ("max(rms(m2.x))", "not abs"),
             ("abs(max(m2.x))", "one column"),
             ("abs(abs(m2.x))", "one column"),
+            ("time(abs(lands))", "not abs"),
             ("at(m2.x)", "when"),
             ("at(m2.x, end)", "seconds"),
             ("at(m2.x, -1)", "no run has"),

@@ -12,6 +12,8 @@ pub enum Function {
     Running(Running),
     /// The value at a time, s.
     At(f64),
+    /// Not of a column: when an event happens first, s.
+    TimeOf,
 }
 
 impl Function {
@@ -34,10 +36,10 @@ pub enum Gathered {
 }
 
 impl Gathered {
-    /// Nothing yet of a function of all steps; `None` of one that needs the last only.
+    /// Nothing yet of a function of all steps; `None` of one that is known at the end.
     pub fn new(function: Function) -> Option<Self> {
         match function {
-            Function::Last => None,
+            Function::Last | Function::TimeOf => None,
             Function::Running(running) => Some(Self::Running(running, RunningValue::default(), None)),
             Function::At(t) => Some(Self::At(Reading::new(t))),
         }

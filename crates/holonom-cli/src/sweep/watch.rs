@@ -5,7 +5,7 @@ use holonom::record::{Constraints, Recorder};
 use holonom::simulation::{Divisions, Observer, Simulation, Verdict};
 
 use super::column::Asked;
-use super::reduction::Gathered;
+use super::reduction::{Function, Gathered};
 
 /// The columns of the table that show the motion, and what has to be found for them.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,12 +41,17 @@ pub struct Watch<'a> {
 }
 
 /// A column of one run.
-struct Column {
-    /// Where it is in the rows of steps, or of a last value in the row after the last step.
-    place: usize,
-    is_absolute: bool,
-    /// What was seen over the steps; `None` where the last value is asked for.
-    gathered: Option<Gathered>,
+enum Column {
+    /// Of the rows.
+    Of {
+        /// Where it is in the rows of steps, or of a last value in the row after the last step.
+        place: usize,
+        is_absolute: bool,
+        /// What was seen over the steps; `None` where the last value is asked for.
+        gathered: Option<Gathered>,
+    },
+    /// When an event happens first.
+    Event(String),
 }
 
 impl<'a> Watch<'a> {
@@ -55,9 +60,12 @@ impl<'a> Watch<'a> {
         let at_end = recorder(model, *constraints);
         let recorder = recorder(model, if *forces { *constraints } else { Constraints::Nothing });
         let column = |asked: &Asked| {
+            if asked.function == Function::TimeOf {
+                return Some(Column::Event(asked.of.clone()));
+            }
             let gathered = Gathered::new(asked.function);
             let row = if gathered.is_some() { &recorder } else { &at_end };
-            Some(Column { place: row.recording().place(&asked.of)?, is_absolute: asked.is_absolute, gathered })
+            Some(Column::Of { place: row.recording().place(&asked.of)?, is_absolute: asked.is_absolute, gathered })
         };
         Self {
             columns: asked.iter().map(column).collect(),
@@ -73,9 +81,10 @@ impl<'a> Watch<'a> {
     pub fn values(self, simulation: &Simulation) -> Vec<Option<f64>> {
         let mut at_end = recorder(self.model, self.constraints).resume(&self.recorder.mark());
         let row = at_end.look(simulation);
-        let value = |column: &Column| match &column.gathered {
-            Some(gathered) => gathered.value(),
-            None => Some(signed(row[column.place], column.is_absolute)),
+        let value = |column: &Column| match column {
+            Column::Of { gathered: Some(gathered), .. } => gathered.value(),
+            Column::Of { place, is_absolute, gathered: None } => Some(signed(row[*place], *is_absolute)),
+            Column::Event(name) => simulation.events().iter().find(|happening| happening.event == *name).map(|happening| happening.t),
         };
         self.columns.iter().map(|column| column.as_ref().and_then(value)).collect()
     }
@@ -86,8 +95,8 @@ impl Watch<'_> {
     fn see(&mut self, simulation: &Simulation, see: fn(&mut Gathered, f64, f64)) {
         if self.needs_steps {
             let (t, row) = (simulation.state().t, self.recorder.look(simulation));
-            for Column { place, is_absolute, gathered } in self.columns.iter_mut().flatten() {
-                if let Some(gathered) = gathered {
+            for column in self.columns.iter_mut().flatten() {
+                if let Column::Of { place, is_absolute, gathered: Some(gathered) } = column {
                     see(gathered, t, signed(row[*place], *is_absolute));
                 }
             }

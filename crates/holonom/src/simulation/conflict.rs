@@ -11,6 +11,10 @@ const CONTRADICTS: f64 = 1e-3;
 /// Rows that ask for less than this share of the mechanism's size ask for nothing.
 const NOTHING: f64 = 1e-10;
 
+/// How many times the mass that a row moves is what it was at the start where it leads hardly anywhere, and most rows that are looked at.
+const STUCK: f64 = 100.0;
+const MOST: usize = 50;
+
 impl Simulation {
     /// The row, by name, that asks for a motion in the step to come which all rows together do not allow, to first order, at the present
     /// state: no increment d has G d = −Φ(q, t + h). Nothing of the simulation changes.
@@ -20,6 +24,39 @@ impl Simulation {
         self.hints.restore(&mut self.newton, &mut *self.integrator);
         (self.newton.iterations, self.newton.factorizations) = counters;
         row.map(|row| self.system.row_names[row].as_str())
+    }
+
+    /// The row that leads, by name, as that of a drive, which moves many times the mass that it did at the start: it comes to a dead centre, or to the
+    /// end of its reach. Nothing of the simulation changes.
+    pub(super) fn stuck(&mut self) -> Option<&str> {
+        let counters = (self.newton.iterations, self.newton.factorizations);
+        let leading: Vec<usize> = (0..self.system.rows.len()).filter(|&row| !self.system.rows[row].is_constant()).take(MOST).collect();
+        let (x, t) = (self.state.x.clone(), self.state.t);
+        let now = self.masses(&leading, &x, t);
+        let start = self.system.start_position.clone();
+        let first = self.masses(&leading, &start, 0.0);
+        self.hints.restore(&mut self.newton, &mut *self.integrator);
+        (self.newton.iterations, self.newton.factorizations) = counters;
+        let growth = now?.into_iter().zip(first?).map(|(now, first)| now / first);
+        let (row, growth) = leading.into_iter().zip(growth).max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (growth > STUCK).then(|| self.system.row_names[row].as_str())
+    }
+
+    /// The mass that each of some rows moves at a place and time, in units of its own: the diagonal of (G M⁻¹Gᵀ)⁻¹.
+    fn masses(&mut self, rows: &[usize], x: &[f64], t: f64) -> Option<Vec<f64>> {
+        let (system, newton, work) = (&*self.system, &mut self.newton, &mut self.work);
+        work.end.x.copy_from_slice(x);
+        system.place_known(t, &mut work.end.x, &mut work.end.v, &mut work.a);
+        system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
+        let is_known = rows.is_empty() || newton.factor_inertia(work);
+        let of_row = |&row: &usize| {
+            let multiplier = system.coordinates() + row;
+            newton.unknowns.fill(0.0);
+            newton.unknowns[multiplier] = 1.0;
+            newton.kkt.solve(&mut newton.unknowns);
+            newton.unknowns[multiplier].abs()
+        };
+        is_known.then(|| rows.iter().map(of_row).collect())
     }
 
     fn conflicting_row(&mut self) -> Option<usize> {

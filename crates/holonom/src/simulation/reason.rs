@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use super::no_value::Lack;
-use crate::formulation::{Failure, Workspace};
+use crate::formulation::{Failure, Independence, Workspace};
 
 /// A row that is missed by less than this share of the mechanism's size is not to blame for a step that fails.
 const BLAMED: f64 = 1e-10;
@@ -29,16 +29,23 @@ impl Simulation {
         let what = format!("{} at t = {t:.6} s{row}", failure.describe(&self.system));
         let is_of_rows = matches!(failure, Failure::NotConverged { .. } | Failure::Broken { .. } | Failure::Singular(_));
         // What cannot move has no step that is short enough either.
-        match (is_of_rows || failure == Failure::TooSmall).then(|| self.conflict()).flatten() {
-            Some(row) => format!("`{row}` asks for a motion that the other constraints do not allow: {what}"),
-            None if is_of_rows => what + &self.disagreement(),
-            None => what,
+        if !is_of_rows && failure != Failure::TooSmall {
+            return what;
         }
+        if let Some(row) = self.conflict() {
+            return format!("`{row}` asks for a motion that the other constraints do not allow: {what}");
+        }
+        if let Some(row) = self.stuck() {
+            return format!("`{row}` leads to a dead centre or to the end of its reach, beyond which there is no way: {what}");
+        }
+        if is_of_rows { what + &self.disagreement() } else { what }
     }
 
     /// That redundant rows may not agree, where there are any.
     fn disagreement(&self) -> String {
-        match self.redundant_rows() {
+        // At a singular position more rows follow from others than otherwise.
+        let at_start = Independence::new(&self.system).count_redundant(&self.system, &self.system.start_position, 0.0);
+        match self.redundant_rows().min(at_start) {
             0 => String::new(),
             redundant => format!(
                 "; {redundant} of the constraints follow from others: where they differ from these in the last digits that are written, as hinges of a door \

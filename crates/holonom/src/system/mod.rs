@@ -223,6 +223,11 @@ impl System {
         self.rows.iter().any(|row| !row.is_constant()) || !(self.motions.is_empty() && self.custom.is_empty())
     }
 
+    /// Names of the events.
+    pub fn event_names(&self) -> impl Iterator<Item = &str> {
+        self.events.iter().map(|event| event.name.as_str())
+    }
+
     /// Names of the forces that do work beside the energy: dissipative laws, then loads.
     pub fn working_forces(&self) -> impl Iterator<Item = &str> {
         let laws = self.laws.iter().filter(|law| !law.law.conservative()).map(|law| law.name.as_str());
