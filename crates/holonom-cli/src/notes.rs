@@ -95,10 +95,9 @@ const LOST: f64 = 0.01;
 
 /// That a method has made or lost much of the energy.
 pub fn lost_energy(simulation: &Simulation) -> Option<String> {
-    let (audit, energy) = (simulation.audit(), simulation.audit().energy_summary());
-    let ([_, supply], made) = (audit.supply(), energy.integrator_total + energy.projection_total);
+    let [made, supply] = simulation.made_energy();
     let did = if made > 0.0 { "made" } else { "lost" };
-    (made.abs() > LOST * supply && supply > 0.0).then(|| {
+    (made.abs() > LOST * supply).then(|| {
         format!(
             "the method has {did} {} J of the {} J that could move: shorter steps show what that changes, and conserving-ggl keeps the energy",
             short(made.abs()),

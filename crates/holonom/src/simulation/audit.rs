@@ -320,7 +320,7 @@ impl Audit {
     }
 
     /// By how much the energy exceeds that of the start and all work that was put in, and all that could have become motion, J.
-    pub fn supply(&self) -> [f64; 2] {
+    pub(super) fn supply(&self) -> [f64; 2] {
         let input = self.input + (self.work - self.before.work).max(0.0);
         let [kinetic, potential] = self.first;
         [self.energy() - self.initial - input, kinetic + (potential - self.lowest.min(self.potential)) + input]
