@@ -109,25 +109,25 @@ pub fn lost_energy(simulation: &Simulation) -> Option<String> {
 /// Share of itself by which a rotation lags from which on that is said.
 const LAG: f64 = 0.01;
 
-/// That steps are long for what spins: schemes of order 2 turn it by a twelfth of the cube of the angle too little in each (methods §8.1).
-pub fn long_turns(model: &Model, method: &Method, step: f64, recording: &Recording) -> Option<String> {
+/// That steps are long for what spins: schemes of order 2 turn it by a twelfth of the cube of the angle too little in each (methods §8.1), so that
+/// angles come on by less than their rates say.
+pub fn long_turns(model: &Model, method: &Method, recording: &Recording) -> Option<String> {
     if method.accuracy.is_some() || method.order() > 2 {
         return None;
     }
-    let fastest = |columns: &[String]| -> f64 {
-        let columns: Vec<&[f64]> = columns.iter().filter_map(|name| recording.column(name)).collect();
-        let square = |row: usize| columns.iter().map(|values| values[row] * values[row]).sum::<f64>();
-        (0..recording.rows()).map(square).fold(0.0, f64::max).sqrt()
+    let times = recording.column("t")?;
+    let lag = |name: &String| {
+        let (angles, rates) = (recording.column(name)?, recording.column(&format!("{name}_rate"))?);
+        let came = angles.last()? - angles.first()?;
+        let is_spin = came.abs() > std::f64::consts::TAU && rates.iter().all(|rate| rate * came > 0.0);
+        let spans = times.windows(2).zip(rates.windows(2)).map(|(t, rate)| 0.5 * (t[1] - t[0]) * (rate[0] + rate[1]));
+        is_spin.then(|| 1.0 - came / spans.sum::<f64>())
     };
-    let of_bodies = model.bodies.iter().map(|body| (&body.name, ["wx", "wy", "wz"].map(|w| format!("{}.{w}", body.name)).to_vec()));
-    let rate = |name: &String| vec![format!("{name}_rate")];
-    let of_joints = model.system.gauges().iter().filter(|gauge| gauge.ends_with("angle")).map(|gauge| (gauge, rate(gauge)));
-    let speeds = of_bodies.chain(of_joints).map(|(name, columns)| (name, step * fastest(&columns)));
-    let (name, turn) = speeds.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let lag = turn * turn / 12.0;
+    let lags = model.system.gauges().iter().filter(|gauge| gauge.ends_with("angle")).filter_map(|gauge| Some((gauge, lag(gauge)?)));
+    let (name, lag) = lags.max_by(|a, b| a.1.total_cmp(&b.1))?;
     (lag > LAG).then(|| {
         format!(
-            "`{name}` turns by {turn:.2} rad in a step: what spins freely so fast lags by {:.0} % with a method of order 2 (a shorter step, or gauss)",
+            "`{name}` comes on by {:.0} % less than its rate says: a method of order 2 lags where steps are long for what spins (a shorter step, or gauss)",
             100.0 * lag
         )
     })

@@ -177,7 +177,7 @@ pub(crate) fn simulate_kept(
     }
     let unknown = unknown_measures(model, watched.recorder.recording());
     let without = rows_without_forces(model, watched.recorder.recording());
-    let turns = long_turns(model, simulation.method(), step, watched.recorder.recording());
+    let turns = long_turns(model, simulation.method(), watched.recorder.recording());
     let of_steps = lost_energy(&simulation).filter(|_| status == Status::Completed).into_iter().chain(turns);
     let of_results: Vec<String> = unknown.into_iter().chain(without).chain(shared_forces(model, &simulation)).chain(of_steps).collect();
     if !quiet {

@@ -164,7 +164,8 @@ fn describe_columns(columns: &[String], compared: &[Compared]) -> String {
         let heading = if unit == "1" { column.clone() } else { format!("{column} ({unit})") };
         compared.iter().map(move |one| {
             let values = one.recording.column(column).unwrap_or_default().iter().copied().filter(|value| value.is_finite());
-            let [least, largest] = values.fold([f64::NAN; 2], |[least, largest], value| [value.min(least), value.max(largest)]).map(digits);
+            let [least, largest] = values.fold([f64::NAN; 2], |[least, largest], value| [value.min(least), value.max(largest)]);
+            let [least, largest] = [least, largest].map(|value| if value.is_finite() { short(value) } else { "–".into() });
             let number = |key: &str| digits(one.summary["differences"][column.as_str()][key].as_f64().unwrap_or(f64::NAN));
             vec![heading.clone(), one.label.clone(), least, largest, number("largest"), number("at"), number("rms")]
         })

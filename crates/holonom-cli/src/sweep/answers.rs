@@ -75,9 +75,13 @@ impl<'a> Answers<'a> {
                 (0..self.table.rows()).map(|row| shown.iter().map(|&column| cell(column, row)).collect()).collect();
             return Some(grid(&header, &rows));
         }
-        let lines = asked.filter_map(|column| Some((column, self.sides(column)?))).flat_map(|(column, [least, most])| {
-            let line = |what: &str, side: Side| vec![format!("{} {what}", self.name(column)), short(side.value), self.settings(side.row)];
-            [line("least", least), line("largest", most)]
+        let lines = asked.flat_map(|column| {
+            let sides = self.sides(column).map_or([None; 2], |sides| sides.map(Some));
+            let line = |what: &str, side: Option<Side>| {
+                let [value, place] = side.map_or(["–".into(), String::new()], |side| [short(side.value), self.settings(side.row)]);
+                vec![format!("{} {what}", self.name(column)), value, place]
+            };
+            [line("least", sides[0]), line("largest", sides[1])]
         });
         Some(grid(&["column", "value", "where"], &lines.collect::<Vec<_>>()))
     }

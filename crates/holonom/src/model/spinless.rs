@@ -1,4 +1,4 @@
-//! Bodies that may turn about an axis about which they have no inertia, where nothing but forces holds that: no acceleration follows from these.
+//! Bodies that may turn about an axis about which they have no inertia and no joint holds them: no acceleration follows there.
 
 use nalgebra::SymmetricEigen;
 
@@ -88,12 +88,12 @@ pub(super) fn refuse(assembly: &Assembly<'_>) -> Option<Fault> {
                     Place::Fixed(_) => (),
                 }
             }
-        let most = body.inertia.symmetric_eigenvalues().amax().max(body.mass * farthest * farthest);
+            let most = body.inertia.symmetric_eigenvalues().amax().max(body.mass * farthest * farthest);
             held.get_or_insert_with(|| Held::new(assembly)).is_nothing(&moves, most)
         };
         axes_without_inertia(body).into_iter().any(freely).then(|| {
             let message = format!(
-                "the body `{}` has no moment of inertia about an axis about which nothing but forces holds it: no acceleration follows from these",
+                "the body `{}` has no moment of inertia about an axis about which no joint holds it: no acceleration follows there",
                 body.name
             );
             let cure = "give it one, as by `inertia` or by a cylinder in place of a rod, or joints that do not let it turn about that axis";

@@ -59,7 +59,7 @@ pub const SOLVES: &[(&str, &str)] =
     &[("exact", "multipliers, to round-off (default)"), ("penalty", "the paper's penalty α (11), (13) (key penalty)")];
 
 /// Passes of the exact projection; the second one already meets round-off, more are for redundant rows.
-const PASSES: usize = 4;
+const PASSES: usize = 6;
 
 /// Largest metric whose violation is left alone, relative to the size of the velocities.
 const ROUND_OFF: f64 = 1e-15;

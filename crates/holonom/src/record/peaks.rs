@@ -152,7 +152,7 @@ fn extremes(measure: usize, name: &str, times: &[f64], recording: &Recording) ->
     let (lowest, highest) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (value, _)| (value.min(low), value.max(high)));
     // Not of the size: far from the origin a place changes by a small share of itself.
     let equal = ROUND_OFF * (highest - lowest);
-    let first = |of: f64| all().find(|(value, _)| (value - of).abs() <= equal).map(|(_, t)| t);
+    let first = |of: f64| all().filter(|(value, _)| (value - of).abs() <= equal).map(|(_, t)| t).min_by(f64::total_cmp);
     let (min_at, max_at) = (first(lowest)?, first(highest)?);
     let (unit, last) = (column.heading.unit.clone(), *column.values.last()?);
     Some(Extremes { name: name.into(), unit, min: lowest, min_at, max: highest, max_at, last })

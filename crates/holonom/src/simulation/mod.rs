@@ -9,6 +9,7 @@ mod checkpoint;
 mod conflict;
 mod control;
 mod events;
+mod golden;
 mod landing;
 mod locate;
 mod method;

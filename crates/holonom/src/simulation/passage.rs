@@ -2,6 +2,7 @@
 //! takes.
 
 use super::Simulation;
+use super::golden::highest;
 use super::pilot::{Pilot, is_rough};
 use crate::formulation::Failure;
 use crate::integrator::Step;
@@ -17,17 +18,22 @@ const STEEP: f64 = 2.0;
 /// where that is hardly a matter of the accuracy, as a bend is seen that is one of the motion.
 const ROUNDED: f64 = 100.0 * f64::EPSILON;
 
-/// A step passes a singular position where the root is below this share of what it is where steps end before one, and it is looked for where the
-/// root is larger than so many of these at the start.
+/// A step passes a singular position where the root is below this share of what it is where steps end before one, or of what it is at both ends of
+/// the step; it is looked for where the root is larger than so many of these at the start.
 const PASSED: f64 = 0.5;
+const DIPS: f64 = 0.1;
 const FAR: f64 = 3.0;
 
-/// The way that is left to a singular position where a step ends, in units of that on which the root becomes so small.
+/// The way that is left to a singular position where a step ends, in units of that on which the root becomes so small, beside that on which it
+/// becomes what it is there.
 const LEFT: f64 = 1.5;
 
-/// Parts of a step that are looked into, and share of the way on which the root becomes so small to which a place is found.
+/// Parts of a step that are looked into, and share of the way on which the root becomes what it is there to which a place is found.
 const PART: f64 = 1.0 / 16.0;
 const FOUND: f64 = 0.1;
+
+/// Share of the way to a singular position that a step goes at least.
+const LEAST_LEFT: f64 = 0.1;
 
 /// Most times that a step is taken again.
 const MOST_TRIES: u32 = 20;
@@ -48,6 +54,8 @@ struct Way<'a> {
     /// By how much the root changes at most along it, and what it is where steps end before a singular position.
     turn: f64,
     near: f64,
+    /// Below which the step passes a singular position.
+    bound: f64,
     x: Vec<f64>,
 }
 
@@ -66,9 +74,9 @@ impl Way<'_> {
         pilot.root_of_weakest(&simulation.system, x, t)
     }
 
-    /// The first singular position between two shares of the way with their roots.
-    fn first(&mut self, [low, high]: [f64; 2], roots: [f64; 2]) -> Option<f64> {
-        if roots[0] + roots[1] > self.turn * (high - low) + 2.0 * PASSED * self.near {
+    /// The first singular position between two shares of the way with their roots, and the root there.
+    fn first(&mut self, [low, high]: [f64; 2], roots: [f64; 2]) -> Option<(f64, f64)> {
+        if roots[0] + roots[1] > self.turn * (high - low) + 2.0 * self.bound {
             return None;
         }
         if high - low <= PART {
@@ -79,27 +87,12 @@ impl Way<'_> {
         self.first([low, middle], [roots[0], root]).or_else(|| self.first([middle, high], [root, roots[1]]))
     }
 
-    /// A singular position between two shares, by the golden section.
-    fn least(&mut self, mut low: f64, mut high: f64) -> Option<f64> {
-        let [mut left, mut right] = [0.618, 0.382].map(|part| part * low + (1.0 - part) * high);
-        let [mut at_left, mut at_right] = [left, right].map(|share| self.root(share));
-        loop {
-            if at_left.min(at_right) < PASSED * self.near {
-                return Some(if at_left < at_right { left } else { right });
-            }
-            if self.turn * (high - low) < FOUND * self.near {
-                return None;
-            }
-            if at_left < at_right {
-                (high, right, at_right) = (right, left, at_left);
-                left = 0.618 * low + 0.382 * high;
-                at_left = self.root(left);
-            } else {
-                (low, left, at_left) = (left, right, at_right);
-                right = 0.382 * low + 0.618 * high;
-                at_right = self.root(right);
-            }
-        }
+    /// A singular position between two shares, by the golden section, and the root there.
+    fn least(&mut self, low: f64, high: f64) -> Option<(f64, f64)> {
+        let (turn, near) = (self.turn, self.near);
+        let ends = |left: f64, least: f64| turn * left < FOUND * near.max(-least);
+        let (place, least) = highest(|share| -self.root(share), [low, high], ends);
+        (-least < self.bound).then_some((place, -least))
     }
 }
 
@@ -134,23 +127,24 @@ impl Simulation {
             return None;
         }
         pilot.clear -= most;
-        if pilot.clear > FAR * near {
+        if pilot.clear > most.max(FAR * near) {
             return None;
         }
         let Place { x, gradient } = std::mem::take(&mut pilot.place);
-        let mut way = Way { simulation: self, x, pilot, length, turn: most, near };
+        let mut way = Way { simulation: self, x, pilot, length, turn: most, near, bound: 0.0 };
         let start = way.root(0.0);
         let mut place = Place { gradient, x: Vec::new() };
         way.pilot.keep_gradients(&mut place.gradient);
         let end = way.root(1.0);
         way.turn = most.min(STEEP * way.pilot.turned(&self.system, &place.gradient));
         way.pilot.clear = start.min(end);
-        let share = match start < FAR * near {
+        way.bound = (PASSED * near).max(DIPS * start.min(end));
+        let passed = match start < FAR * near {
             true => None,
-            false => way.first([0.0, 1.0], [start, end]).or((end < PASSED * near).then_some(1.0)),
+            false => way.first([0.0, 1.0], [start, end]).or((end < PASSED * near).then_some((1.0, end))),
         };
         let Way { x, pilot, .. } = way;
         pilot.place = Place { x, ..place };
-        share.map(|share| share * (1.0 - LEFT * near / start))
+        passed.map(|(share, least)| share * (1.0 - (LEFT * near + least) / start).max(LEAST_LEFT))
     }
 }

@@ -16,7 +16,7 @@ use crate::system::{GaugeValues, Measured, System};
 pub(super) const SMALLEST_SHARE: f64 = 1e-13;
 
 /// Share of itself that a row adds to the others below which it adds nothing.
-const LEAST_SHARE: f64 = 1e-10;
+pub(super) const LEAST_SHARE: f64 = 1e-10;
 
 /// A state, what is shown and measured of it, and what is booked of the run up to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

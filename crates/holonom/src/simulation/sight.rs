@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::golden::highest;
 use crate::system::{Seen, System};
 
 /// Places at which the inside of a step is looked at: one of order 8 may be a turn long.
@@ -80,7 +81,8 @@ impl Sight {
         let hidden = |k: usize, peak: usize| {
             let [before, middle, after] = [k - 1, k, k + 1].map(|look| looks[look][peak]);
             let is_top = middle >= before && middle >= after && middle > before.min(after);
-            let (share, height) = is_top.then(|| highest(|share| look(share)[peak], [shares[k - 1], shares[k + 1]]))?;
+            let (share, height) =
+                is_top.then(|| highest(|share| look(share)[peak], [shares[k - 1], shares[k + 1]], |left, _| left <= FOUND))?;
             (height - self.peaks[peak].max(at.peaks[peak]) > HIDDEN).then_some(share)
         };
         (1..last).find_map(|k| (0..self.peaks.len()).find_map(|peak| hidden(k, peak)))
@@ -156,26 +158,6 @@ const HIDDEN: f64 = 1.0;
 /// Share of a step from its ends within which peaks are not looked for, and to which their places are found.
 const NEAR_END: f64 = 1e-6;
 const FOUND: f64 = 1e-12;
-
-/// Where a number is highest that rises and then falls between two places, and how high: by the golden section.
-fn highest(at: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> (f64, f64) {
-    const GOLDEN: f64 = 0.618_033_988_749_894_8;
-    let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)].map(|place| (place, at(place)));
-    let [mut left, mut right] = inner(low, high);
-    while high - low > FOUND {
-        if left.1 >= right.1 {
-            (high, right) = (right.0, left);
-            left = inner(low, high)[0];
-        } else {
-            (low, left) = (left.0, right);
-            right = inner(low, high)[1];
-        }
-        if !(low < left.0 && left.0 < right.0 && right.0 < high) {
-            break;
-        }
-    }
-    if left.1 >= right.1 { left } else { right }
-}
 
 /// Where a parabola through values at −1, 0 and 1 is nearest to zero, if that is between −1 and 1 and not beyond zero by these values already.
 fn nearest([before, middle, after]: [f64; 3]) -> Option<f64> {
