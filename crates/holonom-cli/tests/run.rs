@@ -295,6 +295,9 @@ fn long_steps_are_told() {
     assert!(notes("").contains(turns), "{}", notes(""));
     assert!(!notes("--step 1e-4").contains("comes on by"), "{}", notes("--step 1e-4"));
     assert!(!notes("--method gauss").contains("comes on by"), "{}", notes("--method gauss"));
+    let free = "[body.top]\nmass = 1\ninertia = [0.01, 0.006, 0.006]\nposition = [0, 0, 0]\nangular_velocity = [600, 1, 0]\n\
+                [simulation]\nend = 0.05\nstep = 1e-3\n";
+    fs::write(folder.path().join("top.toml"), free).unwrap();
     let lost = notes("--method radau --step 5e-3");
     assert!(lost.contains("note: the method has lost ") && lost.contains(" J that could move: shorter steps"), "{lost}");
     assert!(!notes("--method radau --accuracy 1e-6").contains("the method has"));
