@@ -65,12 +65,6 @@ pub fn unknown_measures(model: &Model, recording: &Recording) -> Vec<String> {
         .collect()
 }
 
-/// Whether a force has no value in a row.
-fn lacks_force(model: &Model, recording: &Recording, row: usize) -> bool {
-    let names = model.channels.forces.iter().flat_map(|force| force.acts(model.axes)).flatten();
-    names.filter_map(|name| recording.column(&name)).any(|values| values[row].is_nan())
-}
-
 /// That rows have no forces of joints, as the position is singular there.
 pub fn rows_without_forces(model: &Model, recording: &Recording) -> Option<String> {
     let told = model.channels.told();
@@ -78,7 +72,11 @@ pub fn rows_without_forces(model: &Model, recording: &Recording) -> Option<Strin
     let of_drives = told.efforts.first().map(|effort| format!("{}.effort", effort.name));
     let name = of_joints.or(of_drives).or(told.rods.first().map(|rod| format!("{}.force", rod.name)))?;
     let times = recording.column("t")?;
-    let unknown = recording.column(&name)?.iter().enumerate().filter(|(row, force)| force.is_nan() && !lacks_force(model, recording, *row));
+    // Where a force has no value, that is why.
+    let names = model.channels.forces.iter().flat_map(|force| force.acts(model.axes)).flatten();
+    let forces: Vec<&[f64]> = names.filter_map(|name| recording.column(&name)).collect();
+    let lacks_force = |row: usize| forces.iter().any(|values| values[row].is_nan());
+    let unknown = recording.column(&name)?.iter().enumerate().filter(|(row, force)| force.is_nan() && !lacks_force(*row));
     let times: Vec<f64> = unknown.map(|(row, _)| times[row]).collect();
     let first = times.first()?;
     let rows = if times.len() == 1 { "one row has".into() } else { format!("{} rows have", times.len()) };

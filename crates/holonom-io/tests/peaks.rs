@@ -90,3 +90,28 @@ fn peaks_survive_a_checkpoint() {
     assert_eq!(resumed.run(0.3, &mut second), Status::Completed);
     assert!(Peaks::of(&model.channels, &second.finish()).forces[0].value > 0.95 * largest());
 }
+
+/// What a drive exerts follows from forces of the constraints, which a measure of it has found wherever it looks: the moment of a crank that is led to and
+/// fro in the horizontal plane is J θ″, largest where it turns round, with few rows, too.
+#[test]
+fn extremes_of_what_drives_exert_are_those_of_all_steps() {
+    let model = model(
+        "plane = \"xy\"\ngravity = [0, 0]\n[body.crank]\nmass = 1\ninertia = 2\nposition = [0, 0]\n\
+         [joint.axle]\ntype = \"revolute\"\nbetween = [\"ground\", \"crank\"]\nat = [0, 0]\n\
+         [drive.motor]\ntype = \"angle\"\njoint = \"axle\"\nprofile = \"0.5*(1 - cos(7*t))\"\n\
+         [measure.moment]\nvalue = \"motor.effort\"\n[measure.power]\nvalue = \"motor.effort*axle.angle_rate\"\n",
+    );
+    let (moment, power) = (2.0 * 0.5 * 49.0, 2.0 * 0.25 * 343.0 * 0.5);
+    for (accuracy, step, every) in [(None, 1e-3, 1), (None, 1e-3, 997), (Some(1e-8), 0.7, 1)] {
+        let choice = Choice { accuracy, ..Choice::default().named("radau") };
+        let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&choice).unwrap(), step).unwrap();
+        model.find_reactions(&mut simulation);
+        let mut recorder = Recorder::new(&model.channels, &model.system, every, Constraints::Joints);
+        assert_eq!(simulation.run(2.1, &mut recorder), Status::Completed);
+        let peaks = Peaks::of(&model.channels, &recorder.finish());
+        let [of_moment, of_power] = &peaks.measures[..] else { panic!("{:?}", peaks.measures) };
+        for (found, size) in [(of_moment.max, moment), (-of_moment.min, moment), (of_power.max, power), (-of_power.min, power)] {
+            assert!((found / size - 1.0).abs() < 2e-3, "{accuracy:?}, {every}: {found} and {size} by hand");
+        }
+    }
+}

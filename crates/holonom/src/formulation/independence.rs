@@ -29,6 +29,9 @@ const NOTHING: f64 = 0.1;
 const ROUND_OFF: f64 = 1e-13;
 const MOST: usize = 100;
 
+/// Share of itself that a row adds to the others below which it adds nothing.
+const LEAST_SHARE: f64 = 1e-10;
+
 /// Rows that are measured again without room being made for them.
 const FEW: usize = 4;
 
@@ -122,9 +125,25 @@ impl Independence {
         }
     }
 
+    /// How many times larger than elsewhere round-off is where rows were last measured: one over the root of the least share, without those of as
+    /// many rows as are `redundant`.
+    pub fn amplification(&mut self, redundant: usize) -> f64 {
+        1.0 / self.weakest(redundant).max(LEAST_SHARE).sqrt()
+    }
+
     /// Gradients of all rows (D a slot) when last measured, of length one.
     pub fn gradients(&self) -> &[f64] {
         &self.at.gradient
+    }
+
+    /// By how much a row has turned at most since its gradients were `before`, rad; without bound above a sixth of a turn.
+    pub fn turned_since(&self, before: &[f64]) -> f64 {
+        let square = |slots: &std::ops::Range<usize>| {
+            let place = slots.start * self.kkt.dim..slots.end * self.kkt.dim;
+            self.at.gradient[place.clone()].iter().zip(&before[place]).map(|(now, before)| (now - before) * (now - before)).sum::<f64>()
+        };
+        let chord = self.kkt.slots.rows.iter().map(square).fold(0.0, f64::max).sqrt();
+        if chord < 1.0 { 2.0 * (0.5 * chord).asin() } else { f64::INFINITY }
     }
 
     /// The least share of a row when last measured, without as many of the least as are `redundant`; 1 where there is no other. The shares are in no

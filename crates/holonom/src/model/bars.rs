@@ -52,10 +52,7 @@ impl Bar {
             return Err(entry.refuse("between", "both ends are on the same body", "tie the bar to two bodies, or give the body its mass"));
         }
         let places = a.place().zip(b.place()).map(|(a, b)| [a, b]);
-        match places {
-            Some(places) => add_mass(assembly, &ends, places, mass),
-            None => add_mass_of_terms(assembly, &ends, mass),
-        }
+        add_mass(assembly, &ends, mass);
         ends.iter().filter_map(|end| end.point).for_each(|point| assembly.points[point].carries_bar = true);
         let half_square = assembly.builder.square(&from_to(a, b));
         assembly.rods.push(RecordedRod { name: entry.name.into(), row: assembly.builder.rows(), length: Arc::new(Constant(length)) });
@@ -70,8 +67,8 @@ fn zero_length(entry: &Entry<'_>, [a, b]: &[End; 2]) -> Refused {
     entry.refuse("between", message, "move one of them, or use a point with mass")
 }
 
-/// The same where ends are sums of nodes: with x = Σ (f + g J) x_i each product of two ends is one of all their nodes.
-fn add_mass_of_terms(assembly: &mut Assembly<'_>, ends: &[End; 2], mass: f64) {
+/// Adds the mass of a bar. Where ends are sums of nodes, x = Σ (f + g J) x_i, each product of two ends is one of all their nodes.
+fn add_mass(assembly: &mut Assembly<'_>, ends: &[End; 2], mass: f64) {
     for (k, l, share) in [(0, 0, mass / 3.0), (1, 1, mass / 3.0), (0, 1, mass / 6.0)] {
         for (i, a) in ends[k].terms.iter().enumerate() {
             // Of an end with itself each pair of nodes once, as a block comes with its transpose.
@@ -84,18 +81,8 @@ fn add_mass_of_terms(assembly: &mut Assembly<'_>, ends: &[End; 2], mass: f64) {
                 assembly.builder.couple([a.place, b.place], m, s, velocities);
             }
         }
-    }
-    ends.iter().for_each(|end| end.terms.iter().for_each(|&term| assembly.builder.weight(term, 0.5 * mass)));
-}
-
-fn add_mass(assembly: &mut Assembly<'_>, ends: &[End; 2], [a, b]: [system::Place; 2], mass: f64) {
-    let [of_a, of_b] = [velocity(assembly, &ends[0], a), velocity(assembly, &ends[1], b)];
-    for (places, share, velocities) in
-        [([a, a], mass / 3.0, [of_a, of_a]), ([b, b], mass / 3.0, [of_b, of_b]), ([a, b], mass / 6.0, [of_a, of_b])]
-    {
-        assembly.builder.couple(places, share, 0.0, velocities);
-        let both = if places[0] == places[1] { &places[..1] } else { &places[..] };
-        both.iter().for_each(|&place| assembly.builder.weight((place, 1.0).into(), share));
+        let weighed = if k == l { &ends[k..=k] } else { &ends[..] };
+        weighed.iter().flat_map(|end| &end.terms).for_each(|&term| assembly.builder.weight(term, share));
     }
 }
 

@@ -154,9 +154,9 @@ pub fn nearest_few<'a>(name: &str, known: impl IntoIterator<Item = &'a str>, mos
     let plain = |name: &str| name.chars().take(LONGEST).flat_map(char::to_lowercase).collect::<String>();
     let wanted = plain(name);
     let is_near = |&(distance, candidate): &(usize, &str)| {
-        let limit = (NEAR * wanted.chars().count().max(candidate.chars().count()) as f64) as usize;
-        // Names of which no letter is the same have nothing in common.
         let all = wanted.chars().count().max(candidate.chars().count());
+        let limit = (NEAR * all as f64) as usize;
+        // Names of which no letter is the same have nothing in common.
         distance <= limit.max(1) && distance < all
     };
     let distances = known.into_iter().map(|candidate| (strsim::osa_distance(&wanted, &plain(candidate)), candidate));

@@ -69,6 +69,10 @@ pub struct Target {
 }
 
 impl Target {
+    fn is_of(&self, coordinate: &Coordinate) -> bool {
+        self.coordinate.joint == coordinate.joint && self.coordinate.name == coordinate.name
+    }
+
     /// Whether the coordinate is put somewhere.
     pub(super) fn is_placed(&self) -> bool {
         self.value.is_some()
@@ -88,8 +92,7 @@ pub struct DrivenLength {
 /// The profile of a drive of a coordinate, whose row is the next one: it counts from where the joint is at the start.
 pub(super) fn profile(assembly: &mut Assembly<'_>, coordinate: &Coordinate, profile: Arc<dyn Signal>) -> Arc<dyn Signal> {
     let row = assembly.builder.rows();
-    let of = |target: &&mut Target| target.coordinate.joint == coordinate.joint && target.coordinate.name == coordinate.name;
-    match assembly.starts.iter_mut().find(of) {
+    match assembly.starts.iter_mut().find(|target| target.is_of(coordinate)) {
         None => profile,
         Some(target) => {
             target.row = Some(row);
@@ -100,8 +103,7 @@ pub(super) fn profile(assembly: &mut Assembly<'_>, coordinate: &Coordinate, prof
 
 /// What a coordinate is at the start.
 pub(super) fn value(assembly: &Assembly<'_>, coordinate: &Coordinate) -> f64 {
-    let of = |target: &&Target| target.coordinate.joint == coordinate.joint && target.coordinate.name == coordinate.name;
-    assembly.starts.iter().find(of).and_then(|target| target.value).unwrap_or(0.0)
+    assembly.starts.iter().find(|target| target.is_of(coordinate)).and_then(|target| target.value).unwrap_or(0.0)
 }
 
 impl Start {

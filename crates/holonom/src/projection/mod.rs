@@ -58,7 +58,8 @@ pub const METRICS: &[(&str, &str)] = &[
 pub const SOLVES: &[(&str, &str)] =
     &[("exact", "multipliers, to round-off (default)"), ("penalty", "the paper's penalty α (11), (13) (key penalty)")];
 
-/// Passes of the exact projection; the second one already meets round-off, more are for redundant rows.
+/// Passes of the exact projection; the second one already meets round-off, more are for redundant rows, and for velocities where the matrix is that of
+/// positions which have been projected since.
 const PASSES: usize = 6;
 
 /// Largest metric whose violation is left alone, relative to the size of the velocities.

@@ -60,6 +60,8 @@ pub(super) struct Between {
     groups: Vec<Vec<usize>>,
     /// Of each of them, as far as a state was looked at.
     pub largest: Vec<Largest>,
+    /// Of all forces.
+    columns: usize,
     row: Vec<f64>,
 }
 
@@ -74,7 +76,12 @@ impl Between {
             before += headings.len();
         }
         let largest = vec![Largest::default(); groups.len()];
-        Self { groups, largest, row: Vec::new() }
+        Self { groups, largest, columns: before, row: Vec::new() }
+    }
+
+    /// How many columns the forces have.
+    pub fn columns(&self) -> usize {
+        self.columns
     }
 
     /// Whether there is anything to look at.

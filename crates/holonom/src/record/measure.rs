@@ -162,19 +162,18 @@ impl Measures {
         }
     }
 
-    /// Where else than in the rows they are looked at: what is of the whole run, or read among the columns of accelerations and of forces of
-    /// constraints `found` for it, inside of long steps, too.
+    /// Where else than in the rows they are looked at: what is of the whole run, or reads columns that follow from forces of the constraints, which are
+    /// at the places `found`, inside of long steps, too.
     pub fn divisions(&self, found: &[Range<usize>]) -> Divisions {
         let is_found = |place: &Option<Place>| matches!(place, Some(Place::Column(k)) if found.iter().any(|found| found.contains(k)));
-        match () {
-            () if self.measures.is_empty() => Divisions::Unseen,
-            () if self.are_running() || self.places.iter().flatten().any(is_found) => Divisions::Inside,
-            () => Divisions::Ends,
+        let are_running = self.sums.iter().any(|sums| !sums.is_empty());
+        if are_running || self.places.iter().flatten().any(is_found) {
+            Divisions::Inside
+        } else if self.measures.is_empty() {
+            Divisions::Unseen
+        } else {
+            Divisions::Ends
         }
-    }
-
-    fn are_running(&self) -> bool {
-        self.sums.iter().any(|sums| !sums.is_empty())
     }
 
     /// Appends their values to a row that begins with the time.

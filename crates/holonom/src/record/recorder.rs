@@ -100,9 +100,10 @@ impl<'a> Recorder<'a> {
         let motion = COLUMNS.len() + channels.motion_headings().len();
         let accelerations = motion..motion + if constraints == Constraints::Nothing { 0 } else { channels.acceleration_headings().len() };
         let coordinates = accelerations.end..accelerations.end + 2 * system.gauges().len();
-        let joints = coordinates.end + channels.force_headings().len() + channels.inputs.len()..before;
         let between = Between::new(&channels.forces, &channels.axes);
-        let divisions = match measures.divisions(&[accelerations.clone(), joints]) {
+        let inputs = coordinates.end + channels.force_headings().len();
+        let (drives, joints) = (coordinates.end + between.columns()..inputs, inputs + channels.inputs.len()..before);
+        let divisions = match measures.divisions(&[accelerations.clone(), drives, joints]) {
             Divisions::Unseen if between.is_needed() => Divisions::Ends,
             divisions => divisions,
         };
@@ -242,12 +243,11 @@ impl Observer for Recorder<'_> {
     }
 
     fn at_division(&mut self, simulation: &Simulation) {
-        match self.channels.measures.is_empty() {
-            false => {
-                self.fill(simulation);
-                self.between.see(&self.row[self.coordinates.end..], simulation.state().t);
-            }
-            true => self.between.look(&self.channels.forces, simulation),
+        if self.channels.measures.is_empty() {
+            self.between.look(&self.channels.forces, simulation);
+        } else {
+            self.fill(simulation);
+            self.between.see(&self.row[self.coordinates.end..], simulation.state().t);
         }
     }
 

@@ -19,24 +19,25 @@ impl Simulation {
     /// The row, by name, that asks for a motion in the step to come which all rows together do not allow, to first order, at the present
     /// state: no increment d has G d = −Φ(q, t + h). Nothing of the simulation changes.
     pub fn conflict(&mut self) -> Option<&str> {
+        self.ask(Self::conflicting_row).map(|row| self.system.row_names[row].as_str())
+    }
+
+    /// Asks something with the matrix of the steps, which go on as if nobody had.
+    fn ask<T>(&mut self, question: impl FnOnce(&mut Self) -> T) -> T {
         let counters = (self.newton.iterations, self.newton.factorizations);
-        let row = self.conflicting_row();
+        let answer = question(self);
         self.hints.restore(&mut self.newton, &mut *self.integrator);
         (self.newton.iterations, self.newton.factorizations) = counters;
-        row.map(|row| self.system.row_names[row].as_str())
+        answer
     }
 
     /// The row that leads, by name, as that of a drive, which moves many times the mass that it did at the start: it comes to a dead centre, or to the
     /// end of its reach. Nothing of the simulation changes.
     pub(super) fn stuck(&mut self) -> Option<&str> {
-        let counters = (self.newton.iterations, self.newton.factorizations);
-        let leading: Vec<usize> = (0..self.system.rows.len()).filter(|&row| !self.system.rows[row].is_constant()).take(MOST).collect();
+        let system = self.system.clone();
+        let leading: Vec<usize> = (0..system.rows.len()).filter(|&row| !system.rows[row].is_constant()).take(MOST).collect();
         let (x, t) = (self.state.x.clone(), self.state.t);
-        let now = self.masses(&leading, &x, t);
-        let start = self.system.start_position.clone();
-        let first = self.masses(&leading, &start, 0.0);
-        self.hints.restore(&mut self.newton, &mut *self.integrator);
-        (self.newton.iterations, self.newton.factorizations) = counters;
+        let [now, first] = self.ask(|own| [(&x, t), (&system.start_position, 0.0)].map(|(x, t)| own.masses(&leading, x, t)));
         let growth = now?.into_iter().zip(first?).map(|(now, first)| now / first);
         let (row, growth) = leading.into_iter().zip(growth).max_by(|a, b| a.1.total_cmp(&b.1))?;
         (growth > STUCK).then(|| self.system.row_names[row].as_str())

@@ -117,7 +117,7 @@ impl Control {
         self.last_ratio = 1.0;
     }
 
-    /// The accuracy that is asked for.
+    /// The accuracy that errors are held to.
     pub(super) fn accuracy(&self) -> f64 {
         self.accuracy
     }

@@ -64,12 +64,6 @@ pub enum Status {
     },
 }
 
-/// Share of its length by which a mechanism that stands about still comes on in a run.
-const STILL: f64 = 1e-6;
-
-/// Share of energies that is round-off of a run.
-const ROUNDED: f64 = 1e-9;
-
 /// What an observer answers after each step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
@@ -399,17 +393,6 @@ impl Simulation {
             violation: self.audit.violation_summary(),
             work: self.audit.work_summary(self.steps),
         }
-    }
-
-    /// What the method has made of the energy so far, below zero where it has lost it, and all there was to move, J; nothing made where the
-    /// mechanism stands about still, or that is round-off.
-    pub fn made_energy(&self) -> [f64; 2] {
-        let (summary, [_, supply]) = (self.audit.energy_summary(), self.audit.supply());
-        let made = summary.integrator_total + summary.projection_total;
-        let length = self.work.scales.length;
-        let still = self.judge.motion(STILL * length / self.state.t.abs());
-        let rounded = ROUNDED * (self.judge.lift(length) + self.audit.potential.abs() + self.audit.work.abs());
-        [if made.abs() > still + rounded { made } else { 0.0 }, supply]
     }
 
     /// Nominal step, s.

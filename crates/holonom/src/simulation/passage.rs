@@ -3,8 +3,8 @@
 
 use super::Simulation;
 use super::golden::highest;
-use super::pilot::{Pilot, is_rough};
-use crate::formulation::Failure;
+use super::pilot::{Moment, Pilot, is_rough};
+use crate::formulation::{Failure, Independence};
 use crate::integrator::Step;
 
 /// Order of methods whose steps are too short to pass a singular position without notice. So are those of methods that hold no velocities, whose
@@ -38,40 +38,55 @@ const LEAST_LEFT: f64 = 0.1;
 /// Most times that a step is taken again.
 const MOST_TRIES: u32 = 20;
 
-/// Room for a place inside of a step (D × nodes), and for the gradients of all rows, of length one, at its start.
-#[derive(Default)]
-pub(super) struct Place {
-    pub x: Vec<f64>,
-    pub gradient: Vec<f64>,
+/// How much longer than the shortest the way of a row may be that turns.
+const FURTHER: f64 = 1.5;
+
+/// What is known of singular positions ahead, and room for looks inside of a step.
+pub(super) struct View {
+    /// What the root is at least until rows have turned by more, where a step ends.
+    pub clear: f64,
+    /// A place inside of a step (D × nodes).
+    x: Vec<f64>,
+    /// Gradients of all rows at its start, of length one.
+    gradient: Vec<f64>,
+}
+
+impl View {
+    /// Nothing is known yet.
+    pub fn new(x: Vec<f64>, independence: &Independence) -> Self {
+        Self { clear: 0.0, x, gradient: independence.gradients().to_vec() }
+    }
 }
 
 /// The places between the ends of a step, and how independent rows are there: the root of the least that one adds to the others.
 struct Way<'a> {
     simulation: &'a Simulation,
-    pilot: &'a mut Pilot,
+    start: &'a Moment,
     /// s
     length: f64,
+    independence: &'a mut Independence,
+    /// How many rows are redundant everywhere.
+    redundant: usize,
     /// By how much the root changes at most along it, and what it is where steps end before a singular position.
     turn: f64,
     near: f64,
     /// Below which the step passes a singular position.
     bound: f64,
-    x: Vec<f64>,
+    x: &'a mut [f64],
 }
 
 impl Way<'_> {
     /// The root at a share of the way, by Hermite's cubic.
     fn root(&mut self, share: f64) -> f64 {
-        let Self { simulation, pilot, length, x, .. } = self;
-        let rest = 1.0 - share;
+        let Self { simulation, start, length, x, .. } = self;
+        let (end, rest) = (&simulation.state, 1.0 - share);
         let [at_start, at_end] = [rest * rest * (1.0 + 2.0 * share), share * share * (1.0 + 2.0 * rest)];
         let [along_start, along_end] = [share * rest * rest * *length, -share * share * rest * *length];
-        let (start, end) = (&pilot.before, &simulation.state);
         for (i, x) in x.iter_mut().enumerate() {
             *x = at_start * start.state.x[i] + at_end * end.x[i] + along_start * start.v[i] + along_end * simulation.shown_v[i];
         }
-        let t = start.state.t + share * *length;
-        pilot.root_of_weakest(&simulation.system, x, t)
+        self.independence.count_redundant(&simulation.system, x, start.state.t + share * *length);
+        self.independence.weakest(self.redundant).sqrt()
     }
 
     /// The first singular position between two shares of the way with their roots, and the root there.
@@ -119,32 +134,29 @@ impl Simulation {
     /// The share of a step of length `length` (s) after which it is to end, where it passes a singular position.
     fn passes_singular(&self, length: f64, pilot: &mut Pilot) -> Option<f64> {
         let near = (ROUNDED / pilot.control.accuracy()).cbrt();
-        let (from, to) = (&pilot.before.state.x, &self.state.x);
-        let moved = from.iter().zip(to).fold(0.0, |m: f64, (from, to)| m.max((to - from).abs()));
-        // No row turns by more than this.
+        let Pilot { before, independence, redundant, view: View { clear, x, gradient }, .. } = pilot;
+        let moved = before.state.x.iter().zip(&self.state.x).fold(0.0, |m: f64, (from, to)| m.max((to - from).abs()));
+        // No row turns by more than what moves turns the shortest.
         let most = STEEP * moved / (self.work.scales.shortest * self.work.scales.length);
         if !most.is_finite() {
             return None;
         }
-        pilot.clear -= most;
-        if pilot.clear > most.max(FAR * near) {
+        *clear -= most;
+        if *clear > most.max(FAR * near) {
             return None;
         }
-        let Place { x, gradient } = std::mem::take(&mut pilot.place);
-        let mut way = Way { simulation: self, x, pilot, length, turn: most, near, bound: 0.0 };
+        let redundant = *redundant;
+        let mut way = Way { simulation: self, start: before, length, independence, redundant, turn: most, near, bound: 0.0, x };
         let start = way.root(0.0);
-        let mut place = Place { gradient, x: Vec::new() };
-        way.pilot.keep_gradients(&mut place.gradient);
+        gradient.copy_from_slice(way.independence.gradients());
         let end = way.root(1.0);
-        way.turn = most.min(STEEP * way.pilot.turned(&self.system, &place.gradient));
-        way.pilot.clear = start.min(end);
+        *clear = start.min(end);
+        if start < FAR * near {
+            return None;
+        }
+        way.turn = most.min(STEEP * FURTHER * way.independence.turned_since(gradient));
         way.bound = (PASSED * near).max(DIPS * start.min(end));
-        let passed = match start < FAR * near {
-            true => None,
-            false => way.first([0.0, 1.0], [start, end]).or((end < PASSED * near).then_some((1.0, end))),
-        };
-        let Way { x, pilot, .. } = way;
-        pilot.place = Place { x, ..place };
-        passed.map(|(share, least)| share * (1.0 - (LEFT * near + least) / start).max(LEAST_LEFT))
+        let (share, least) = way.first([0.0, 1.0], [start, end]).or((end < PASSED * near).then_some((1.0, end)))?;
+        Some(share * (1.0 - (LEFT * near + least) / start).max(LEAST_LEFT))
     }
 }

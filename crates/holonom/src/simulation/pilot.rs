@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::control::Control;
-use super::passage::Place;
+use super::passage::View;
 use super::sight::Sight;
 use super::{Audit, Method, Simulation, State};
 use crate::energy;
@@ -14,9 +14,6 @@ use crate::system::{GaugeValues, Measured, System};
 
 /// Smallest step over the length of the run that an accuracy may ask for: below it times no longer tell steps apart.
 pub(super) const SMALLEST_SHARE: f64 = 1e-13;
-
-/// Share of itself that a row adds to the others below which it adds nothing.
-pub(super) const LEAST_SHARE: f64 = 1e-10;
 
 /// A state, what is shown and measured of it, and what is booked of the run up to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -59,16 +56,14 @@ pub(super) struct Pilot {
     pub smooth: Option<Projection>,
     /// Velocities (D × nodes) that errors are estimated from.
     pub v: Vec<f64>,
-    /// Room for looks inside of a step.
-    pub place: Place,
-    /// How far, by the root of the least that a row adds to the others, no singular position is at least.
-    pub clear: f64,
+    /// What is known of singular positions ahead.
+    pub view: View,
     /// The start of the last step, and its end, where integration goes on.
     pub before: Moment,
     pub front: Moment,
     pub last: Option<(Step, f64)>,
     /// How independent rows are, and how many are redundant everywhere, as far as is known.
-    independence: Independence,
+    pub independence: Independence,
     pub redundant: usize,
     pub patience: Patience,
     /// What is seen of forces that bend at the end of the last step.
@@ -88,9 +83,6 @@ pub(super) struct Patience {
     /// Looks one after the other at which they had hardly come on.
     slow: u32,
 }
-
-/// How much longer than the shortest the way of a row may be that turns.
-const FURTHER: f64 = 1.5;
 
 /// Largest share of the energy to move that a step may make or lose, in units of the accuracy it is allowed.
 const WORSE: f64 = 20.0;
@@ -133,8 +125,7 @@ impl Pilot {
             end: state.t,
             smooth,
             v: state.v.clone(),
-            place: Place { x: state.x.clone(), gradient: independence.gradients().to_vec() },
-            clear: 0.0,
+            view: View::new(state.x.clone(), &independence),
             before: moment(),
             front: moment(),
             last: None,
@@ -160,7 +151,7 @@ pub(super) struct Flight {
     redundant: usize,
     patience: Patience,
     sight: Sight,
-    /// How far no singular position is at least.
+    /// See [`View::clear`].
     #[serde(default)]
     clear: f64,
 }
@@ -188,7 +179,7 @@ impl Pilot {
         }
         self.count_redundant(&simulation.system, &simulation.state);
         let redundant = if self.patience.rejected < DOUBT { self.redundant } else { 0 };
-        let amplified = 1.0 / self.independence.weakest(redundant).max(LEAST_SHARE).sqrt();
+        let amplified = self.independence.amplification(redundant);
         let of_energy = if of_energy > 1.0 { self.ratio_of_energy(simulation, step, amplified) } else { of_energy };
         self.control.ratio(taken, step, t, &self.v, amplified, &mut simulation.work).max(of_energy)
     }
@@ -214,30 +205,6 @@ impl Pilot {
     /// Counts the rows that are redundant here: those that are so everywhere are the fewest, as a run may begin at a singular position.
     pub fn count_redundant(&mut self, system: &System, state: &State) {
         self.redundant = self.redundant.min(self.independence.count_redundant(system, &state.x, state.t));
-    }
-
-    /// The root of the least that a row adds to the others at the positions `x` and the time `t`, but for those that are redundant everywhere.
-    pub fn root_of_weakest(&mut self, system: &System, x: &[f64], t: f64) -> f64 {
-        self.independence.count_redundant(system, x, t);
-        self.independence.weakest(self.redundant).sqrt()
-    }
-
-    /// Keeps the gradients of all rows, of length one, where that was found last.
-    pub fn keep_gradients(&self, kept: &mut Vec<f64>) {
-        kept.clear();
-        kept.extend_from_slice(self.independence.gradients());
-    }
-
-    /// By how much a row has turned at most since then, rad.
-    pub fn turned(&self, system: &System, kept: &[f64]) -> f64 {
-        let now = self.independence.gradients();
-        let turned = |slots: &std::ops::Range<usize>| {
-            let place = slots.start * system.dim..slots.end * system.dim;
-            now[place.clone()].iter().zip(&kept[place]).map(|(now, before)| (now - before) * (now - before)).sum::<f64>()
-        };
-        // The arc of half the chord, and a way that bends is longer; half a turn and more is any.
-        let chord = system.slots.rows.iter().map(turned).fold(0.0, f64::max).sqrt();
-        if chord < 1.0 { 2.0 * (0.5 * chord).asin() * FURTHER } else { f64::INFINITY }
     }
 
     /// Begins anew at the present state, where inputs were set: what was found beyond it was of others.
@@ -289,14 +256,14 @@ impl Pilot {
             redundant: self.redundant,
             patience: self.patience,
             sight: self.sight.clone(),
-            clear: self.clear,
+            clear: self.view.clear,
         }
     }
 
     /// Goes on from there. An integrator with dense output takes the last step once more, to know what is inside it.
     pub fn take_over(&mut self, flight: Flight, simulation: &mut Simulation) {
         let Flight { control, end, v, before, front, length, redundant, patience, sight, clear } = flight;
-        (self.redundant, self.patience, self.sight, self.clear) = (redundant, patience, sight, clear);
+        (self.redundant, self.patience, self.sight, self.view.clear) = (redundant, patience, sight, clear);
         (self.control, self.end, self.v, self.before, self.front) = (control, end, v, before, front);
         simulation.work.estimate.allowed = self.control.allowed();
         if let (Some(length), true) = (length, simulation.method.integrator.dense) {

@@ -7,7 +7,6 @@ use std::f64::consts::PI;
 
 use super::Method;
 use super::audit::Audit;
-use super::pilot::LEAST_SHARE;
 use crate::energy;
 use crate::formulation::{Failure, Independence, Iteration, Level, Multipliers, RowsAt, Workspace, taken_of_turned};
 use crate::linalg::largest;
@@ -133,8 +132,7 @@ pub(super) struct Judge {
     /// Largest size of what laws make of rounded positions at the ends of the parts of the nominal step so far, J.
     stiffest: f64,
     /// Measures how near a singular position is, from when that is first asked, and how many rows are redundant everywhere, as far as is known.
-    independence: Option<Box<Independence>>,
-    redundant: usize,
+    independence: Option<(Box<Independence>, usize)>,
 }
 
 impl Judge {
@@ -152,17 +150,7 @@ impl Judge {
             *promise = Promise::SuppliedEnergy;
         }
         let farthest = if method.subdivide { FARTHEST } else { PI };
-        Self {
-            promises,
-            looks_at_dampers,
-            tolerance: TOLERANCES * tolerance,
-            mass,
-            weight,
-            farthest,
-            stiffest: 0.0,
-            independence: None,
-            redundant: 0,
-        }
+        Self { promises, looks_at_dampers, tolerance: TOLERANCES * tolerance, mass, weight, farthest, stiffest: 0.0, independence: None }
     }
 
     fn promises(&self, promise: Promise) -> bool {
@@ -335,14 +323,14 @@ impl Judge {
     /// row holds, and redundant rows show it.
     fn compare_near_singular(&mut self, promise: Promise, unit: f64, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
         self.compare(promise, unit, work).or_else(|_| {
-            let independence = self.independence.get_or_insert_with(|| {
+            let (independence, redundant) = self.independence.get_or_insert_with(|| {
                 let mut independence = Box::new(Independence::new(system));
-                self.redundant = independence.count_redundant(system, &system.start_position, 0.0);
-                independence
+                let redundant = independence.count_redundant(system, &system.start_position, 0.0);
+                (independence, redundant)
             });
             // Those that are redundant everywhere are the fewest.
-            self.redundant = self.redundant.min(independence.count_redundant(system, &work.end.x, t));
-            let amplified = independence.weakest(self.redundant).max(LEAST_SHARE).sqrt().recip();
+            *redundant = (*redundant).min(independence.count_redundant(system, &work.end.x, t));
+            let amplified = independence.amplification(*redundant);
             work.rows.iter_mut().for_each(|size| *size *= amplified);
             self.compare(promise, unit, work)
         })

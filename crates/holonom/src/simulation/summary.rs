@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Happening;
+use super::{Happening, Simulation};
 
 /// Everything a run is judged by. Keys are stable; additions are allowed.
 #[derive(Clone, Debug, Serialize)]
@@ -142,4 +142,23 @@ pub struct WorkSummary {
     pub factorizations: u64,
     /// Attempts that were taken back: failed ones that were halved, and those that erred by more than the accuracy.
     pub rejected_steps: u64,
+}
+
+/// Share of its length by which a mechanism that stands about still comes on in a run.
+const STILL: f64 = 1e-6;
+
+/// Share of energies that is round-off of a run.
+const ROUNDED: f64 = 1e-9;
+
+impl Simulation {
+    /// What the method has made of the energy so far, below zero where it has lost it, and all there was to move, J; nothing made where the
+    /// mechanism stands about still, or that is round-off.
+    pub fn made_energy(&self) -> [f64; 2] {
+        let (summary, [_, supply]) = (self.audit.energy_summary(), self.audit.supply());
+        let made = summary.integrator_total + summary.projection_total;
+        let length = self.work.scales.length;
+        let still = self.judge.motion(STILL * length / self.state.t.abs());
+        let rounded = ROUNDED * (self.judge.lift(length) + self.audit.potential.abs() + self.audit.work.abs());
+        [if made.abs() > still + rounded { made } else { 0.0 }, supply]
+    }
 }

@@ -147,19 +147,15 @@ impl ProfileTable {
             return Err(entry.refuse(Spot { key: "table", item: Some(k) }, message, "let the times rise from row to row"));
         }
         entry.sink.switches.borrow_mut().extend(knots.iter().map(|&knot| Program::since(knot)));
-        let [least, most] = range(values.iter().copied());
-        let inside: Vec<f64> =
-            knots.windows(2).flat_map(|pair| (1..LOOKS).map(|k| pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(LOOKS))).collect();
-        let spline = if ends? == Some("rest") { Spline::resting(knots, values) } else { Spline::natural(knots, values) };
-        let [lowest, highest] = range(inside.into_iter().map(|t| spline.evaluate(t)));
-        if (least - lowest).max(highest - most) > SWINGS * (most - least) {
+        let make = if ends? == Some("rest") { Spline::resting } else { Spline::natural };
+        let spline = make(knots.clone(), values.clone());
+        if let Some([lowest, highest]) = swings(&knots, &values, &spline) {
+            let [lowest, highest] = [lowest, highest].map(short);
             entry.note(
                 "table",
                 format!(
-                    "between its points this goes from {} to {}, beyond what is written, as a spline swings where steps differ (a [table.NAME] with \
-                     interpolation = \"monotone\" does not: profile = \"NAME(t)\")",
-                    short(lowest.min(least)),
-                    short(highest.max(most))
+                    "between its points this goes from {lowest} to {highest}, beyond what is written, as a spline swings where steps differ (a \
+                     [table.NAME] with interpolation = \"monotone\" does not: profile = \"NAME(t)\")"
                 ),
             );
         }
@@ -171,7 +167,17 @@ impl ProfileTable {
 const LOOKS: u32 = 16;
 const SWINGS: f64 = 0.1;
 
-/// The least and the largest of some numbers.
-fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| [least.min(value), most.max(value)])
+/// From where to where a spline goes, if that is far beyond the values of its points.
+fn swings(knots: &[f64], values: &[f64], spline: &Spline) -> Option<[f64; 2]> {
+    let range = |values: &mut dyn Iterator<Item = f64>| {
+        values.fold([f64::MAX, f64::MIN], |[least, most], value| [least.min(value), most.max(value)])
+    };
+    let inside = |pair: &[f64]| {
+        let [low, high] = [pair[0], pair[1]];
+        (1..LOOKS).map(move |k| spline.evaluate(low + (high - low) * f64::from(k) / f64::from(LOOKS)))
+    };
+    let [least, most] = range(&mut values.iter().copied());
+    let [lowest, highest] = range(&mut knots.windows(2).flat_map(inside));
+    let swings = (least - lowest).max(highest - most) > SWINGS * (most - least);
+    swings.then(|| [lowest.min(least), highest.max(most)])
 }

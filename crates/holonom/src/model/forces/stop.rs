@@ -74,22 +74,17 @@ impl Element for Stop {
             _ => (),
         }
         let at_start = start::value(assembly, &coordinate);
-        for (key, limit, sign, side) in [("lower", lower, -1.0, "below"), ("upper", upper, 1.0, "above")] {
-            let Some(limit) = limit.filter(|limit| sign * (at_start - limit) > 0.0) else { continue };
-            let force = short(stiffness * (at_start - limit).abs());
-            let (name, unit) = (format!("{}.{}", coordinate.joint, coordinate.name), if coordinate.is_angle { "N·m" } else { "N" });
-            let limit = short(limit);
-            entry.note(
-                key,
-                format!(
-                    "`{name}` starts at {}, {side} its limit {limit}: the stop pushes with {force} {unit} from the start",
-                    short(at_start)
-                ),
-            );
-        }
         let q = acted_on(assembly, &coordinate);
-        for (limit, sign) in [(lower, -1.0), (upper, 1.0)] {
+        for (key, limit, sign, side) in [("lower", lower, -1.0, "below"), ("upper", upper, 1.0, "above")] {
             let Some(limit) = limit else { continue };
+            if sign * (at_start - limit) > 0.0 {
+                let (name, unit) = (format!("{}.{}", coordinate.joint, coordinate.name), if coordinate.is_angle { "N·m" } else { "N" });
+                let [from, to, force] = [at_start, limit, stiffness * (at_start - limit).abs()].map(short);
+                entry.note(
+                    key,
+                    format!("`{name}` starts at {from}, {side} its limit {to}: the stop pushes with {force} {unit} from the start"),
+                );
+            }
             let buffer = || Buffer { stiffness, limit, sign };
             assembly.builder.law(entry.name, &[q], Arc::new(buffer()));
             if let Some(dissipation) = dissipation.filter(|&dissipation| dissipation > 0.0) {

@@ -190,11 +190,10 @@ impl SystemBuilder {
     /// Adds `m` (kg) of points to the entries (a, b) and (b, a) of the mass matrix, once when a = b, and its weight to
     /// both. What belongs to a fixed place never moves: of it only the weight is kept.
     pub fn mass(&mut self, a: Place, b: Place, m: f64) {
-        self.inertia(a, b, m, 0.0);
-        let pairs = if a == b { vec![(a, b)] } else { vec![(a, b), (b, a)] };
-        for (a, b) in pairs {
-            self.weight((a, 1.0).into(), m);
-            self.moves(a, b, m, 0.0, self.velocity_of(b));
+        self.couple([a, b], m, 0.0, [a, b].map(|place| self.velocity_of(place)));
+        self.weight((a, 1.0).into(), m);
+        if a != b {
+            self.weight((b, 1.0).into(), m);
         }
     }
 
