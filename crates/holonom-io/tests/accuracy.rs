@@ -368,3 +368,20 @@ fn a_pendulum_is_the_same_far_away() {
         }
     }
 }
+
+/// A damper that takes next to nothing leaves the errors of explicit methods as they are: it does not hide what they make of the energy.
+#[test]
+fn a_weak_damper_leaves_the_error() {
+    let text = std::fs::read_to_string(format!("{}/../../examples/bricard.toml", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let damper = "[force.damper]\ntype = \"torsion\"\njoint = \"p0\"\ndamping = 1e-9\n";
+    let end = |text: &str, method: &str, accuracy: f64| {
+        let choice = Choice { accuracy: Some(accuracy), ..Choice::default().named(method) };
+        common::run(&model(text), choice, 0.1, 2.0).0.state().x.clone()
+    };
+    let truth = end(&text, "radau", 1e-11);
+    for accuracy in [1e-6, 1e-8] {
+        let found = end(&format!("{text}\n{damper}"), "ode/dopri5", accuracy);
+        let error = truth.iter().zip(&found).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        assert!(error <= 10.0 * accuracy, "{accuracy:e}: {error:e} m");
+    }
+}

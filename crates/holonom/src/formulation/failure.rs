@@ -30,6 +30,11 @@ pub enum Failure {
         /// How many the rest of the run would take.
         left: f64,
     },
+    /// Near singular positions round-off hid errors of steps that have changed the energy by more than the accuracy leaves.
+    Hidden {
+        /// Of all energy there was to move.
+        share: f64,
+    },
     /// A step whose result misses what the method promises.
     Broken {
         /// What is promised, in words.
@@ -148,6 +153,9 @@ impl Failure {
             Self::JumpsBack { corner } => format!(
                 "no step is short enough for the accuracy, as the force of `{}` jumps to and fro with what it moves (friction that holds is a force of type \"friction\", or a formula with tanh(x/small) in place of sign(x))",
                 system.cornering_force(corner)
+            ),
+            Self::Hidden { share } => format!(
+                "no step is good enough for the accuracy: near a singular position, where rows hardly differ from others, round-off hides the errors of steps, and these have changed the energy by {share:.0e} of what could move (ask for less, or take radau)"
             ),
             Self::Crawling { pace, left } => format!(
                 "the accuracy asks for steps of {pace:.1e} s, of which the rest of the run would take {left:.0e}: ask for less, or end the run sooner"

@@ -146,7 +146,7 @@ impl Simulation {
 
     /// One attempt at a step, and whether it is taken; a step whose error is too large, or that fails, is taken back and the next one shorter.
     fn attempt(&mut self, step: f64, target: f64, pilot: &mut Pilot) -> Result<bool, Failure> {
-        pilot.require_progress(step, self.state.t)?;
+        pilot.require_progress(step, self)?;
         pilot.before.keep(self);
         self.work.estimate.speed = pilot.control.speed;
         let (mut step, mut landing) = (step, Landing::Failed);
@@ -179,6 +179,7 @@ impl Simulation {
             pilot.control.remember(self.state.t, &pilot.v);
             let planned = pilot.control.step;
             pilot.control.accept(step, ratio);
+            pilot.book_hidden(self);
             pilot.last = Some((taken, step));
             pilot.patience.rejected = 0;
             pilot.sight = std::mem::take(sight);

@@ -154,19 +154,21 @@ impl Audit {
         }
     }
 
-    /// What the integrator made or lost of the energy since an earlier state, over all there is to move; nothing where that is round-off, or
-    /// work was done, which is booked less exactly than the motion is found. `still` is nothing beside what there is to move, `of_places` are the sizes of what
+    /// What the integrator made or lost of the energy since an earlier state, over all there is to move; nothing where that is round-off.
+    /// `still` is nothing beside what there is to move, `of_places` are the sizes of what
     /// laws and weights make of rounded positions, J; all round-off counts `amplified` times.
     pub(super) fn made_since(&self, before: &Self, amplified: f64, still: f64, of_places: impl FnOnce() -> f64) -> f64 {
-        if self.work != before.work {
-            return 0.0;
-        }
         let made = (self.integrator_total - before.integrator_total).abs();
         let sizes = self.kinetic + self.potential.abs() + self.work.abs() + self.integrator_total.abs();
         let rounded = ROUNDED * amplified;
         let round_off = rounded * sizes;
         let is_round_off = made <= round_off || made <= round_off + rounded * of_places();
         if is_round_off { 0.0 } else { made / (self.supply()[1] + round_off + still) }
+    }
+
+    /// What integrator and projections have made of the energy since an earlier state that no work accounts for, J.
+    pub(super) fn gained_since(&self, before: &Self) -> f64 {
+        self.integrator_total + self.projection_total - before.integrator_total - before.projection_total
     }
 
     /// Energy and work at the start of the nominal step, J.

@@ -127,6 +127,11 @@ impl Control {
         self.accuracy / self.span
     }
 
+    /// Whether the last attempt showed nothing but round-off near a singular position.
+    pub(super) fn is_rounded(&self) -> bool {
+        self.is_rounded
+    }
+
     /// Whether nothing has been remembered since the start or since something changed abruptly.
     pub(super) fn begins(&self) -> bool {
         self.count == 1

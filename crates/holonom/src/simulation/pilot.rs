@@ -82,6 +82,12 @@ pub(super) struct Patience {
     since: f64,
     /// Looks one after the other at which they had hardly come on.
     slow: u32,
+    /// What steps that showed nothing but round-off near a singular position have made of the energy, over all there was to move.
+    #[serde(default)]
+    hidden: f64,
+    /// Steps since then whose errors were seen.
+    #[serde(default)]
+    seen: u32,
 }
 
 /// Largest share of the energy to move that a step may make or lose, in units of the accuracy it is allowed.
@@ -93,7 +99,8 @@ const SYMMETRIC: u8 = 2;
 /// Share of the accuracy that errors of schemes of order 2 are held to where nothing holds the energy: they add up in one direction.
 const LOOSE: f64 = 0.5;
 
-/// Attempts between counts of redundant rows, and rejections in a row after which none is taken to be redundant everywhere.
+/// Attempts between counts of redundant rows, steps behind a singular position after which it is passed, and rejections in a row after which no row
+/// is taken to be redundant everywhere.
 pub(super) const OFTEN: u32 = 64;
 const DOUBT: u32 = 2;
 
@@ -192,7 +199,9 @@ impl Pilot {
         let comes_and_goes = method.integrator.conserves || method.order() <= SYMMETRIC || is_rough(method);
         // What positions off their rows have of energy is no matter of the length of steps.
         let drifts = method.integrator.is_explicit() && !method.projection.position;
-        if comes_and_goes || drifts {
+        // Schemes of several steps book work less exactly than they find the motion.
+        let is_unsure = method.integrator.estimate == Estimate::OwnOfStates && audit.work != self.before.audit.work;
+        if comes_and_goes || drifts || is_unsure {
             return 0.0;
         }
         let of_places = || energy::size(system, work, &state.x) + judge.lift(work.scales.length);
@@ -200,6 +209,18 @@ impl Pilot {
         let still = judge.motion(self.control.allowed() * work.scales.length);
         let made = audit.made_since(&self.before.audit, amplified, still, of_places);
         made / (WORSE * self.control.allowed() * step * self.control.share_of_way(work.scales.length))
+    }
+
+    /// Books what the last step has made of the energy, where nothing but round-off was seen of its error.
+    pub fn book_hidden(&mut self, simulation: &Simulation) {
+        if self.control.is_rounded() {
+            let Simulation { audit, work, judge, .. } = simulation;
+            let still = judge.motion(self.control.allowed() * work.scales.length);
+            self.patience.hidden += audit.gained_since(&self.before.audit) / (audit.supply()[1] + still);
+            self.patience.seen = 0;
+        } else {
+            self.patience.seen = self.patience.seen.saturating_add(1);
+        }
     }
 
     /// Counts the rows that are redundant here: those that are so everywhere are the fewest, as a run may begin at a singular position.
@@ -226,13 +247,18 @@ impl Pilot {
         self.front.audit.supply()[1]
     }
 
-    /// Refuses attempts at steps of length `step` (s) that come nowhere: at this pace the run never ends.
-    pub fn require_progress(&mut self, step: f64, t: f64) -> Result<(), Failure> {
+    /// Refuses attempts at steps of length `step` (s) that come nowhere, as at this pace the run never ends, and going on behind a singular position
+    /// where more was hidden than the accuracy leaves.
+    pub fn require_progress(&mut self, step: f64, simulation: &Simulation) -> Result<(), Failure> {
+        let (t, accuracy) = (simulation.state.t, simulation.method.accuracy.unwrap_or(0.0));
         if step < SMALLEST_SHARE * self.control.span {
             let jumps = self.sight.reached.iter().position(|reached| *reached);
             return Err(jumps.map_or(Failure::TooSmall, |corner| Failure::JumpsBack { corner }));
         }
-        let Patience { attempts, since, slow, .. } = &mut self.patience;
+        let Patience { attempts, since, slow, hidden, seen, .. } = &mut self.patience;
+        if *seen == OFTEN && hidden.abs() > WORSE * accuracy {
+            return Err(Failure::Hidden { share: hidden.abs() });
+        }
         *attempts += 1;
         if *attempts % LOOK != 0 {
             return Ok(());
