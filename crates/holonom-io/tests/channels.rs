@@ -443,3 +443,21 @@ fn displacements_across_an_axis_do_not_depend_on_rounding() {
     assert!((x - 0.05).abs() < 1e-12 && (y - 0.1).abs() < 1e-12, "{x}, {y}");
     assert!((x - u).abs() < 1e-12 && (y - v).abs() < 1e-12, "{u}, {v}");
 }
+
+/// An effort may depend on a way along a curve and on two angles: more invariants than a law has.
+#[test]
+fn an_effort_depends_on_ways_along_curves() {
+    let model = model(
+        "gravity = [0, 0, 0]\n[body.a]\nmass = 1\ninertia = [0.1, 0.1, 0.1]\nposition = [2, 0, 0]\n\
+         [body.b]\nmass = 1\ninertia = [0.1, 0.1, 0.1]\nposition = [4, 0, 0]\nangular_velocity = [0, 0, 1]\n\
+         [point.car]\nmass = 2\nposition = [0, 3, 0]\nvelocity = [0.5, 0, 0]\n\
+         [joint.ja]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [2, 0, 0]\naxis = [0, 0, 1]\n\
+         [joint.jb]\ntype = \"revolute\"\nbetween = [\"ground\", \"b\"]\nat = [4, 0, 0]\naxis = [0, 0, 1]\n\
+         [joint.track]\ntype = \"point-on-curve\"\nbetween = [\"ground\", \"car\"]\nat = [0, 3, 0]\ncurve = [[-1, 3, 0.5], [0, 3, 0], [1, 3, 0.3], [2, 3.5, 0]]\n\
+         [force.controller]\ntype = \"effort\"\njoint = \"ja\"\ncoordinates = { b = \"jb\", s = \"track\" }\neffort = \"-2*q - b + s\"\n",
+    );
+    let recording = run(&model, 0.01, 1.0).1;
+    each(&recording, ["controller.effort", "ja.angle", "jb.angle", "track.displacement"], |[effort, q, b, s]| {
+        close("controller.effort", effort, -2.0 * q - b + s);
+    });
+}

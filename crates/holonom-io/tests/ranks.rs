@@ -126,3 +126,34 @@ locks = ["x", "z", "ry", "rz"]
 "#;
     assert_eq!(freedom(&model(text)), [0, 1]);
 }
+
+/// Two bodies at joints that hold directions to each other have the same freedom in micrometres and nanometres, where a direction is a sum of places
+/// with factors of one over their distance.
+#[test]
+fn directions_are_held_in_any_unit_of_length() {
+    let pairs = [
+        ("universal", "axes = [[0, 1, 0], [0, 0, 1]]", 3),
+        ("prismatic", "axis = [1, 0, 0]", 2),
+        ("perpendicular", "axes = [[0, 1, 0], [0, 0, 1]]", 6),
+        ("fixed", "", 1),
+    ];
+    for (kind, keys, dof) in pairs {
+        for unit in [1e-9, 1.0, 3e6, 1e9, 1e12] {
+            for reactions in [false, true] {
+                let at = if kind == "perpendicular" { String::new() } else { format!("at = [{unit:e}, 0, 0]\n") };
+                let inertia = 0.1 * unit * unit;
+                let text = format!(
+                    "[output]\nreactions = {reactions}\n\
+                     [body.a]\nmass = 1\ninertia = [{inertia:e}, {inertia:e}, {inertia:e}]\nposition = [{:e}, 0, 0]\n\
+                     [body.b]\nmass = 1\ninertia = [{inertia:e}, {inertia:e}, {inertia:e}]\nposition = [{:e}, {:e}, 0]\n\
+                     [joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0, 0]\naxis = [0, 1, 0]\n\
+                     [joint.pair]\ntype = \"{kind}\"\nbetween = [\"a\", \"b\"]\n{at}{keys}\n",
+                    0.5 * unit,
+                    1.5 * unit,
+                    0.1 * unit
+                );
+                assert_eq!(freedom(&model(&text)), [dof, 0], "{kind}, {unit:e}, reactions {reactions}");
+            }
+        }
+    }
+}

@@ -266,3 +266,44 @@ fn the_end_of_a_damped_tension_is_landed_on() {
         assert!(off <= 10.0 * accuracy, "{method}, {accuracy:e}: the stop is off by {off:e} m");
     }
 }
+
+/// Each of two drums turns with its own angle, many times, and so far apart from the other: the motors lower weights at constant speed, one over a sheave.
+#[test]
+fn motors_of_drums_bear_their_own_ropes() {
+    let text = "plane = \"xz\"\n[body.one]\nmass = 10\ninertia = 1\nposition = [0, 0]\n[body.two]\nmass = 10\ninertia = 1\nposition = [2, 0]\n\
+                [joint.a]\ntype = \"revolute\"\nbetween = [\"ground\", \"one\"]\nat = [0, 0]\n\
+                [joint.b]\ntype = \"revolute\"\nbetween = [\"ground\", \"two\"]\nat = [2, 0]\n\
+                [point.p]\nmass = 100\nposition = [-3, -20]\n[point.q]\nmass = 100\nposition = [2, -20]\n\
+                [force.over]\ntype = \"rope\"\nbetween = [\"one\", \"p\"]\nthrough = [[-3, 0]]\ndrum = \"a\"\nradius = 0.6\nstiffness = 1e4\ndamping = 1000\n\
+                [force.down]\ntype = \"rope\"\nbetween = [\"two\", \"q\"]\ndrum = \"b\"\nradius = 0.5\nstiffness = 1e4\ndamping = 1000\n\
+                [drive.ma]\ntype = \"angle\"\njoint = \"a\"\nprofile = \"-0.2*t\"\n[drive.mb]\ntype = \"angle\"\njoint = \"b\"\nprofile = \"-t\"\n";
+    for reactions in ["", "[output]\nreactions = true\n"] {
+        for every in [1, 60] {
+            let model = common::model_with_forces(&format!("{text}{reactions}"));
+            let recording = common::run_every(&model, "radau", 0.1, 12.0, every).1;
+            for (name, expected) in [("ma.effort", -0.6), ("mb.effort", -0.5)] {
+                let found = common::last(&recording, name);
+                let expected = expected * 100.0 * G;
+                assert!((found - expected).abs() < 1e-6 * expected.abs(), "{name}: {found} and {expected} N·m by hand");
+            }
+        }
+    }
+}
+
+/// A winch pulls at a rope that is tied to the ground at both ends until its torque is that of the tension.
+#[test]
+fn a_winch_tightens_a_rope_between_fixed_places() {
+    for reactions in ["", "[output]\nreactions = true\n"] {
+        let model = model(&format!(
+            "plane = \"xz\"\n[body.winch]\nmass = 10\ninertia = 0.2\nposition = [0, 0]\n\
+             [joint.shaft]\ntype = \"revolute\"\nbetween = [\"ground\", \"winch\"]\nat = [0, 0]\n\
+             [force.guy]\ntype = \"rope\"\nbetween = [\"winch\", [5, 0]]\ndrum = \"shaft\"\nradius = 0.2\nstiffness = 1e4\n\
+             [force.crank]\ntype = \"effort\"\njoint = \"shaft\"\neffort = \"-50 - 20*q_rate\"\n{reactions}"
+        ));
+        let recording = run(&model, Choice::default(), 0.01, 3.0).1;
+        for (name, expected) in [("guy.force", 250.0), ("guy.length", 5.0), ("shaft.angle", -250.0 / 1e4 / 0.2)] {
+            let found = common::last(&recording, name);
+            assert!((found - expected).abs() < 1e-9 * f64::abs(expected), "{name}: {found} in place of {expected}");
+        }
+    }
+}

@@ -73,3 +73,31 @@ fn a_flat_rotor_keeps_its_energy_for_long() {
         assert!(drift < bound, "order {order}: {drift:e}");
     }
 }
+
+/// The angle of a body in the plane is counted from the one that is written, whatever rounding makes of half a turn: a controller that leads it by 0.1 rad
+/// finds it there.
+#[test]
+fn angles_of_bodies_count_from_what_is_written() {
+    for degrees in [170.0, 180.0, -180.0, 181.0, 200.0, 450.0_f64] {
+        let angle = degrees.to_radians();
+        for reactions in ["", "[output]\nreactions = true\n"] {
+            let model = common::model(&format!(
+                "plane = \"xy\"\ngravity = [0, 0]\n[body.a]\nmass = 1\ninertia = 0.2\nposition = [{}, {}]\norientation = {{ angle_deg = {degrees} }}\n\
+                 [joint.j]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0]\n\
+                 [force.servo]\ntype = \"effort\"\njoint = \"j\"\neffort = \"20*({angle} + 0.1 - a.angle) - 9*q_rate\"\n{reactions}",
+                0.5 * angle.cos(),
+                0.5 * angle.sin()
+            ));
+            let recording = common::run(&model, Choice::default().named("radau"), 0.01, 10.0).1;
+            let [first, last] = [recording.column("a.angle").unwrap()[0], common::last(&recording, "a.angle")];
+            assert!((first - angle).abs() < 1e-12 && (last - angle - 0.1).abs() < 1e-9, "{degrees}°: {first}, then {last} rad");
+        }
+    }
+    // A start that moves it counts on.
+    let model = common::model(
+        "plane = \"xy\"\n[body.a]\nmass = 1\ninertia = 1\nposition = [0, 0.5]\norientation = { angle_deg = 90 }\n\
+         [joint.j]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0]\n[start.j]\nangle = \"120*deg\"\n",
+    );
+    let recording = common::run(&model, Choice::default(), 0.1, 0.1).1;
+    assert!((recording.column("a.angle").unwrap()[0] - 210.0_f64.to_radians()).abs() < 1e-9);
+}

@@ -13,7 +13,7 @@ use super::geometry::unit;
 use super::measure::like;
 use super::sum::{Sum, cross};
 use crate::record::RecordedInput;
-use crate::system::{Form, Number as AnyNumber, Place, Quantity, Reading, Sense};
+use crate::system::{Form, Number as AnyNumber, Quantity, Reading, Sense};
 
 /// Inputs, and the formulas of measures.
 #[derive(Default)]
@@ -162,9 +162,7 @@ impl<'a, 'b> Reader<'a, 'b> {
             return coordinates.iter().find(|known| known.name == coordinate).map(|known| known.form.clone());
         }
         let body = self.assembly.body_by_name(owner).filter(|_| self.readings.dim == 2 && coordinate == "angle")?;
-        let moving = self.assembly.frames[body].vector(self.assembly.bodies[body].direction(unit(0)));
-        let product = |k| [vec![(Place::Fixed(unit(k)), 1.0).into()], moving.clone()];
-        Some(Form::Angle { cosine: product(0), sine: product(1) })
+        Some(self.assembly.bodies[body].angle(&self.assembly.frames[body]))
     }
 
     /// A coordinate of a place or of its velocity.

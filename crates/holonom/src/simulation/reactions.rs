@@ -1,6 +1,7 @@
 //! Forces of the constraints, by the index-1 system (3) at the states shown (methods §17).
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -47,23 +48,58 @@ impl Apart {
     }
 }
 
+/// What the angles of a system are counted for, whose turns decide on forces and slopes: rows, laws or loads of one name, without the index of a row
+/// or of a repeated entry, as bodies that share nodes have fewer rows.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+enum Counts<'s> {
+    Rows(&'s str),
+    Laws(&'s str),
+    Loads(&'s str),
+}
+
+/// Places of the angles whose turns are counted, of one function after the other, by what has them.
+fn counted(system: &System) -> BTreeMap<Counts<'_>, Vec<Range<usize>>> {
+    fn entry(name: &str) -> &str {
+        name.split('[').next().unwrap_or(name)
+    }
+    let of_rows = system.rows.iter().zip(&system.row_names).map(|(row, name)| (Counts::Rows(entry(name)), row.quantity));
+    let of_laws = system.laws.iter().flat_map(|law| law.arguments.iter().map(|&argument| (Counts::Laws(entry(&law.name)), argument)));
+    let senses = system.loads.iter().flat_map(|load| load.reading.senses.iter().map(|sense| (Counts::Loads(entry(&load.name)), sense)));
+    let of_loads = senses.filter_map(|(of, sense)| if let Sense::Quantity(quantity) = sense { Some((of, *quantity)) } else { None });
+    let mut found = BTreeMap::<_, Vec<_>>::new();
+    for (of, quantity) in of_rows.chain(of_laws).chain(of_loads) {
+        let Quantity::Function(function) = quantity else { continue };
+        let angles = system.functions.angles_of(function);
+        if !angles.is_empty() {
+            found.entry(of).or_default().push(angles);
+        }
+    }
+    found
+}
+
 /// Where the forces of the constraints are found in another system than the one that moves.
 pub(super) struct Elsewhere {
     pub apart: Apart,
+    /// Places of the angles whose turns are counted, there and in the system that moves.
+    counted: Vec<[Range<usize>; 2]>,
     newton: Newton,
     work: Workspace,
 }
 
 impl Elsewhere {
-    fn new(apart: Apart, method: &Method) -> Self {
+    fn new(apart: Apart, own: &System, method: &Method) -> Self {
         let work = Workspace::new(&apart.system);
         let newton = Newton::new(&apart.system, &work.scales, method.settings);
-        Self { work, newton, apart }
+        let (mine, mut theirs) = (counted(&apart.system), counted(own));
+        let alike = mine.into_iter().filter_map(|(of, mine)| Some((mine, theirs.remove(&of)?)));
+        let alike = alike.filter(|(mine, theirs)| mine.len() == theirs.len());
+        let pairs = alike.flat_map(|(mine, theirs)| mine.into_iter().zip(theirs).map(|(mine, theirs)| [mine, theirs]));
+        Self { counted: pairs.filter(|[mine, theirs]| mine.len() == theirs.len()).collect(), work, newton, apart }
     }
 
     /// Puts its nodes where those of `own` are and finds the forces.
     fn react(&mut self, own: &System, state: &State, v: &[f64], angles: &Evaluation, reactions: &mut Reactions) {
-        let Self { apart: Apart { system, nodes }, newton, work } = self;
+        let Self { apart: Apart { system, nodes }, counted, newton, work } = self;
         let (dim, x) = (system.dim, own.in_world(&state.x));
         for (k, terms) in nodes.iter().enumerate() {
             let origin = if system.is_point[k] { system.origin } else { [0.0; 3] };
@@ -74,17 +110,8 @@ impl Elsewhere {
             }
         }
         system.place_known(state.t, &mut work.end.x, &mut work.end.v, &mut work.a);
-        // The forces along angles may depend on how often these have turned.
-        fn senses(system: &System) -> impl Iterator<Item = Quantity> {
-            let senses = system.loads.iter().flat_map(|load| &load.reading.senses);
-            let laws = system.laws.iter().flat_map(|law| law.arguments.iter().copied());
-            laws.chain(senses.filter_map(|sense| if let Sense::Quantity(quantity) = sense { Some(*quantity) } else { None }))
-        }
-        for pair in senses(system).zip(senses(own)) {
-            if let (Quantity::Function(mine), Quantity::Function(theirs)) = pair {
-                let (mine, theirs) = (system.functions.angles_of(mine), own.functions.angles_of(theirs));
-                work.start.at.functions.angle[mine].copy_from_slice(&angles.functions.angle[theirs]);
-            }
+        for [mine, theirs] in counted {
+            work.start.at.functions.angle[mine.clone()].copy_from_slice(&angles.functions.angle[theirs.clone()]);
         }
         work.inputs.copy_from_slice(&state.inputs);
         system.evaluate_again(&work.end.x, state.t, &mut work.start.at);
@@ -125,7 +152,7 @@ impl Simulation {
     /// The same for a system in which bodies share nodes, by one in which they do not: multipliers and accelerations are then those of that
     /// system.
     pub fn find_reactions_apart(&mut self, apart: &Apart) {
-        let mut elsewhere = Box::new(Elsewhere::new(apart.clone(), &self.method));
+        let mut elsewhere = Box::new(Elsewhere::new(apart.clone(), &self.system, &self.method));
         let kept = self.reactions.take().filter(|reactions| reactions.lambda.len() == apart.system.constraints());
         let mut reactions = Reactions::new(&apart.system);
         elsewhere.react(&self.system, &self.state, &self.shown_v, &self.work.start.at, &mut reactions);

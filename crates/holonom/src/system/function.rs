@@ -76,9 +76,7 @@ impl Functions {
         let mut function = Function { summands: Vec::new(), base: Vec::new(), slot: self.source.len(), slots: 0, angle: self.start.len() };
         for (part, factor) in parts {
             let of = part.arguments();
-            if part.is_followed() {
-                self.start.push(0.0);
-            }
+            self.start.extend(part.followed_from());
             let summand = Summand { part: part.clone(), factor: *factor, first: function.base.len(), arguments: of.len() };
             function.summands.push(summand);
             function.base.extend(of);

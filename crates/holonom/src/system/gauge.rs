@@ -19,6 +19,8 @@ pub enum Form {
         cosine: [Vec<Term>; 2],
         /// U and W of ρ sin θ, with the same ρ.
         sine: [Vec<Term>; 2],
+        /// Of the angles that are alike but for turns the one nearest to this is that of the start, rad.
+        near: f64,
     },
     /// A function of some products with a number that is followed.
     Followed {
@@ -30,6 +32,15 @@ pub enum Form {
 }
 
 impl Form {
+    /// How many invariants it is made of.
+    pub fn arguments(&self) -> usize {
+        match self {
+            Self::Product(_) => 1,
+            Self::Angle { .. } => 2,
+            Self::Followed { of, .. } => of.len(),
+        }
+    }
+
     pub(crate) fn part(&self, invariants: &mut Invariants) -> Part {
         let mut product = |[u, w]: &[Vec<Term>; 2]| invariants.dot(u, w);
         match self {
@@ -38,7 +49,7 @@ impl Form {
                 let of = of.iter().map(&mut product).collect();
                 Part::Followed { of, function: Arc::clone(function) }
             }
-            Self::Angle { cosine, sine } => Part::Angle { cosine: product(cosine), sine: product(sine) },
+            Self::Angle { cosine, sine, near } => Part::Angle { cosine: product(cosine), sine: product(sine), near: *near },
         }
     }
 }

@@ -18,6 +18,8 @@ pub enum Part {
         cosine: InvariantId,
         /// ρ sin θ, with the same ρ.
         sine: InvariantId,
+        /// It is counted from the angle nearest to this at the start, rad.
+        near: f64,
     },
     /// A function of one coordinate: of an invariant, an angle or a followed number.
     Curve {
@@ -54,7 +56,7 @@ impl Part {
     pub(super) fn arguments(&self) -> Vec<InvariantId> {
         match self {
             Self::Invariant(id) => vec![*id],
-            Self::Angle { cosine, sine } => vec![*cosine, *sine],
+            Self::Angle { cosine, sine, .. } => vec![*cosine, *sine],
             Self::Curve { of, .. } => of.arguments(),
             Self::Smooth { of, .. } | Self::Followed { of, .. } | Self::Pfaffian { of, .. } => of.clone(),
         }
@@ -62,9 +64,16 @@ impl Part {
 
     /// Whether it has a number that is followed, as the turns of an angle.
     pub(super) fn is_followed(&self) -> bool {
+        self.followed_from().is_some()
+    }
+
+    /// Where the number that is followed is looked for at the start.
+    pub(super) fn followed_from(&self) -> Option<f64> {
         match self {
-            Self::Curve { of, .. } => of.is_followed(),
-            _ => matches!(self, Self::Angle { .. } | Self::Followed { .. }),
+            Self::Curve { of, .. } => of.followed_from(),
+            Self::Angle { near, .. } => Some(*near),
+            Self::Followed { .. } => Some(0.0),
+            _ => None,
         }
     }
 
@@ -72,7 +81,7 @@ impl Part {
     pub(super) fn at(&self, pi: &[f64], followed: &mut [f64]) -> Derivatives {
         match self {
             Self::Invariant(id) => identity(pi[id.0 as usize]),
-            Self::Angle { cosine, sine } => {
+            Self::Angle { cosine, sine, .. } => {
                 let part = angle_at(pi[cosine.0 as usize], pi[sine.0 as usize], followed[0]);
                 followed[0] = part.value;
                 part
@@ -96,7 +105,7 @@ impl Part {
     pub(super) fn between(&self, pi: [&[f64]; 2], followed: [&[f64]; 2]) -> Derivatives {
         match self {
             Self::Invariant(_) => identity(0.0),
-            Self::Angle { cosine, sine } => angle_between(pi.map(|pi| [pi[cosine.0 as usize], pi[sine.0 as usize]])),
+            Self::Angle { cosine, sine, .. } => angle_between(pi.map(|pi| [pi[cosine.0 as usize], pi[sine.0 as usize]])),
             Self::Curve { of, curve } => {
                 let end = |k: usize| of.at(pi[k], &mut first_of(followed[k]));
                 let [from, to] = [0, 1].map(end);

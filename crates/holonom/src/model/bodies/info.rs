@@ -7,7 +7,7 @@ use super::frame::Frame;
 use crate::model::Axes;
 use crate::model::geometry::{norm, rest, scale, unit};
 use crate::record::RecordedBody;
-use crate::system::{Form, Place, SystemBuilder};
+use crate::system::SystemBuilder;
 
 /// A body of the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,9 +30,7 @@ impl BodyInfo {
     /// Has the angle of a planar body measured, too, from the first axis of the plane to the body's.
     pub(in crate::model) fn new(body: &RigidBody, frame: &Frame, axes: Axes, builder: &mut SystemBuilder) -> Self {
         if axes.dimension() == 2 {
-            let moving = frame.vector(body.direction(unit(0)));
-            let product = |k| [vec![(Place::Fixed(unit(k)), 1.0).into()], moving.clone()];
-            builder.measure(format!("{}.angle", body.name), &Form::Angle { cosine: product(0), sine: product(1) });
+            builder.measure(format!("{}.angle", body.name), &body.angle(frame));
         }
         let directions = directions(axes.dimension(), body, frame);
         let recorded =

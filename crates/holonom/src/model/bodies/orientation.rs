@@ -140,7 +140,8 @@ impl Orientation {
         }
     }
 
-    fn radians(&self, entry: &Entry<'_>) -> Read<f64> {
+    /// The angle about its axis, or in a planar model; rad.
+    pub(super) fn radians(&self, entry: &Entry<'_>) -> Read<f64> {
         match (&self.angle, &self.angle_deg) {
             (Some(_), Some(_)) => Err(entry.refuse_key("angle_deg", "`angle` and `angle_deg` exclude each other", "keep one of the two")),
             (Some(angle), None) => angle.number(entry, "angle"),

@@ -67,7 +67,10 @@ impl Body {
         let com = entry.optional("com", &self.com, vector);
         let position = self.position.vector(entry, "position", dim);
         let orientation = entry.optional("orientation", &self.orientation, |orientation, entry, key| {
-            entry.within(key, orientation, |entry| orientation.rotation(entry, dim))
+            entry.within(key, orientation, |entry| {
+                let rotation = orientation.rotation(entry, dim)?;
+                Ok((rotation, if dim == 2 { orientation.radians(entry)? } else { 0.0 }))
+            })
         });
         let velocity = entry.optional("velocity", &self.velocity, vector);
         let angular_velocity = entry.optional("angular_velocity", &self.angular_velocity, |turn, entry, key| turn.vector(entry, key, dim));
@@ -75,7 +78,7 @@ impl Body {
         let axes = entry.optional("axes", &self.axes, |axes, entry, key| vectors(entry, key, axes, dim));
         let (mass, density, inertia, shape, com) = (mass?, density?, inertia?, shape?, com?);
         let (mass, inertia) = substance(entry, dim, mass, density, inertia, shape.as_ref())?;
-        let world_from_body = orientation?.unwrap_or_else(Matrix3::identity);
+        let (world_from_body, turned) = orientation?.unwrap_or_else(|| (Matrix3::identity(), 0.0));
         let mut body = RigidBody {
             name: entry.name.to_string(),
             path: entry.path.to_string(),
@@ -83,6 +86,7 @@ impl Body {
             inertia: world_from_body * inertia * world_from_body.transpose(),
             position: position?,
             world_from_body,
+            turned,
             velocity: velocity?.unwrap_or_default(),
             angular_velocity: angular_velocity?.unwrap_or_default(),
             points: Vec::new(),

@@ -2,8 +2,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::model::geometry::{Vec3, add};
+use super::frame::Frame;
+use crate::model::geometry::{Vec3, add, unit};
 use crate::record::SceneShape;
+use crate::system::{Form, Place};
 
 /// A rigid body at the start.
 #[derive(Clone, Debug)]
@@ -20,6 +22,8 @@ pub struct RigidBody {
     pub position: Vec3,
     /// From body axes to those of the model.
     pub world_from_body: Matrix3<f64>,
+    /// In the plane the angle by which it is turned, as it is written, rad.
+    pub turned: f64,
     /// m/s
     pub velocity: Vec3,
     /// In the axes of the model, rad/s; in the plane its last number.
@@ -33,6 +37,13 @@ pub struct RigidBody {
 }
 
 impl RigidBody {
+    /// The angle of a planar body with these nodes, from the first axis of the plane to the body's, counted from the one that is written.
+    pub fn angle(&self, frame: &Frame) -> Form {
+        let moving = frame.vector(self.direction(unit(0)));
+        let product = |k| [vec![(Place::Fixed(unit(k)), 1.0).into()], moving.clone()];
+        Form::Angle { cosine: product(0), sine: product(1), near: self.turned }
+    }
+
     /// Where a place in body axes is at the start.
     pub fn place(&self, local: Vec3) -> Vec3 {
         add(self.position, self.direction(local))

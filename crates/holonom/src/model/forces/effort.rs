@@ -87,7 +87,7 @@ impl Element for Effort {
         let variables: Vec<&str> = names.iter().map(String::as_str).collect();
         let mut readings = Readings::new(assembly.dimension(), Reading::default());
         let effort = self.effort.formula_reading(entry, "effort", &variables, &mut Reader::new(assembly, entry, &mut readings))?;
-        let arguments: usize = coordinates.iter().map(|coordinate| if coordinate.is_angle { 2 } else { 1 }).sum();
+        let arguments: usize = coordinates.iter().map(|coordinate| coordinate.form.arguments()).sum();
         let mut quantities = vec![acted_on(assembly, &coordinates[0])];
         quantities.extend(coordinates[1..].iter().map(|coordinate| quantity(assembly, coordinate)));
         if readings.len() == 0 {

@@ -69,12 +69,14 @@ impl Element for Rope {
         let drum = self.winch(assembly, entry);
         let (ends, [length, stiffness, damping], drum) = (ends?, numbers?, drum?);
         let stiffness = stiffness.expect("a rope has a stiffness");
-        assembly.require_free(entry, "between", &ends)?;
-        let falls = falls(assembly, &ends);
+        if drum.is_none() {
+            assembly.require_free(entry, "between", &ends)?;
+        }
+        let falls = falls(assembly, &ends, drum.is_some());
         if falls.moving.is_empty() {
             return Err(entry.refuse("between", "the length of this rope never changes", "tie it to what moves against its other end"));
         }
-        let most = MAX_ARGUMENTS - drum.as_ref().map_or(0, |(coordinate, _)| if coordinate.is_angle { 2 } else { 1 });
+        let most = MAX_ARGUMENTS - drum.as_ref().map_or(0, |(coordinate, _)| coordinate.form.arguments());
         if falls.moving.len() > most {
             let message = format!("{} stretches of this rope change their lengths, and it can have at most {most}", falls.moving.len());
             return Err(entry.refuse("through", message, "let it run over fewer sheaves that move against each other"));
@@ -170,12 +172,14 @@ struct Falls {
     fixed: f64,
 }
 
-fn falls(assembly: &mut Assembly<'_>, ends: &[End]) -> Falls {
+/// Of a rope on a drum the first stretch counts as one that changes where no other does: its tension is seen there.
+fn falls(assembly: &mut Assembly<'_>, ends: &[End], has_drum: bool) -> Falls {
     let mut falls = Falls { moving: Vec::new(), fixed: 0.0 };
     let mut seen: Vec<[&Vec<Term>; 2]> = Vec::new();
     for pair in ends.windows(2) {
         let [a, b] = [&pair[0], &pair[1]];
-        if (a.body.is_some() && a.body == b.body) || (a.never_moves() && b.never_moves()) {
+        let keeps = (a.body.is_some() && a.body == b.body) || (a.never_moves() && b.never_moves());
+        if keeps && !(has_drum && ends.len() == 2) {
             falls.fixed += norm(difference(a, b));
         } else if let Some(k) = seen.iter().position(|&known| known == [&a.terms, &b.terms] || known == [&b.terms, &a.terms]) {
             falls.moving[k].1 += 1.0;

@@ -73,11 +73,11 @@ impl Element for Linear {
             .iter()
             .enumerate()
             .map(|(k, of)| entry.within(Spot { key: "terms", item: Some(k) }, of, |inner| term(inner, of))))?;
-        let arguments: usize = terms.iter().map(|(coordinate, _)| if coordinate.is_angle { 2 } else { 1 }).sum();
+        let arguments: usize = terms.iter().map(|(coordinate, _)| coordinate.form.arguments()).sum();
         if arguments > MAX_ARGUMENTS {
             return Err(entry.refuse(
                 "terms",
-                "a coupling holds three angles, or six displacements",
+                "a coupling holds three angles, or six displacements, or two ways along curves",
                 "couple in two steps, through a joint between",
             ));
         }

@@ -8,9 +8,9 @@ use crate::model::bodies::nodes::Member;
 use crate::model::ends::{End, fixed, subtract_shared};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
-use crate::model::geometry::{Vec3, unit};
+use crate::model::geometry::{Vec3, norm, subtract, unit};
 use crate::record::SceneJoint;
-use crate::system::{Form, InvariantId, Part, Term};
+use crate::system::{Form, InvariantId, Part, Place, Term};
 
 /// A coordinate of a joint, counted from the start.
 #[derive(Clone)]
@@ -133,7 +133,9 @@ impl Pair<'_, '_> {
     /// d = r_B − r_A between the places of the joint.
     pub fn d(&self) -> Vec<Term> {
         let [a, b] = [0, 1].map(|side| self.frames[side].point(self.geometry.at[side]));
-        subtract_shared(&b, &a, self.assembly.builder.size())
+        let builder = &self.assembly.builder;
+        let reach = |node| if builder.is_direction(node) { norm(builder.position_of(node)) } else { builder.size() };
+        subtract_shared(&b, &a, builder.size(), reach)
     }
 
     /// The direction k of the triad u, v, w on a side.
@@ -164,10 +166,23 @@ impl Pair<'_, '_> {
 
     /// e_k(B)·e_l(A) = 0. Where the two bodies share one of the two directions, each of them keeps this anyway.
     pub fn perpendicular(&mut self, k: usize, l: usize) {
-        let is_shared = |m: usize| subtract_shared(&self.e(Side::A, m), &self.e(Side::B, m), 1.0).is_empty();
+        let is_shared = |m: usize| self.is_one_direction([Side::A, Side::B].map(|side| self.e(side, m)));
         let implied = is_shared(k) || is_shared(l);
         let invariant = self.assembly.builder.dot(&self.e(Side::B, k), &self.e(Side::A, l));
         self.row(invariant, 0.0, implied);
+    }
+
+    /// Whether two directions are sums of the same nodes.
+    fn is_one_direction(&self, [a, b]: [Vec<Term>; 2]) -> bool {
+        let builder = &self.assembly.builder;
+        let points = a.iter().chain(&b).filter_map(|term| match term.place {
+            Place::Node(node) if !builder.is_direction(node) => Some(builder.position_of(node)),
+            _ => None,
+        });
+        let points: Vec<Vec3> = points.collect();
+        let spread = points.iter().fold(0.0, |most: f64, place| most.max(norm(subtract(*place, points[0]))));
+        let reach = |node| if builder.is_direction(node) { norm(builder.position_of(node)) } else { spread };
+        subtract_shared(&b, &a, 1.0, reach).is_empty()
     }
 
     /// u_B ∥ u_A: no rotation but that about the axis; in the plane none at all.
@@ -262,6 +277,6 @@ impl Pair<'_, '_> {
     pub fn angle_between(&self, [k, l]: [usize; 2]) -> Form {
         let [k, l] = if self.is_planar() { [0, 1] } else { [k, l] };
         let moving = self.e(Side::B, k);
-        Form::Angle { cosine: [self.e(Side::A, k), moving.clone()], sine: [self.e(Side::A, l), moving] }
+        Form::Angle { cosine: [self.e(Side::A, k), moving.clone()], sine: [self.e(Side::A, l), moving], near: 0.0 }
     }
 }

@@ -57,7 +57,7 @@ impl Joint for RevoluteSpherical {
         pair.stay(0);
         let d = pair.d();
         let [along, across] = [link, cross(u, link)].map(|e| pair.fixed_to(Side::A, e));
-        pair.coordinate("angle", Form::Angle { cosine: [along, d.clone()], sine: [across, d] }, true);
+        pair.coordinate("angle", Form::Angle { cosine: [along, d.clone()], sine: [across, d], near: 0.0 }, true);
         Ok(())
     }
 }

@@ -57,7 +57,7 @@ impl Joint for Universal {
         pair.perpendicular(0, 0);
         // With a ⟂ b at the start: b turns about a from where it was, and a about b.
         let ([a, b], [normal, _]) = (pair.geometry.triad.map(|triad| triad[0]), pair.geometry.triad.map(|triad| triad[1]));
-        let turn = |from, to, moving: Vec<_>| Form::Angle { cosine: [from, moving.clone()], sine: [to, moving] };
+        let turn = |from, to, moving: Vec<_>| Form::Angle { cosine: [from, moving.clone()], sine: [to, moving], near: 0.0 };
         let first = turn(pair.fixed_to(Side::A, b), pair.fixed_to(Side::A, normal), pair.fixed_to(Side::B, b));
         let second = turn(pair.fixed_to(Side::B, a), pair.fixed_to(Side::B, normal), pair.fixed_to(Side::A, a));
         pair.coordinate("angle1", first, true);
