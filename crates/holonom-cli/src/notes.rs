@@ -117,7 +117,7 @@ pub fn long_turns(model: &Model, method: &Method, recording: &Recording) -> Opti
     let lag = |name: &String| {
         let (angles, rates) = (recording.column(name)?, recording.column(&format!("{name}_rate"))?);
         let came = angles.last()? - angles.first()?;
-        let is_spin = came.abs() > std::f64::consts::TAU && rates.iter().all(|rate| rate * came > 0.0);
+        let is_spin = came.abs() > std::f64::consts::TAU && rates.iter().all(|rate| rate * came >= 0.0);
         let spans = times.windows(2).zip(rates.windows(2)).map(|(t, rate)| 0.5 * (t[1] - t[0]) * (rate[0] + rate[1]));
         is_spin.then(|| 1.0 - came / spans.sum::<f64>())
     };

@@ -188,7 +188,7 @@ pub(crate) fn simulate_kept(
     let last = Point::of(&simulation, &watched.recorder, &corrections);
     let before_end = watched.before_end.take().filter(|_| !last.run.goes_on_unbroken());
     let recording = watched.finish();
-    value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording)).expect("peaks are plain data");
+    value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording, &model.system)).expect("peaks are plain data");
     let finished = Finished { method: name, recording, summary: value, completed: status == Status::Completed };
     Ok((finished, Reached { last, before_end }))
 }

@@ -61,6 +61,7 @@ impl TableError {
             Self::NotText => "give a CSV file: text with a line for each time",
             Self::NoCommas => "put commas between columns, and a point into numbers",
             Self::NoColumns => "name the columns in the first line as a run does, such as t,chassis.z",
+            Self::Twice { name } if name.parse::<f64>().is_ok() => "name the columns in the first line",
             Self::Twice { .. } => "rename one of them",
             Self::Uneven { .. } => "give each line a cell for each column; it may be empty",
             Self::NoNumber { .. } => "write numbers with a point, such as 0.5 or 5e-1, and nothing where there is no value",

@@ -255,19 +255,20 @@ impl Files for FilesBeside {
         })
     }
 
-    fn numbers(&self, name: &str) -> Result<Arc<NumberFile>, String> {
+    fn numbers(&self, name: &str) -> Result<Arc<NumberFile>, [String; 2]> {
         once(&self.numbers, name, || {
-            let bytes = self.bytes(name, LARGEST_NUMBERS)?;
+            let bytes = self.bytes(name, LARGEST_NUMBERS).map_err(|message| [message, "name a CSV file beside the model".into()])?;
             // Whether a cell that is empty matters is a matter of its column.
             let number = |cell: &str| if cell.trim().is_empty() { Some(f64::NAN) } else { cell.parse().ok() };
-            let read = Columns::read(&bytes, |_, _, cell| number(cell)).map_err(|error| format!("`{name}`: {error}"))?;
+            let read =
+                Columns::read(&bytes, |_, _, cell| number(cell)).map_err(|error| [format!("`{name}`: {error}"), error.cure().into()])?;
             Ok(NumberFile { names: read.names, columns: read.columns })
         })
     }
 }
 
 /// What was read of a file before, or is read now.
-fn once<T>(known: &Mutex<HashMap<String, Arc<T>>>, name: &str, read: impl FnOnce() -> Result<T, String>) -> Result<Arc<T>, String> {
+fn once<T, E>(known: &Mutex<HashMap<String, Arc<T>>>, name: &str, read: impl FnOnce() -> Result<T, E>) -> Result<Arc<T>, E> {
     let mut known = known.lock().expect("no reader panics");
     if let Some(known) = known.get(name) {
         return Ok(known.clone());

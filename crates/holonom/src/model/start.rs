@@ -1,5 +1,6 @@
 //! `[start.JOINT]`: coordinates of joints at which a run begins, in place of the pose in which the mechanism is written.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::assembly::{Assembly, CONTRADICTION, Effort};
@@ -60,6 +61,7 @@ pub struct Start {
 }
 
 /// A coordinate, and what it and its rate are at the start, where they are given.
+#[derive(Clone)]
 pub struct Target {
     coordinate: Coordinate,
     value: Option<f64>,
@@ -130,7 +132,10 @@ impl Start {
             let at = if value.is_some() { key } else { rate_key };
             let coordinate = coordinate(assembly, entry, at.into(), &format!("{}.{key}", entry.name))?;
             if let Some(value) = value.filter(|value| coordinate.is_angle && value.abs() >= std::f64::consts::PI) {
-                return Err(entry.refuse(key, format!("{value} rad is half a turn or more"), "take the same angle within half a turn"));
+                let within = "take the same angle within half a turn";
+                let are_degrees = value.abs() > std::f64::consts::TAU;
+                let cure = if are_degrees { format!("{within}; in degrees write \"{value}*deg\"") } else { within.into() };
+                return Err(entry.refuse(key, format!("{value} rad is half a turn or more"), cure));
             }
             assembly.starts.push(Target { coordinate, value, rate, row: None });
         }
@@ -149,9 +154,10 @@ const MOST_TRIES: usize = 1000;
 ///
 /// # Errors
 /// Why that cannot be, and the cure.
-pub(super) fn begin(
+pub(super) fn begin<'a>(
     builder: &mut SystemBuilder,
     targets: &[Target],
+    coordinates: impl Iterator<Item = &'a Coordinate>,
     lengths: &[DrivenLength],
     efforts: &mut [Effort],
 ) -> Result<(), (String, &'static str)> {
@@ -161,10 +167,41 @@ pub(super) fn begin(
         let distances = distances(builder, lengths, efforts);
         let mut held = lengths.iter().zip(distances).filter(|(length, _)| is_held(length));
         held.try_for_each(|(length, there)| length.require(&efforts[length.effort], there))?;
-        assemble(builder, targets, &released)?;
+        let others = coordinates.filter(|coordinate| !targets.iter().any(|target| target.is_of(coordinate)));
+        let mut led = targets.to_vec();
+        led.extend(kept(builder, targets, others, &released));
+        let whole = assemble(builder, &led, &released);
+        if whole.is_err() && led.len() > targets.len() {
+            assemble(builder, targets, &released)?;
+        } else {
+            whole?;
+        }
         extend(builder, lengths, efforts)?;
     }
     set_off(builder, targets)
+}
+
+/// The coordinates of joints that stay as they are, whatever the others are: those whose rows take part in no redundancy of all rows and coordinates.
+/// In a loop they take part, and follow.
+fn kept<'a>(builder: &SystemBuilder, targets: &[Target], others: impl Iterator<Item = &'a Coordinate>, released: &[usize]) -> Vec<Target> {
+    let others: Vec<Target> =
+        others.map(|coordinate| Target { coordinate: coordinate.clone(), value: Some(0.0), rate: None, row: None }).collect();
+    let redundant = |without: &Range<usize>| {
+        let led = [targets, &others[..without.start], &others[without.end..]].concat();
+        at(builder.clone(), &led, released, 0.0).map(|simulation| simulation.redundant_rows())
+    };
+    let all = redundant(&(0..0));
+    let (mut kept, mut open) = (Vec::new(), vec![0..others.len()]);
+    while let Some(range) = open.pop() {
+        // Without rows that take part in none there are as many redundant ones.
+        if redundant(&range) == all {
+            kept.extend_from_slice(&others[range]);
+        } else if range.len() > 1 {
+            let middle = range.start + range.len() / 2;
+            open.extend([range.start..middle, middle..range.end]);
+        }
+    }
+    kept
 }
 
 /// Moves all nodes on a way along which every constraint is met, with as little as possible of all else, in the metric of the mass.

@@ -90,8 +90,7 @@ impl Curve {
                 Ok(("points", x, y))
             }
             (None, Some(name)) => {
-                let file =
-                    entry.files.numbers(name).map_err(|message| entry.refuse("file", message, "name a CSV file beside the model"))?;
+                let file = entry.files.numbers(name).map_err(|[message, cure]| entry.refuse("file", message, cure))?;
                 let column = |(k, (key, name)): (usize, &(&'static str, &Option<String>))| -> Read<Vec<f64>> {
                     let at = match name {
                         Some(name) => file.names.iter().position(|known| known == name).ok_or_else(|| {

@@ -31,11 +31,15 @@ const ROUND_OFF: f64 = 2e-9;
 pub struct Bounds {
     /// Its smallest value and when, s, and its largest; none before there was a number.
     sides: Option<[(f64, f64); 2]>,
+    /// Its value when last looked at; no number before.
+    #[serde(with = "any_number", default)]
+    last: [f64; 1],
 }
 
 impl Bounds {
     /// Takes the number at a time (s) in, if it is one.
     pub(super) fn see(&mut self, value: f64, t: f64) {
+        self.last = [value];
         if !value.is_finite() {
             return;
         }
@@ -46,6 +50,11 @@ impl Bounds {
         if value > highest.0 {
             *highest = (value, t);
         }
+    }
+
+    /// Its value when last looked at.
+    pub(super) fn last(&self) -> f64 {
+        self.last[0]
     }
 
     /// Its smallest value and when, s, and its largest.

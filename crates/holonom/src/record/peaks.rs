@@ -7,6 +7,8 @@ use serde::Serialize;
 use super::channels::Channels;
 use super::joint::RecordedJoint;
 use super::{Bounds, Column, Largest, Recording};
+use crate::formulation::extent;
+use crate::system::System;
 
 /// The largest value of something that acts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -74,7 +76,7 @@ const ROUND_OFF_OF_OTHERS: f64 = 1e-12;
 
 impl Peaks {
     /// Looks at all recorded rows, and at what was largest of forces between them. What was not recorded, or is not known, has no peak.
-    pub fn of(channels: &Channels, recording: &Recording) -> Self {
+    pub fn of(channels: &Channels, recording: &Recording, system: &System) -> Self {
         let Some(times) = recording.column("t") else { return Self::default() };
         let peak = |name: &str, columns: &[String]| peak(name, columns, times, recording);
         let joint = |joint: &RecordedJoint| {
@@ -112,7 +114,8 @@ impl Peaks {
             let sizes = all().map(|peak| peak.value.abs() * if peak.unit == unit { 1.0 } else { lever });
             ROUND_OFF_OF_OTHERS * sizes.fold(0.0, f64::max)
         };
-        let floors = if span > 0.0 { [scale("N", 1.0 / span), scale("N·m", span)] } else { [0.0; 2] };
+        // What only turns moves by round-off.
+        let floors = if span > ROUND_OFF * extent(system) { [scale("N", 1.0 / span), scale("N·m", span)] } else { [0.0; 2] };
         let is_something = |peak: &Peak| peak.value.abs() > floors[usize::from(peak.unit != "N")];
         let [(drives, d), (forces, f), (joints, j)] =
             [&drives, &forces, &joints].map(|peaks| largest(peaks.iter().filter(|peak| is_something(peak)).cloned().collect()));
@@ -154,7 +157,9 @@ fn extremes(measure: usize, name: &str, times: &[f64], recording: &Recording) ->
     let equal = ROUND_OFF * (highest - lowest);
     let first = |of: f64| all().filter(|(value, _)| (value - of).abs() <= equal).map(|(_, t)| t).min_by(f64::total_cmp);
     let (min_at, max_at) = (first(lowest)?, first(highest)?);
-    let (unit, last) = (column.heading.unit.clone(), *column.values.last()?);
+    // The end of the run may be no row.
+    let last = recording.bounds.get(measure).map_or(*column.values.last()?, Bounds::last);
+    let unit = column.heading.unit.clone();
     Some(Extremes { name: name.into(), unit, min: lowest, min_at, max: highest, max_at, last })
 }
 

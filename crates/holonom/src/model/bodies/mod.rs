@@ -35,8 +35,8 @@ pub trait Files {
     /// The numbers of a CSV file, by the name it has in the model.
     ///
     /// # Errors
-    /// What is wrong with the file, in words.
-    fn numbers(&self, name: &str) -> Result<Arc<NumberFile>, String>;
+    /// What is wrong with the file, in words, and the cure.
+    fn numbers(&self, name: &str) -> Result<Arc<NumberFile>, [String; 2]>;
 }
 
 /// Columns of numbers with their names, as of a CSV file.
@@ -58,7 +58,7 @@ impl Files for NoFiles {
         Err(NONE.into())
     }
 
-    fn numbers(&self, _name: &str) -> Result<Arc<NumberFile>, String> {
-        Err(NONE.into())
+    fn numbers(&self, _name: &str) -> Result<Arc<NumberFile>, [String; 2]> {
+        Err([NONE.into(), "read the model from a file".into()])
     }
 }

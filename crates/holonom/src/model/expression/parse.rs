@@ -240,7 +240,10 @@ impl Parser<'_> {
                 "names with dots are of what moves: use them in measures, events, and forces of type effort, force, torque, expression, spring and rope",
             );
         }
-        let cure = match nearest(name, known.iter().copied().chain(of_mechanism.iter().map(String::as_str))) {
+        let all = || known.iter().copied().chain(of_mechanism.iter().map(String::as_str));
+        // A name with a hyphen was read as a difference.
+        let cut = all().find(|known| known.strip_prefix(name).is_some_and(|rest| rest.starts_with('-')));
+        let cure = match cut.or_else(|| nearest(name, all())) {
             _ if name == "π" => "write pi".into(),
             Some(near) if near.contains('-') => format!("did you mean '{near}'? A name with a hyphen stands in single quotes here"),
             Some(near) => format!("did you mean `{near}`?"),
