@@ -266,6 +266,9 @@ impl Stabilized {
             let own = size(&work.end.at.gradient[g.clone()], &self.u[x.clone()]);
             work.rows[slot.row as usize] += own + size(&self.turned_u[g], &work.end.x[x]);
         }
+        // Velocities are rounded by as much more as a row hardly holds.
+        let amplified = 1.0 / newton.rank.weakest.sqrt();
+        work.rows.iter_mut().for_each(|size| *size *= amplified);
         newton.rank.are_rows_round_off(&self.unknowns[n..], &work.rows)
     }
 
