@@ -191,14 +191,14 @@ fn kept<'a>(builder: &SystemBuilder, targets: &[Target], others: impl Iterator<I
         at(builder.clone(), &led, released, 0.0).map(|simulation| simulation.redundant_rows())
     };
     let all = redundant(&(0..0));
-    let (mut kept, mut open) = (Vec::new(), vec![0..others.len()]);
-    while let Some(range) = open.pop() {
+    let (mut kept, mut open) = (Vec::new(), vec![[0, others.len()]]);
+    while let Some([from, to]) = open.pop() {
         // Without rows that take part in none there are as many redundant ones.
-        if redundant(&range) == all {
-            kept.extend_from_slice(&others[range]);
-        } else if range.len() > 1 {
-            let middle = range.start + range.len() / 2;
-            open.extend([range.start..middle, middle..range.end]);
+        if redundant(&(from..to)) == all {
+            kept.extend_from_slice(&others[from..to]);
+        } else if to - from > 1 {
+            let middle = from + (to - from) / 2;
+            open.extend([[from, middle], [middle, to]]);
         }
     }
     kept
