@@ -293,15 +293,17 @@ fn motors_of_drums_bear_their_own_ropes() {
 /// A winch pulls at a rope that is tied to the ground at both ends until its torque is that of the tension.
 #[test]
 fn a_winch_tightens_a_rope_between_fixed_places() {
-    for reactions in ["", "[output]\nreactions = true\n"] {
+    for (reactions, sheaves) in [("", ""), ("[output]\nreactions = true\n", ""), ("", "through = [[5, 0], [5, 3]]\n")] {
         let model = model(&format!(
             "plane = \"xz\"\n[body.winch]\nmass = 10\ninertia = 0.2\nposition = [0, 0]\n\
              [joint.shaft]\ntype = \"revolute\"\nbetween = [\"ground\", \"winch\"]\nat = [0, 0]\n\
-             [force.guy]\ntype = \"rope\"\nbetween = [\"winch\", [5, 0]]\ndrum = \"shaft\"\nradius = 0.2\nstiffness = 1e4\n\
-             [force.crank]\ntype = \"effort\"\njoint = \"shaft\"\neffort = \"-50 - 20*q_rate\"\n{reactions}"
+             [force.guy]\ntype = \"rope\"\nbetween = [\"winch\", [{}, 0]]\n{sheaves}drum = \"shaft\"\nradius = 0.2\nstiffness = 1e4\n\
+             [force.crank]\ntype = \"effort\"\njoint = \"shaft\"\neffort = \"-50 - 20*q_rate\"\n{reactions}",
+            if sheaves.is_empty() { 5 } else { 0 }
         ));
         let recording = run(&model, Choice::default(), 0.01, 3.0).1;
-        for (name, expected) in [("guy.force", 250.0), ("guy.length", 5.0), ("shaft.angle", -250.0 / 1e4 / 0.2)] {
+        let length = if sheaves.is_empty() { 5.0 } else { 8.0 + f64::sqrt(34.0) };
+        for (name, expected) in [("guy.force", 250.0), ("guy.length", length), ("shaft.angle", -250.0 / 1e4 / 0.2)] {
             let found = common::last(&recording, name);
             assert!((found - expected).abs() < 1e-9 * f64::abs(expected), "{name}: {found} in place of {expected}");
         }

@@ -154,9 +154,9 @@ impl Audit {
         }
     }
 
-    /// What the integrator made or lost of the energy since an earlier state, over all there is to move; nothing where that is round-off.
-    /// `still` is nothing beside what there is to move, `of_places` are the sizes of what
-    /// laws and weights make of rounded positions, J; all round-off counts `amplified` times.
+    /// What the integrator made or lost of the energy since an earlier state, over all there is to move; nothing where that is round-off. `still` is
+    /// nothing beside what there is to move, `of_places` are the sizes of what laws and weights make of rounded positions, J; all round-off counts
+    /// `amplified` times.
     pub(super) fn made_since(&self, before: &Self, amplified: f64, still: f64, of_places: impl FnOnce() -> f64) -> f64 {
         let made = (self.integrator_total - before.integrator_total).abs();
         let sizes = self.kinetic + self.potential.abs() + self.work.abs() + self.integrator_total.abs();

@@ -178,8 +178,7 @@ fn falls(assembly: &mut Assembly<'_>, ends: &[End], has_drum: bool) -> Falls {
     let mut seen: Vec<[&Vec<Term>; 2]> = Vec::new();
     for pair in ends.windows(2) {
         let [a, b] = [&pair[0], &pair[1]];
-        let keeps = (a.body.is_some() && a.body == b.body) || (a.never_moves() && b.never_moves());
-        if keeps && !(has_drum && ends.len() == 2) {
+        if (a.body.is_some() && a.body == b.body) || (a.never_moves() && b.never_moves()) {
             falls.fixed += norm(difference(a, b));
         } else if let Some(k) = seen.iter().position(|&known| known == [&a.terms, &b.terms] || known == [&b.terms, &a.terms]) {
             falls.moving[k].1 += 1.0;
@@ -187,6 +186,11 @@ fn falls(assembly: &mut Assembly<'_>, ends: &[End], has_drum: bool) -> Falls {
             seen.push([&a.terms, &b.terms]);
             falls.moving.push((assembly.builder.square(&from_to(a, b)), 1.0));
         }
+    }
+    if has_drum && falls.moving.is_empty() {
+        let [a, b] = [&ends[0], &ends[1]];
+        falls.fixed -= norm(difference(a, b));
+        falls.moving.push((assembly.builder.square(&from_to(a, b)), 1.0));
     }
     falls
 }
