@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{model, model_with_forces};
+use common::model_with_forces;
 use std::f64::consts::PI;
 
 use holonom::model::Model;
@@ -264,42 +264,4 @@ fn joints_with_several_coordinates_begin_where_they_are_put() {
     for (name, value) in expected {
         assert!((first(name) - value).abs() < 1e-12, "{name}: {}", first(name));
     }
-}
-
-/// Joints that are not named keep their coordinates where nothing has them follow, whatever the order of the file: of a double pendulum and of a cart with
-/// a pole all of them, of a four-bar with a pendulum at its coupler that of the pendulum.
-#[test]
-fn joints_that_are_not_named_stay_as_they_are() {
-    let bodies = [
-        "[body.a]\nmass = 1\nshape = { rod = 1 }\nposition = [0, -0.5]\norientation = { angle_deg = -90 }\n",
-        "[body.b]\nmass = 1\nshape = { rod = 1 }\nposition = [0, -1.5]\norientation = { angle_deg = -90 }\n",
-    ];
-    let joints = [
-        "[joint.j1]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0]\n",
-        "[joint.j2]\ntype = \"revolute\"\nbetween = [\"a\", \"b\"]\nat = [0, -1]\n",
-    ];
-    for [k, l] in [[0, 1], [1, 0]] {
-        let text = format!("plane = \"xz\"\n{}{}{}{}[start.j1]\nangle = \"30*deg\"\n", bodies[k], bodies[l], joints[k], joints[l]);
-        let recording = run(&model(&text), 0.01, 0.01);
-        let first = |name: &str| recording.column(name).unwrap()[0];
-        assert!((first("j1.angle") - PI / 6.0).abs() < 1e-12 && first("j2.angle").abs() < 1e-12, "{}", first("j2.angle"));
-        assert!((first("b.x") - 1.5 * 0.5).abs() < 1e-12, "{}", first("b.x"));
-    }
-    let cart = "plane = \"xz\"\n[body.cart]\nmass = 1\ninertia = 1\nposition = [0, 0]\n[body.pole]\nmass = 1\nshape = { rod = 1 }\nposition = [0, 0.5]\n\
-                orientation = { angle_deg = 90 }\n[joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"cart\"]\naxis = [1, 0]\n\
-                [joint.pin]\ntype = \"revolute\"\nbetween = [\"cart\", \"pole\"]\nat = [0, 0]\n[start.pin]\nangle = -0.15\n";
-    let recording = run(&model(cart), 0.01, 0.01);
-    assert!(recording.column("rail.displacement").unwrap()[0].abs() < 1e-12);
-    let loop_of = "plane = \"xz\"\n[body.crank]\nmass = 1\nshape = { rod = 1 }\nposition = [0, 0.5]\norientation = { angle_deg = 90 }\n\
-                   [body.coupler]\nmass = 1\nshape = { rod = 2 }\nposition = [1, 1]\n\
-                   [body.rocker]\nmass = 1\nshape = { rod = 1 }\nposition = [2, 0.5]\norientation = { angle_deg = 90 }\n\
-                   [body.bob]\nmass = 1\nshape = { rod = 1 }\nposition = [1, 0.5]\norientation = { angle_deg = 90 }\n\
-                   [joint.a]\ntype = \"revolute\"\nbetween = [\"ground\", \"crank\"]\nat = [0, 0]\n\
-                   [joint.b]\ntype = \"revolute\"\nbetween = [\"crank\", \"coupler\"]\nat = [0, 1]\n\
-                   [joint.c]\ntype = \"revolute\"\nbetween = [\"coupler\", \"rocker\"]\nat = [2, 1]\n\
-                   [joint.d]\ntype = \"revolute\"\nbetween = [\"rocker\", \"ground\"]\nat = [2, 0]\n\
-                   [joint.e]\ntype = \"revolute\"\nbetween = [\"coupler\", \"bob\"]\nat = [1, 1]\n[start.a]\nangle = -0.4\n";
-    let recording = run(&model(loop_of), 0.01, 0.01);
-    let first = |name: &str| recording.column(name).unwrap()[0];
-    assert!((first("a.angle") + 0.4).abs() < 1e-12 && (first("b.angle") - 0.4).abs() < 1e-12 && first("e.angle").abs() < 1e-12);
 }

@@ -74,8 +74,7 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
         }
         let starts = std::mem::take(&mut assembly.starts);
         let lengths = std::mem::take(&mut assembly.lengths);
-        let coordinates = assembly.joints.iter().flat_map(|joint| &joint.coordinates);
-        if let Err((message, cure)) = start::begin(&mut assembly.builder, &starts, coordinates, &lengths, &mut assembly.efforts) {
+        if let Err((message, cure)) = start::begin(&mut assembly.builder, &starts, &lengths, &mut assembly.efforts) {
             drop(assembly);
             let _: Refused = sink.report(|| Fault::new("start", "start", message, cure));
             return Err(sink.finish().expect_err("there is a fault"));

@@ -1,6 +1,5 @@
 //! `[start.JOINT]`: coordinates of joints at which a run begins, in place of the pose in which the mechanism is written.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::assembly::{Assembly, CONTRADICTION, Effort};
@@ -61,7 +60,6 @@ pub struct Start {
 }
 
 /// A coordinate, and what it and its rate are at the start, where they are given.
-#[derive(Clone)]
 pub struct Target {
     coordinate: Coordinate,
     value: Option<f64>,
@@ -154,10 +152,9 @@ const MOST_TRIES: usize = 1000;
 ///
 /// # Errors
 /// Why that cannot be, and the cure.
-pub(super) fn begin<'a>(
+pub(super) fn begin(
     builder: &mut SystemBuilder,
     targets: &[Target],
-    coordinates: impl Iterator<Item = &'a Coordinate>,
     lengths: &[DrivenLength],
     efforts: &mut [Effort],
 ) -> Result<(), (String, &'static str)> {
@@ -167,41 +164,10 @@ pub(super) fn begin<'a>(
         let distances = distances(builder, lengths, efforts);
         let mut held = lengths.iter().zip(distances).filter(|(length, _)| is_held(length));
         held.try_for_each(|(length, there)| length.require(&efforts[length.effort], there))?;
-        let others = coordinates.filter(|coordinate| !targets.iter().any(|target| target.is_of(coordinate)));
-        let mut led = targets.to_vec();
-        led.extend(kept(builder, targets, others, &released));
-        let whole = assemble(builder, &led, &released);
-        if whole.is_err() && led.len() > targets.len() {
-            assemble(builder, targets, &released)?;
-        } else {
-            whole?;
-        }
+        assemble(builder, targets, &released)?;
         extend(builder, lengths, efforts)?;
     }
     set_off(builder, targets)
-}
-
-/// The coordinates of joints that stay as they are, whatever the others are: those whose rows take part in no redundancy of all rows and coordinates.
-/// In a loop they take part, and follow.
-fn kept<'a>(builder: &SystemBuilder, targets: &[Target], others: impl Iterator<Item = &'a Coordinate>, released: &[usize]) -> Vec<Target> {
-    let others: Vec<Target> =
-        others.map(|coordinate| Target { coordinate: coordinate.clone(), value: Some(0.0), rate: None, row: None }).collect();
-    let redundant = |without: &Range<usize>| {
-        let led = [targets, &others[..without.start], &others[without.end..]].concat();
-        at(builder.clone(), &led, released, 0.0).map(|simulation| simulation.redundant_rows())
-    };
-    let all = redundant(&(0..0));
-    let (mut kept, mut open) = (Vec::new(), vec![[0, others.len()]]);
-    while let Some([from, to]) = open.pop() {
-        // Without rows that take part in none there are as many redundant ones.
-        if redundant(&(from..to)) == all {
-            kept.extend_from_slice(&others[from..to]);
-        } else if to - from > 1 {
-            let middle = from + (to - from) / 2;
-            open.extend([[from, middle], [middle, to]]);
-        }
-    }
-    kept
 }
 
 /// Moves all nodes on a way along which every constraint is met, with as little as possible of all else, in the metric of the mass.

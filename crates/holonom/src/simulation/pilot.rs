@@ -211,10 +211,12 @@ impl Pilot {
         made / (WORSE * self.control.allowed() * step * self.control.share_of_way(work.scales.length))
     }
 
-    /// Books what the last step has made of the energy, where nothing but round-off was seen of its error.
+    /// Books what the last step has made of the energy, where nothing but round-off was seen of its error. Where drives leave no freedom the motion
+    /// is theirs, whatever the energy.
     pub fn book_hidden(&mut self, simulation: &Simulation) {
-        if self.control.is_rounded() {
-            let Simulation { audit, work, judge, .. } = simulation;
+        let Simulation { system, audit, work, judge, .. } = simulation;
+        let is_free = system.constraints() < system.coordinates() + self.redundant;
+        if is_free && self.control.is_rounded() {
             let still = judge.motion(self.control.allowed() * work.scales.length);
             self.patience.hidden += audit.gained_since(&self.before.audit) / (audit.supply()[1] + still);
             self.patience.seen = 0;
