@@ -455,7 +455,7 @@ fn windows_with_a_light_upright_pass_through_a_line() {
         let weight = 9.81 * (0.5 * uprights.iter().sum::<f64>() + 2.0);
         let (mut angle, mut speed, h) = (start, rate, 1e-5);
         for _ in 0..(end / h).round() as u32 {
-            // Störmer's rule: order 2, with steps of a hundredth of the shortest below.
+            // Störmer's rule: order 2, with steps of a fiftieth of the shortest below.
             let middle = speed + 0.5 * h * weight / inertia * f64::sin(angle);
             angle += h * middle;
             speed = middle + 0.5 * h * weight / inertia * f64::sin(angle);

@@ -86,8 +86,8 @@ pub fn subtract(to: &[Term], from: &[Term]) -> Vec<Term> {
 const GONE: f64 = 1e-12;
 
 /// The same of what two bodies have at a joint, where they may share nodes: nothing where only what was written is off is left, as of the second
-/// hinge of a door. A row of that would turn the smallest of differences into a lock. `size` is that of the mechanism, or of a direction; a node
-/// moves by what `reach` says where it moves by its own size.
+/// hinge of a door. A row of that would turn the smallest of differences into a lock. `size` is that of the mechanism, or of a direction, and
+/// `reach` the length of a node's way, by which its factor counts.
 pub fn subtract_shared(to: &[Term], from: &[Term], size: f64, reach: impl Fn(NodeId) -> f64) -> Vec<Term> {
     let mut difference = subtract(to, from);
     let is_small = |term: &Term| {

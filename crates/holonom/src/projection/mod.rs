@@ -68,8 +68,8 @@ const ROUND_OFF: f64 = 1e-15;
 /// Violation of positions, over the size of the mechanism, that is their rounding.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
-/// Where each pass leaves the same share of what is missed, but for so much of it and below the other, as of rows that hardly differ from others, what all
-/// passes to come would add is added at once, as of a geometric series.
+/// Rows that hardly differ from others are met slowly: each pass leaves the same share of what is missed. Where two shares in a row differ by no more
+/// than `STEADY` of themselves, and are below `SLOWEST`, a pass adds what all that follow would, as of a geometric series.
 const STEADY: f64 = 0.05;
 const SLOWEST: f64 = 0.95;
 

@@ -31,7 +31,7 @@ const ROUND_OFF: f64 = 2e-9;
 pub struct Bounds {
     /// Its smallest value and when, s, and its largest; none before there was a number.
     sides: Option<[(f64, f64); 2]>,
-    /// Its value when last looked at; no number before.
+    /// Its value when last looked at, in a list as numbers are written that may be none.
     #[serde(with = "any_number", default)]
     last: [f64; 1],
 }

@@ -146,7 +146,8 @@ impl Simulation {
 
     /// One attempt at a step, and whether it is taken; a step whose error is too large, or that fails, is taken back and the next one shorter.
     fn attempt(&mut self, step: f64, target: f64, pilot: &mut Pilot) -> Result<bool, Failure> {
-        pilot.require_progress(step, self)?;
+        pilot.require_progress(step, self.state.t)?;
+        pilot.require_visible(self)?;
         pilot.before.keep(self);
         self.work.estimate.speed = pilot.control.speed;
         let (mut step, mut landing) = (step, Landing::Failed);

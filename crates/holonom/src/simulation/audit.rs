@@ -166,9 +166,9 @@ impl Audit {
         if is_round_off { 0.0 } else { made / (self.supply()[1] + round_off + still) }
     }
 
-    /// What integrator and projections have made of the energy since an earlier state that no work accounts for, J.
-    pub(super) fn gained_since(&self, before: &Self) -> f64 {
-        self.integrator_total + self.projection_total - before.integrator_total - before.projection_total
+    /// What integrator and projections have made of the energy so far that no work accounts for, J.
+    pub(super) fn made(&self) -> f64 {
+        self.integrator_total + self.projection_total
     }
 
     /// Energy and work at the start of the nominal step, J.

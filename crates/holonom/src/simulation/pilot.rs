@@ -82,7 +82,7 @@ pub(super) struct Patience {
     since: f64,
     /// Looks one after the other at which they had hardly come on.
     slow: u32,
-    /// What steps that showed nothing but round-off near a singular position have made of the energy, over all there was to move.
+    /// What steps that showed nothing but round-off near a singular position have made of the energy, J.
     #[serde(default)]
     hidden: f64,
     /// Steps since then whose errors were seen.
@@ -214,11 +214,10 @@ impl Pilot {
     /// Books what the last step has made of the energy, where nothing but round-off was seen of its error. Where drives leave no freedom the motion
     /// is theirs, whatever the energy.
     pub fn book_hidden(&mut self, simulation: &Simulation) {
-        let Simulation { system, audit, work, judge, .. } = simulation;
+        let Simulation { system, audit, .. } = simulation;
         let is_free = system.constraints() < system.coordinates() + self.redundant;
         if is_free && self.control.is_rounded() {
-            let still = judge.motion(self.control.allowed() * work.scales.length);
-            self.patience.hidden += audit.gained_since(&self.before.audit) / (audit.supply()[1] + still);
+            self.patience.hidden += audit.made() - self.before.audit.made();
             self.patience.seen = 0;
         } else {
             self.patience.seen = self.patience.seen.saturating_add(1);
@@ -249,18 +248,25 @@ impl Pilot {
         self.front.audit.supply()[1]
     }
 
-    /// Refuses attempts at steps of length `step` (s) that come nowhere, as at this pace the run never ends, and going on behind a singular position
-    /// where more was hidden than the accuracy leaves.
-    pub fn require_progress(&mut self, step: f64, simulation: &Simulation) -> Result<(), Failure> {
-        let (t, accuracy) = (simulation.state.t, simulation.method.accuracy.unwrap_or(0.0));
+    /// Refuses to go on behind a singular position where more was hidden than the accuracy leaves of all there was to move, or of what the mechanism
+    /// has when it goes its own length in the run: what begins at rest there has hardly anything yet.
+    pub fn require_visible(&self, simulation: &Simulation) -> Result<(), Failure> {
+        let Patience { hidden, seen, .. } = self.patience;
+        let (Simulation { audit, work, judge, .. }, Some(accuracy)) = (simulation, simulation.method.accuracy) else { return Ok(()) };
+        if seen != OFTEN {
+            return Ok(());
+        }
+        let share = hidden.abs() / audit.supply()[1].max(judge.motion(work.scales.length / self.control.span));
+        if share > WORSE * accuracy { Err(Failure::Hidden { share }) } else { Ok(()) }
+    }
+
+    /// Refuses attempts at steps of length `step` (s) that come nowhere: at this pace the run never ends.
+    pub fn require_progress(&mut self, step: f64, t: f64) -> Result<(), Failure> {
         if step < SMALLEST_SHARE * self.control.span {
             let jumps = self.sight.reached.iter().position(|reached| *reached);
             return Err(jumps.map_or(Failure::TooSmall, |corner| Failure::JumpsBack { corner }));
         }
-        let Patience { attempts, since, slow, hidden, seen, .. } = &mut self.patience;
-        if *seen == OFTEN && hidden.abs() > WORSE * accuracy {
-            return Err(Failure::Hidden { share: hidden.abs() });
-        }
+        let Patience { attempts, since, slow, .. } = &mut self.patience;
         *attempts += 1;
         if *attempts % LOOK != 0 {
             return Ok(());

@@ -154,8 +154,7 @@ impl Simulation {
     /// What the method has made of the energy so far, below zero where it has lost it, and all there was to move, J; nothing made where the
     /// mechanism stands about still, or that is round-off.
     pub fn made_energy(&self) -> [f64; 2] {
-        let (summary, [_, supply]) = (self.audit.energy_summary(), self.audit.supply());
-        let made = summary.integrator_total + summary.projection_total;
+        let (made, [_, supply]) = (self.audit.made(), self.audit.supply());
         let length = self.work.scales.length;
         let still = self.judge.motion(STILL * length / self.state.t.abs());
         let rounded = ROUNDED * (self.judge.lift(length) + self.audit.potential.abs() + self.audit.work.abs());

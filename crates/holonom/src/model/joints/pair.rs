@@ -133,9 +133,15 @@ impl Pair<'_, '_> {
     /// d = r_B − r_A between the places of the joint.
     pub fn d(&self) -> Vec<Term> {
         let [a, b] = [0, 1].map(|side| self.frames[side].point(self.geometry.at[side]));
+        let size = self.assembly.builder.size();
+        self.apart([a, b], size, size)
+    }
+
+    /// How two sums of nodes differ, which are of this size and whose points move by as much as `of_points`, m; nothing where the bodies share them.
+    fn apart(&self, [a, b]: [Vec<Term>; 2], size: f64, of_points: f64) -> Vec<Term> {
         let builder = &self.assembly.builder;
-        let reach = |node| if builder.is_direction(node) { norm(builder.position_of(node)) } else { builder.size() };
-        subtract_shared(&b, &a, builder.size(), reach)
+        let reach = |node| if builder.is_direction(node) { norm(builder.position_of(node)) } else { of_points };
+        subtract_shared(&b, &a, size, reach)
     }
 
     /// The direction k of the triad u, v, w on a side.
@@ -181,8 +187,7 @@ impl Pair<'_, '_> {
         });
         let points: Vec<Vec3> = points.collect();
         let spread = points.iter().fold(0.0, |most: f64, place| most.max(norm(subtract(*place, points[0]))));
-        let reach = |node| if builder.is_direction(node) { norm(builder.position_of(node)) } else { spread };
-        subtract_shared(&b, &a, 1.0, reach).is_empty()
+        self.apart([a, b], 1.0, spread).is_empty()
     }
 
     /// u_B ∥ u_A: no rotation but that about the axis; in the plane none at all.
