@@ -154,7 +154,8 @@ pub const OF_METHOD: [&str; 6] = [
     "simulation.projection.levels",
 ];
 
-/// Refuses a parameter that the model does not have, as nothing would come of it, and the bare name of one that it has.
+/// Refuses a parameter that the model does not have, as nothing would come of it, and the bare name of one that it has; and a key of a body, joint
+/// or another entry that the model does not have, as a new one would be made.
 pub fn require_key(key: &str, source: &Source) -> Result<(), Failure> {
     let parameters = match source.get("parameters") {
         Some(Value::Table(table)) => table,
@@ -166,18 +167,37 @@ pub fn require_key(key: &str, source: &Source) -> Result<(), Failure> {
                 .map_or("add it to [parameters], and name it in the model".to_string(), |near| format!("did you mean `{near}`?"));
             Err(Failure::usage(format!("the model has no parameter `{name}`"), cure))
         }
-        None if parameters.get(key).is_some() && !is_of_file(key) => {
+        None if parameters.get(key).is_some() && of_file(key).is_none() => {
             Err(Failure::usage(format!("`{key}` is a parameter and no key of the model file"), format!("write parameters.{key}=…")))
         }
-        _ => Ok(()),
+        _ => require_entry(key, source),
     }
 }
 
-/// Whether a model file may have a key outside all tables, or a table, of this name.
-fn is_of_file(key: &str) -> bool {
-    match holonom::model::schema() {
-        Value::Table(schema) => matches!(schema.get("properties"), Some(Value::Table(keys)) if keys.get(key).is_some()),
-        _ => false,
+/// Refuses a key of an entry that is not there. All of an entry at once may be new, and `[start]` names the joints of the model.
+fn require_entry(key: &str, source: &Source) -> Result<(), Failure> {
+    let [section, name, _] = key.splitn(3, '.').collect::<Vec<_>>()[..] else { return Ok(()) };
+    let has_entries = matches!(of_file(section), Some(Value::Table(shape)) if shape.get("propertyNames").is_some());
+    let entries = match source.get(section) {
+        Some(Value::Table(table)) => table,
+        _ => &Table::default(),
+    };
+    if !has_entries || section == "start" || entries.get(name).is_some() {
+        return Ok(());
+    }
+    let cure = nearest(name, entries.keys()).map_or_else(
+        || format!("name one that is there, or set all of a new one: {section}.{name}={{ … }}"),
+        |near| format!("did you mean `{section}.{near}`?"),
+    );
+    Err(Failure::usage(format!("the model has no {section} `{name}`"), cure))
+}
+
+/// What the schema says of a key outside all tables, or of a table, if a model file may have one of this name.
+fn of_file(key: &str) -> Option<Value> {
+    let Value::Table(schema) = holonom::model::schema() else { return None };
+    match schema.get("properties") {
+        Some(Value::Table(keys)) => keys.get(key).cloned(),
+        _ => None,
     }
 }
 

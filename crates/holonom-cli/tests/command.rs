@@ -24,6 +24,9 @@ fn wrong_use_ends_with_two_and_says_what_there_is() {
         (format!("run {PAPER} --set title.x=1"), "not a table"),
         (format!("run {PAPER} --set simulation.step=-1"), "above 0"),
         ("run example:four-bar --set parameters.n=3".into(), "did you mean `N`"),
+        ("check example:slider-crank --set body.crnk.mass=3".into(), "no body `crnk`"),
+        ("check example:slider-crank --set body.crnk.mass=3".into(), "did you mean `body.crank`?"),
+        ("check example:slider-crank --set force.spring.stiffness=3".into(), "set all of a new one: force.spring={ … }"),
         ("check example:four-bar --set parameters.stiffness=3".into(), "no parameter `stiffness`"),
         ("compare example:four-bar --set N=3".into(), "write parameters.N="),
         ("sweep example:four-bar --vary N=3,4".into(), "write parameters.N="),
@@ -180,6 +183,15 @@ fn runs_name_the_forces_that_are_not_unique() {
     let output = holonom(&folder, "run gears.toml");
     assert!(text(&output.stderr).contains(&format!(": of {efforts} one way of many")), "{}", text(&output.stderr));
     assert!(prints(&folder, "check gears.toml", 0).contains(&format!("not unique: {efforts}; all others are")));
+    // A door on two hinges, in metres, millimetres and others.
+    let door = "[parameters]\nu = 1\n[body.door]\nmass = 1\ninertia = [\"u^2\", \"u^2\", \"u^2\"]\nposition = [\"u\", 0, 0]\n\
+                [joint.hinge]\nrepeat = \"i = 0 to 1\"\ntype = \"revolute\"\nbetween = [\"ground\", \"door\"]\n\
+                at = [0, 0, \"i*u\"]\naxis = [0, 0, 1]\n";
+    fs::write(folder.path().join("door.toml"), door).unwrap();
+    let open = |u| json(&folder, &format!("check door.toml --json --set parameters.u={u}"))["reactions_not_unique"].clone();
+    let metres = open("1");
+    assert!(!metres.as_array().unwrap().is_empty());
+    ["1e-9", "1e-6", "1e3", "1e6"].iter().for_each(|u| assert_eq!(open(u), metres, "in units of {u} m"));
 }
 
 #[test]

@@ -4,17 +4,26 @@ use std::ops::Range;
 
 use super::constraint_jacobian;
 use crate::formulation::{VANISHED, extent, natural_sizes};
-use crate::linalg::null_space;
+use crate::linalg::{largest, null_space};
 use crate::simulation::{Simulation, wrench};
 use crate::system::{Evaluation, NodeId, System};
 
 /// Multipliers λ with Gᵀλ = 0 at a position: what may be added to the multipliers without any effect on the motion.
 pub struct Undetermined<'s> {
     system: &'s System,
-    /// One list of multipliers (r) for each redundant row, by the rows scaled to unit gradients.
-    spaces: Vec<Vec<f64>>,
+    /// One for each redundant row.
+    spaces: Vec<Space>,
     at: Evaluation,
     x: Vec<f64>,
+}
+
+/// Multipliers that have no effect together.
+struct Space {
+    /// By the rows (r).
+    lambda: Vec<f64>,
+    /// By the rows scaled to unit gradients (r), so that all are forces, and the largest of them.
+    scaled: Vec<f64>,
+    largest: f64,
 }
 
 /// Eigenvalue of the scaled G Gᵀ, over the largest, below which a combination of rows holds nothing: the square of what
@@ -46,8 +55,12 @@ pub fn undetermined<'s>(system: &'s System, x: &[f64], t: f64) -> Option<Undeter
         (0..n).map(|i| scaled[a + i] * scaled[b + i]).sum()
     };
     let gram: Vec<f64> = (0..rows * rows).map(product).collect();
-    let mut spaces = null_space(rows, &gram, NOTHING);
-    spaces.iter_mut().for_each(|space| space.iter_mut().zip(&sizes).for_each(|(lambda, size)| *lambda /= size));
+    let space = |scaled: Vec<f64>| Space {
+        lambda: scaled.iter().zip(&sizes).map(|(scaled, size)| scaled / size).collect(),
+        largest: largest(&scaled),
+        scaled,
+    };
+    let spaces = null_space(rows, &gram, NOTHING).into_iter().map(space).collect();
     system.evaluate_again(x, t, &mut at);
     Some(Undetermined { system, spaces, at, x: x.to_vec() })
 }
@@ -75,7 +88,8 @@ impl<'s> Undetermined<'s> {
 
     /// The rows that take part in a redundancy: any one of the combination may be left out.
     pub fn rows(&self) -> Vec<usize> {
-        (0..self.system.constraints()).filter(|&row| self.spaces.iter().any(|space| space[row].abs() > SMALL * largest(space))).collect()
+        let takes_part = |row: &usize| self.spaces.iter().any(|space| space.scaled[*row].abs() > SMALL * space.largest);
+        (0..self.system.constraints()).filter(takes_part).collect()
     }
 
     /// Whether the components of force (3) and moment about a place (3) of some rows on some nodes (points or directions)
@@ -83,8 +97,8 @@ impl<'s> Undetermined<'s> {
     pub fn are_unique(&self, rows: &Range<usize>, nodes: &[(NodeId, bool)], about: [f64; 3]) -> [bool; 6] {
         let (mut unique, length) = ([true; 6], extent(self.system));
         for space in &self.spaces {
-            let (force, moment) = wrench(self.system, rows.clone(), space, &self.at.gradient, nodes, about, &self.x);
-            let scale = SMALL * largest(space);
+            let (force, moment) = wrench(self.system, rows.clone(), &space.lambda, &self.at.gradient, nodes, about, &self.x);
+            let scale = SMALL * space.largest;
             for c in 0..3 {
                 unique[c] &= force[c].abs() <= scale;
                 unique[3 + c] &= moment[c].abs() <= scale * length;
@@ -96,7 +110,3 @@ impl<'s> Undetermined<'s> {
 
 /// Share of a combination that is round-off.
 const SMALL: f64 = 1e-6;
-
-fn largest(space: &[f64]) -> f64 {
-    space.iter().fold(0.0, |m: f64, v| m.max(v.abs()))
-}
