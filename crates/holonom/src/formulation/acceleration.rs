@@ -12,6 +12,7 @@ use super::iteration::Multipliers;
 use super::kkt::Block;
 use super::level::Level;
 use super::newton::Newton;
+use super::rank::RHO;
 use super::workspace::Workspace;
 use crate::linalg::largest;
 use crate::system::System;
@@ -27,6 +28,10 @@ const MOST: usize = 15;
 /// What is missed is added where it is more than this share of accelerations and of multipliers, and where a pass leaves less of it than this.
 const MATTERS: f64 = 1e-11;
 const SLOWEST: f64 = 0.999;
+
+/// How many times smaller δ is where passes leave too much: rows that hardly differ add less than it does. What redundant rows make of round-off
+/// grows as much.
+const STIFFER: f64 = 1e3;
 
 /// Share of the multipliers that a pass adds where they grow without end, and what rows may be missed by, over the accelerations, where redundant
 /// ones differ from the others by what they are written with.
@@ -93,55 +98,18 @@ impl Newton {
         }
     }
 
-    /// Solves the system above at the evaluation of the end; with `penalty` as it stands, otherwise until δ no longer matters. Says whether all
-    /// rows are met: at a singular position no acceleration may do that.
+    /// Solves the system above at the evaluation of the end; with `penalty` as it stands, otherwise until δ no longer matters. Says whether
+    /// accelerations are known: at a singular position none may meet all rows.
     fn balance(&mut self, system: &System, t: f64, penalty: Option<f64>, work: &mut Workspace) -> Result<bool, Failure> {
-        let n = system.coordinates();
-        match penalty {
-            Some(alpha) => {
-                work.lambda.fill(0.0);
-                self.delta.fill(1.0 / alpha);
-            }
-            None => self.proximal(1.0, None, &work.scales),
-        }
-        work.sample_applied(system, t);
+        let Some(alpha) = penalty else { return meet(self, system, t, work) };
+        work.lambda.fill(0.0);
+        self.delta.fill(1.0 / alpha);
         self.assemble_inertia(work);
         self.factor(&work.scales)?;
-        work.a[..n].fill(0.0);
-        work.weigh_levels_at_rest(system, t, 1.0);
-        let passes = if penalty.is_some() { 1 } else { PASSES };
-        let (leaves, mut before) = (self.rank.proximal_leaves(), [f64::INFINITY; 2]);
-        let mut are_met = true;
-        for pass in 1..=MOST {
-            work.sum_reactions(system, &mut self.unknowns);
-            self.solve()?;
-            let (steps, multipliers) = self.unknowns.split_at(n);
-            work.a.iter_mut().zip(steps).for_each(|(a, step)| *a += step);
-            work.lambda.iter_mut().zip(multipliers).for_each(|(lambda, step)| *lambda += step);
-            let taken = [largest(steps), work.scaled_multipliers(multipliers.iter().copied())];
-            let whole = [largest(&work.a[..n]), work.scaled_multipliers(work.lambda.iter().copied())];
-            if (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(leaves) <= ROUNDED * whole[k]) {
-                break;
-            }
-            let share = taken[1] / before[1];
-            before = taken;
-            if pass % passes == 0 {
-                // Multipliers grow in each pass where rows ask for what the others do not leave.
-                if penalty.is_none() && share >= SLOWEST && taken[1] >= GROWS * whole[1] {
-                    are_met = work.misses(system) <= MISSED.max(FOLLOWS * work.strays(system, t));
-                }
-                let matters = (0..2).all(|k| taken[k] > MATTERS * whole[k]);
-                if penalty.is_some() || !matters || share.is_nan() || share >= SLOWEST {
-                    break;
-                }
-                let rest = share / (1.0 - share);
-                work.a.iter_mut().zip(steps).for_each(|(a, step)| *a += rest * step);
-                work.lambda.iter_mut().zip(multipliers).for_each(|(lambda, step)| *lambda += rest * step);
-                before = [f64::INFINITY; 2];
-            }
-        }
+        work.begin_pass(system, t);
+        pass(self, system, work)?;
         work.add_reactions(system);
-        Ok(are_met)
+        Ok(true)
     }
 
     /// M a = Q − αGᵀΦ (5).
@@ -165,12 +133,126 @@ impl Newton {
     }
 }
 
+/// The matrix above.
+pub(super) trait LinearSystem {
+    /// Factors it at the evaluation of the end with the proximal δ = (G M⁻¹ Gᵀ)/ρ. Hands back what share of the multipliers a solution may leave.
+    fn factor(&mut self, rho: f64, work: &Workspace) -> Result<f64, Failure>;
+
+    /// A right side of coordinates (n) and rows (r), or its solution.
+    fn unknowns(&mut self) -> &mut [f64];
+
+    /// Replaces the right side in the unknowns by the solution.
+    fn solve(&mut self, system: &System, work: &Workspace) -> Result<(), Failure>;
+}
+
+impl LinearSystem for Newton {
+    fn factor(&mut self, rho: f64, work: &Workspace) -> Result<f64, Failure> {
+        self.proximal(1.0, None, &work.scales);
+        self.delta.iter_mut().for_each(|delta| *delta *= RHO / rho);
+        self.assemble_inertia(work);
+        Self::factor(self, &work.scales)?;
+        Ok(self.rank.proximal_leaves())
+    }
+
+    fn unknowns(&mut self) -> &mut [f64] {
+        &mut self.unknowns
+    }
+
+    fn solve(&mut self, _: &System, _: &Workspace) -> Result<(), Failure> {
+        Self::solve(self)
+    }
+}
+
+/// Solves the system above until δ no longer matters. Says whether accelerations are known: at a singular position none may meet all rows.
+pub(super) fn meet(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
+    work.begin_pass(system, t);
+    let mut end = End::Slow;
+    for rho in [RHO, STIFFER * RHO] {
+        let leaves = matrix.factor(rho, work)?;
+        end = passes(matrix, leaves, system, work)?;
+        if end != End::Slow {
+            break;
+        }
+    }
+    work.add_reactions(system);
+    let follows = |work: &mut Workspace, strays| work.misses(system) <= MISSED.max(FOLLOWS * strays);
+    Ok(match end {
+        End::Met => true,
+        End::Grows => {
+            let strays = work.strays(system, t);
+            follows(work, strays)
+        }
+        End::Slow => {
+            let strays = work.strays(system, t);
+            strays > MISSED && follows(work, strays)
+        }
+    })
+}
+
+/// How passes end.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum End {
+    Met,
+    /// Multipliers grow in each pass, as rows ask for what the others do not leave.
+    Grows,
+    /// What is missed becomes less too slowly to be known.
+    Slow,
+}
+
+/// Passes with the factors at hand, of which a solution leaves so much of the multipliers.
+fn passes(matrix: &mut impl LinearSystem, leaves: f64, system: &System, work: &mut Workspace) -> Result<End, Failure> {
+    let mut before = [f64::INFINITY; 2];
+    for count in 1..=MOST {
+        let [taken, whole] = pass(matrix, system, work)?;
+        if (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(leaves) <= ROUNDED * whole[k]) {
+            return Ok(End::Met);
+        }
+        let share = taken[1] / before[1];
+        before = taken;
+        if count % PASSES == 0 {
+            let is_slow = share.is_nan() || share >= SLOWEST;
+            if (0..2).any(|k| taken[k] <= MATTERS * whole[k]) {
+                return Ok(if is_slow && taken[1] >= GROWS * whole[1] { End::Grows } else { End::Met });
+            }
+            if is_slow {
+                return Ok(End::Slow);
+            }
+            let rest = share / (1.0 - share);
+            let (steps, multipliers) = matrix.unknowns().split_at(system.coordinates());
+            work.a.iter_mut().zip(steps).for_each(|(a, step)| *a += rest * step);
+            work.lambda.iter_mut().zip(multipliers).for_each(|(lambda, step)| *lambda += rest * step);
+            before = [f64::INFINITY; 2];
+        }
+    }
+    Ok(End::Slow)
+}
+
+/// Solves for what accelerations and multipliers miss, and adds it: the largest of that, and of all there is then, of accelerations and of
+/// multipliers.
+fn pass(matrix: &mut impl LinearSystem, system: &System, work: &mut Workspace) -> Result<[[f64; 2]; 2], Failure> {
+    let n = system.coordinates();
+    work.sum_reactions(system, matrix.unknowns());
+    matrix.solve(system, work)?;
+    let (steps, multipliers) = matrix.unknowns().split_at(n);
+    work.a.iter_mut().zip(steps).for_each(|(a, step)| *a += step);
+    work.lambda.iter_mut().zip(multipliers).for_each(|(lambda, step)| *lambda += step);
+    let taken = [largest(steps), work.scaled_multipliers(multipliers.iter().copied())];
+    Ok([taken, [largest(&work.a[..n]), work.scaled_multipliers(work.lambda.iter().copied())]])
+}
+
 impl Workspace {
     /// Forces of the rows on all nodes, −Gᵀλ (D × nodes), N, at the evaluation of the end.
     pub fn constraint_forces(&self, system: &System, force: &mut [f64]) {
         force.fill(0.0);
         system.slots.add_forces(system.dim, &self.lambda, &self.end.at.gradient, force);
         force.iter_mut().for_each(|force| *force = -*force);
+    }
+
+    /// Samples forces and rows at the end, without accelerations.
+    fn begin_pass(&mut self, system: &System, t: f64) {
+        self.sample_applied(system, t);
+        self.a[..system.coordinates()].fill(0.0);
+        self.weigh_levels_at_rest(system, t, 1.0);
     }
 
     /// By how much the accelerations miss the rows, over the size of both.

@@ -149,7 +149,8 @@ pub(super) struct Augmented {
 const SOFT: f64 = 1e-6;
 
 impl Augmented {
-    fn add(&mut self, values: &mut [f64]) {
+    /// Adds the square to the part of the coordinates.
+    pub(super) fn add(&mut self, values: &mut [f64]) {
         let is_soft = -values[self.diagonal as usize] * self.weight > SOFT;
         for (kept, [_, column, _]) in self.column.iter_mut().zip(&self.entries) {
             *kept = if is_soft { 0.0 } else { values[*column as usize] };
@@ -159,6 +160,12 @@ impl Augmented {
                 values[pair as usize] += self.weight * column * values[*row as usize];
             }
         }
+    }
+
+    /// Adds to a right side what leaves the solution where it is.
+    pub(super) fn pull(&self, b: &mut [f64]) {
+        let pull = self.weight * b[self.row as usize];
+        self.entries.iter().zip(&self.column).for_each(|([q, ..], column)| b[*q as usize] += pull * column);
     }
 }
 
@@ -470,10 +477,7 @@ impl Kkt {
 
     /// Replaces a right side by the solution with the factors at hand.
     pub fn solve(&mut self, b: &mut [f64]) {
-        for row in &self.augmented {
-            let pull = row.weight * b[row.row as usize];
-            row.entries.iter().zip(&row.column).for_each(|([q, ..], column)| b[*q as usize] += pull * column);
-        }
+        self.augmented.iter().for_each(|row| row.pull(b));
         self.solver.solve(b);
     }
 

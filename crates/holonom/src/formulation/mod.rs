@@ -31,6 +31,7 @@ mod stage;
 mod sweep;
 mod table;
 mod terms;
+mod twists;
 mod velocity_rows;
 mod workspace;
 
@@ -47,4 +48,5 @@ pub use rank::{RHO, Rank};
 pub use stabilized::Stabilized;
 pub use stage::{RowsAt, Sampling, Stage};
 pub use table::{FORMULATIONS, Formulation};
+pub use twists::Twists;
 pub use workspace::{Moment, Workspace};

@@ -20,7 +20,7 @@ pub(super) const SINGULAR: u32 = 32;
 const SPARE: f64 = 1e-7;
 
 /// Where a row has δ of [`RHO`] or more it is redundant when its pivot, over its own stiffness, is smaller than this.
-const REDUNDANT: f64 = 1e-9;
+pub(super) const REDUNDANT: f64 = 1e-9;
 
 /// Smaller pivots, over the rows' own stiffness, are round-off in rows with hardly any δ.
 const ROUND_OFF: f64 = 100.0 * f64::EPSILON;

@@ -32,7 +32,9 @@ impl Model {
         }
         let is_whole = nodes.iter().all(|terms| !terms.is_empty());
         if is_whole {
-            self.channels.apart = Some((Apart::new(apart.system, nodes), apart.channels).into());
+            let nodes_of = |frame: &Frame| frame.nodes().into_iter().map(|(node, _)| node).collect();
+            let bodies = apart.frames.iter().filter(|frame| matches!(frame, Frame::Body { .. })).map(nodes_of).collect();
+            self.channels.apart = Some((Apart::new(apart.system, nodes, bodies), apart.channels).into());
         }
         is_whole
     }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::{Method, Simulation, State};
-use crate::formulation::{Newton, Workspace};
+use crate::formulation::{Newton, Twists, Workspace};
 use crate::system::{Evaluation, NodeId, Quantity, Sense, System, Term, place_of, rate_of};
 
 /// Forces of the constraints at a state, of the order of its positions and velocities.
@@ -32,14 +32,16 @@ pub struct Apart {
     system: Arc<System>,
     /// Each free node as a sum of the nodes of the other system.
     nodes: Arc<[Vec<Term>]>,
+    /// The nodes of each rigid body, in the order of the rows that keep them rigid.
+    bodies: Arc<[Vec<NodeId>]>,
 }
 
 impl Apart {
     /// # Panics
     /// When there is not one sum for each free node.
-    pub(crate) fn new(system: Arc<System>, nodes: Vec<Vec<Term>>) -> Self {
+    pub(crate) fn new(system: Arc<System>, nodes: Vec<Vec<Term>>, bodies: Vec<Vec<NodeId>>) -> Self {
         assert_eq!(nodes.len(), system.free, "a sum for each free node");
-        Self { system, nodes: nodes.into() }
+        Self { system, nodes: nodes.into(), bodies: bodies.into() }
     }
 
     /// The system with nodes of its own for each body.
@@ -82,24 +84,33 @@ pub(super) struct Elsewhere {
     pub apart: Apart,
     /// Places of the angles whose turns are counted, there and in the system that moves.
     counted: Vec<[Range<usize>; 2]>,
-    newton: Newton,
+    matrix: Matrix,
     work: Workspace,
+}
+
+/// The matrix of the system in which forces are found: in the twists of its bodies, or in the coordinates of all nodes.
+enum Matrix {
+    Twists(Box<Twists>),
+    Nodes(Box<Newton>),
 }
 
 impl Elsewhere {
     fn new(apart: Apart, own: &System, method: &Method) -> Self {
         let work = Workspace::new(&apart.system);
-        let newton = Newton::new(&apart.system, &work.scales, method.settings);
+        let matrix = match Twists::new(&apart.system, &work.scales, &apart.bodies) {
+            Some(twists) => Matrix::Twists(Box::new(twists)),
+            None => Matrix::Nodes(Box::new(Newton::new(&apart.system, &work.scales, method.settings))),
+        };
         let (mine, mut theirs) = (counted(&apart.system), counted(own));
         let alike = mine.into_iter().filter_map(|(of, mine)| Some((mine, theirs.remove(&of)?)));
         let alike = alike.filter(|(mine, theirs)| mine.len() == theirs.len());
         let pairs = alike.flat_map(|(mine, theirs)| mine.into_iter().zip(theirs).map(|(mine, theirs)| [mine, theirs]));
-        Self { counted: pairs.filter(|[mine, theirs]| mine.len() == theirs.len()).collect(), work, newton, apart }
+        Self { counted: pairs.filter(|[mine, theirs]| mine.len() == theirs.len()).collect(), work, matrix, apart }
     }
 
     /// Puts its nodes where those of `own` are and finds the forces.
     fn react(&mut self, own: &System, state: &State, v: &[f64], angles: &Evaluation, reactions: &mut Reactions) {
-        let Self { apart: Apart { system, nodes }, counted, newton, work } = self;
+        let Self { apart: Apart { system, nodes, .. }, counted, matrix, work } = self;
         let (dim, x) = (system.dim, own.in_world(&state.x));
         for (k, terms) in nodes.iter().enumerate() {
             let origin = if system.is_point[k] { system.origin } else { [0.0; 3] };
@@ -117,7 +128,10 @@ impl Elsewhere {
         system.evaluate_again(&work.end.x, state.t, &mut work.start.at);
         work.end.at.copy_from(&work.start.at);
         work.lambda.fill(0.0);
-        let outcome = newton.react_as_evaluated(system, state.t, work);
+        let outcome = match matrix {
+            Matrix::Twists(twists) => twists.react(system, state.t, work),
+            Matrix::Nodes(newton) => newton.react_as_evaluated(system, state.t, work),
+        };
         reactions.take(system, outcome == Ok(true), work);
     }
 }

@@ -1,0 +1,317 @@
+//! The matrix [M Gᵀ; G −δ] of a system whose rigid bodies have nodes of their own, in the twists of these (methods §17).
+//!
+//! Nodes of a rigid body move by B ξ + c: ξ are velocity of its first point and angular velocity, or their rates, and c is any motion that the rows
+//! which keep the body rigid ask for. Bᵀ leaves nothing of what these rows exert, so that
+//! ```text
+//! [ BᵀM B  BᵀGᵀ ] [ξ]     [ Bᵀ(f − M c) ]
+//! [ G B     −δ  ] [λ]  =  [   g − G c   ]
+//! ```
+//! has the rows between bodies alone: of a body in space 6 unknowns in place of 12 and 6 multipliers.
+
+use super::acceleration::{LinearSystem, meet};
+use super::failure::{Failure, Unknown};
+use super::kkt::Augmented;
+use super::level::Level;
+use super::rank::REDUNDANT;
+use super::workspace::Workspace;
+use crate::linalg::{Singular, Solver};
+use crate::system::{MassBlock, System};
+
+mod plan;
+
+/// How a free node moves with the unknowns.
+#[derive(Clone, Copy)]
+struct Motion {
+    /// First of the velocity that it has, which a direction of a body has not.
+    moves: Option<u32>,
+    /// First of the angular velocity that turns it about the first point of its body.
+    turns: Option<u32>,
+}
+
+/// A rigid body.
+struct Body {
+    /// Its nodes, the first of them a point.
+    nodes: Vec<usize>,
+    /// First of the rows that keep it rigid: products of its edges, each with itself and those after it.
+    inner: usize,
+    /// The blocks of its mass matrix (nodes × nodes).
+    mass: Vec<MassBlock>,
+    /// Where its block of the matrix is, by rows.
+    places: Vec<u32>,
+}
+
+/// The block of two nodes that are no body's.
+struct Lone {
+    mass: MassBlock,
+    /// By rows (D × D).
+    places: Vec<u32>,
+}
+
+/// What a row has in common with a velocity or an angular velocity.
+struct Touch {
+    /// Place of each component in the multiplier's column and in its row.
+    places: Vec<[u32; 2]>,
+}
+
+/// A node of a row between bodies.
+struct Slot {
+    slot: usize,
+    node: usize,
+    /// The row, by the system's rows.
+    row: usize,
+    /// With the velocity and the angular velocity that move the node.
+    touches: [Option<u32>; 2],
+}
+
+/// A row between bodies.
+struct Outer {
+    /// By the system's rows, and by the unknowns.
+    row: usize,
+    unknown: usize,
+    diagonal: u32,
+}
+
+/// The matrix, planned once.
+pub struct Twists {
+    dim: usize,
+    motions: Vec<Motion>,
+    bodies: Vec<Body>,
+    lone: Vec<Lone>,
+    touches: Vec<Touch>,
+    slots: Vec<Slot>,
+    outer: Vec<Outer>,
+    augmented: Vec<Augmented>,
+    solver: Solver,
+    /// From the first point of its body to each node, or along it (D × free nodes), m.
+    arms: Vec<f64>,
+    /// Gradients by the velocities and angular velocities of the touches.
+    gradients: Vec<[f64; 3]>,
+    /// The motion c of all nodes, and M c.
+    inner: Vec<f64>,
+    inertial: Vec<f64>,
+    reduced: Vec<f64>,
+    unknowns: Vec<f64>,
+}
+
+impl Twists {
+    /// Accelerations and multipliers at the end position and velocity of a workspace that has the evaluation there, as
+    /// [`Newton::react_as_evaluated`](super::Newton::react_as_evaluated) finds them; multipliers of the rows that keep bodies rigid stay zero.
+    pub fn react(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
+        let level = std::mem::replace(&mut work.level, Level::ACCELERATION);
+        let outcome = meet(self, system, t, work);
+        work.level = level;
+        outcome
+    }
+
+    /// The node or row whose pivot is none, where its numbers are such.
+    fn blame(&mut self, Singular { pivot }: Singular) -> Failure {
+        if self.solver.values_mut().iter().any(|value| !value.is_finite()) {
+            return Failure::NotFinite;
+        }
+        let is_moved = |motion: &Motion| {
+            [motion.moves, motion.turns].into_iter().flatten().any(|first| (first as usize..first as usize + 3).contains(&pivot))
+        };
+        Failure::Singular(match self.outer.iter().find(|outer| outer.unknown == pivot) {
+            Some(outer) => Unknown::Row(outer.row),
+            None => Unknown::Node(self.motions.iter().position(is_moved).unwrap_or(0)),
+        })
+    }
+}
+
+impl LinearSystem for Twists {
+    fn factor(&mut self, rho: f64, work: &Workspace) -> Result<f64, Failure> {
+        let dim = self.dim;
+        let values = self.solver.values_mut();
+        values.fill(0.0);
+        for body in &self.bodies {
+            let first = body.nodes[0] * dim;
+            for &node in &body.nodes[1..] {
+                let from = if self.motions[node].moves.is_some() { &work.end.x[first..first + dim] } else { &[0.0; 3][..dim] };
+                (0..dim).for_each(|c| self.arms[node * dim + c] = work.end.x[node * dim + c] - from[c]);
+            }
+            let block = body.inertia(dim, &self.motions, &self.arms);
+            let size = body.places.len().isqrt();
+            for (k, &place) in body.places.iter().enumerate() {
+                values[place as usize] += block[k / size][k % size];
+            }
+        }
+        for Lone { mass, places } in &self.lone {
+            for c in 0..dim {
+                values[places[c * dim + c] as usize] += mass.m;
+            }
+            if mass.s != 0.0 {
+                values[places[1] as usize] -= mass.s;
+                values[places[2] as usize] += mass.s;
+            }
+        }
+        self.gradients.fill([0.0; 3]);
+        for &Slot { slot, node, touches, .. } in &self.slots {
+            let gradient = &work.end.at.gradient[slot * dim..(slot + 1) * dim];
+            if let Some(touch) = touches[0] {
+                (0..dim).for_each(|c| self.gradients[touch as usize][c] += gradient[c]);
+            }
+            if let Some(touch) = touches[1] {
+                let moment = turned(&self.arms[node * dim..(node + 1) * dim], gradient);
+                (0..3).for_each(|c| self.gradients[touch as usize][c] += moment[c]);
+            }
+        }
+        for (touch, gradient) in self.touches.iter().zip(&self.gradients) {
+            for ([column, row], g) in touch.places.iter().zip(gradient) {
+                values[*column as usize] += g;
+                values[*row as usize] += g;
+            }
+        }
+        let softness = &work.scales.softness;
+        self.outer.iter().for_each(|outer| values[outer.diagonal as usize] -= softness[outer.row] / rho);
+        self.augmented.iter_mut().for_each(|row| row.add(values));
+        self.solver.factor().map_err(|singular| self.blame(singular))?;
+        let share = |outer: &Outer| (self.solver.pivot(outer.unknown) / softness[outer.row]) - 1.0 / rho;
+        let weakest = self.outer.iter().map(share).fold(1.0, f64::min);
+        Ok(if weakest > REDUNDANT { (1.0 / (rho * weakest)).min(1.0) } else { 1.0 })
+    }
+
+    fn unknowns(&mut self) -> &mut [f64] {
+        &mut self.unknowns
+    }
+
+    fn solve(&mut self, system: &System, work: &Workspace) -> Result<(), Failure> {
+        let dim = self.dim;
+        let Self { motions, bodies, slots, outer, augmented, solver, arms, inner, inertial, reduced, unknowns, .. } = self;
+        let (forces, rows) = unknowns.split_at_mut(motions.len() * dim);
+        bodies.iter().for_each(|body| body.keep_rigid(dim, motions, arms, rows, inner));
+        system.mass.times(dim, inner, inertial);
+        reduced.fill(0.0);
+        for (node, motion) in motions.iter().enumerate() {
+            let place = node * dim..(node + 1) * dim;
+            let mut force = [0.0; 3];
+            place.clone().enumerate().for_each(|(c, k)| force[c] = forces[k] - inertial[k]);
+            if let Some(first) = motion.moves {
+                (0..dim).for_each(|c| reduced[first as usize + c] += force[c]);
+            }
+            if let Some(first) = motion.turns {
+                let moment = turned(&arms[place], &force[..dim]);
+                reduced[first as usize..].iter_mut().zip(&moment[..turns(dim)]).for_each(|(sum, m)| *sum += m);
+            }
+        }
+        for &Slot { slot, node, row, .. } in &*slots {
+            let along: f64 = (0..dim).map(|c| work.end.at.gradient[slot * dim + c] * inner[node * dim + c]).sum();
+            rows[row] -= along;
+        }
+        outer.iter().for_each(|outer| reduced[outer.unknown] = rows[outer.row]);
+        augmented.iter().for_each(|row| row.pull(reduced));
+        solver.solve(reduced);
+        if !reduced.iter().all(|u| u.is_finite()) {
+            return Err(Failure::NotFinite);
+        }
+        for (node, motion) in motions.iter().enumerate() {
+            for c in 0..dim {
+                forces[node * dim + c] = inner[node * dim + c] + motion.moves.map_or(0.0, |first| reduced[first as usize + c]);
+            }
+            if let Some(first) = motion.turns {
+                let rate = carried(&reduced[first as usize..][..turns(dim)], &arms[node * dim..(node + 1) * dim]);
+                (0..dim).for_each(|c| forces[node * dim + c] += rate[c]);
+            }
+        }
+        rows.fill(0.0);
+        outer.iter().for_each(|outer| rows[outer.row] = reduced[outer.unknown]);
+        Ok(())
+    }
+}
+
+impl Body {
+    /// BᵀM B, by the velocity of the first point, then the angular velocity.
+    fn inertia(&self, dim: usize, motions: &[Motion], arms: &[f64]) -> [[f64; 6]; 6] {
+        let arm = |k: usize| &arms[self.nodes[k] * dim..(self.nodes[k] + 1) * dim];
+        // Mass, first moments and second ones.
+        let (mut mass, mut first, mut second) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
+        let count = self.nodes.len();
+        for (k, block) in self.mass.iter().enumerate() {
+            let (a, b) = (k / count, k % count);
+            if motions[self.nodes[a]].moves.is_some() {
+                mass += if motions[self.nodes[b]].moves.is_some() { block.m } else { 0.0 };
+                (0..dim).for_each(|c| first[c] += block.m * arm(b)[c]);
+                if dim == 2 {
+                    first[0] -= block.s * arm(b)[1];
+                    first[1] += block.s * arm(b)[0];
+                }
+            }
+            for c in 0..dim {
+                (0..dim).for_each(|d| second[c][d] += block.m * arm(a)[c] * arm(b)[d]);
+            }
+            if dim == 2 {
+                second[0][0] += block.s * (arm(a)[1] * arm(b)[0] - arm(a)[0] * arm(b)[1]);
+            }
+        }
+        let trace = second[0][0] + second[1][1] + second[2][2];
+        let mut matrix = [[0.0; 6]; 6];
+        (0..dim).for_each(|c| matrix[c][c] = mass);
+        if dim == 2 {
+            [matrix[0][2], matrix[1][2]] = [-first[1], first[0]];
+            matrix[2] = [-first[1], first[0], trace, 0.0, 0.0, 0.0];
+            return matrix;
+        }
+        for c in 0..3 {
+            let (i, j) = ((c + 1) % 3, (c + 2) % 3);
+            // ω × first moment.
+            (matrix[i][3 + j], matrix[3 + j][i]) = (first[c], first[c]);
+            (matrix[j][3 + i], matrix[3 + i][j]) = (-first[c], -first[c]);
+            for d in 0..3 {
+                // A rod does not turn about itself as far as its nodes show it.
+                matrix[3 + c][3 + d] = if c == d { trace } else { 0.0 } - if count > 2 { second[c][d] } else { 0.0 };
+            }
+        }
+        matrix
+    }
+
+    /// The motion of its edges that changes their products by what stands at the rows which keep it rigid: half of that along the edges that are
+    /// reciprocal to them.
+    fn keep_rigid(&self, dim: usize, motions: &[Motion], arms: &[f64], rows: &[f64], motion: &mut [f64]) {
+        let edges = self.nodes.len() - 1;
+        let mut products = nalgebra::Matrix3::<f64>::identity();
+        let arm = |k: usize| &arms[self.nodes[k + 1] * dim..(self.nodes[k + 1] + 1) * dim];
+        for i in 0..edges {
+            (0..edges).for_each(|j| products[(i, j)] = arm(i).iter().zip(arm(j)).map(|(a, b)| a * b).sum());
+        }
+        let inverse = products.try_inverse().unwrap_or_default();
+        let mut row = self.inner;
+        let mut change = nalgebra::Matrix3::<f64>::zeros();
+        for i in 0..edges {
+            for j in i..edges {
+                let asked = if i == j { rows[row] } else { 0.5 * rows[row] };
+                (change[(i, j)], change[(j, i)]) = (asked, asked);
+                row += 1;
+            }
+        }
+        let shares = change * inverse;
+        for i in 0..edges {
+            let out = self.nodes[i + 1] * dim;
+            for c in 0..dim {
+                motion[out + c] = (0..edges).map(|j| shares[(i, j)] * arm(j)[c]).sum();
+            }
+        }
+        debug_assert!(motions[self.nodes[0]].moves.is_some(), "the first node of a body is a point");
+    }
+}
+
+/// Numbers of an angular velocity.
+fn turns(dim: usize) -> usize {
+    if dim == 2 { 1 } else { 3 }
+}
+
+/// The moment of a force with an arm; in the plane its first component.
+fn turned(arm: &[f64], force: &[f64]) -> [f64; 3] {
+    match (arm, force) {
+        (&[x, y], &[fx, fy]) => [x * fy - y * fx, 0.0, 0.0],
+        (&[x, y, z], &[fx, fy, fz]) => [y * fz - z * fy, z * fx - x * fz, x * fy - y * fx],
+        _ => unreachable!("vectors of the plane or of space"),
+    }
+}
+
+/// The velocity of an arm that turns.
+fn carried(rate: &[f64], arm: &[f64]) -> [f64; 3] {
+    match (rate, arm) {
+        (&[w], &[x, y]) => [-w * y, w * x, 0.0],
+        (&[wx, wy, wz], &[x, y, z]) => [wy * z - wz * y, wz * x - wx * z, wx * y - wy * x],
+        _ => unreachable!("vectors of the plane or of space"),
+    }
+}

@@ -1,0 +1,245 @@
+//! Where everything of the matrix goes, and in what order it is eliminated.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use super::{Augmented, Body, Lone, Motion, Outer, Slot, Touch, Twists, turns};
+use crate::formulation::scales::Scales;
+use crate::linalg::{Plan, Solver, fill_reducing_order};
+use crate::system::{MassBlock, NodeId, Quantity, System};
+
+/// Neighbours from which on a body or node fills the matrix densely, as all rows of what hangs on it wait for it.
+const HUB: usize = 100;
+
+/// What products of edges may be off the rows that keep them, over their size.
+const SAME: f64 = 1e-9;
+
+/// What moves as one, a body or a node of none: its unknowns.
+type Carrier = Range<u32>;
+
+impl Twists {
+    /// Plans the matrix of a system with the nodes of its rigid bodies, each of which has its own, in the order of the rows that keep them rigid,
+    /// which come first. `None` where that is not so, and where one of them has so many neighbours that the rows at these should not wait for it.
+    pub fn new(system: &System, scales: &Scales, bodies: &[Vec<NodeId>]) -> Option<Self> {
+        let (dim, free) = (system.dim, system.free);
+        let (bodies, inner_rows) = rigid(system, bodies)?;
+        let mut motions = vec![Motion { moves: None, turns: None }; free];
+        let (mut carriers, mut carrier_of) = (Vec::<Carrier>::new(), vec![usize::MAX; free]);
+        let mut end = 0;
+        let mut take = |count: usize| {
+            end += count as u32;
+            end - count as u32
+        };
+        for body in &bodies {
+            let [moves, turning] = [take(dim), take(turns(dim))];
+            for (k, &node) in body.nodes.iter().enumerate() {
+                carrier_of[node] = carriers.len();
+                motions[node] = Motion { moves: system.is_point[node].then_some(moves), turns: (k > 0).then_some(turning) };
+            }
+            carriers.push(moves..turning + turns(dim) as u32);
+        }
+        for node in 0..free {
+            if carrier_of[node] == usize::MAX {
+                let moves = take(dim);
+                carrier_of[node] = carriers.len();
+                motions[node] = Motion { moves: Some(moves), turns: None };
+                carriers.push(moves..moves + dim as u32);
+            }
+        }
+        let coordinates = end;
+        let outer: Vec<usize> = (inner_rows..system.constraints()).collect();
+        let nodes_of = |row: usize| {
+            system.slots.rows[row].clone().map(|slot| (slot, system.slots.nodes[slot] as usize)).filter(|&(_, node)| node < free)
+        };
+        let lone: Vec<(usize, usize, MassBlock)> = (0..free)
+            .filter(|&node| carrier_of[node] >= bodies.len())
+            .flat_map(|a| system.mass.row(a).filter(|&(b, _)| b < free).map(move |(b, block)| (a, b, block)))
+            .collect();
+        let mut edges: Vec<(u32, u32)> = lone.iter().map(|&(a, b, _)| (carrier_of[a] as u32, carrier_of[b] as u32)).collect();
+        let mut carriers_of: Vec<Vec<u32>> = Vec::with_capacity(outer.len());
+        for &row in &outer {
+            let mut own: Vec<u32> = nodes_of(row).map(|(_, node)| carrier_of[node] as u32).collect();
+            own.sort_unstable();
+            own.dedup();
+            for &a in &own {
+                edges.extend(own.iter().map(|&b| (a, b)));
+            }
+            carriers_of.push(own);
+        }
+        edges.retain(|(a, b)| a < b);
+        edges.sort_unstable();
+        edges.dedup();
+        let mut neighbours = vec![0; carriers.len()];
+        edges.iter().flat_map(|&(a, b)| [a, b]).for_each(|carrier| neighbours[carrier as usize] += 1);
+        if neighbours.iter().any(|&count| count >= HUB) {
+            return None;
+        }
+        let order = elimination_order(&carriers, &edges, &carriers_of, coordinates);
+        // A row touches velocities and angular velocities.
+        let (mut touched, mut slots) = (BTreeMap::<(usize, u32), u32>::new(), Vec::new());
+        for &row in &outer {
+            for (slot, node) in nodes_of(row) {
+                let touches = [motions[node].moves, motions[node].turns].map(|first| {
+                    let next = touched.len() as u32;
+                    first.map(|first| *touched.entry((row, first)).or_insert(next))
+                });
+                slots.push(Slot { slot, node, row, touches });
+            }
+        }
+        let mut of_touches: Vec<(usize, u32)> = vec![(0, 0); touched.len()];
+        touched.iter().for_each(|(&key, &touch)| of_touches[touch as usize] = key);
+        let mut is_turn = vec![false; coordinates as usize];
+        motions.iter().filter_map(|motion| motion.turns).for_each(|first| is_turn[first as usize] = true);
+        let width = |first: u32| if is_turn[first as usize] { turns(dim) as u32 } else { dim as u32 };
+        let multiplier = |row: usize| coordinates + (row - inner_rows) as u32;
+        let mut entries: Vec<(u32, u32)> = Vec::new();
+        let square = |all: &[u32], entries: &mut Vec<(u32, u32)>| all.iter().for_each(|&a| entries.extend(all.iter().map(|&b| (a, b))));
+        carriers.iter().for_each(|carrier| square(&carrier.clone().collect::<Vec<_>>(), &mut entries));
+        let block = |a: usize, b: usize| {
+            let [a, b] = [a, b].map(|node| motions[node].moves.expect("it is no body's"));
+            (0..dim as u32).flat_map(move |c| (0..dim as u32).map(move |d| (a + c, b + d)))
+        };
+        lone.iter().for_each(|&(a, b, _)| entries.extend(block(a, b)));
+        for &(row, first) in &of_touches {
+            entries.extend((first..first + width(first)).flat_map(|q| [(q, multiplier(row)), (multiplier(row), q)]));
+        }
+        let light: Vec<usize> = outer.iter().copied().filter(|&row| scales.has_light[row]).collect();
+        let coordinates_of = |row: usize| -> Vec<u32> {
+            let own = touched.range((row, 0)..(row + 1, 0));
+            own.flat_map(|(&(_, first), _)| first..first + width(first)).collect()
+        };
+        light.iter().for_each(|&row| square(&coordinates_of(row), &mut entries));
+        entries.extend(outer.iter().map(|&row| (multiplier(row), multiplier(row))));
+        let size = coordinates as usize + outer.len();
+        let plan = Plan::new(&system.plans, size, &entries, &order);
+        drop(entries);
+        let places = plan.places();
+        let at = |row: u32, column: u32| places.position(row as usize, column as usize);
+        let augmented = light.iter().map(|&row| {
+            let own = coordinates_of(row);
+            Augmented {
+                weight: 1.0 / scales.softness[row],
+                row: multiplier(row),
+                diagonal: at(multiplier(row), multiplier(row)),
+                pairs: own.iter().flat_map(|&a| own.iter().map(move |&b| (a, b))).map(|(a, b)| at(a, b)).collect(),
+                column: vec![0.0; own.len()],
+                entries: own.iter().map(|&q| [q, at(q, multiplier(row)), at(multiplier(row), q)]).collect(),
+            }
+        });
+        let mut twists = Self {
+            dim,
+            augmented: augmented.collect(),
+            touches: of_touches
+                .iter()
+                .map(|&(row, first)| Touch {
+                    places: (first..first + width(first)).map(|q| [at(q, multiplier(row)), at(multiplier(row), q)]).collect(),
+                })
+                .collect(),
+            lone: lone.iter().map(|&(a, b, mass)| Lone { mass, places: block(a, b).map(|(a, b)| at(a, b)).collect() }).collect(),
+            bodies: bodies
+                .into_iter()
+                .zip(&carriers)
+                .map(|(body, own)| Body {
+                    places: own.clone().flat_map(|a| own.clone().map(move |b| (a, b))).map(|(a, b)| at(a, b)).collect(),
+                    ..body
+                })
+                .collect(),
+            outer: outer
+                .iter()
+                .map(|&row| Outer { row, unknown: multiplier(row) as usize, diagonal: at(multiplier(row), multiplier(row)) })
+                .collect(),
+            gradients: vec![[0.0; 3]; of_touches.len()],
+            slots,
+            solver: Solver::new(plan.clone()),
+            arms: vec![0.0; free * dim],
+            inner: vec![0.0; system.nodes() * dim],
+            inertial: vec![0.0; free * dim],
+            reduced: vec![0.0; size],
+            unknowns: vec![0.0; system.coordinates() + system.constraints()],
+            motions,
+        };
+        twists.set_units(system, scales);
+        Some(twists)
+    }
+
+    /// Rows of the matrix are compared by the roots of masses and of moments of inertia, and of what multipliers move.
+    fn set_units(&mut self, system: &System, scales: &Scales) {
+        let mut units = vec![f64::INFINITY; self.reduced.len()];
+        let mut lower = |first: u32, count: usize, unit: f64| {
+            units[first as usize..][..count].iter_mut().for_each(|own| *own = own.min(unit));
+        };
+        let x = |node: usize| &system.start_position[node * self.dim..(node + 1) * self.dim];
+        for (motion, held) in self.motions.iter().zip(&scales.held) {
+            if let Some(first) = motion.moves {
+                lower(first, self.dim, held.sqrt());
+            }
+        }
+        for body in &self.bodies {
+            for &node in &body.nodes[1..] {
+                let Motion { moves, turns: Some(first) } = self.motions[node] else { continue };
+                let from = if moves.is_some() { x(body.nodes[0]) } else { &[0.0; 3][..self.dim] };
+                let length = x(node).iter().zip(from).map(|(x, from)| (x - from).powi(2)).sum::<f64>().sqrt();
+                lower(first, turns(self.dim), scales.held[node].sqrt() / length);
+            }
+        }
+        self.outer.iter().for_each(|outer| units[outer.unknown] = 1.0 / scales.softness[outer.row].sqrt());
+        self.solver.set_units(&units);
+    }
+}
+
+/// The bodies, still without places in the matrix, and the number of rows that keep them rigid.
+fn rigid(system: &System, bodies: &[Vec<NodeId>]) -> Option<(Vec<Body>, usize)> {
+    let (dim, x) = (system.dim, &system.start_position);
+    let mut at = system.evaluation();
+    system.evaluate_again(x, 0.0, &mut at);
+    let (mut taken, mut row, mut found) = (vec![false; system.free], 0, Vec::new());
+    for nodes in bodies {
+        let nodes: Vec<usize> = nodes.iter().map(|node| node.index()).collect();
+        let is_own = nodes.iter().all(|&node| node < system.free && !std::mem::replace(&mut taken[node], true));
+        let moves_alone = |node: &usize| system.mass.row(*node).all(|(other, _)| nodes.contains(&other));
+        if !is_own || !(2..=4).contains(&nodes.len()) || !system.is_point[nodes[0]] || !nodes.iter().all(moves_alone) {
+            return None;
+        }
+        let edge = |k: usize, c: usize| {
+            let node = nodes[k + 1];
+            x[node * dim + c] - if system.is_point[node] { x[nodes[0] * dim + c] } else { 0.0 }
+        };
+        let inner = row;
+        for i in 0..nodes.len() - 1 {
+            for j in i..nodes.len() - 1 {
+                let product: f64 = (0..dim).map(|c| edge(i, c) * edge(j, c)).sum();
+                let lengths: f64 = [i, j].map(|k| (0..dim).map(|c| edge(k, c).powi(2)).sum::<f64>().sqrt()).iter().product();
+                let expected = if i == j { 0.5 * product } else { product };
+                let own = system.rows.get(row).filter(|own| own.is_constant())?;
+                let Quantity::Invariant(id) = own.quantity else { return None };
+                let is_own = system.slots.rows[row].clone().all(|slot| nodes.contains(&(system.slots.nodes[slot] as usize)));
+                if !is_own || (at.value[id.0 as usize] - expected).abs() > SAME * lengths {
+                    return None;
+                }
+                row += 1;
+            }
+        }
+        let block =
+            |a: usize, b: usize| system.mass.row(a).find(|&(other, _)| other == b).map_or(MassBlock { m: 0.0, s: 0.0 }, |(_, block)| block);
+        let mass = nodes.iter().flat_map(|&a| nodes.iter().map(move |&b| (a, b))).map(|(a, b)| block(a, b)).collect();
+        found.push(Body { nodes, inner, mass, places: Vec::new() });
+    }
+    Some((found, row))
+}
+
+/// Bodies and nodes by least fill-in, each row right after the last of its own.
+fn elimination_order(carriers: &[Carrier], edges: &[(u32, u32)], carriers_of: &[Vec<u32>], coordinates: u32) -> Vec<u32> {
+    let order = fill_reducing_order(carriers.len(), edges);
+    let mut place = vec![0; carriers.len()];
+    order.iter().enumerate().for_each(|(k, &carrier)| place[carrier as usize] = k);
+    let mut rows_after = vec![Vec::new(); carriers.len() + 1];
+    for (row, own) in (coordinates..).zip(carriers_of) {
+        let last = own.iter().map(|&carrier| place[carrier as usize] + 1).max().unwrap_or(0);
+        rows_after[last].push(row);
+    }
+    let mut unknowns = std::mem::take(&mut rows_after[0]);
+    for (&carrier, rows) in order.iter().zip(&rows_after[1..]) {
+        unknowns.extend(carriers[carrier as usize].clone().chain(rows.iter().copied()));
+    }
+    unknowns
+}
