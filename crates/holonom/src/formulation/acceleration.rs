@@ -33,6 +33,9 @@ const SLOWEST: f64 = 0.999;
 /// grows as much.
 const STIFFER: f64 = 1e3;
 
+/// Share of the accelerations that may be left open.
+const KNOWN: f64 = 1e-3;
+
 /// Share of the multipliers that a pass adds where they grow without end, and what rows may be missed by, over the accelerations, where redundant
 /// ones differ from the others by what they are written with.
 const GROWS: f64 = 0.01;
@@ -81,10 +84,7 @@ impl Newton {
 
     /// The same where the workspace has the evaluation at the end position.
     pub fn react_as_evaluated(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
-        let level = std::mem::replace(&mut work.level, Level::ACCELERATION);
-        let outcome = self.balance(system, t, None, work);
-        work.level = level;
-        outcome
+        react(self, system, t, work)
     }
 
     /// Accelerations and multipliers at the end position and velocity by the formulation itself, which must be one that
@@ -164,29 +164,76 @@ impl LinearSystem for Newton {
 }
 
 /// Solves the system above until δ no longer matters. Says whether accelerations are known: at a singular position none may meet all rows.
-pub(super) fn meet(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
-    work.begin_pass(system, t);
-    let mut end = End::Slow;
-    for rho in [RHO, STIFFER * RHO] {
-        let leaves = matrix.factor(rho, work)?;
-        end = passes(matrix, leaves, system, work)?;
-        if end != End::Slow {
-            break;
-        }
+fn meet(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
+    let pushed = work.begin_pass(system, t);
+    let leaves = matrix.factor(RHO, work)?;
+    let mut end = passes(matrix, Passes { leaves, pushed, most: MOST }, system, work)?;
+    if end == End::Slow {
+        let leaves = matrix.factor(STIFFER * RHO, work)?;
+        end = passes(matrix, Passes { leaves, pushed, most: MOST }, system, work)?;
     }
+    Ok(is_met(end, system, t, work))
+}
+
+/// The same for forces that are to be trusted. Near a singular position accelerations are known where they are the same, but for little, at another
+/// place that meets the rows as well as numbers can, with the velocities that belong to it.
+pub(super) fn react(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
+    let level = std::mem::replace(&mut work.level, Level::ACCELERATION);
+    let outcome = react_at_level(matrix, system, t, work);
+    work.level = level;
+    outcome
+}
+
+fn react_at_level(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
+    let pushed = work.begin_pass(system, t);
+    let leaves = matrix.factor(RHO, work)?;
+    let end = passes(matrix, Passes { leaves, pushed, most: PASSES }, system, work)?;
+    if end != End::Slow {
+        return Ok(is_met(end, system, t, work));
+    }
+    let leaves = matrix.factor(STIFFER * RHO, work)?;
+    let n = system.coordinates();
+    let (x, v, at) = (work.end.x.clone(), work.end.v.clone(), work.end.at.clone());
+    work.miss_by_rounding(system, t);
+    let change = correction(matrix, system, work)?;
+    work.end.x.iter_mut().zip(change).for_each(|(x, change)| *x += change);
+    system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
+    for _ in 0..PASSES {
+        work.rate_violation(system, t);
+        let change = correction(matrix, system, work)?;
+        work.end.v.iter_mut().zip(change).for_each(|(v, change)| *v += change);
+    }
+    let mut solve = |work: &mut Workspace| {
+        let pushed = work.begin_pass(system, t);
+        work.lambda.fill(0.0);
+        passes(matrix, Passes { leaves, pushed, most: MOST }, system, work)
+    };
+    solve(work)?;
+    let others = work.a[..n].to_vec();
+    (work.end.x, work.end.v, work.end.at) = (x, v, at);
+    let end = solve(work)?;
+    let differs = work.a[..n].iter().zip(&others).fold(0.0, |m: f64, (a, other)| m.max((a - other).abs()));
+    let is_sure = differs <= KNOWN * largest(&work.a[..n]).max(pushed) || work.strays(system, t) > MISSED;
+    Ok(is_met(end, system, t, work) && is_sure)
+}
+
+/// Whether accelerations are known where passes ended so; adds their forces.
+fn is_met(end: End, system: &System, t: f64, work: &mut Workspace) -> bool {
     work.add_reactions(system);
-    let follows = |work: &mut Workspace, strays| work.misses(system) <= MISSED.max(FOLLOWS * strays);
-    Ok(match end {
-        End::Met => true,
-        End::Grows => {
-            let strays = work.strays(system, t);
-            follows(work, strays)
-        }
-        End::Slow => {
-            let strays = work.strays(system, t);
-            strays > MISSED && follows(work, strays)
-        }
-    })
+    if end == End::Met {
+        return true;
+    }
+    let strays = work.strays(system, t);
+    (end == End::Grows || strays > MISSED) && work.misses(system) <= MISSED.max(FOLLOWS * strays)
+}
+
+/// The smallest change of the coordinates (n), in the metric of the mass, that takes back what stands in `rows`.
+fn correction<'m>(matrix: &'m mut impl LinearSystem, system: &System, work: &Workspace) -> Result<&'m [f64], Failure> {
+    let (change, rows) = matrix.unknowns().split_at_mut(system.coordinates());
+    change.fill(0.0);
+    rows.iter_mut().zip(&work.rows).for_each(|(row, by)| *row = -by);
+    matrix.solve(system, work)?;
+    Ok(&matrix.unknowns()[..system.coordinates()])
 }
 
 /// How passes end.
@@ -199,19 +246,30 @@ enum End {
     Slow,
 }
 
-/// Passes with the factors at hand, of which a solution leaves so much of the multipliers.
-fn passes(matrix: &mut impl LinearSystem, leaves: f64, system: &System, work: &mut Workspace) -> Result<End, Failure> {
+/// Passes with the factors at hand.
+#[derive(Clone, Copy)]
+struct Passes {
+    /// What share of the multipliers a solution leaves.
+    leaves: f64,
+    /// How fast forces but those of the rows would make what they push most, m/s²: what is little beside it is round-off where nothing moves.
+    pushed: f64,
+    /// How many there may be.
+    most: usize,
+}
+
+fn passes(matrix: &mut impl LinearSystem, of: Passes, system: &System, work: &mut Workspace) -> Result<End, Failure> {
     let mut before = [f64::INFINITY; 2];
-    for count in 1..=MOST {
+    for count in 1..=of.most {
         let [taken, whole] = pass(matrix, system, work)?;
-        if (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(leaves) <= ROUNDED * whole[k]) {
+        if (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(of.leaves) <= ROUNDED * whole[k]) {
             return Ok(End::Met);
         }
         let share = taken[1] / before[1];
         before = taken;
         if count % PASSES == 0 {
             let is_slow = share.is_nan() || share >= SLOWEST;
-            if (0..2).any(|k| taken[k] <= MATTERS * whole[k]) {
+            let matters = [whole[0].max(of.pushed), whole[1]];
+            if (0..2).any(|k| taken[k] <= MATTERS * matters[k]) {
                 return Ok(if is_slow && taken[1] >= GROWS * whole[1] { End::Grows } else { End::Met });
             }
             if is_slow {
@@ -248,11 +306,25 @@ impl Workspace {
         force.iter_mut().for_each(|force| *force = -*force);
     }
 
-    /// Samples forces and rows at the end, without accelerations.
-    fn begin_pass(&mut self, system: &System, t: f64) {
+    /// Samples forces and rows at the end, without accelerations. Hands back how fast the forces would make the node that they push most, m/s²,
+    /// where light ones weigh as what holds them.
+    fn begin_pass(&mut self, system: &System, t: f64) -> f64 {
         self.sample_applied(system, t);
         self.a[..system.coordinates()].fill(0.0);
         self.weigh_levels_at_rest(system, t, 1.0);
+        let nodes = self.forces.sum.chunks_exact(system.dim).zip(&self.scales.held);
+        nodes.map(|(force, held)| held * largest(force)).fold(0.0, f64::max)
+    }
+
+    /// Leaves the violation of the rows, and as much more or less as rounding leaves of places, in `rows`.
+    fn miss_by_rounding(&mut self, system: &System, t: f64) {
+        let Self { end, scales, rows, .. } = self;
+        system.constraint_values(&end.at, t, rows);
+        for (k, (row, gradient)) in rows.iter_mut().zip(&scales.gradient).enumerate() {
+            // No combination of rows is left out by the same signs in turn.
+            let sign = if k.is_power_of_two() { -1.0 } else { 1.0 };
+            *row += sign * f64::EPSILON * gradient * scales.length;
+        }
     }
 
     /// By how much the accelerations miss the rows, over the size of both.

@@ -8,10 +8,9 @@
 //! ```
 //! has the rows between bodies alone: of a body in space 6 unknowns in place of 12 and 6 multipliers.
 
-use super::acceleration::{LinearSystem, meet};
+use super::acceleration::{LinearSystem, react};
 use super::failure::{Failure, Unknown};
 use super::kkt::Augmented;
-use super::level::Level;
 use super::rank::REDUNDANT;
 use super::workspace::Workspace;
 use crate::linalg::{Singular, Solver};
@@ -97,10 +96,7 @@ impl Twists {
     /// Accelerations and multipliers at the end position and velocity of a workspace that has the evaluation there, as
     /// [`Newton::react_as_evaluated`](super::Newton::react_as_evaluated) finds them; multipliers of the rows that keep bodies rigid stay zero.
     pub fn react(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
-        let level = std::mem::replace(&mut work.level, Level::ACCELERATION);
-        let outcome = meet(self, system, t, work);
-        work.level = level;
-        outcome
+        react(self, system, t, work)
     }
 
     /// The node or row whose pivot is none, where its numbers are such.
@@ -165,7 +161,7 @@ impl LinearSystem for Twists {
         self.outer.iter().for_each(|outer| values[outer.diagonal as usize] -= softness[outer.row] / rho);
         self.augmented.iter_mut().for_each(|row| row.add(values));
         self.solver.factor().map_err(|singular| self.blame(singular))?;
-        let share = |outer: &Outer| (self.solver.pivot(outer.unknown) / softness[outer.row]) - 1.0 / rho;
+        let share = |outer: &Outer| self.solver.pivot(outer.unknown) / softness[outer.row] - 1.0 / rho;
         let weakest = self.outer.iter().map(share).fold(1.0, f64::min);
         Ok(if weakest > REDUNDANT { (1.0 / (rho * weakest)).min(1.0) } else { 1.0 })
     }
