@@ -189,7 +189,7 @@ impl Simulation {
                 pilot.control.step = planned;
             }
             if !self.pass_switch(pilot) && has_bend {
-                self.pass_bend(&pilot.sight, step);
+                self.pass_bend(pilot, step);
                 self.turn(pilot);
             }
             return Ok(true);
@@ -198,7 +198,7 @@ impl Simulation {
         self.audit.reject(&self.newton);
         match landing {
             Landing::AtOnce { again } => {
-                self.pass_bend(&pilot.sight, step);
+                self.pass_bend(pilot, step);
                 self.begin_anew();
                 // Several bends at one place ask once.
                 if again || !pilot.control.begins() {

@@ -200,6 +200,18 @@ impl Audit {
         self.power = energy::power(system, state.t, &state.v, &state.a, work);
     }
 
+    /// Goes on from a state a little later, which no step led to and at which `work` has the evaluation of its start: forces that do work have done
+    /// what the energy has changed by.
+    pub(super) fn move_on(&mut self, system: &System, state: &State, work: &mut Workspace) {
+        system.constraint_values(&work.start.at, state.t, &mut work.phi);
+        let penalty = self.penalty.map(|alpha| (alpha, work.phi.as_slice()));
+        let potential = energy::potential(system, &work.forces.weight, &state.x, &work.start.at, penalty);
+        let kinetic = energy::kinetic(system, &state.v);
+        let change = (kinetic - self.kinetic) + (potential - self.potential);
+        *(if work.is_worked_on() { &mut self.work } else { &mut self.integrator_total }) += change;
+        (self.kinetic, self.potential) = (kinetic, potential);
+    }
+
     /// Books a step that was taken back, and the iterations that it took.
     pub(super) fn reject(&mut self, newton: &Newton) {
         self.rejected += 1;

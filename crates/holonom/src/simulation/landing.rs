@@ -135,23 +135,30 @@ impl Simulation {
     }
 
     /// Goes on to just behind the bends that a step of length `step` (s) has ended before, so that forces are those of what follows also where the
-    /// next begins. The conserving schemes, which ask for the forces between, stay where the energy is what it was.
-    pub(super) fn pass_bend(&mut self, sight: &Sight, step: f64) {
+    /// next begins, with the velocities that belong there, and those that errors are estimated from. The conserving schemes, which ask for the
+    /// forces between, stay where the energy is what it was.
+    pub(super) fn pass_bend(&mut self, pilot: &mut Pilot, step: f64) {
         if self.method.integrator.conserves {
             return;
         }
+        let sight = &pilot.sight;
         let reached = |hop: &f64| {
             let ahead = self.system.bends(&sight.seen.ahead(*hop)).corners;
             (0..ahead.len()).all(|bend| !sight.reached[bend] || (sight.corners[bend] > 0.0) == (ahead[bend] > 0.0))
         };
         let mut hops = std::iter::successors(Some(LOCATED * step), |hop| Some(2.0 * hop)).take_while(|hop| *hop <= SHORTEST * step);
         let Some(hop) = hops.find(reached) else { return };
-        let Self { system, state, work, gauges, .. } = self;
-        state.x.iter_mut().zip(&self.shown_v).for_each(|(x, v)| *x += hop * v);
+        self.begin_anew();
+        let Self { system, state, shown_v, work, gauges, audit, .. } = self;
+        state.x.iter_mut().zip(&*shown_v).for_each(|(x, v)| *x += hop * v);
+        for v in [&mut state.v, shown_v, &mut pilot.v] {
+            v.iter_mut().zip(&state.a).for_each(|(v, a)| *v += hop * a);
+        }
         state.t += hop;
         system.place_known(state.t, &mut state.x, &mut work.end.v, &mut work.a);
         system.evaluate_again(&state.x, state.t, &mut work.start.at);
-        system.measure(&state.x, &self.shown_v, gauges);
+        audit.move_on(system, state, work);
+        system.measure(&state.x, shown_v, gauges);
         state.measured.copy_from_slice(gauges.counted());
     }
 
