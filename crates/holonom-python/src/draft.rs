@@ -18,6 +18,9 @@ use crate::value;
 /// Sections of entries whose names are unique among all of them.
 const NAMED: [&str; 11] = ["table", "input", "point", "body", "bar", "joint", "constraint", "drive", "force", "measure", "event"];
 
+/// The section whose keys are names that people choose.
+const PARAMETERS: &str = "parameters";
+
 /// What a pickled draft is made of: name, text, changed description as text, folder, functions, lines.
 pub type Parts = (String, Option<String>, Option<String>, Option<PathBuf>, HashMap<String, Py<PyAny>>, HashMap<String, String>);
 
@@ -73,11 +76,12 @@ impl Draft {
     fn read(&self, path: &str, keys: &Bound<'_, PyDict>) -> Result<Table, Fault> {
         let is_entry = |section: &str, name: &str| self.section(section).is_some_and(|entries| entries.get(name).is_some());
         let mut table = Table::default();
+        let are_parameters = path == PARAMETERS;
         for (key, given) in keys {
-            // A keyword of Python has an underscore behind it; what is None is not given.
+            // A keyword of Python has an underscore behind it, and what is None is not given; a parameter is called as it is written.
             let key: String = key.extract().map_err(|_| Fault::new(path, "", "a keyword is no text", ""))?;
-            let key = key.strip_suffix('_').unwrap_or(&key);
-            if !given.is_none() {
+            let key = key.strip_suffix('_').filter(|_| !are_parameters).unwrap_or(&key);
+            if are_parameters || !given.is_none() {
                 table.set(key, value::read(&key_path(path, key), &given, &is_entry)?);
             }
         }

@@ -134,3 +134,11 @@ def test_repeated_entries_have_columns_each():
     p = m.point("p", repeat="i = 0 to 3", mass=1, position=["i", 0, 0])
     run = m.simulate(end=0.1, step=0.01)
     assert [run[p[k]].position[0, 0] for k in range(4)] == [0, 1, 2, 3]
+
+
+def test_a_parameter_is_called_as_it_is_written():
+    m = hm.Model(gravity=[0, 0, 0])
+    names = [m.parameter("k", 1000), m.parameter("k_", 5), m.parameter("_", 2)]
+    assert [m.get(f"parameters.{name}") for name in names] == [1000, 5, 2]
+    m.point("p", mass="k", position=["k_", "_", 0])
+    assert m.simulate(end=0.1, step=0.1)["p.x"][0] == 5

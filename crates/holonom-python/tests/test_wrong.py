@@ -54,6 +54,7 @@ CALLS = {
     "pair where there is none": (lambda b: b.m.torsion("t", "ground", b.door), ["2 positional", "keyword"]),
     "kind is misspelt": (lambda b: b.m.revolut("r"), ["revolut"]),
     # Types
+    "parameter is None": (lambda b: b.m.parameter("L", None), ["`parameters.L`", "NoneType", "give a number"]),
     "mass is a list": (lambda b: b.m.point("p", mass=[1], position=[0, 0, 0]), ["`mass`", "a list", "number"]),
     "mass is an object": (lambda b: b.m.point("p", mass=object(), position=[0, 0, 0]), ["mass`", "object", "give a number"]),
     "mass is complex": (lambda b: b.m.point("p", mass=1j, position=[0, 0, 0]), ["mass`", "complex", "give a number"]),
