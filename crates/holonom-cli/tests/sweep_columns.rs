@@ -265,6 +265,22 @@ fn columns_that_there_are_not_are_refused_before_anything_runs() {
     assert!(!folder.path().join("results").exists());
 }
 
+/// A measure may be called as a column that every table has: two of one name tell nobody which is which.
+#[test]
+fn no_two_columns_have_one_name() {
+    let folder = folder();
+    fs::write(folder.path().join("m.toml"), format!("{OSCILLATOR}[measure.steps]\nvalue = \"m.x\"\n")).unwrap();
+    for columns in ["m.x, steps", "steps"] {
+        let output = sweep(&folder, "m.toml", columns, "--vary parameters.n=1,2");
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{columns}\n{message}");
+        assert!(message.contains("two columns `steps`") && message.contains("last(steps)"), "{columns}\n{message}");
+    }
+    assert!(sweep(&folder, "m.toml", "last(steps)", "--vary parameters.n=1,2 --out a --quiet").status.success());
+    assert_eq!(cells(&folder, "a", "steps"), ["400"; 2]);
+    assert!(numbers(&folder, "a", "last(steps)").iter().all(|x| (x - 1.1).abs() < 1e-6));
+}
+
 /// What was asked for is on the screen: for each of a few runs, and of many where each column is least and largest.
 #[test]
 fn columns_that_were_asked_for_are_shown() {

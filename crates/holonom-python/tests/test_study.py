@@ -39,6 +39,13 @@ def test_a_grid_is_every_value_with_every_other():
     assert "6 completed, 0 stopped, 0 refused" in repr(study)
 
 
+def test_a_measure_that_is_called_as_a_column_of_all_tables_is_asked_for_by_a_function():
+    m = throw()
+    m.measure("steps", value="2*ball.x")
+    study = hm.sweep(m, {"parameters.v": [1, 2]}, columns=["last(steps)"])
+    assert study["last(steps)"] == pytest.approx([2, 4]) and study["steps"].tolist() == [10, 10]
+
+
 @pytest.mark.parametrize("make", [dict, lambda rows: [dict(zip(rows, row)) for row in zip(*rows.values())], hm.Table])
 def test_rows_are_those_of_a_table(make):
     rows = {"parameters.v": [1, 2, 5], "simulation.end": [1, 0.5, 0.2]}

@@ -40,6 +40,10 @@ CALLS = {
     "column twice": (lambda m: hm.sweep(m, V, columns=["ball.x", "ball.x"]), ["`ball.x`", "twice"]),
     "an empty column": (lambda m: hm.sweep(m, V, columns=[""]), ["`columns`", "empty"]),
     "columns is a text": (lambda m: hm.sweep(m, V, columns="ball.x"), ["`columns`", "list", "write columns="]),
+    "a measure called as a column of all tables": (
+        lambda m: (m.measure("status", value="ball.x"), hm.sweep(m, V)),
+        ["two columns `status`", "last(status)", "another name"],
+    ),
     "column is a number": (lambda m: hm.sweep(m, V, columns=[3]), ["`columns`", "texts"]),
     "a late time": (lambda m: hm.sweep(m, V, columns=["at(ball.x, 7)"]), ["at(ball.x, 7)", "`end`"]),
     "no such engine": (lambda m: hm.sweep(m, V, engine="spark"), ["`engine`", "'spark'", "local"]),

@@ -10,6 +10,10 @@ use super::watch::Columns;
 /// Columns between the varied keys and those of the motion.
 const FIGURES: [&str; 6] = ["steps", "energy_drift", "position_violation", "velocity_violation", "iterations_per_step", "rejected_steps"];
 
+/// Columns around the varied keys.
+const RUN: &str = "run";
+const ENDING: [&str; 3] = ["status", "stopped_at", "reason"];
+
 /// What the columns of a sweep are called.
 pub struct Sheet {
     /// Varied keys, and whether all their values are numbers.
@@ -25,6 +29,13 @@ impl Sheet {
             varied: plan.varied.iter().map(|vary| (vary.path.clone(), vary.is_numeric())).collect(),
             shown: columns.asked.iter().map(|asked| asked.text.clone()).collect(),
         }
+    }
+
+    /// The first column of the motion that would be called as another column of the table.
+    pub fn twice(&self) -> Option<&str> {
+        let varied = || self.varied.iter().map(|(path, _)| path.as_str());
+        let is_taken = |name: &&String| varied().chain([RUN]).chain(ENDING).chain(FIGURES).any(|taken| taken == name.as_str());
+        self.shown.iter().find(is_taken).map(String::as_str)
     }
 
     /// A run as a line of CSV.
@@ -88,15 +99,15 @@ impl Sheet {
     }
 
     fn width(&self) -> usize {
-        1 + self.varied.len() + 3 + FIGURES.len() + self.shown.len()
+        1 + self.varied.len() + ENDING.len() + FIGURES.len() + self.shown.len()
     }
 
     /// The table without rows.
     fn empty(&self) -> Table {
         let (whole, number, word) = (|| Cells::Whole(Vec::new()), || Cells::Numbers(Vec::new()), || Cells::Words(Vec::new()));
-        let mut columns = vec![("run".to_string(), whole())];
+        let mut columns = vec![(RUN.to_string(), whole())];
         columns.extend(self.varied.iter().map(|(path, is_numeric)| (path.clone(), if *is_numeric { number() } else { word() })));
-        columns.extend([("status".into(), word()), ("stopped_at".into(), number()), ("reason".into(), word())]);
+        columns.extend(ENDING.into_iter().map(String::from).zip([word(), number(), word()]));
         columns.extend(FIGURES.map(|name| (name.to_string(), if name.ends_with("steps") { whole() } else { number() })));
         columns.extend(self.shown.iter().map(|name| (name.clone(), number())));
         Table { columns }

@@ -51,6 +51,10 @@ impl Study {
     pub fn new(source: Source, name: &str, plan: Plan, method: Option<&str>, columns: &[String]) -> Result<Self, Failure> {
         let columns = check(columns, &source, method, &plan)?;
         let sheet = Sheet::new(&plan, &columns);
+        if let Some(name) = sheet.twice() {
+            let message = format!("the table would have two columns `{name}`: one of the motion, and one that it has for every run");
+            return Err(Failure::usage(message, format!("ask for last({name}), or give what is recorded as `{name}` another name")));
+        }
         let (eliminations, method) = (Arc::default(), method.map(str::to_string));
         Ok(Self { source, name: name.into(), plan, method, columns, sheet, eliminations, complaint: None })
     }
