@@ -1,27 +1,57 @@
 //! Functions of Python that formulas call: what is called of them, and what one of them raised.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use holonom::model::{External, ExternalFunction};
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyTuple};
 
 use crate::native::Native;
 
+/// What a function has raised, and that in words.
+struct Raised {
+    error: PyErr,
+    words: String,
+}
+
 /// What the first function that failed has raised; after it all give no numbers, so that the run stops.
 #[derive(Clone, Default)]
-pub struct Trouble(Arc<Mutex<Option<PyErr>>>);
+pub struct Trouble {
+    raised: Arc<Mutex<Option<Raised>>>,
+    /// Is set where something was raised: a run that looks at it ends, also where it needs no numbers of the function to go on.
+    pub end: Arc<AtomicBool>,
+}
 
 impl Trouble {
-    fn held(&self) -> MutexGuard<'_, Option<PyErr>> {
-        self.0.lock().unwrap_or_else(|broken| broken.into_inner())
+    fn held(&self) -> MutexGuard<'_, Option<Raised>> {
+        self.raised.lock().unwrap_or_else(|broken| broken.into_inner())
+    }
+
+    /// Which function has raised what, in words.
+    pub fn words(&self) -> Option<String> {
+        self.held().as_ref().map(|raised| raised.words.clone())
     }
 
     /// Takes what was raised, which is nothing from here on.
     pub fn take(&self) -> Option<PyErr> {
-        self.held().take()
+        self.held().take().map(|raised| raised.error)
     }
+
+    /// Says in words what was raised, and takes it, but for orders to end, which the program is to get.
+    pub fn complain(&self, py: Python<'_>) -> Option<String> {
+        let mut held = self.held();
+        let words = held.as_ref().map(|raised| raised.words.clone());
+        held.take_if(|raised| is_failure(py, &raised.error));
+        words
+    }
+}
+
+/// Whether an exception is a failure, and not an order to end: Ctrl-C, `sys.exit()`.
+fn is_failure(py: Python<'_>, error: &PyErr) -> bool {
+    error.is_instance_of::<PyException>(py)
 }
 
 /// What Python says of a function, as `holonom._functions.Function.parts` gives it.
@@ -68,8 +98,9 @@ impl Called {
             let outcome = Python::attach(|py| work(py, out).map_err(|error| self.failure(py, error)));
             match outcome {
                 Ok(()) => return,
-                Err(error) => drop(self.trouble.held().get_or_insert(error)),
+                Err(raised) => drop(self.trouble.held().get_or_insert(raised)),
             }
+            self.trouble.end.store(true, Ordering::Relaxed);
         }
         out.fill(f64::NAN);
     }
@@ -87,16 +118,21 @@ impl Called {
         PyTuple::new(py, each.collect::<Vec<_>>())
     }
 
-    /// The exception that the run raises.
-    fn failure(&self, py: Python<'_>, error: PyErr) -> PyErr {
+    /// The exception that the run raises: orders to end as they are.
+    fn failure(&self, py: Python<'_>, error: PyErr) -> Raised {
+        let repr = error.value(py).repr().map_or_else(|_| "an exception".to_string(), |repr| repr.to_string_lossy().into_owned());
+        let words = format!("the function `{}` raised {repr}", self.name);
+        if !is_failure(py, &error) {
+            return Raised { error, words };
+        }
         let make = || {
             let class = py.import("holonom._errors")?.getattr("FunctionError")?;
-            let raised = format!("the function `{}` raised {}", self.name, error.value(py).repr()?);
-            let failure = PyErr::from_value(class.call1((raised,))?);
+            let failure = PyErr::from_value(class.call1((&words,))?);
             failure.set_cause(py, Some(error.clone_ref(py)));
             Ok(failure)
         };
-        make().unwrap_or_else(|error: PyErr| error)
+        let error = make().unwrap_or_else(|error: PyErr| error);
+        Raised { error, words }
     }
 
     fn wrong<T>(&self, given: &Bound<'_, PyAny>) -> PyResult<T> {

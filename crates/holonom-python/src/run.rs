@@ -1,7 +1,6 @@
 //! Runs, and what they leave.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
@@ -51,13 +50,16 @@ pub fn run(py: Python<'_>, draft: &Draft, changes: &Bound<'_, PyDict>, method: O
     loaded.model.step().and(loaded.model.end()).map_err(|error| run_error(py, error))?;
     let mut order = Order::new(&loaded, method, None, true).map_err(|fault| failure(py, fault))?;
     order.provenance.command = "holonom in Python".into();
-    let interrupted = Arc::new(AtomicBool::new(false));
     let finished = match can_interrupt {
-        true => watched(py, &interrupted, || simulate(&loaded, order, &interrupted)),
-        false => py.detach(|| simulate(&loaded, order, &interrupted)),
+        true => watched(py, &trouble.end, || simulate(&loaded, order, &trouble.end)),
+        false => py.detach(|| simulate(&loaded, order, &trouble.end)),
     };
     // What a function has raised at the start is why there is no run.
-    let finished = finished.map_err(|fault| trouble.take().unwrap_or_else(|| failure(py, fault)))?;
+    let mut finished = finished.map_err(|fault| trouble.take().unwrap_or_else(|| failure(py, fault)))?;
+    if let Some(words) = trouble.words() {
+        // And later why the run ended, whatever came of the numbers that it did not give.
+        finished.summary["reason"] = words.into();
+    }
     Ok(Recorded { draft: draft.twin(py), changes, finished, loaded, trouble })
 }
 

@@ -103,11 +103,12 @@ impl Running {
         }
     }
 
-    /// Whether the run goes on after a step.
-    fn judge(&mut self, status: Status) -> bool {
-        (self.ended, self.event) = match status {
-            Status::Stopped { reason, .. } => (Some(reason), None),
-            Status::Completed => {
+    /// Whether the run goes on after a step. What a function has raised is why it does not, whatever came of that.
+    fn judge(&mut self, status: Status, trouble: &Trouble) -> bool {
+        (self.ended, self.event) = match (trouble.words(), status) {
+            (Some(words), _) => (Some(words), None),
+            (None, Status::Stopped { reason, .. }) => (Some(reason), None),
+            (None, Status::Completed) => {
                 let event = self.simulation.ended_by().map(|last| last.event.clone());
                 (event.as_ref().map(|event| format!("ended by the event `{event}`")), event)
             }
@@ -116,12 +117,12 @@ impl Running {
     }
 
     /// Takes nominal steps, and says whether the run goes on.
-    fn advance(&mut self, count: i64) -> bool {
+    fn advance(&mut self, count: i64, trouble: &Trouble) -> bool {
         let begun = Instant::now();
         let goes_on = (0..count).all(|_| {
             let status = self.simulation.step_observed(&mut Watch(&mut self.recorder));
             self.arrive(sees_all(&self.recorder));
-            self.judge(status)
+            self.judge(status, trouble)
         });
         self.is_short = count == 1 && begun.elapsed() < SHORT;
         goes_on
@@ -257,7 +258,7 @@ impl Simulator {
         }
         let mut running = self.running(py)?;
         if count == 1 && running.is_short {
-            let goes_on = self.within(&mut running, |running| running.advance(1));
+            let goes_on = self.within(&mut running, |running| running.advance(1, &self.trouble));
             return self.raise().map(|()| goes_on);
         }
         drop(running);
@@ -266,7 +267,7 @@ impl Simulator {
             let next = left.min(LOOK);
             let goes_on = py.detach(|| {
                 let mut running = self.running.lock().unwrap_or_else(|broken| broken.into_inner());
-                self.within(&mut running, |running| running.advance(next))
+                self.within(&mut running, |running| running.advance(next, &self.trouble))
             });
             self.raise()?;
             left -= next;

@@ -26,6 +26,7 @@ pub struct Sweep {
     set: Vec<String>,
     /// Whether formulas call functions, and whether any needs the interpreter.
     functions: (bool, bool),
+    trouble: Trouble,
 }
 
 #[pymethods]
@@ -69,11 +70,11 @@ impl Sweep {
         let mut study = made.map_err(|fault| told(py, fault))?;
         let functions = draft.functions(py)?;
         if functions.1 {
-            let words = move |raised: PyErr| Python::attach(|py| raised.value(py).to_string());
-            study = study.asking(Arc::new(move || trouble.take().map(words)));
+            let trouble = trouble.clone();
+            study = study.asking(Arc::new(move || Python::attach(|py| trouble.complain(py))));
         }
         let set = changes.iter().map(|(key, value)| format!("{key}={}", to_json(value))).collect();
-        Ok(Self { store: Mutex::new(Store::new(&study)), study, set, functions })
+        Ok(Self { store: Mutex::new(Store::new(&study)), study, set, functions, trouble })
     }
 
     /// Number of runs.
@@ -121,6 +122,9 @@ impl Sweep {
         let (interrupted, ended) = (Arc::new(AtomicBool::new(false)), AtomicU64::new(0));
         let missing = self.held().missing();
         let keep = |line: Line| {
+            if self.is_told_to_end(&interrupted) {
+                return Ok(());
+            }
             self.held().add(line)?;
             ended.fetch_add(1, Ordering::Relaxed);
             Ok(())
@@ -148,7 +152,7 @@ impl Sweep {
             goes_on
         });
         outcome.map_err(|fault| told(py, fault))?;
-        match raised {
+        match raised.or(self.trouble.take()) {
             Some(raised) => Err(raised),
             None => look().map(|_| self.held().is_whole()),
         }
@@ -157,12 +161,16 @@ impl Sweep {
     /// The lines of some runs, for the program that keeps them.
     fn lines(&self, py: Python<'_>, first: u64, last: u64) -> PyResult<String> {
         let (runs, lines): (Vec<u64>, _) = ((first..=last).collect(), Mutex::new(String::new()));
+        let interrupted = Arc::new(AtomicBool::new(false));
         let keep = |line: Line| {
-            lines.lock().expect("no line panics").push_str(&line.text);
+            if !self.is_told_to_end(&interrupted) {
+                lines.lock().expect("no line panics").push_str(&line.text);
+            }
             Ok(())
         };
-        let ended = py.detach(|| self.study.run(&runs, 1, &Arc::new(AtomicBool::new(false)), &keep));
+        let ended = py.detach(|| self.study.run(&runs, 1, &interrupted, &keep));
         ended.map_err(|fault| told(py, fault))?;
+        self.trouble.take().map_or(Ok(()), Err)?;
         Ok(lines.into_inner().expect("no line panics"))
     }
 
@@ -245,6 +253,13 @@ impl Sweep {
 }
 
 impl Sweep {
+    /// Sets the flag where a function has raised an order to end: Ctrl-C, `sys.exit()`. The run in which it did so is not kept.
+    fn is_told_to_end(&self, interrupted: &AtomicBool) -> bool {
+        let is_told = self.trouble.words().is_some();
+        interrupted.fetch_or(is_told, Ordering::Relaxed);
+        is_told
+    }
+
     fn held(&self) -> MutexGuard<'_, Store> {
         self.store.lock().expect("no run panics while it writes")
     }

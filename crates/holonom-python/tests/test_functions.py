@@ -168,6 +168,50 @@ def test_a_function_that_raises_ends_the_run_and_keeps_it():
     assert sim.time == pytest.approx(0.5)
 
 
+def raising(error, after=0.5):
+    """A pendulum with a force and a measure of a function that raises after some time."""
+
+    def late(angle, t):
+        if t > after:
+            raise error
+        return -angle
+
+    m, pin, _ = pendulum()
+    return m, pin, m.function("late", late)("pin.angle", "t")
+
+
+@pytest.mark.parametrize("where", ["force", "measure"])
+def test_it_is_told_which_function_has_ended_the_run(where):
+    m, pin, call = raising(LookupError("too late"))
+    if where == "force":
+        m.effort("motor", joint=pin, effort=call)
+    else:
+        m.measure("m", value=f"max({call})")
+    words = "the function `late` raised LookupError('too late')"
+    with pytest.raises(hm.FunctionError) as error:
+        m.simulate(end=1, step=0.01)
+    run = error.value.run
+    assert (run.status, run.reason) == ("stopped", words) and run.t[-1] == pytest.approx(0.51 if where == "measure" else 0.5)
+    sim = hm.Simulation(m, step=0.01)
+    with pytest.raises(hm.FunctionError):
+        sim.step(100)
+    assert (sim.ended, sim.event) == (words, None) and sim.time == pytest.approx(run.t[-1])
+
+
+@pytest.mark.parametrize("order", [KeyboardInterrupt, SystemExit])
+def test_orders_to_end_come_out_of_functions_as_they_are(order):
+    m, pin, call = raising(order())
+    m.effort("motor", joint=pin, effort=call)
+    sim = hm.Simulation(m, step=0.01)
+    with pytest.raises(order):
+        sim.step(100)
+    assert sim.ended == f"the function `late` raised {order()!r}" and sim.time == pytest.approx(0.5)
+    with pytest.raises(order):
+        m.simulate(end=1, step=0.01)
+    with pytest.raises(order):
+        hm.sweep(m, {"simulation.end": [0.1, 1, 0.2]}, step=0.01)
+
+
 @pytest.mark.parametrize("gives", ["a text", [1.0, 2.0], None])
 def test_what_is_no_number_is_told(gives):
     m, pin, _ = pendulum()

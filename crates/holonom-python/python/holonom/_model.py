@@ -9,7 +9,7 @@ from typing import Any
 
 from . import _analysis, _engine
 from ._builders import KEYS, Builders, Entry, line, text_of
-from ._errors import refuse, warn
+from ._errors import FunctionError, refuse, warn
 from ._functions import Function, make
 from ._run import Run
 from ._types import Number, Numbers
@@ -149,7 +149,9 @@ class Model(Builders):
         run = Run(recorded)
         raised = recorded.trouble()
         if raised is not None:
-            raised.run = run
+            # Ctrl-C and sys.exit() come out as they are.
+            if isinstance(raised, FunctionError):
+                raised.run = run
             raise raised
         warn(run.notes)
         return run
