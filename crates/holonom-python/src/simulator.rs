@@ -198,9 +198,12 @@ impl Simulator {
         done
     }
 
-    /// Raises what a function has raised.
-    fn raise(&self) -> PyResult<()> {
-        self.trouble.take().map_or(Ok(()), Err)
+    /// Raises what a function has raised. What it gave no numbers for is to be found again, so that it raises again.
+    fn raise(&self, running: &mut Running) -> PyResult<()> {
+        self.trouble.take().map_or(Ok(()), |raised| {
+            (running.is_row_new, running.is_motion_new, running.are_forces_new) = (false, false, false);
+            Err(raised)
+        })
     }
 }
 
@@ -259,7 +262,7 @@ impl Simulator {
         let mut running = self.running(py)?;
         if count == 1 && running.is_short {
             let goes_on = self.within(&mut running, |running| running.advance(1, &self.trouble));
-            return self.raise().map(|()| goes_on);
+            return self.raise(&mut running).map(|()| goes_on);
         }
         drop(running);
         let mut left = count;
@@ -267,9 +270,9 @@ impl Simulator {
             let next = left.min(LOOK);
             let goes_on = py.detach(|| {
                 let mut running = self.running.lock().unwrap_or_else(|broken| broken.into_inner());
-                self.within(&mut running, |running| running.advance(next, &self.trouble))
-            });
-            self.raise()?;
+                let goes_on = self.within(&mut running, |running| running.advance(next, &self.trouble));
+                self.raise(&mut running).map(|()| goes_on)
+            })?;
             left -= next;
             if left == 0 || !goes_on {
                 return Ok(goes_on);
@@ -334,9 +337,9 @@ impl Simulator {
 
     /// Value of a column at the present state.
     fn value(&self, py: Python<'_>, place: usize) -> PyResult<f64> {
-        let value = self.within(&mut *self.running(py)?, |running| running.value(place));
-        self.raise()?;
-        Ok(value)
+        let mut running = self.running(py)?;
+        let value = self.within(&mut running, |running| running.value(place));
+        self.raise(&mut running).map(|()| value)
     }
 
     /// What frames are made of, as the viewer reads it, and the places of their columns.
@@ -350,10 +353,10 @@ impl Simulator {
 
     /// Values of some columns at the present state, as 64-bit floats.
     fn frame<'py>(&self, py: Python<'py>, places: Vec<usize>) -> PyResult<Bound<'py, PyBytes>> {
+        let mut running = self.running(py)?;
         let bytes: Vec<u8> =
-            self.within(&mut *self.running(py)?, |running| places.iter().flat_map(|&place| running.value(place).to_le_bytes()).collect());
-        self.raise()?;
-        Ok(PyBytes::new(py, &bytes))
+            self.within(&mut running, |running| places.iter().flat_map(|&place| running.value(place).to_le_bytes()).collect());
+        self.raise(&mut running).map(|()| PyBytes::new(py, &bytes))
     }
 
     /// Name, unit and meaning of each input.
@@ -380,7 +383,7 @@ impl Simulator {
     fn state(&self, py: Python<'_>) -> PyResult<State> {
         let mut running = self.running(py)?;
         self.within(&mut running, Running::find_forces);
-        self.raise()?;
+        self.raise(&mut running)?;
         Ok(State { point: (running.simulation.checkpoint(), running.recorder.mark()) })
     }
 
@@ -406,7 +409,7 @@ impl Simulator {
         (running.simulation, running.recorder, running.is_row_new) = (simulation, recorder, false);
         (running.ended, running.event) = (None, None);
         running.arrive(true);
-        self.raise()
+        self.raise(running)
     }
 }
 

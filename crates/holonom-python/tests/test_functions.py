@@ -198,6 +198,38 @@ def test_it_is_told_which_function_has_ended_the_run(where):
     assert (sim.ended, sim.event) == (words, None) and sim.time == pytest.approx(run.t[-1])
 
 
+def test_a_measure_raises_as_often_as_it_is_looked_at():
+    m, pin, call = raising(LookupError("too late"))
+    m.measure("m", value=call)
+    sim = hm.Simulation(m, step=0.01)
+    assert sim.step(60)
+    for _ in range(3):
+        with pytest.raises(hm.FunctionError, match="too late"):
+            sim["m"]
+    # The motion does not need it.
+    assert np.isfinite(sim["pin.angle"]) and sim.step()
+
+
+def test_a_simulation_goes_on_when_what_a_function_had_to_raise_is_over():
+    m, pin, _ = pendulum()
+    left = [0]
+
+    def force(angle, t):
+        if t > 0.5 and left[0]:
+            left[0] -= 1
+            raise KeyboardInterrupt
+        return -angle
+
+    m.effort("motor", joint=pin, effort=m.function("force", force)("pin.angle", "t"))
+    sims = [hm.Simulation(m, step=0.01) for _ in range(2)]
+    sims[0].step(100)
+    left[0] = 1
+    with pytest.raises(KeyboardInterrupt):
+        sims[1].step(100)
+    sims[1].step(50)
+    assert sims[1].ended is None and sims[1]["pin.angle"] == pytest.approx(sims[0]["pin.angle"], abs=1e-12)
+
+
 @pytest.mark.parametrize("order", [KeyboardInterrupt, SystemExit])
 def test_orders_to_end_come_out_of_functions_as_they_are(order):
     m, pin, call = raising(order())

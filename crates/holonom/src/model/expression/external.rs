@@ -176,8 +176,11 @@ impl External {
 }
 
 impl Last {
+    /// Whether it is known there. A function that gave no numbers is asked again, as it may have failed for a reason of its own.
     fn is_at(&self, at: &Point) -> bool {
-        self.at.len() == at.len() && self.at.iter().zip(at).all(|(one, other)| one.to_bits() == other.to_bits())
+        self.at.len() == at.len()
+            && self.at.iter().zip(at).all(|(one, other)| one.to_bits() == other.to_bits())
+            && self.values.iter().chain(self.gradient.iter().flatten()).all(|number| number.is_finite())
     }
 }
 
@@ -245,5 +248,7 @@ mod tests {
         f.evaluate(0, &[-0.0, 1.0]);
         f.evaluate(0, &[0.0, 1.0]);
         assert_eq!(count.load(Ordering::Relaxed), 7, "0 and −0 are two places");
+        assert!([0, 1].into_iter().all(|k| !f.evaluate(k, &[f64::INFINITY, 1.0]).is_finite()));
+        assert_eq!(count.load(Ordering::Relaxed), 9, "what is no number is not kept");
     }
 }
