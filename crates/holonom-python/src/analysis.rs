@@ -47,7 +47,7 @@ pub fn stability(
     loaded.model.step().and(loaded.model.end()).map_err(|error| run_error(py, error))?;
     let interrupted = AtomicBool::new(false);
     let search = || largest_steps(&loaded, &methods, &interrupted);
-    let found = if can_interrupt { watched(py, &interrupted, search) } else { py.detach(search) };
+    let found = if can_interrupt { watched(py, &interrupted, search)? } else { py.detach(search) };
     if let Some(raised) = trouble.take() {
         return Err(raised);
     }

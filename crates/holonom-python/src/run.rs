@@ -9,7 +9,7 @@ use holonom::model::{Value, nearest};
 use holonom::record::{Heading, Recording};
 use holonom_cli::{Finished, Loaded, Order, simulate};
 use numpy::{PyArray1, PyArrayMethods};
-use pyo3::exceptions::PyKeyError;
+use pyo3::exceptions::{PyKeyError, PyKeyboardInterrupt};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -51,7 +51,7 @@ pub fn run(py: Python<'_>, draft: &Draft, changes: &Bound<'_, PyDict>, method: O
     let mut order = Order::new(&loaded, method, None, true).map_err(|fault| failure(py, fault))?;
     order.provenance.command = "holonom in Python".into();
     let finished = match can_interrupt {
-        true => watched(py, &trouble.end, || simulate(&loaded, order, &trouble.end)),
+        true => watched(py, &trouble.end, || simulate(&loaded, order, &trouble.end))?,
         false => py.detach(|| simulate(&loaded, order, &trouble.end)),
     };
     // What a function has raised at the start is why there is no run.
@@ -73,9 +73,24 @@ pub fn read_changes(py: Python<'_>, changes: &Bound<'_, PyDict>) -> PyResult<Cha
     changes.iter().map(read).collect()
 }
 
-/// Works in a thread while this one waits for it and for Ctrl-C, which sets the flag.
-pub fn watched<T: Send>(py: Python<'_>, interrupted: &AtomicBool, work: impl FnOnce() -> T + Send) -> T {
-    looked_after(py, interrupted, work, || Python::attach(|py| py.check_signals()).is_ok())
+/// Works in a thread while this one waits for it and for signals. Ctrl-C sets the flag; so does what another handler raises, which is raised.
+pub fn watched<T: Send>(py: Python<'_>, interrupted: &AtomicBool, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    let mut raised = None;
+    let done = looked_after(py, interrupted, work, || {
+        let seen = Python::attach(has_no_signal);
+        let goes_on = matches!(seen, Ok(true));
+        raised = raised.take().or(seen.err());
+        goes_on
+    });
+    raised.map_or(Ok(done), Err)
+}
+
+/// Whether Ctrl-C was not pressed. What handlers of other signals raise is raised.
+pub fn has_no_signal(py: Python<'_>) -> PyResult<bool> {
+    match py.check_signals() {
+        Err(error) if error.is_instance_of::<PyKeyboardInterrupt>(py) => Ok(false),
+        seen => seen.map(|()| true),
+    }
 }
 
 /// Works in a thread while this one waits for it and looks from time to time whether it is to go on; if not, it sets the flag.

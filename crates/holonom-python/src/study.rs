@@ -14,7 +14,7 @@ use pyo3::types::{PyDict, PyList};
 use crate::draft::Draft;
 use crate::fault::{failure, model_error, refuse};
 use crate::function::Trouble;
-use crate::run::{looked_after, read_changes};
+use crate::run::{has_no_signal, looked_after, read_changes};
 use crate::value;
 
 /// Runs of a model, and the lines of those that have ended.
@@ -131,7 +131,7 @@ impl Sweep {
         };
         let look = || {
             Python::attach(|py| -> PyResult<bool> {
-                if can_interrupt && py.check_signals().is_err() {
+                if can_interrupt && !has_no_signal(py)? {
                     return Ok(false);
                 }
                 if let Some(progress) = &progress {

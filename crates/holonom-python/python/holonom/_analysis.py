@@ -75,7 +75,7 @@ def compare(runs: Sequence[Run | Model] | Mapping[str, Run | Model], *, columns:
     for label, run in given:
         if not isinstance(run, (Run, Model)):
             raise refuse("runs", f"`runs` has something of type {type(run).__name__}", "give runs, or models that are to be run")
-        run = run.simulate(**keys) if isinstance(run, Model) else run
+        run = _run(run, **keys) if isinstance(run, Model) else run
         label = str(label) if label is not None else f"{run._recorded.title()}, {run.summary['method']['name']}"
         made[_free(label, made)] = run
     return Comparison(made, _texts("columns", columns))
@@ -101,12 +101,20 @@ def of_model(
             raise refuse("variants", f"`variants` has something of type {kind}", 'write variants=[{"parameters.k": 100}]')
         for step in lengths:
             for method in named:
-                run = model.simulate(method=method, step=step, set={**changes, **variant}, **rest)
+                run = _run(model, method=method, step=step, set={**changes, **variant}, **rest)
                 parts = [", ".join(f"{key}={value}" for key, value in variant.items()) or ("as it is" if variants else "")]
                 parts += [method or (run.summary["method"]["name"] if not variants else "")]
                 parts += [f"{step} s" if len(lengths) > 1 else ""]
                 made[_free(", ".join(part for part in parts if part), made)] = run
     return Comparison(made, _texts("columns", columns))
+
+
+def _run(model: Model, **keys: Any) -> Run:
+    """A run of a comparison, which Ctrl-C ends as a whole."""
+    run = model.simulate(**keys)
+    if run.reason == "interrupted":
+        raise KeyboardInterrupt("the comparison was interrupted")
+    return run
 
 
 def of_check(model: Model, projection: bool, changes: dict[str, Any]) -> Check:

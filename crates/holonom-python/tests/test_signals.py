@@ -1,0 +1,74 @@
+"""Ctrl-C and other signals while the engine works."""
+
+import os
+import signal
+import sys
+import threading
+import time
+
+import pytest
+
+import holonom as hm
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals are sent otherwise there")
+
+
+@pytest.fixture
+def interrupt():
+    """Sends Ctrl-C once, after a while."""
+    # Where the tests are started in the background, the signal is ignored from the start.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    yield
+    timer.join()
+    signal.signal(signal.SIGINT, before)
+
+
+class TooLate(Exception):
+    pass
+
+
+@pytest.fixture
+def alarm():
+    """Has a handler of a signal raise an exception, after a while."""
+
+    def ring(*_):
+        raise TooLate("time is over")
+
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, 0.3)
+    yield
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    signal.signal(signal.SIGALRM, before)
+
+
+LONG = {"end": 2e4, "step": 1e-3}
+
+
+def pendulum():
+    m = hm.load("example:double-pendulum")
+    m.output(every=1000)
+    return m
+
+
+def test_one_ctrl_c_ends_a_comparison(interrupt):
+    with pytest.raises(KeyboardInterrupt):
+        pendulum().compare(methods=["conserving-ggl", "radau", "trapezoidal"], **LONG)
+
+
+CALLS = {
+    "simulate": lambda m: m.simulate(**LONG),
+    "sweep": lambda m: hm.sweep(m, {"simulation.end": [2e4] * 4}, step=1e-3),
+    "compare": lambda m: m.compare(methods=["conserving-ggl", "radau"], **LONG),
+    "stability": lambda m: m.stability(methods=["conserving-ggl", "radau"], **LONG),
+    "step": lambda m: hm.Simulation(m, step=1e-3).step(10**8),
+}
+
+
+@pytest.mark.parametrize("call", CALLS.values(), ids=CALLS.keys())
+def test_what_the_handler_of_a_signal_raises_comes_out_as_it_is(alarm, call):
+    begun = time.monotonic()
+    with pytest.raises(TooLate, match="time is over"):
+        call(pendulum())
+    assert time.monotonic() - begun < 30
