@@ -1,6 +1,7 @@
 //! A simulation that a program steps.
 
 use std::cell::RefCell;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, TryLockError};
 use std::time::{Duration, Instant};
 
@@ -19,8 +20,11 @@ use crate::fault::refuse;
 use crate::function::Trouble;
 use crate::run::{read_changes, unknown};
 
-/// Steps between two looks whether Ctrl-C was pressed.
-const LOOK: i64 = 256;
+/// Time between two looks for signals and for other threads that wait.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Longest time that other threads are given then.
+const TURN: Duration = Duration::from_millis(1);
 
 /// Steps that take less time keep the interpreter to themselves: to give it away and to take it back would be a good part of them.
 const SHORT: Duration = Duration::from_micros(100);
@@ -38,6 +42,8 @@ thread_local! {
 pub struct Simulator {
     loaded: Loaded,
     running: Mutex<Running>,
+    /// Threads that wait for it.
+    waiting: AtomicUsize,
     notes: Vec<String>,
     trouble: Trouble,
 }
@@ -116,16 +122,18 @@ impl Running {
         self.ended.is_none()
     }
 
-    /// Takes nominal steps, and says whether the run goes on.
-    fn advance(&mut self, count: i64, trouble: &Trouble) -> bool {
+    /// Takes nominal steps, but no more than there is time for until the next look. Gives their number, and whether the run goes on.
+    fn advance(&mut self, count: i64, trouble: &Trouble) -> (i64, bool) {
         let begun = Instant::now();
-        let goes_on = (0..count).all(|_| {
+        let (mut taken, mut goes_on) = (0, true);
+        while goes_on && taken < count && (taken == 0 || begun.elapsed() < LOOK) {
             let status = self.simulation.step_observed(&mut Watch(&mut self.recorder));
             self.arrive(sees_all(&self.recorder));
-            self.judge(status, trouble)
-        });
+            goes_on = self.judge(status, trouble);
+            taken += 1;
+        }
         self.is_short = count == 1 && begun.elapsed() < SHORT;
-        goes_on
+        (taken, goes_on)
     }
 
     /// Finds the forces at the present state, where they are not known.
@@ -164,13 +172,36 @@ impl Simulator {
     /// The simulation, once no other thread is at it. A function that a step calls cannot have it.
     fn running(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Running>> {
         self.require_outside(py)?;
-        loop {
-            match self.running.try_lock() {
-                Ok(running) => return Ok(running),
-                Err(TryLockError::Poisoned(broken)) => return Ok(broken.into_inner()),
-                // The other thread may need the interpreter.
-                Err(TryLockError::WouldBlock) => py.detach(|| std::thread::sleep(PAUSE)),
-            }
+        if let Some(running) = self.free() {
+            return Ok(running);
+        }
+        // The other thread may need the interpreter.
+        let wait = || std::iter::repeat_with(|| py.detach(|| std::thread::sleep(PAUSE))).find_map(|()| self.free());
+        Ok(self.waiting(wait).expect("it waits until it has it"))
+    }
+
+    /// The simulation, where no other thread is at it.
+    fn free(&self) -> Option<MutexGuard<'_, Running>> {
+        match self.running.try_lock() {
+            Ok(running) => Some(running),
+            Err(TryLockError::Poisoned(broken)) => Some(broken.into_inner()),
+            Err(TryLockError::WouldBlock) => None,
+        }
+    }
+
+    /// Waits for the simulation, of which the thread that has it is told.
+    fn waiting<T>(&self, wait: impl FnOnce() -> T) -> T {
+        self.waiting.fetch_add(1, Ordering::Relaxed);
+        let done = wait();
+        self.waiting.fetch_sub(1, Ordering::Relaxed);
+        done
+    }
+
+    /// Gives other threads that wait for the simulation time to get it.
+    fn let_others(&self) {
+        let begun = Instant::now();
+        while self.waiting.load(Ordering::Relaxed) > 0 && begun.elapsed() < TURN {
+            std::thread::sleep(PAUSE);
         }
     }
 
@@ -244,7 +275,7 @@ impl Simulator {
         };
         running.arrive(true);
         let notes = holonom_cli::notes(&loaded, &running.simulation);
-        trouble.take().map_or(Ok(Self { running: Mutex::new(running), notes, loaded, trouble }), Err)
+        trouble.take().map_or(Ok(Self { running: Mutex::new(running), waiting: AtomicUsize::new(0), notes, loaded, trouble }), Err)
     }
 
     /// What looks like a slip, and what was put right before the start.
@@ -261,19 +292,19 @@ impl Simulator {
         }
         let mut running = self.running(py)?;
         if count == 1 && running.is_short {
-            let goes_on = self.within(&mut running, |running| running.advance(1, &self.trouble));
+            let (_, goes_on) = self.within(&mut running, |running| running.advance(1, &self.trouble));
             return self.raise(&mut running).map(|()| goes_on);
         }
         drop(running);
         let mut left = count;
         loop {
-            let next = left.min(LOOK);
-            let goes_on = py.detach(|| {
-                let mut running = self.running.lock().unwrap_or_else(|broken| broken.into_inner());
-                let goes_on = self.within(&mut running, |running| running.advance(next, &self.trouble));
-                self.raise(&mut running).map(|()| goes_on)
+            let (taken, goes_on) = py.detach(|| {
+                self.let_others();
+                let mut running = self.waiting(|| self.running.lock().unwrap_or_else(|broken| broken.into_inner()));
+                let taken = self.within(&mut running, |running| running.advance(left, &self.trouble));
+                self.raise(&mut running).map(|()| taken)
             })?;
-            left -= next;
+            left -= taken;
             if left == 0 || !goes_on {
                 return Ok(goes_on);
             }

@@ -72,3 +72,23 @@ def test_what_the_handler_of_a_signal_raises_comes_out_as_it_is(alarm, call):
     with pytest.raises(TooLate, match="time is over"):
         call(pendulum())
     assert time.monotonic() - begun < 30
+
+
+@pytest.fixture
+def chain():
+    """A simulation whose steps take long."""
+    m = hm.Model(plane="xz")
+    last = m.ground
+    for k in range(1000):
+        link = m.body(f"link{k}", mass=1, inertia=0.1, position=[k + 0.5, 0])
+        m.revolute(f"pin{k}", last, link, at=[k, 0])
+        last = link
+    return hm.Simulation(m, step=1e-3)
+
+
+def test_signals_are_seen_between_long_steps(chain, alarm):
+    begun = time.monotonic()
+    with pytest.raises(TooLate):
+        chain.step(10**6)
+    elapsed = time.monotonic() - begun
+    assert elapsed < 0.5 + 20 * elapsed / chain.steps

@@ -1,6 +1,8 @@
 """Simulations that a program steps."""
 
 import pickle
+import threading
+import time
 
 import numpy as np
 import pytest
@@ -90,6 +92,22 @@ def test_a_simulation_says_why_it_ended():
         steps += 1
     assert steps == 2 and sim.time == pytest.approx(0.25) and "`arrived`" in sim.ended
     assert sim.step() and sim.ended is None
+
+
+def test_others_read_a_simulation_while_a_thread_takes_many_steps():
+    sim = hm.Simulation(hm.load("example:robot-arm"))
+    begun = time.perf_counter()
+    sim.step(100)
+    count = int(200 / (time.perf_counter() - begun))
+    # Two seconds of steps.
+    thread = threading.Thread(target=sim.step, args=(count,))
+    thread.start()
+    waits = []
+    while thread.is_alive():
+        begun = time.perf_counter()
+        assert sim.time >= 0
+        waits.append(time.perf_counter() - begun)
+    assert max(waits) < 0.5 and sim.steps == 100 + count
 
 
 def test_without_forces_of_joints_there_are_none():
