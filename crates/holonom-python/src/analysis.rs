@@ -22,10 +22,10 @@ fn answer(Found { value, text }: Found) -> Answer {
 
 /// What a model is made of, and with the projection what that can do to its energy.
 #[pyfunction]
-pub fn check(py: Python<'_>, draft: &Draft, changes: &Bound<'_, PyDict>, projection: bool) -> PyResult<Answer> {
+pub fn check(py: Python<'_>, draft: &Bound<'_, Draft>, changes: &Bound<'_, PyDict>, projection: bool) -> PyResult<Answer> {
     let trouble = Trouble::default();
     // What is wrong with the model is told in the lines of the program.
-    let loaded = draft.load_with(py, &read_changes(py, changes)?, &trouble)?;
+    let loaded = Draft::snapshot(draft)?.load_with(py, &read_changes(py, changes)?, &trouble)?;
     let found = py.detach(|| checked(loaded.source, &loaded.name, projection));
     match trouble.take() {
         Some(raised) => Err(raised),
@@ -37,13 +37,13 @@ pub fn check(py: Python<'_>, draft: &Draft, changes: &Bound<'_, PyDict>, project
 #[pyfunction]
 pub fn stability(
     py: Python<'_>,
-    draft: &Draft,
+    draft: &Bound<'_, Draft>,
     changes: &Bound<'_, PyDict>,
     methods: Vec<String>,
     can_interrupt: bool,
 ) -> PyResult<Answer> {
     let trouble = Trouble::default();
-    let loaded = draft.load_with(py, &read_changes(py, changes)?, &trouble)?;
+    let loaded = Draft::snapshot(draft)?.load_with(py, &read_changes(py, changes)?, &trouble)?;
     loaded.model.step().and(loaded.model.end()).map_err(|error| run_error(py, error))?;
     let interrupted = AtomicBool::new(false);
     let search = || largest_steps(&loaded, &methods, &interrupted);

@@ -114,8 +114,13 @@ impl Draft {
         Ok(kinds)
     }
 
+    /// The model as it is now: the program may change its own while work on this goes on, in another thread or a function of the model.
+    pub fn snapshot(draft: &Bound<'_, Self>) -> PyResult<Self> {
+        Ok(draft.try_borrow()?.twin(draft.py()))
+    }
+
     /// The same model, which does not change with this one.
-    pub fn twin(&self, py: Python<'_>) -> Self {
+    fn twin(&self, py: Python<'_>) -> Self {
         Self {
             name: self.name.clone(),
             text: self.text.clone(),
@@ -368,8 +373,8 @@ impl Draft {
     }
 
     /// What looks like a slip and was taken all the same; raises what is wrong.
-    fn notes(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        Ok(self.load(py, &[])?.model.notes)
+    fn notes(slf: &Bound<'_, Self>) -> PyResult<Vec<String>> {
+        Ok(Self::snapshot(slf)?.load(slf.py(), &[])?.model.notes)
     }
 
     /// All that it is made of.

@@ -43,9 +43,15 @@ type Parts<'py> = (draft::Parts, Bound<'py, PyDict>, String, Vec<(String, String
 
 /// Simulates a model with some of its keys set to other values. `can_interrupt` says whether this is the thread that signals come to.
 #[pyfunction(name = "simulate")]
-pub fn run(py: Python<'_>, draft: &Draft, changes: &Bound<'_, PyDict>, method: Option<&str>, can_interrupt: bool) -> PyResult<Recorded> {
+pub fn run(
+    py: Python<'_>,
+    draft: &Bound<'_, Draft>,
+    changes: &Bound<'_, PyDict>,
+    method: Option<&str>,
+    can_interrupt: bool,
+) -> PyResult<Recorded> {
     let trouble = Trouble::default();
-    let changes = read_changes(py, changes)?;
+    let (draft, changes) = (Draft::snapshot(draft)?, read_changes(py, changes)?);
     let loaded = draft.load_with(py, &changes, &trouble)?;
     loaded.model.step().and(loaded.model.end()).map_err(|error| run_error(py, error))?;
     let mut order = Order::new(&loaded, method, None, true).map_err(|fault| failure(py, fault))?;
@@ -60,7 +66,7 @@ pub fn run(py: Python<'_>, draft: &Draft, changes: &Bound<'_, PyDict>, method: O
         // And later why the run ended, whatever came of the numbers that it did not give.
         finished.summary["reason"] = words.into();
     }
-    Ok(Recorded { draft: draft.twin(py), changes, finished, loaded, trouble })
+    Ok(Recorded { draft, changes, finished, loaded, trouble })
 }
 
 /// Keys of the model with other values.

@@ -242,9 +242,9 @@ impl Simulator {
 impl Simulator {
     /// Puts a model at its start, with some keys of it set to other values.
     #[new]
-    fn new(py: Python<'_>, draft: &Draft, changes: &Bound<'_, PyDict>, method: Option<&str>) -> PyResult<Self> {
+    fn new(py: Python<'_>, draft: &Bound<'_, Draft>, changes: &Bound<'_, PyDict>, method: Option<&str>) -> PyResult<Self> {
         let trouble = Trouble::default();
-        let loaded = draft.load_with(py, &read_changes(py, changes)?, &trouble)?;
+        let loaded = Draft::snapshot(draft)?.load_with(py, &read_changes(py, changes)?, &trouble)?;
         let model = &loaded.model;
         let begin = || {
             let method = Method::resolve(&model.choice(method))?;

@@ -3,6 +3,7 @@
 import copy
 import inspect
 import pickle
+import threading
 
 import numpy as np
 import pytest
@@ -142,3 +143,37 @@ def test_a_parameter_is_called_as_it_is_written():
     assert [m.get(f"parameters.{name}") for name in names] == [1000, 5, 2]
     m.point("p", mass="k", position=["k_", "_", 0])
     assert m.simulate(end=0.1, step=0.1)["p.x"][0] == 5
+
+
+@pytest.mark.parametrize("work", ["simulate", "stability", "check", "simulation", "notes"])
+def test_a_model_may_be_changed_within_its_own_functions(work):
+    """As by another thread: what is under way is of the model as it was."""
+    m = hm.Model(gravity=[0, 0, 0])
+    m.point("p", mass=1, position=[0, 0, 0])
+
+    def pull(t):
+        m.set("point.p.mass", m.get("point.p.mass") + 1)
+        return 1.0
+
+    m.expression("f", point="p", force=[m.function("pull", pull)("t"), 0, 0])
+    calls = {
+        "simulate": lambda: m.simulate(end=1, step=0.1),
+        "stability": lambda: m.stability(methods=["radau"], end=1, step=0.1),
+        "check": lambda: m.check(),
+        "simulation": lambda: hm.Simulation(m, step=0.1).step(10),
+        "notes": lambda: m.notes(),
+    }
+    done = calls[work]()
+    assert work == "notes" or m.get("point.p.mass") > 1
+    if work == "simulate":
+        assert done["p.vx"][-1] == pytest.approx(1)
+
+
+def test_a_model_may_be_changed_while_a_thread_runs_it():
+    m = hm.load("example:double-pendulum")
+    thread = threading.Thread(target=lambda: m.simulate(end=30, step=1e-3, every=1000))
+    thread.start()
+    while thread.is_alive():
+        m.set("gravity", [0, 0, -9.8])
+        m.parameter("k", 1)
+    thread.join()
