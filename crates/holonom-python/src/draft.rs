@@ -119,6 +119,11 @@ impl Draft {
         Ok(draft.try_borrow()?.twin(draft.py()))
     }
 
+    /// Tells what collects circles of the functions.
+    pub fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.functions.values().try_for_each(|function| visit.call(function))
+    }
+
     /// The same model, which does not change with this one.
     fn twin(&self, py: Python<'_>) -> Self {
         Self {
@@ -224,7 +229,7 @@ impl Draft {
 
     // A function may hold the model that it is of: what collects such circles is told of it.
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
-        self.functions.values().try_for_each(|function| visit.call(function))
+        self.traverse(&visit)
     }
 
     fn __clear__(&mut self) {

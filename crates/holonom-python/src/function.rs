@@ -8,6 +8,7 @@ use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyTuple};
+use pyo3::{PyTraverseError, PyVisit};
 
 use crate::native::Native;
 
@@ -23,11 +24,19 @@ pub struct Trouble {
     raised: Arc<Mutex<Option<Raised>>>,
     /// Is set where something was raised: a run that looks at it ends, also where it needs no numbers of the function to go on.
     pub end: Arc<AtomicBool>,
+    /// The functions.
+    called: Arc<Mutex<Vec<Arc<Parts>>>>,
 }
 
 impl Trouble {
     fn held(&self) -> MutexGuard<'_, Option<Raised>> {
         self.raised.lock().unwrap_or_else(|broken| broken.into_inner())
+    }
+
+    /// Tells what collects circles of the functions: one may hold what is made of the model that calls it.
+    pub fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
+        let called = self.called.lock().unwrap_or_else(|broken| broken.into_inner());
+        called.iter().try_for_each(|parts| visit.call(&parts.callable).and_then(|()| visit.call(&parts.gradient)))
     }
 
     /// Which function has raised what, in words.
@@ -62,12 +71,17 @@ pub struct Parts {
     gradient: Option<Py<PyAny>>,
     /// Numbers of each argument: one is a float, more are an array.
     sizes: Vec<usize>,
-    values: usize,
+    pub values: usize,
     /// Where its machine code is, and whether that takes pointers to arguments and to values.
     native: Option<(usize, bool)>,
 }
 
 impl Parts {
+    /// How many numbers it takes.
+    pub fn arguments(&self) -> usize {
+        self.sizes.iter().sum()
+    }
+
     /// Whether it is called without the interpreter.
     pub fn is_native(&self) -> bool {
         self.native.is_some()
@@ -76,10 +90,10 @@ impl Parts {
 
 /// A function as the engine calls it.
 pub fn external(name: &str, parts: Parts, trouble: &Trouble) -> External {
+    let parts = Arc::new(parts);
+    trouble.called.lock().unwrap_or_else(|broken| broken.into_inner()).push(parts.clone());
     match parts.native {
-        Some((address, is_of_pointers)) => {
-            External::new(Native::new(address, is_of_pointers, parts.sizes.iter().sum(), parts.values, parts.callable))
-        }
+        Some((address, is_of_pointers)) => External::new(Native::new(address, is_of_pointers, parts)),
         None => External::new(Called { name: name.into(), parts, trouble: trouble.clone() }),
     }
 }
@@ -87,7 +101,7 @@ pub fn external(name: &str, parts: Parts, trouble: &Trouble) -> External {
 /// A callable of Python.
 struct Called {
     name: String,
-    parts: Parts,
+    parts: Arc<Parts>,
     trouble: Trouble,
 }
 
@@ -145,7 +159,7 @@ impl Called {
 
 impl ExternalFunction for Called {
     fn arguments(&self) -> usize {
-        self.parts.sizes.iter().sum()
+        self.parts.arguments()
     }
 
     fn values(&self) -> usize {

@@ -2,9 +2,11 @@
 #![allow(unsafe_code)]
 
 use std::mem::transmute;
+use std::sync::Arc;
 
 use holonom::model::ExternalFunction;
-use pyo3::prelude::*;
+
+use crate::function::Parts;
 
 /// Most arguments of a function that takes them as numbers.
 pub const MOST: usize = 8;
@@ -12,10 +14,8 @@ pub const MOST: usize = 8;
 /// A function of machine code.
 pub struct Native {
     call: Call,
-    arguments: usize,
-    values: usize,
     /// Keeps the code in memory.
-    _owner: Py<PyAny>,
+    parts: Arc<Parts>,
 }
 
 /// How it is called.
@@ -33,14 +33,14 @@ enum Call {
 }
 
 impl Native {
-    /// The function at an address: of numbers, of which there is one value, or of pointers to arguments and to values. `owner` keeps it there.
+    /// The function at an address: of numbers, of which there is one value, or of pointers to arguments and to values.
     ///
     /// What Python says of an address is taken at its word, as by `ctypes`: `holonom._functions` has it from the type of the function.
-    pub fn new(address: usize, is_of_pointers: bool, arguments: usize, values: usize, owner: Py<PyAny>) -> Self {
+    pub fn new(address: usize, is_of_pointers: bool, parts: Arc<Parts>) -> Self {
         let code = address as *const ();
-        // SAFETY: the type of the function that the address was taken of has said so, and `owner` keeps its code.
+        // SAFETY: the type of the function that the address was taken of has said so, and its parts keep its code.
         let call = unsafe {
-            match arguments {
+            match parts.arguments() {
                 _ if is_of_pointers => Call::OfPointers(transmute::<*const (), extern "C" fn(*const f64, *mut f64)>(code)),
                 1 => Call::Of1(transmute::<*const (), extern "C" fn(f64) -> f64>(code)),
                 2 => Call::Of2(transmute::<*const (), extern "C" fn(f64, f64) -> f64>(code)),
@@ -53,17 +53,17 @@ impl Native {
                 _ => panic!("a function of numbers has at most {MOST}"),
             }
         };
-        Self { call, arguments, values, _owner: owner }
+        Self { call, parts }
     }
 }
 
 impl ExternalFunction for Native {
     fn arguments(&self) -> usize {
-        self.arguments
+        self.parts.arguments()
     }
 
     fn values(&self) -> usize {
-        self.values
+        self.parts.values
     }
 
     fn call(&self, a: &[f64], values: &mut [f64]) {

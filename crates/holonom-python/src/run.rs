@@ -12,6 +12,7 @@ use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyKeyError, PyKeyboardInterrupt};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use pyo3::{PyTraverseError, PyVisit};
 
 use crate::draft::{self, Draft, run_error};
 use crate::fault::{failure, model_error, refuse};
@@ -133,6 +134,10 @@ fn attached<T: Send>(work: impl FnOnce() -> T + Send) -> T {
 
 #[pymethods]
 impl Recorded {
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.draft.traverse(&visit).and_then(|()| self.trouble.traverse(&visit))
+    }
+
     /// What a function has raised, which has stopped the run.
     fn trouble<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyAny>> {
         self.trouble.take().map(|raised| raised.value(py).clone().into_any())
@@ -191,13 +196,14 @@ impl Recorded {
     fn of_parts(py: Python<'_>, parts: Parts<'_>) -> PyResult<Self> {
         let (draft, changes, method, headings, values, summary) = parts;
         let (draft, changes) = (Draft::of_parts(py, draft)?, read_changes(py, &changes)?);
-        let loaded = draft.load(py, &changes)?;
+        let trouble = Trouble::default();
+        let loaded = draft.load_with(py, &changes, &trouble)?;
         let headings = headings.into_iter().map(|(name, unit, meaning)| Heading { name, unit: unit.into(), meaning });
         let values = values.iter().map(|column| column.to_vec()).collect::<Result<_, _>>()?;
         let recording = Recording::of_columns(headings, values).ok_or_else(|| refuse(py, "", BROKEN, ""))?;
         let summary: serde_json::Value = serde_json::from_str(&summary).map_err(|_| refuse(py, "", BROKEN, ""))?;
         let completed = summary["status"] == "completed";
-        Ok(Self { draft, changes, loaded, finished: Finished { method, recording, summary, completed }, trouble: Trouble::default() })
+        Ok(Self { draft, changes, loaded, finished: Finished { method, recording, summary, completed }, trouble })
     }
 
     /// Leaves the run in a folder as the command does.

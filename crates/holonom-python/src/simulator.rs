@@ -14,6 +14,7 @@ use holonom_report::Frames;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use pyo3::{PyTraverseError, PyVisit};
 
 use crate::draft::{Draft, run_error};
 use crate::fault::refuse;
@@ -240,6 +241,10 @@ impl Simulator {
 
 #[pymethods]
 impl Simulator {
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.trouble.traverse(&visit)
+    }
+
     /// Puts a model at its start, with some keys of it set to other values.
     #[new]
     fn new(py: Python<'_>, draft: &Bound<'_, Draft>, changes: &Bound<'_, PyDict>, method: Option<&str>) -> PyResult<Self> {

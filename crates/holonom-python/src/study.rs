@@ -10,6 +10,7 @@ use holonom_io::{Cells, to_json};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use pyo3::{PyTraverseError, PyVisit};
 
 use crate::draft::Draft;
 use crate::fault::{failure, model_error, refuse};
@@ -31,6 +32,10 @@ pub struct Sweep {
 
 #[pymethods]
 impl Sweep {
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.trouble.traverse(&visit)
+    }
+
     /// Checks the runs of a model: of a grid over the values of keys, or of the rows of a table with a column for each key.
     #[new]
     fn new(

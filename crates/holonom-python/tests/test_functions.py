@@ -1,9 +1,11 @@
 """Functions of Python in formulas, against the same formulas written out."""
 
 import ctypes
+import gc
 import math
 import pickle
 import threading
+import weakref
 
 import holonom as hm
 import numpy as np
@@ -281,6 +283,40 @@ def test_other_threads_may_look_while_functions_are_called():
     is_done.set()
     thread.join(60)
     assert not thread.is_alive() and sim.steps == 400
+
+
+class Controller:
+    """A function of a model that holds what is made of the model."""
+
+    def __init__(self, make):
+        m, pin, _ = pendulum()
+        m.effort("motor", joint=pin, effort=m.function("push", self.push, derivative=self.slope)("pin.angle"))
+        self.made = make(m)
+
+    def push(self, angle):
+        return -5 * angle
+
+    def slope(self, angle):
+        return [-5.0]
+
+
+MADE = {
+    "a model": lambda m: m,
+    "a run": lambda m: m.simulate(end=0.1, step=0.01),
+    "a simulation": lambda m: hm.Simulation(m, step=0.01),
+    "a study": lambda m: hm.sweep(m, {"simulation.end": [0.1, 0.2]}, step=0.01),
+}
+
+
+@pytest.mark.parametrize("make", MADE.values(), ids=MADE.keys())
+def test_what_a_function_holds_is_collected_with_it(make):
+    controller = Controller(make)
+    alive = weakref.ref(controller)
+    gc.collect()
+    assert alive() is controller
+    del controller
+    gc.collect()
+    assert alive() is None
 
 
 def test_models_with_functions_are_copied_and_pickled():
