@@ -177,3 +177,34 @@ def test_a_model_may_be_changed_while_a_thread_runs_it():
         m.set("gravity", [0, 0, -9.8])
         m.parameter("k", 1)
     thread.join()
+
+
+BESIDE = """
+gravity = [0, 0, 0]
+[table.push]
+file = "push.csv"
+x = "t"
+y = "F"
+[point.p]
+mass = 1
+position = [0, 0, 0]
+[force.f]
+type = "expression"
+point = "p"
+force = ["push(t)", 0, 0]
+"""
+
+
+def test_files_beside_a_model_are_found_wherever_the_program_goes(tmp_path, monkeypatch):
+    folder = tmp_path / "models"
+    folder.mkdir()
+    (folder / "m.toml").write_text(BESIDE)
+    (folder / "push.csv").write_text("t,F\n0,2\n1,2\n")
+    monkeypatch.chdir(tmp_path)
+    m = hm.load("models/m.toml")
+    run = m.simulate(end=1, step=0.1)
+    assert run["p.vx"][-1] == pytest.approx(2)
+    monkeypatch.chdir("/")
+    for other in (m, m.copy(), pickle.loads(pickle.dumps(m))):
+        assert (other.simulate(end=1, step=0.1)["p.vx"] == run["p.vx"]).all()
+    assert (pickle.loads(pickle.dumps(run))["p.vx"] == run["p.vx"]).all()

@@ -219,7 +219,8 @@ def load(path: str | os.PathLike[str]) -> Model:
         return Model._of(_engine.Draft.read_file(f"{name}.toml", _engine.example(name).encode(), None))
     with open(path, "rb") as file:
         content = file.read()
-    return Model._of(_engine.Draft.read_file(path, content, os.path.dirname(path) or "."))
+    # Files beside it are found wherever the program goes.
+    return Model._of(_engine.Draft.read_file(path, content, os.path.dirname(os.path.abspath(path))))
 
 
 def loads(text: str) -> Model:
