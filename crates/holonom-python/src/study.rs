@@ -50,11 +50,14 @@ impl Sweep {
         let trouble = Trouble::default();
         let changes = read_changes(py, changes)?;
         let source = draft.changed(py, &changes, &trouble)?;
-        let mut varied = Vec::new();
+        let (mut varied, mut first) = (Vec::new(), changes.clone());
         for (key, given) in vary {
             let key: String = key.extract()?;
             match value::read(&key, &given, &|_, _| true).map_err(|fault| model_error(py, vec![fault.into()], None))? {
-                Value::List(values) if !values.is_empty() => varied.push(Vary::of(&key, values)),
+                Value::List(values) if !values.is_empty() => {
+                    first.push((key.clone(), values[0].clone()));
+                    varied.push(Vary::of(&key, values));
+                }
                 Value::List(_) => return Err(refuse(py, &key, format!("`{key}` has no values"), "give one value at least")),
                 _ => {
                     return Err(refuse(
@@ -72,7 +75,11 @@ impl Sweep {
         if let Some(raised) = trouble.take() {
             return Err(raised);
         }
-        let mut study = made.map_err(|fault| told(py, fault))?;
+        let mut study = made.map_err(|fault| match &fault {
+            // What is wrong with the model is told in the lines of the program.
+            Failure::Model(_) => draft.load_with(py, &first, &trouble).err().unwrap_or_else(|| told(py, fault)),
+            _ => told(py, fault),
+        })?;
         let functions = draft.functions(py)?;
         if functions.1 {
             let trouble = trouble.clone();

@@ -1,5 +1,7 @@
 """Wrong studies and analyses: each raises an error that names the argument and says what to do."""
 
+import inspect
+
 import numpy as np
 import pytest
 
@@ -90,3 +92,20 @@ def test_a_wrong_call_is_told_what_is_wrong(call, words, tmp_path, monkeypatch):
     text = str(error.value)
     for word in words:
         assert any(choice in text for choice in word.split("|")), text
+
+
+def test_what_is_wrong_with_the_model_of_a_study_is_told_in_the_lines_of_the_program():
+    m = throw()
+    line = inspect.currentframe().f_lineno + 1
+    m.spring("s", "ground", "bal", stiffness="k", rest_length=1)
+    m.expression("e", point="bll", force=[1, 0, 0])
+    with pytest.raises(hm.ModelError) as alone:
+        m.simulate()
+    with pytest.raises(hm.ModelError) as error:
+        hm.sweep(m, V)
+    faults = error.value.faults
+    assert faults == alone.value.faults and str(error.value) == str(alone.value)
+    assert [fault.place for fault in faults] == [f"{__file__}:{line}", f"{__file__}:{line + 1}"]
+    with pytest.raises(hm.ModelError) as error:
+        hm.sweep(throw(), {"point.ball.mas": [1, 2]})
+    assert [(fault.path, fault.cure) for fault in error.value.faults] == [("point.ball.mas", "did you mean `mass`?")]
