@@ -326,6 +326,15 @@ def test_models_with_functions_are_copied_and_pickled():
         assert (other.simulate(end=0.5, step=0.01)["pin.angle"] == run["pin.angle"]).all()
 
 
+def test_numbers_of_numpy_are_numbers_of_arguments_and_values():
+    m, pin, tip = pendulum()
+    wind = m.function("wind", lambda velocity, t: -0.1 * velocity, arguments=np.array([2, 1]), values=np.int64(2))
+    spring = m.function("spring", lambda *given: -given[0], arguments=np.int64(2))
+    m.expression("air", point=tip, force=wind("tip.velocity", "t"))
+    m.effort("motor", joint=pin, effort=spring("pin.angle", "t"))
+    assert (wind.parts().sizes, spring.parts().sizes) == ([2, 1], [1, 1]) and m.simulate(end=0.1, step=0.01).completed
+
+
 def refused(call):
     m, pin, tip = pendulum()
     with pytest.raises(hm.ModelError) as error:

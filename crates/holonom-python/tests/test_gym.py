@@ -172,6 +172,13 @@ def test_a_wrong_environment_is_told_what_is_wrong(keys, words):
     assert all(word in str(error.value) for word in words), str(error.value)
 
 
+def test_substeps_may_be_a_number_of_numpy():
+    env = environment(substeps=np.int64(5))
+    env.reset()
+    env.step(np.zeros(1))
+    assert env.simulation.steps == 5
+
+
 def test_a_wrong_action_is_told_what_is_wrong():
     env = environment()
     env.reset()

@@ -110,6 +110,14 @@ def test_others_read_a_simulation_while_a_thread_takes_many_steps():
     assert max(waits) < 0.5 and sim.steps == 100 + count
 
 
+def test_columns_are_looked_for_and_listed_by_their_names():
+    model = hm.load("example:double-pendulum")
+    run, sim = model.simulate(end=0.1, step=0.01), hm.Simulation(model, step=0.01)
+    study = hm.sweep(model, {"simulation.end": [0.1, 0.2]}, step=0.01)
+    for one in (run, sim, study):
+        assert list(one) == one.columns and "energy" in one and "energie" not in one and 0 not in one
+
+
 def test_without_forces_of_joints_there_are_none():
     m = hm.load("example:four-bar")
     m.output(reactions=False)

@@ -103,6 +103,8 @@ CALLS = {
     "no such entry": (lambda b: b.m["hing"], ["`hing`", "hinge"]),
     "no such example": (lambda b: hm.load("example:fourbar"), ["`fourbar`", "four-bar"]),
     "no such format": (lambda b: b.run().write("nowhere", formats=["xls"]), ["`xls`", "csv"]),
+    "formats is a text": (lambda b: b.run().write("nowhere", formats="csv"), ["`formats`", "str", "write formats=["]),
+    "columns of a table is a text": (lambda b: b.run().to_dataframe("hinge.angle"), ["`columns`", "str", "write columns=["]),
     "no such input": (lambda b: hm.Simulation(b.m, step=0.01).inputs["pus"], ["`pus`", "`push`"]),
     "input is a text": (lambda b: hm.Simulation(b.m, step=0.01).inputs.__setitem__("push", "much"), ["`push`", "str", "number"]),
     "input is no number": (lambda b: hm.Simulation(b.m, step=0.01).inputs.__setitem__("push", NAN), ["`push`", "NaN", "finite"]),

@@ -14,8 +14,8 @@ V = {"parameters.v": [1, 2]}
 # A call, and words of the message.
 CALLS = {
     "no model": (lambda m: hm.sweep("throw.toml", V), ["`model`", "str", "load"]),
-    "nothing varied": (lambda m: hm.sweep(m), ["neither `vary` nor `rows`|`vary`", "give one"]),
-    "both": (lambda m: hm.sweep(m, V, rows=V), ["both", "`rows`"]),
+    "nothing varied": (lambda m: hm.sweep(m), ["neither `vary` nor `rows` is given", "give one"]),
+    "both": (lambda m: hm.sweep(m, V, rows=V), ["both `vary` and `rows` are given"]),
     "vary is a number": (lambda m: hm.sweep(m, 3), ["`vary`", "int", "dictionary"]),
     "vary has no keys": (lambda m: hm.sweep(m, {}), ["`vary`", "no keys"]),
     "a key is a number": (lambda m: hm.sweep(m, {3: [1]}), ["`vary`", "3", "no text"]),
@@ -58,8 +58,10 @@ CALLS = {
     "no such method": (lambda m: hm.sweep(m, V, method="conserving-gll"), ["`conserving-gll`"]),
     "no such argument": (lambda m: hm.sweep(m, V, stp=1), ["`stp`", "`step`"]),
     "no such format": (lambda m: hm.sweep(m, V, out="nowhere-else", formats=["xls"]), ["`formats`", "xls", "csv"]),
+    "formats is a text": (lambda m: hm.sweep(m, V, out="nowhere-else", formats="csv"), ["`formats`", "str", "write formats=["]),
     "no such column of a study": (lambda m: hm.sweep(m, V)["ball.q"], ["`ball.q`", "ball.x"]),
     "no such row": (lambda m: hm.sweep(m, V).run(2), ["`row`", "2", "from 0"]),
+    "a row from the end": (lambda m: hm.sweep(m, V).run(-1), ["`row`", "-1", "count rows from 0"]),
     "row is a text": (lambda m: hm.sweep(m, V).run("1"), ["`row`", "'1'"]),
     "no such ending": (lambda m: hm.sweep(m, V).write("table.xls"), ["`path`", "xls", ".csv"]),
     "a range backwards": (lambda m: hm.random({"a": (2, 1)}, 4), ["`a`", "2", "lower"]),

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _engine
-from ._errors import refuse
+from ._errors import list_of, refuse, texts_of
 from ._run import Run
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def compare(runs: Sequence[Run | Model] | Mapping[str, Run | Model], *, columns:
     `columns` it tells how far they are from those of the first."""
     from ._model import Model
 
-    given = list(runs.items()) if isinstance(runs, Mapping) else [(None, run) for run in _list("runs", runs)]
+    given = list(runs.items()) if isinstance(runs, Mapping) else [(None, run) for run in list_of("runs", runs)]
     if not given:
         raise refuse("runs", "`runs` is empty", "give the runs to compare")
     made: dict[str, Run] = {}
@@ -78,7 +78,7 @@ def compare(runs: Sequence[Run | Model] | Mapping[str, Run | Model], *, columns:
         run = _run(run, **keys) if isinstance(run, Model) else run
         label = str(label) if label is not None else f"{run._recorded.title()}, {run.summary['method']['name']}"
         made[_free(label, made)] = run
-    return Comparison(made, _texts("columns", columns))
+    return Comparison(made, texts_of("columns", columns))
 
 
 def of_model(
@@ -93,9 +93,9 @@ def of_model(
     made: dict[str, Run] = {}
     changes = dict(keys.get("set") or {})
     rest = {key: value for key, value in keys.items() if key != "set"}
-    named: list[str | None] = [*_texts("methods", methods)] or [None]
-    lengths: list[Any] = _list("steps", steps) or [rest.pop("step", None)]
-    for variant in [{}, *_list("variants", variants)]:
+    named: list[str | None] = [*texts_of("methods", methods)] or [None]
+    lengths: list[Any] = list_of("steps", steps) or [rest.pop("step", None)]
+    for variant in [{}, *list_of("variants", variants)]:
         if not isinstance(variant, Mapping):
             kind = type(variant).__name__
             raise refuse("variants", f"`variants` has something of type {kind}", 'write variants=[{"parameters.k": 100}]')
@@ -106,7 +106,7 @@ def of_model(
                 parts += [method or (run.summary["method"]["name"] if not variants else "")]
                 parts += [f"{step} s" if len(lengths) > 1 else ""]
                 made[_free(", ".join(part for part in parts if part), made)] = run
-    return Comparison(made, _texts("columns", columns))
+    return Comparison(made, texts_of("columns", columns))
 
 
 def _run(model: Model, **keys: Any) -> Run:
@@ -125,7 +125,7 @@ def of_check(model: Model, projection: bool, changes: dict[str, Any]) -> Check:
 def of_stability(model: Model, methods: Sequence[str], changes: dict[str, Any]) -> Stability:
     """The largest steps of methods."""
     is_main = threading.current_thread() is threading.main_thread()
-    return Stability(_engine.stability(model._draft, changes, _texts("methods", methods), is_main))
+    return Stability(_engine.stability(model._draft, changes, texts_of("methods", methods), is_main))
 
 
 def _free(label: str, taken: Mapping[str, Any]) -> str:
@@ -134,17 +134,3 @@ def _free(label: str, taken: Mapping[str, Any]) -> str:
     while free in taken:
         free, number = f"{label} ({number})", number + 1
     return free
-
-
-def _list(argument: str, given: Any) -> list[Any]:
-    if isinstance(given, (str, Mapping)) or not hasattr(given, "__iter__"):
-        raise refuse(argument, f"`{argument}` is of type {type(given).__name__}, and a list is wanted", f"write {argument}=[…]")
-    return list(given)
-
-
-def _texts(argument: str, given: Any) -> list[str]:
-    texts = _list(argument, given)
-    for text in texts:
-        if not isinstance(text, str):
-            raise refuse(argument, f"`{argument}` has {text!r}, which is no text", f'write {argument}=["…"]')
-    return texts

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import sys
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from types import FrameType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -97,3 +97,19 @@ def limits_of(path: str, given: Any) -> tuple[float, float]:
     if not low < high:
         raise refuse(path, f"`{path}` is {given!r}, where the first is not below the second", "give the least value first")
     return low, high
+
+
+def list_of(argument: str, given: Any) -> list[Any]:
+    """An argument that is to be a list: a text or a dictionary would be one of its letters or keys."""
+    if isinstance(given, (str, Mapping)) or not hasattr(given, "__iter__"):
+        raise refuse(argument, f"`{argument}` is of type {type(given).__name__}, and a list is wanted", f"write {argument}=[…]")
+    return list(given)
+
+
+def texts_of(argument: str, given: Any) -> list[str]:
+    """An argument that is to be a list of texts."""
+    texts = list_of(argument, given)
+    for text in texts:
+        if not isinstance(text, str):
+            raise refuse(argument, f"`{argument}` has {text!r}, which is no text", f'write {argument}=["…"]')
+    return texts

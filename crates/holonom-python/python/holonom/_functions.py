@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._errors import refuse
-from ._types import Number
+from ._types import Number, is_whole
 
 #: Vectors that may be arguments by their names, and the endings of their columns.
 VECTORS = {"position": "", "velocity": "v", "angular_velocity": "w"}
@@ -155,16 +155,16 @@ def make(
     is_code = hasattr(callable, "address")
     if not is_code and not hasattr(callable, "__call__"):
         raise refuse(path, f"`{name}` is of type {type(callable).__name__}, and a callable is wanted", "give a function")
-    if isinstance(values, bool) or not isinstance(values, int) or values < 1:
+    if not is_whole(values) or values < 1:
         raise refuse(f"{path}.values", f"`values` is {values!r}", "say how many numbers it gives: 1 or more")
-    counts = [arguments] if isinstance(arguments, int) else [] if arguments is None else list(arguments)
-    if any(isinstance(count, bool) or not isinstance(count, int) or count < 1 for count in counts) or arguments == []:
+    counts = [1] * int(arguments) if is_whole(arguments) else list(arguments) if hasattr(arguments, "__iter__") else []
+    if arguments is not None and not (counts and all(is_whole(count) and count > 0 for count in counts)):
         cure = "give how many numbers it takes, or the numbers of each argument where some are arrays: arguments=[3, 1]"
         raise refuse(f"{path}.arguments", f"`arguments` is {arguments!r}", cure)
     if not (derivative is None or derivative == "jax" or (not isinstance(derivative, str) and hasattr(derivative, "__call__"))):
         message = f"`derivative` is {derivative!r}"
         raise refuse(f"{path}.derivative", message, 'give a callable, "jax", or nothing for differences')
-    return Function(name, callable, arguments, values, derivative, axes)
+    return Function(name, callable, None if arguments is None else [int(count) for count in counts], int(values), derivative, axes)
 
 
 def _list(sizes: Sequence[int]) -> str:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import html
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _engine
-from ._errors import needed
+from ._errors import needed, texts_of
 
 if TYPE_CHECKING:
     import pandas
@@ -115,6 +115,10 @@ class Run:
     def __contains__(self, name: object) -> bool:
         return name in self._known
 
+    def __iter__(self) -> Iterator[str]:
+        """Over the names of all columns."""
+        return iter(self.columns)
+
     def __len__(self) -> int:
         return self._recorded.rows()
 
@@ -168,7 +172,7 @@ class Run:
     ) -> None:
         """Leaves the run in a folder as the command does: tables in some formats (csv, npz, parquet), summary and report. The results
         of another run are not overwritten, unless with `force`."""
-        self._recorded.write(os.fspath(folder), list(formats), report, force)
+        self._recorded.write(os.fspath(folder), texts_of("formats", formats), report, force)
 
     def report(self, path: str | os.PathLike[str]) -> None:
         """Writes the report: one HTML file with the moving mechanism, which needs no network."""
@@ -181,7 +185,7 @@ class Run:
         with needed("to_dataframe", "pandas", "pandas"):
             import pandas
 
-        names = [name for name in self.columns if name != "t"] if columns is None else [str(name) for name in columns]
+        names = [name for name in self.columns if name != "t"] if columns is None else texts_of("columns", columns)
         index = pandas.Index(self.t, name="t")
         table = pandas.DataFrame({name: self._whole(name) for name in names}, index=index)
         table.attrs["units"] = {name: self.unit(name) for name in ["t", *names]}

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union
 import numpy as np
 
 from ._errors import needed, refuse
+from ._types import is_whole
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -151,8 +152,9 @@ def values_of(argument: str, key: str, given: Any) -> list[Any]:
     return list(given)
 
 
-def whole(argument: str, given: Any, least: int) -> int:
+def whole(argument: str, given: Any, least: int, cure: str = "") -> int:
     """A whole number, if it is one and large enough."""
-    if isinstance(given, bool) or not isinstance(given, (int, np.integer)) or given < least:
-        raise refuse(argument, f"`{argument}` is {given!r}, and a whole number of at least {least} is wanted", f"give {argument}={max(least, 8)}")
+    if not is_whole(given) or given < least:
+        message = f"`{argument}` is {given!r}, and a whole number of at least {least} is wanted"
+        raise refuse(argument, message, cure or f"give {argument}={max(least, 8)}")
     return int(given)

@@ -109,6 +109,13 @@ class Simulation:
             place = self._places[name] = self._simulator.place(str(name))
         return self._simulator.value(place)
 
+    def __contains__(self, name: object) -> bool:
+        return name in self.columns
+
+    def __iter__(self) -> Iterator[str]:
+        """Over the names of all columns."""
+        return iter(self.columns)
+
     def state(self) -> State:
         """A copy of the present state, which can be pickled: all that the simulation goes on from, to the same bits."""
         return self._simulator.state()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -13,7 +13,7 @@ import numpy as np
 from . import _engine
 from ._builders import text_of
 from ._engines import ENGINES
-from ._errors import needed, refuse
+from ._errors import needed, refuse, texts_of
 from ._model import Model, changes_of
 from ._run import Run
 from ._samplers import Table, mapping, values_of, whole
@@ -66,6 +66,10 @@ class Study:
     def __contains__(self, name: object) -> bool:
         return name in self.table
 
+    def __iter__(self) -> Iterator[str]:
+        """Over the names of all columns."""
+        return iter(self.table)
+
     def __len__(self) -> int:
         return len(self.table["run"])
 
@@ -92,9 +96,9 @@ class Study:
 
     def run(self, row: int, **keys: Any) -> Run:
         """Makes the run of a row of the table again, with its trajectory. `keys` are those of ``simulate``."""
-        row = whole("row", row, 0)
+        row = whole("row", row, 0, "count rows from 0")
         if row >= len(self):
-            raise refuse("row", f"`row` is {row}, and the study has {len(self)} rows", "count them from 0")
+            raise refuse("row", f"`row` is {row}, and the study has {len(self)} rows", "count rows from 0")
         settings = self._sweep.settings(int(self.table["run"][row]))
         changes = {**self._given["changes"], **settings}
         return self._model.simulate(method=self._given["method"], set=changes, **keys)
@@ -191,6 +195,7 @@ def sweep(
         raise refuse("engine", f"`engine` is {engine!r}", 'take one of: "local", "ray", "dask"')
     if isinstance(columns, str) or not hasattr(columns, "__iter__") or not all(isinstance(column, str) for column in columns):
         raise refuse("columns", "`columns` is no list of texts", 'write columns=["max(abs(strut.force))"]')
+    formats = texts_of("formats", formats)
     for format in formats:
         if format not in _FORMATS:
             raise refuse("formats", f"`formats` has {format!r}", f"take some of: {', '.join(_FORMATS)}")
@@ -217,7 +222,7 @@ def sweep(
                 with contextlib.suppress(KeyboardInterrupt):
                     ENGINES[engine](made, parts, lambda lines: bar.update(made.add(lines)))
         if out is not None and made.is_whole():
-            made.finish(list(formats), True)
+            made.finish(formats, True)
     finally:
         made.release()
     return Study(model, made, study)
@@ -249,7 +254,7 @@ class _Bar:
 def _varied(vary: Any, rows: Any) -> tuple[dict[str, list[Any]], bool]:
     """Values by their keys, and whether they make a grid."""
     if (vary is None) == (rows is None):
-        raise refuse("vary", f"{'neither' if vary is None else 'both'} `vary` and `rows` are given", 'give one: vary={"parameters.k": [1, 2, 3]}')
+        raise refuse("vary", "neither `vary` nor `rows` is given" if vary is None else "both `vary` and `rows` are given", 'give one: vary={"parameters.k": [1, 2, 3]}')
     # A table has rows wherever it is given: as a grid it would be something else without a word.
     if rows is None and isinstance(vary, Mapping) and not isinstance(vary, Table):
         return {key: values_of("vary", key, values) for key, values in mapping("vary", vary).items()}, True

@@ -19,3 +19,8 @@ Rows = Union[Sequence[Numbers], npt.NDArray[Any]]
 
 #: The name of a point or of a place of a body, an entry, or a place in the world.
 Place = Union[str, Numbers]
+
+
+def is_whole(given: Any) -> bool:
+    """Whether it is a whole number, of Python or of NumPy."""
+    return isinstance(given, (int, np.integer)) and not isinstance(given, bool)

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from ._errors import limits_of, refuse
 from ._model import Model
 from ._simulation import Simulation
+from ._types import is_whole
 
 #: What is asked of a simulation: a function of it, or the name of a column, measures among them.
 Asked = Union[str, Callable[[Simulation], Any]]
@@ -56,7 +57,7 @@ class Environment(gymnasium.Env[Array, Array]):
         method: str | None = None,
         **keys: Any,
     ) -> None:
-        if isinstance(substeps, bool) or not isinstance(substeps, int) or substeps < 1:
+        if not is_whole(substeps) or substeps < 1:
             raise refuse("substeps", f"`substeps` is {substeps!r}", "say how many steps an action takes: 1 or more")
         if not isinstance(actions, Mapping):
             cure = 'give the inputs with their limits: actions={"torque": (-10, 10)}'
@@ -70,7 +71,7 @@ class Environment(gymnasium.Env[Array, Array]):
         # Of its own, as the program may go on to change the model.
         self._model = model.copy()
         self._first = self.simulation.state()
-        self._substeps = substeps
+        self._substeps = int(substeps)
         self._end = math.inf if end is None else _number("end", end)
         self._start = start
         self._inputs = {name: limits_of(f"actions.{name}", limits) for name, limits in actions.items()}
