@@ -110,6 +110,25 @@ def test_others_read_a_simulation_while_a_thread_takes_many_steps():
     assert max(waits) < 0.5 and sim.steps == 100 + count
 
 
+@pytest.mark.parametrize("name, value", [("inputs", {"push": 4}), ("step", 0.01), ("input", {"push": 4}), ("ended", None)])
+def test_what_would_cut_off_a_simulation_is_not_set(name, value):
+    sim = trolley()
+    with pytest.raises(AttributeError, match=name):
+        setattr(sim, name, value)
+    sim.inputs["push"] = 4
+    assert sim.step(10) and sim["p.vx"] == pytest.approx(2)
+
+
+def test_a_class_of_its_own_may_step_otherwise():
+    class Twice(hm.Simulation):
+        def step(self, count=1):
+            return super().step(2 * count)
+
+    sim = Twice(hm.load("example:double-pendulum"), step=0.01)
+    sim.step()
+    assert sim.steps == 2
+
+
 def test_columns_are_looked_for_and_listed_by_their_names():
     model = hm.load("example:double-pendulum")
     run, sim = model.simulate(end=0.1, step=0.01), hm.Simulation(model, step=0.01)

@@ -50,6 +50,9 @@ class Simulation:
     """A model at its start, to be stepped: ``step()`` takes a nominal step, ``sim["hinge.angle"]`` reads a column of the present state,
     ``inputs`` are set between steps."""
 
+    # What is misspelt, or set where it would hide a method, is refused.
+    __slots__ = ("__weakref__", "_inputs", "_places", "_simulator", "notes")
+
     def __init__(
         self,
         model: Model,
@@ -67,10 +70,16 @@ class Simulation:
         """What looks like a slip in the model, and what was put right before the start."""
         warn(self.notes)
         self._places: dict[str, int] = {}
-        self.inputs = Inputs(self._simulator)
+        self._inputs = Inputs(self._simulator)
+
+    @property
+    def inputs(self) -> Inputs:
         """Numbers from outside, by their names."""
-        self.step = self._simulator.step
-        """``step(count=1)`` takes nominal steps and says whether the simulation goes on; `ended` has why not."""
+        return self._inputs
+
+    def step(self, count: int = 1) -> bool:
+        """Takes nominal steps and says whether the simulation goes on; `ended` has why not."""
+        return self._simulator.step(count)
 
     @property
     def time(self) -> float:
