@@ -69,6 +69,7 @@ def test_results_of_another_run_are_not_overwritten(tmp_path):
     model = hm.load(PENDULUM)
     model.simulate(end=0.1).write(tmp_path)
     assert {"summary.json", "trajectory.csv", "columns.json", "report.html"} <= set(os.listdir(tmp_path))
+    assert "checkpoint.json" not in os.listdir(tmp_path)
     model.simulate(end=0.1).write(tmp_path)
     with pytest.raises(hm.ModelError, match="another run"):
         model.simulate(end=0.2).write(tmp_path)

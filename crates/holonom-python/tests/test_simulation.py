@@ -129,6 +129,21 @@ def test_a_class_of_its_own_may_step_otherwise():
     assert sim.steps == 2
 
 
+def test_an_accuracy_is_that_of_each_nominal_step():
+    """What the chapter says to do for an accuracy at the end."""
+    model, end, step, accuracy = hm.load("example:double-pendulum"), 2, 0.01, 1e-6
+    truth = model.simulate(end=end, step=step, accuracy=1e-11, method="radau")
+    sim = hm.Simulation(model, step=step, accuracy=accuracy * step / end)
+    sim.step(round(end / step))
+    size = 2
+    assert max(abs(sim[name] - truth[name][-1]) for name in truth if name.endswith((".x", ".z"))) < accuracy * size
+
+
+def test_a_simulation_has_no_end():
+    sim = hm.Simulation(hm.load("example:double-pendulum"), step=0.01, end=0.05)
+    assert sim.step(10) and sim.ended is None and sim.time == pytest.approx(0.1)
+
+
 def test_columns_are_looked_for_and_listed_by_their_names():
     model = hm.load("example:double-pendulum")
     run, sim = model.simulate(end=0.1, step=0.01), hm.Simulation(model, step=0.01)

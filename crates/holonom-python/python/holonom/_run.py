@@ -170,8 +170,8 @@ class Run:
         report: bool = True,
         force: bool = False,
     ) -> None:
-        """Leaves the run in a folder as the command does: tables in some formats (csv, npz, parquet), summary and report. The results
-        of another run are not overwritten, unless with `force`."""
+        """Leaves the run in a folder as the command does: tables in some formats (csv, npz, parquet), summary and report, but no checkpoint
+        to resume from. The results of another run are not overwritten, unless with `force`."""
         self._recorded.write(os.fspath(folder), texts_of("formats", formats), report, force)
 
     def report(self, path: str | os.PathLike[str]) -> None:

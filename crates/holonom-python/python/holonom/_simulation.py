@@ -48,7 +48,10 @@ class Inputs(MutableMapping[str, float]):
 
 class Simulation:
     """A model at its start, to be stepped: ``step()`` takes a nominal step, ``sim["hinge.angle"]`` reads a column of the present state,
-    ``inputs`` are set between steps."""
+    ``inputs`` are set between steps.
+
+    Keywords are those of ``simulate``. An `end` is not heeded: the program decides how far it goes. An `accuracy` is that of each nominal step, so
+    that errors of many add up: for 1e-6 at the time `end` give ``accuracy=1e-6*step/end``."""
 
     # What is misspelt, or set where it would hide a method, is refused.
     __slots__ = ("__weakref__", "_inputs", "_places", "_simulator", "notes")
