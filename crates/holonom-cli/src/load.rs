@@ -311,6 +311,7 @@ pub fn start_failure(error: StartError) -> Failure {
         }
         StartError::NotFinite => "a formula may be outside its domain there, or a table outside its range",
         StartError::Nonholonomic { .. } => "take another formulation, such as the default",
+        StartError::Step { .. } => "give a step above 0",
         _ => "move what is named there, or take away or loosen one of the constraints",
     };
     Failure::usage(error.to_string(), cure)

@@ -79,6 +79,27 @@ fn loads_in_narrow_strips_are_seen() {
     }
 }
 
+/// Two links that swing, and a moment that lets go where the second passes an angle: what has gone on to get behind the jump has the velocities and the
+/// energy that belong there, so that steps become no shorter.
+#[test]
+fn a_moment_that_lets_go_of_a_linkage_is_passed() {
+    for angle in [0.1, 0.2, 0.35, 0.5] {
+        let text = format!(
+            "plane = \"xz\"\n[body.a]\nmass = 1\ninertia = 0.1\nposition = [0.5, 0]\n[body.b]\nmass = 0.5\ninertia = 0.05\nposition = [1.4, 0]\n\
+             [joint.j]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0]\n\
+             [joint.k]\ntype = \"revolute\"\nbetween = [\"a\", \"b\"]\nat = [1, 0]\n\
+             [force.e]\ntype = \"effort\"\njoint = \"k\"\neffort = \"-10*step(q - {angle})\"\n"
+        );
+        let names = ["a.x", "a.z", "b.x", "b.z"];
+        let expected = last(&text, "ode/dop853", 1e-10, 0.05, 1.0, names);
+        for accuracy in [1e-6, 1e-7, 1e-9] {
+            let found = last(&text, "radau", accuracy, 0.05, 1.0, names);
+            let off = found.iter().zip(expected).map(|(found, expected)| (found - expected).abs()).fold(0.0, f64::max);
+            assert!(off <= 20.0 * accuracy, "{angle} rad, accuracy {accuracy:e}: off by {off:e} m");
+        }
+    }
+}
+
 /// A ball thrown up against a ceiling a hair below where it would turn: it is in touch for 9 ms of steps that are half a second long.
 #[test]
 fn a_touch_within_a_step_is_seen() {

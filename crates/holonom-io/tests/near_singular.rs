@@ -73,6 +73,28 @@ fn a_motor_has_its_moment_beside_a_dead_centre() {
     }
 }
 
+/// In a row still nearer to the line its moment is that of the weights, too, or there is none: what rounding leaves of velocities decides on accelerations there.
+#[test]
+fn a_motor_has_its_moment_or_none_as_near_as_rounding() {
+    let drive = "[drive.m]\ntype = \"angle\"\njoint = \"A\"\nprofile = \"t\"\n";
+    for beside in [1e-5, 3e-6, 1e-6, 2e-7] {
+        let text = parallelogram([1.0, 1.0], beside - 0.5, drive);
+        for method in ["conserving-ggl", "conserving", "radau", "lagrange-3/rattle", "conserving-projected"] {
+            let (_, recording) = common::run_every(&common::model_with_forces(&text), method, 0.1, 1.0, 1);
+            let efforts = recording.column("m.effort").unwrap();
+            assert_eq!(efforts.len(), 11, "{beside} rad, {method}");
+            for (row, effort) in efforts.iter().enumerate() {
+                let expected = 4.0 * 9.81 * (beside - 0.5 + 0.1 * row as f64).cos();
+                let is_right = (effort / expected - 1.0).abs() < 0.01;
+                assert!(
+                    is_right || (effort.is_nan() && row == 5),
+                    "{beside} rad, {method}, row {row}: {effort} N·m, and {expected} N·m by hand"
+                );
+            }
+        }
+    }
+}
+
 /// Flat cranks turn both with the same rate, or the second alone, as the second derivative of the coupler's length says, a² − a b = 0: other rates belong to no
 /// motion, which the start knows.
 #[test]

@@ -2,10 +2,10 @@
 
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::sync::{Mutex, MutexGuard, OnceLock, TryLockError};
 use std::time::{Duration, Instant};
 
-use holonom::model::nearest;
+use holonom::model::{Value, nearest};
 use holonom::record::{Constraints, Recorder, RecorderMark};
 use holonom::run::RunError;
 use holonom::simulation::{Checkpoint, Divisions, Method, Observer, Simulation, Status, Verdict};
@@ -47,6 +47,8 @@ pub struct Simulator {
     waiting: AtomicUsize,
     notes: Vec<String>,
     trouble: Trouble,
+    /// Sum of what the mechanism is made of, once it was asked for.
+    sum: OnceLock<String>,
 }
 
 struct Running {
@@ -60,6 +62,8 @@ struct Running {
     is_motion_new: bool,
     /// Whether forces of joints and accelerations are those of the present state: they take time, and are found when they are looked at.
     are_forces_new: bool,
+    /// Whether inputs were set since the last step.
+    are_inputs_new: bool,
     /// Whether the last step that was taken alone was a short one.
     is_short: bool,
     /// Why the last step was the last, and the event that it was.
@@ -98,6 +102,8 @@ fn sees_all(recorder: &Recorder<'_>) -> bool {
 #[derive(PartialEq)]
 pub struct State {
     point: (Checkpoint, RecorderMark),
+    /// Sum of what its mechanism is made of.
+    model: String,
 }
 
 impl Running {
@@ -126,6 +132,11 @@ impl Running {
     /// Takes nominal steps, but no more than there is time for until the next look. Gives their number, and whether the run goes on.
     fn advance(&mut self, count: i64, trouble: &Trouble) -> (i64, bool) {
         let begun = Instant::now();
+        if std::mem::take(&mut self.are_inputs_new) && sees_all(&self.recorder) {
+            // What jumps with an input is seen before and after, as where an event sets it.
+            self.find_forces();
+            self.recorder.at_division(&self.simulation);
+        }
         let (mut taken, mut goes_on) = (0, true);
         while goes_on && taken < count && (taken == 0 || begun.elapsed() < LOOK) {
             let status = self.simulation.step_observed(&mut Watch(&mut self.recorder));
@@ -149,7 +160,10 @@ impl Running {
         if !self.is_row_new {
             self.find_forces();
             self.row.clear();
-            self.row.extend_from_slice(self.recorder.look(&self.simulation));
+            self.row.extend_from_slice(match sees_all(&self.recorder) {
+                true => self.recorder.look_beside_run(&self.simulation),
+                false => self.recorder.look(&self.simulation),
+            });
             self.is_row_new = true;
         }
         &self.row
@@ -170,6 +184,15 @@ impl Running {
 }
 
 impl Simulator {
+    /// Sum of what the mechanism is made of: of all of the model but how it is run and what is shown of it.
+    fn sum(&self) -> &str {
+        self.sum.get_or_init(|| {
+            let Value::Table(whole) = self.loaded.source.value() else { return String::new() };
+            let parts: Vec<_> = whole.iter().filter(|(key, _)| !["title", "simulation", "output"].contains(key)).collect();
+            holonom_io::sha256(format!("{parts:?} {:?}", self.loaded.source.files()).as_bytes())
+        })
+    }
+
     /// The simulation, once no other thread is at it. A function that a step calls cannot have it.
     fn running(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Running>> {
         self.require_outside(py)?;
@@ -274,13 +297,17 @@ impl Simulator {
             motion: Vec::new(),
             is_motion_new: false,
             are_forces_new: false,
+            are_inputs_new: false,
             is_short: false,
             ended: None,
             event: None,
         };
         running.arrive(true);
         let notes = holonom_cli::notes(&loaded, &running.simulation);
-        trouble.take().map_or(Ok(Self { running: Mutex::new(running), waiting: AtomicUsize::new(0), notes, loaded, trouble }), Err)
+        trouble.take().map_or(
+            Ok(Self { running: Mutex::new(running), waiting: AtomicUsize::new(0), notes, loaded, trouble, sum: OnceLock::new() }),
+            Err,
+        )
     }
 
     /// What looks like a slip, and what was put right before the start.
@@ -411,7 +438,7 @@ impl Simulator {
             return Err(refuse(py, name, format!("the input `{name}` cannot be {value}"), "set it to a finite number"));
         }
         let mut running = self.running(py)?;
-        (running.is_row_new, running.are_forces_new) = (false, false);
+        (running.is_row_new, running.are_forces_new, running.are_inputs_new) = (false, false, true);
         self.within(&mut running, |running| running.simulation.set_input(name, value)).then_some(()).ok_or_else(|| self.no_input(name))
     }
 
@@ -420,7 +447,7 @@ impl Simulator {
         let mut running = self.running(py)?;
         self.within(&mut running, Running::find_forces);
         self.raise(&mut running)?;
-        Ok(State { point: (running.simulation.checkpoint(), running.recorder.mark()) })
+        Ok(State { point: (running.simulation.checkpoint(), running.recorder.mark()), model: self.sum().into() })
     }
 
     /// Goes on from a state of this model.
@@ -429,7 +456,8 @@ impl Simulator {
         let model = &self.loaded.model;
         let running = &mut *self.running(py)?;
         let method = running.simulation.method().clone();
-        let resumed = Simulation::resume(model.system.clone(), method, running.simulation.nominal_step(), checkpoint.clone());
+        let resume = || Simulation::resume(model.system.clone(), method, running.simulation.nominal_step(), checkpoint.clone());
+        let resumed = (state.model == self.sum()).then(resume).flatten();
         let Some(mut simulation) = resumed else {
             return Err(refuse(
                 py,
@@ -443,6 +471,7 @@ impl Simulator {
         }
         let recorder = Recorder::new(&model.channels, &model.system, u64::MAX, model.output.constraints()).into_owned().resume(mark);
         (running.simulation, running.recorder, running.is_row_new) = (simulation, recorder, false);
+        running.are_inputs_new = true;
         (running.ended, running.event) = (None, None);
         running.arrive(true);
         self.raise(running)
@@ -474,15 +503,16 @@ impl State {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
-        let bytes = serde_json::to_vec(&slf.get().point).expect("a state is plain data");
+        let State { point, model } = slf.get();
+        let bytes = serde_json::to_vec(&(point, model)).expect("a state is plain data");
         Ok((slf.get_type().getattr("of_bytes")?, (PyBytes::new(slf.py(), &bytes),)))
     }
 
     /// What was pickled.
     #[staticmethod]
     fn of_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
-        let point =
+        let (point, model) =
             serde_json::from_slice(bytes).map_err(|error| refuse(py, "state", error.to_string(), "give what a state was pickled to"))?;
-        Ok(Self { point })
+        Ok(Self { point, model })
     }
 }

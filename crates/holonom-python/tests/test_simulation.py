@@ -272,3 +272,37 @@ def test_repeated_events_set_repeated_inputs():
                  "[event.e]\nrepeat = 'i = 1 to 3'\nevery = 0.5\nset = { 'a[i]' = 'a[i] + i' }\n")  # fmt: skip
     run = m.simulate(end=1.2, step=0.1)
     assert [run[f"a[{i}]"][-1] for i in (1, 2, 3)] == [3, 6, 9]
+
+
+def test_running_measures_take_each_step_with_the_input_it_had():
+    """What a program sets an input to between steps counts from there on, before and after; looks are no part of the run."""
+    model = hm.Model(gravity=[0, 0, 0])
+    model.input("u", unit="N")
+    model.point("p", mass=2, position=[0, 0, 0])
+    model.expression("f", point="p", force=["u", 0, 0])
+    model.measure("impulse", value="integral(u)")
+    model.measure("work_done", value="integral(u*p.vx)")
+    model.measure("most", value="max(u)")
+    simulation = hm.Simulation(model, step=0.1)
+    pushes = [1.0, 5.0, -3.0, 4.0, 0.0, 7.0]
+    for push in pushes:
+        simulation.inputs["u"] = 1000.0
+        assert simulation["most"] == 1000.0
+        simulation.inputs["u"] = push
+        simulation.step()
+    assert simulation["impulse"] == pytest.approx(0.1 * sum(pushes), abs=1e-12)
+    assert simulation["work_done"] == pytest.approx(simulation["work"], abs=1e-12)
+    assert simulation["most"] == 7.0
+
+
+def test_a_state_is_of_its_own_mechanism():
+    def pendulum(mass, title=""):
+        model = hm.Model(title=title)
+        model.point("bob", mass=mass, position=[1, 0, 0])
+        model.distance("rod", between=["ground", "bob"])
+        return hm.Simulation(model, step=0.01)
+
+    state = pendulum(1).state()
+    pendulum(1, "the same").set_state(state)
+    with pytest.raises(hm.ModelError, match="another model"):
+        pendulum(5).set_state(state)

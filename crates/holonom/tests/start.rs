@@ -3,7 +3,7 @@
 mod common;
 
 use common::*;
-use holonom::simulation::{Method, Simulation, StartError};
+use holonom::simulation::{Method, Simulation, StartError, Status};
 use holonom::system::{Place, System, SystemBuilder};
 
 /// The paper's pendulum, its velocities pushed along the rod and apart, its outer mass moved by `off` along x.
@@ -65,4 +65,20 @@ fn positions_that_cannot_be_assembled_are_refused_with_their_rows() {
         Some(StartError::Position { rows }) => assert!(rows.contains("left-rod") && rows.contains("right-rod"), "{rows}"),
         other => panic!("{other:?}"),
     }
+}
+
+/// Steps with which no run ends, and an end that is none, are refused instead of passed over.
+#[test]
+fn times_that_lead_nowhere_are_refused() {
+    let mut builder = SystemBuilder::new(2, [0.0, -9.81, 0.0]);
+    let point = Place::Node(builder.free_node([0.0; 3], [0.0; 3]));
+    builder.mass(point, point, 1.0);
+    let system = builder.build();
+    let with = |step: f64| Simulation::new(system.clone(), Method::resolve(&named("conserving-ggl")).unwrap(), step);
+    for step in [0.0, -0.01, f64::NAN, f64::INFINITY] {
+        assert!(matches!(with(step).err(), Some(StartError::Step { .. })), "a step of {step} s");
+    }
+    let mut simulation = with(0.01).unwrap();
+    assert!(matches!(simulation.step_to(f64::NAN), Status::Stopped { at: 0.0, .. }));
+    assert_eq!(simulation.step_to(0.1), Status::Completed);
 }

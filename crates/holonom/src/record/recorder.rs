@@ -183,6 +183,14 @@ impl<'a> Recorder<'a> {
         &self.row
     }
 
+    /// The same row where the recorder observes the run: running values of measures go on as if nobody had looked.
+    pub fn look_beside_run(&mut self, simulation: &Simulation) -> &[f64] {
+        let (sums, bounds) = (self.measures.sums.clone(), self.measures.bounds.clone());
+        self.look(simulation);
+        (self.measures.sums, self.measures.bounds) = (sums, bounds);
+        &self.row
+    }
+
     /// Whether a column is of the motion alone: energies, positions, velocities, coordinates of joints and their rates.
     pub fn is_of_motion(&self, place: usize) -> bool {
         place < self.accelerations.start || self.coordinates.contains(&place)

@@ -155,6 +155,9 @@ impl Simulation {
     /// little, and finds accelerations and multipliers to start with.
     pub fn new(system: impl Into<Arc<System>>, method: Method, step: f64) -> Result<Self, StartError> {
         let system = system.into();
+        if !(step > 0.0 && step.is_finite()) {
+            return Err(StartError::Step { step });
+        }
         Self::begin(Arc::clone(&system), method, step, &Asked::of(&system))
     }
 
@@ -263,6 +266,9 @@ impl Simulation {
     /// Runs to time `end` (s), or to an event that ends the run, and shows the start and every nominal step to the observer.
     pub fn run(&mut self, end: f64, observer: &mut dyn Observer) -> Status {
         self.has_ended = false;
+        if end.is_nan() {
+            return Status::Stopped { at: self.state.t, reason: "the time that the run is to end at is not a number".into() };
+        }
         match self.begin_sampling() {
             Ok(true) => self.show_division(observer),
             Ok(false) => (),

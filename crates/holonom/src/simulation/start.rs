@@ -59,6 +59,12 @@ pub enum StartError {
         /// All rows that hold velocities only, by name.
         rows: String,
     },
+    /// A nominal step that no run gets on with.
+    #[error("the nominal step is {step} s, and no run gets on with it")]
+    Step {
+        /// What was given, s.
+        step: f64,
+    },
     /// Inertia that is zero where nothing holds it.
     #[error("the accelerations at the start cannot be found: the mass matrix is singular where nothing holds it")]
     Acceleration,
