@@ -105,6 +105,16 @@ fn models_results_and_measured_data_stand_side_by_side() {
 }
 
 #[test]
+fn measured_times_in_other_units_are_noticed() {
+    let folder = prepared();
+    let rows: String = (0..=100).map(|n| format!("{n},{}\n", 3.0 * x(1e-3 * f64::from(n), 100.0))).collect();
+    fs::write(folder.path().join("ms.csv"), format!("time,m.x\n{rows}")).unwrap();
+    let out = prints(&folder, "compare a.toml ms.csv --columns m.x --no-report --out ms", 0);
+    assert!(out.contains("rows of ms are at times that a has: times are in s"), "{out}");
+    assert!(!prints(&folder, "compare a.toml measured.csv --columns m.x --no-report --out s", 0).contains("times are in s"));
+}
+
+#[test]
 fn variants_are_further_runs_of_each_model() {
     let folder = prepared();
     let labels = |words: &str| -> Vec<String> {

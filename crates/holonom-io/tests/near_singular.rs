@@ -84,7 +84,7 @@ fn a_motor_has_its_moment_or_none_as_near_as_rounding() {
             let efforts = recording.column("m.effort").unwrap();
             assert_eq!(efforts.len(), 11, "{beside} rad, {method}");
             for (row, effort) in efforts.iter().enumerate() {
-                let expected = 4.0 * 9.81 * (beside - 0.5 + 0.1 * row as f64).cos();
+                let expected = 3.0 * 9.81 * (beside - 0.5 + 0.1 * row as f64).cos();
                 let is_right = (effort / expected - 1.0).abs() < 0.01;
                 assert!(
                     is_right || (effort.is_nan() && row == 5),

@@ -299,7 +299,7 @@ def test_a_state_is_of_its_own_mechanism():
     def pendulum(mass, title=""):
         model = hm.Model(title=title)
         model.point("bob", mass=mass, position=[1, 0, 0])
-        model.distance("rod", between=["ground", "bob"])
+        model.constraint_distance("rod", between=[[0, 0, 0], "bob"])
         return hm.Simulation(model, step=0.01)
 
     state = pendulum(1).state()

@@ -172,7 +172,20 @@ fn describe_columns(columns: &[String], compared: &[Compared]) -> String {
     });
     let rows: Vec<Vec<String>> = rows.collect();
     let header = ["column", "run", "least", "largest", &format!("difference to {}", first.label), "at s", "rms"];
-    format!("\n\n{}", table(&header, &rows))
+    let strangers: String = compared[1..].iter().filter_map(|other| hardly_meets(other, first)).collect();
+    format!("\n\n{}{strangers}", table(&header, &rows))
+}
+
+/// Share of its rows that a curve has in common with another below which it is probably told in other units of time.
+const HARDLY: f64 = 0.1;
+
+/// Says where hardly any rows are at times that another has.
+fn hardly_meets(one: &Compared, first: &Compared) -> Option<String> {
+    let [own, others] = [one, first].map(|run| run.recording.column("t").unwrap_or_default());
+    let whole = *others.first()?..=*others.last()?;
+    let common = own.iter().filter(|t| whole.contains(t)).count();
+    (common as f64 <= HARDLY * own.len() as f64)
+        .then(|| format!("\nonly {common} of {} rows of {} are at times that {} has: times are in s", own.len(), one.label, first.label))
 }
 
 /// A table of all runs, and why those stopped that did.

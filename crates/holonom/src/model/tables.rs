@@ -91,8 +91,8 @@ impl Curve {
             }
             (None, Some(name)) => {
                 let file = entry.files.numbers(name).map_err(|[message, cure]| entry.refuse("file", message, cure))?;
-                let column = |(k, (key, name)): (usize, &(&'static str, &Option<String>))| -> Read<Vec<f64>> {
-                    let at = match name {
+                let place = |(k, (key, name)): (usize, &(&'static str, &Option<String>))| -> Read<usize> {
+                    Ok(match name {
                         Some(name) => file.names.iter().position(|known| known == name).ok_or_else(|| {
                             let cure = suggest(name, file.names.iter().map(String::as_str));
                             entry.refuse(*key, format!("the file has no column `{name}`"), cure)
@@ -101,7 +101,9 @@ impl Curve {
                         None => {
                             return Err(entry.refuse("file", format!("the file has only {k} column"), "a table has arguments and values"));
                         }
-                    };
+                    })
+                };
+                let column = |at: usize| -> Read<Vec<f64>> {
                     let column = &file.columns[at];
                     match column.iter().position(|value| !value.is_finite()) {
                         None => Ok(column.clone()),
@@ -111,7 +113,18 @@ impl Curve {
                         }
                     }
                 };
-                let [x, y] = [0, 1].map(|k| column((k, &columns[k])));
+                let [x, y] = [0, 1].map(|k| place((k, &columns[k])));
+                let (x, y) = (x?, y?);
+                if x == y {
+                    let message = format!("arguments and values are both the column `{}`", file.names[x]);
+                    let key = if self.y.is_some() { "y" } else { "x" };
+                    return Err(entry.refuse(
+                        key,
+                        message,
+                        "without `x` arguments are the first column, and without `y` values the second: name both",
+                    ));
+                }
+                let [x, y] = [x, y].map(column);
                 Ok(("file", x?, y?))
             }
             (Some(_), Some(_)) => Err(entry.refuse("file", "a table has `points` or a `file`, and this has both", "remove one of them")),
