@@ -33,8 +33,10 @@ const SLOWEST: f64 = 0.999;
 /// grows as much.
 const STIFFER: f64 = 1e3;
 
-/// Share of the accelerations that may be left open.
+/// Share of the accelerations that may be left open, and by what share of themselves velocities are off the rows that round-off makes of what stands
+/// still.
 const KNOWN: f64 = 1e-3;
+const NOISE: f64 = 1e-5;
 
 /// Share of the multipliers that a pass adds where they grow without end, and what rows may be missed by, over the accelerations, where redundant
 /// ones differ from the others by what they are written with.
@@ -213,7 +215,7 @@ fn react_at_level(matrix: &mut impl LinearSystem, system: &System, t: f64, work:
     (work.end.x, work.end.v, work.end.at) = (x, v, at);
     let end = solve(work)?;
     let differs = work.a[..n].iter().zip(&others).fold(0.0, |m: f64, (a, other)| m.max((a - other).abs()));
-    let is_sure = differs <= KNOWN * largest(&work.a[..n]).max(pushed) || work.strays(system, t) > MISSED;
+    let is_sure = differs <= KNOWN * largest(&work.a[..n]).max(pushed) || work.strays(system, t) > NOISE;
     Ok(is_met(end, system, t, work) && is_sure)
 }
 
@@ -224,7 +226,7 @@ fn is_met(end: End, system: &System, t: f64, work: &mut Workspace) -> bool {
         return true;
     }
     let strays = work.strays(system, t);
-    (end == End::Grows || strays > MISSED) && work.misses(system) <= MISSED.max(FOLLOWS * strays)
+    (end == End::Grows || strays > NOISE) && work.misses(system) <= MISSED.max(FOLLOWS * strays)
 }
 
 /// The smallest change of the coordinates (n), in the metric of the mass, that takes back what stands in `rows`.
