@@ -45,8 +45,11 @@ impl Event {
             let mut one = |(name, value): &(String, Number), entry: &Entry<'_>| {
                 let full = indexed(name, &entry.scope).map_err(|mistake| entry.mistaken(name.as_str().into(), mistake))?;
                 let input = inputs.iter().position(|known| *known == full).ok_or_else(|| {
-                    let cure =
-                        if inputs.is_empty() { format!("add [input.{full}]") } else { suggest(&full, inputs.iter().map(String::as_str)) };
+                    let cure = match entry.scope.parameters.is_some_and(|known| known.contains_key(&full)) {
+                        true => format!("parameters stay as they are: take `{full}` out of [parameters], and add [input.{full}] with its number as the default"),
+                        false if inputs.is_empty() => format!("add [input.{full}]"),
+                        false => suggest(&full, inputs.iter().map(String::as_str)),
+                    };
                     entry.refuse_key(name, format!("there is no input `{full}`"), cure)
                 })?;
                 let mut reader = Reader::new(assembly, entry, &mut readings);

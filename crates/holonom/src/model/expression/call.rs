@@ -22,6 +22,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("heaviside", "step(x)"),
     ("if", "step(x)*a + (1 - step(x))*b, which is a from x = 0 on and b below"),
     ("cot", "1/tan(x)"),
+    ("mean", "integral(x)/t, where measures know it"),
 ];
 
 /// The function that a name calls, and which of its values.
