@@ -10,45 +10,11 @@ use super::failure::Failure;
 use super::independence::{independence, independent};
 use super::iteration::Multipliers;
 use super::kkt::Block;
-use super::level::Level;
 use super::newton::Newton;
+use super::passes::{LinearSystem, meet, pass, react};
 use super::rank::RHO;
 use super::workspace::Workspace;
-use crate::linalg::largest;
 use crate::system::System;
-
-/// Passes with a proximal δ; the first starts from the multipliers at hand and leaves δ of what they miss, the others are
-/// for redundant rows.
-const PASSES: usize = 3;
-
-/// Where a row hardly differs from others δ is much of what it adds, and each pass leaves the same share of what is missed: after so many
-/// passes more, all of it is added at once, as of a geometric series.
-const MOST: usize = 15;
-
-/// What is missed is added where it is more than this share of accelerations and of multipliers, and where a pass leaves less of it than this.
-const MATTERS: f64 = 1e-11;
-const SLOWEST: f64 = 0.999;
-
-/// How many times smaller δ is where passes leave too much: rows that hardly differ add less than it does. What redundant rows make of round-off
-/// grows as much.
-const STIFFER: f64 = 1e3;
-
-/// Share of the accelerations that may be left open, and by what share of themselves velocities are off the rows that round-off makes of what stands
-/// still.
-const KNOWN: f64 = 1e-3;
-const NOISE: f64 = 1e-5;
-
-/// Share of the multipliers that a pass adds where they grow without end, and what rows may be missed by, over the accelerations, where redundant
-/// ones differ from the others by what they are written with.
-const GROWS: f64 = 0.01;
-const MISSED: f64 = 1e-6;
-
-/// How many times more the accelerations may be off than the velocities are off the rows, each over its size: what round-off makes of what stands
-/// still is no motion, and no accelerations keep it on all rows.
-const FOLLOWS: f64 = 100.0;
-
-/// Passes end where the next would change less than this share of accelerations and multipliers.
-const ROUNDED: f64 = 0.1 * f64::EPSILON;
 
 impl Newton {
     /// Writes [M Gᵀ; G −δ] at the evaluation of the end, with the proximal δ, and factors it. False when it cannot be.
@@ -135,18 +101,6 @@ impl Newton {
     }
 }
 
-/// The matrix above.
-pub(super) trait LinearSystem {
-    /// Factors it at the evaluation of the end with the proximal δ = (G M⁻¹ Gᵀ)/ρ. Hands back what share of the multipliers a solution may leave.
-    fn factor(&mut self, rho: f64, work: &Workspace) -> Result<f64, Failure>;
-
-    /// A right side of coordinates (n) and rows (r), or its solution.
-    fn unknowns(&mut self) -> &mut [f64];
-
-    /// Replaces the right side in the unknowns by the solution.
-    fn solve(&mut self, system: &System, work: &Workspace) -> Result<(), Failure>;
-}
-
 impl LinearSystem for Newton {
     fn factor(&mut self, rho: f64, work: &Workspace) -> Result<f64, Failure> {
         self.proximal(1.0, None, &work.scales);
@@ -165,199 +119,11 @@ impl LinearSystem for Newton {
     }
 }
 
-/// Solves the system above until δ no longer matters. Says whether accelerations are known: at a singular position none may meet all rows.
-fn meet(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
-    let pushed = work.begin_pass(system, t);
-    let leaves = matrix.factor(RHO, work)?;
-    let mut end = passes(matrix, Passes { leaves, pushed, most: MOST }, system, work)?;
-    if end == End::Slow {
-        let leaves = matrix.factor(STIFFER * RHO, work)?;
-        end = passes(matrix, Passes { leaves, pushed, most: MOST }, system, work)?;
-    }
-    Ok(is_met(end, system, t, work))
-}
-
-/// The same for forces that are to be trusted. Near a singular position accelerations are known where they are the same, but for little, at another
-/// place that meets the rows as well as numbers can, with the velocities that belong to it.
-pub(super) fn react(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
-    let level = std::mem::replace(&mut work.level, Level::ACCELERATION);
-    let outcome = react_at_level(matrix, system, t, work);
-    work.level = level;
-    outcome
-}
-
-fn react_at_level(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
-    let pushed = work.begin_pass(system, t);
-    let leaves = matrix.factor(RHO, work)?;
-    let end = passes(matrix, Passes { leaves, pushed, most: PASSES }, system, work)?;
-    if end != End::Slow {
-        return Ok(is_met(end, system, t, work));
-    }
-    let leaves = matrix.factor(STIFFER * RHO, work)?;
-    let n = system.coordinates();
-    let (x, v, at) = (work.end.x.clone(), work.end.v.clone(), work.end.at.clone());
-    work.miss_by_rounding(system, t);
-    let change = correction(matrix, system, work)?;
-    work.end.x.iter_mut().zip(change).for_each(|(x, change)| *x += change);
-    system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
-    for _ in 0..PASSES {
-        work.rate_violation(system, t);
-        let change = correction(matrix, system, work)?;
-        work.end.v.iter_mut().zip(change).for_each(|(v, change)| *v += change);
-    }
-    let mut solve = |work: &mut Workspace| {
-        let pushed = work.begin_pass(system, t);
-        work.lambda.fill(0.0);
-        passes(matrix, Passes { leaves, pushed, most: MOST }, system, work)
-    };
-    solve(work)?;
-    let others = work.a[..n].to_vec();
-    (work.end.x, work.end.v, work.end.at) = (x, v, at);
-    let end = solve(work)?;
-    let differs = work.a[..n].iter().zip(&others).fold(0.0, |m: f64, (a, other)| m.max((a - other).abs()));
-    let is_sure = differs <= KNOWN * largest(&work.a[..n]).max(pushed) || work.strays(system, t) > NOISE;
-    Ok(is_met(end, system, t, work) && is_sure)
-}
-
-/// Whether accelerations are known where passes ended so; adds their forces.
-fn is_met(end: End, system: &System, t: f64, work: &mut Workspace) -> bool {
-    work.add_reactions(system);
-    if end == End::Met {
-        return true;
-    }
-    let strays = work.strays(system, t);
-    (end == End::Grows || strays > NOISE) && work.misses(system) <= MISSED.max(FOLLOWS * strays)
-}
-
-/// The smallest change of the coordinates (n), in the metric of the mass, that takes back what stands in `rows`.
-fn correction<'m>(matrix: &'m mut impl LinearSystem, system: &System, work: &Workspace) -> Result<&'m [f64], Failure> {
-    let (change, rows) = matrix.unknowns().split_at_mut(system.coordinates());
-    change.fill(0.0);
-    rows.iter_mut().zip(&work.rows).for_each(|(row, by)| *row = -by);
-    matrix.solve(system, work)?;
-    Ok(&matrix.unknowns()[..system.coordinates()])
-}
-
-/// How passes end.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum End {
-    Met,
-    /// Multipliers grow in each pass, as rows ask for what the others do not leave.
-    Grows,
-    /// What is missed becomes less too slowly to be known.
-    Slow,
-}
-
-/// Passes with the factors at hand.
-#[derive(Clone, Copy)]
-struct Passes {
-    /// What share of the multipliers a solution leaves.
-    leaves: f64,
-    /// How fast forces but those of the rows would make what they push most, m/s²: what is little beside it is round-off where nothing moves.
-    pushed: f64,
-    /// How many there may be.
-    most: usize,
-}
-
-fn passes(matrix: &mut impl LinearSystem, of: Passes, system: &System, work: &mut Workspace) -> Result<End, Failure> {
-    let mut before = [f64::INFINITY; 2];
-    for count in 1..=of.most {
-        let [taken, whole] = pass(matrix, system, work)?;
-        if (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(of.leaves) <= ROUNDED * whole[k]) {
-            return Ok(End::Met);
-        }
-        let share = taken[1] / before[1];
-        before = taken;
-        if count % PASSES == 0 {
-            let is_slow = share.is_nan() || share >= SLOWEST;
-            let matters = [whole[0].max(of.pushed), whole[1]];
-            if (0..2).any(|k| taken[k] <= MATTERS * matters[k]) {
-                return Ok(if is_slow && taken[1] >= GROWS * whole[1] { End::Grows } else { End::Met });
-            }
-            if is_slow {
-                return Ok(End::Slow);
-            }
-            let rest = share / (1.0 - share);
-            let (steps, multipliers) = matrix.unknowns().split_at(system.coordinates());
-            work.a.iter_mut().zip(steps).for_each(|(a, step)| *a += rest * step);
-            work.lambda.iter_mut().zip(multipliers).for_each(|(lambda, step)| *lambda += rest * step);
-            before = [f64::INFINITY; 2];
-        }
-    }
-    Ok(End::Slow)
-}
-
-/// Solves for what accelerations and multipliers miss, and adds it: the largest of that, and of all there is then, of accelerations and of
-/// multipliers.
-fn pass(matrix: &mut impl LinearSystem, system: &System, work: &mut Workspace) -> Result<[[f64; 2]; 2], Failure> {
-    let n = system.coordinates();
-    work.sum_reactions(system, matrix.unknowns());
-    matrix.solve(system, work)?;
-    let (steps, multipliers) = matrix.unknowns().split_at(n);
-    work.a.iter_mut().zip(steps).for_each(|(a, step)| *a += step);
-    work.lambda.iter_mut().zip(multipliers).for_each(|(lambda, step)| *lambda += step);
-    let taken = [largest(steps), work.scaled_multipliers(multipliers.iter().copied())];
-    Ok([taken, [largest(&work.a[..n]), work.scaled_multipliers(work.lambda.iter().copied())]])
-}
-
 impl Workspace {
     /// Forces of the rows on all nodes, −Gᵀλ (D × nodes), N, at the evaluation of the end.
     pub fn constraint_forces(&self, system: &System, force: &mut [f64]) {
         force.fill(0.0);
         system.slots.add_forces(system.dim, &self.lambda, &self.end.at.gradient, force);
         force.iter_mut().for_each(|force| *force = -*force);
-    }
-
-    /// Samples forces and rows at the end, without accelerations. Hands back how fast the forces would make the node that they push most, m/s²,
-    /// where light ones weigh as what holds them.
-    fn begin_pass(&mut self, system: &System, t: f64) -> f64 {
-        self.sample_applied(system, t);
-        self.a[..system.coordinates()].fill(0.0);
-        self.weigh_levels_at_rest(system, t, 1.0);
-        let nodes = self.forces.sum.chunks_exact(system.dim).zip(&self.scales.held);
-        nodes.map(|(force, held)| held * largest(force)).fold(0.0, f64::max)
-    }
-
-    /// Leaves the violation of the rows, and as much more or less as rounding leaves of places, in `rows`.
-    fn miss_by_rounding(&mut self, system: &System, t: f64) {
-        let Self { end, scales, rows, .. } = self;
-        system.constraint_values(&end.at, t, rows);
-        for (k, (row, gradient)) in rows.iter_mut().zip(&scales.gradient).enumerate() {
-            // No combination of rows is left out by the same signs in turn.
-            let sign = if k.is_power_of_two() { -1.0 } else { 1.0 };
-            *row += sign * f64::EPSILON * gradient * scales.length;
-        }
-    }
-
-    /// By how much the accelerations miss the rows, over the size of both.
-    fn misses(&mut self, system: &System) -> f64 {
-        let Self { phi, rows, a, sampled, .. } = self;
-        rows.copy_from_slice(phi);
-        system.slots.add_along(system.dim, 1.0, &sampled.at.gradient, a, rows);
-        self.scaled(&self.rows) / (self.scaled(&self.phi) + largest(&self.a[..system.coordinates()]))
-    }
-
-    /// By how much the velocities at the end are off the rows, over their size; nothing where there are none.
-    fn strays(&mut self, system: &System, t: f64) -> f64 {
-        self.rate_violation(system, t);
-        (self.scaled(&self.rows) / largest(&self.end.v)).max(0.0)
-    }
-
-    /// Leaves minus M a + f + Gᵀλ and minus the rows, `phi` and what the accelerations add to it, in the unknowns, where the forces f were
-    /// sampled without λ.
-    fn sum_reactions(&mut self, system: &System, unknowns: &mut [f64]) {
-        let Self { full, forces, sampled, .. } = self;
-        let (accelerated, rows) = unknowns.split_at_mut(system.coordinates());
-        full.copy_from_slice(&forces.sum);
-        system.slots.add_forces(system.dim, &self.lambda, &sampled.at.gradient, full);
-        system.mass.times(system.dim, &self.a, accelerated);
-        accelerated.iter_mut().zip(full).for_each(|(sum, force)| *sum = -(*sum + *force));
-        rows.iter_mut().zip(&self.phi).for_each(|(row, phi)| *row = -phi);
-        system.slots.add_along(system.dim, -self.level.acceleration, &sampled.at.gradient, &self.a, rows);
-    }
-
-    /// Adds Gᵀλ to the forces sampled without it.
-    fn add_reactions(&mut self, system: &System) {
-        system.slots.add_forces(system.dim, &self.lambda, &self.sampled.at.gradient, &mut self.forces.sum);
     }
 }

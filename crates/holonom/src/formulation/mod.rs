@@ -22,6 +22,7 @@ mod kept;
 mod kkt;
 mod level;
 mod newton;
+mod passes;
 mod plan;
 mod rank;
 mod round_off;

@@ -8,9 +8,9 @@
 //! ```
 //! has the rows between bodies alone: of a body in space 6 unknowns in place of 12 and 6 multipliers.
 
-use super::acceleration::{LinearSystem, react};
 use super::failure::{Failure, Unknown};
 use super::kkt::Augmented;
+use super::passes::{LinearSystem, react};
 use super::rank::REDUNDANT;
 use super::workspace::Workspace;
 use crate::linalg::{Singular, Solver};

@@ -1,6 +1,6 @@
 //! Where everything of the matrix goes, and in what order it is eliminated.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use super::{Augmented, Body, Lone, Motion, Outer, Slot, Touch, Twists, turns};
@@ -17,12 +17,19 @@ const SAME: f64 = 1e-9;
 /// What moves as one, a body or a node of none: its unknowns.
 type Carrier = Range<u32>;
 
-impl Twists {
-    /// Plans the matrix of a system with the nodes of its rigid bodies, each of which has its own, in the order of the rows that keep them rigid,
-    /// which come first. `None` where that is not so, and where one of them has so many neighbours that the rows at these should not wait for it.
-    pub fn new(system: &System, scales: &Scales, bodies: &[Vec<NodeId>]) -> Option<Self> {
+/// The numbers of the unknowns.
+struct Numbering {
+    motions: Vec<Motion>,
+    carriers: Vec<Carrier>,
+    /// The carrier of each free node; bodies come first.
+    carrier_of: Vec<usize>,
+    /// First of the multipliers.
+    coordinates: u32,
+}
+
+impl Numbering {
+    fn new(system: &System, bodies: &[Body]) -> Self {
         let (dim, free) = (system.dim, system.free);
-        let (bodies, inner_rows) = rigid(system, bodies)?;
         let mut motions = vec![Motion { moves: None, turns: None }; free];
         let (mut carriers, mut carrier_of) = (Vec::<Carrier>::new(), vec![usize::MAX; free]);
         let mut end = 0;
@@ -30,7 +37,7 @@ impl Twists {
             end += count as u32;
             end - count as u32
         };
-        for body in &bodies {
+        for body in bodies {
             let [moves, turning] = [take(dim), take(turns(dim))];
             for (k, &node) in body.nodes.iter().enumerate() {
                 carrier_of[node] = carriers.len();
@@ -46,8 +53,55 @@ impl Twists {
                 carriers.push(moves..moves + dim as u32);
             }
         }
-        let coordinates = end;
-        let outer: Vec<usize> = (inner_rows..system.constraints()).collect();
+        Self { motions, carriers, carrier_of, coordinates: end }
+    }
+
+    /// Bodies and nodes by least fill-in, each row right after the last of its own; none where a row would wait for a hub. `carriers_of` has those
+    /// of each row, and `edges` the pairs that share a block.
+    fn order(&self, mut edges: Vec<(u32, u32)>, carriers_of: &[Vec<u32>]) -> Option<Vec<u32>> {
+        for own in carriers_of {
+            own.iter().for_each(|&a| edges.extend(own.iter().map(|&b| (a, b))));
+        }
+        edges.retain(|(a, b)| a < b);
+        edges.sort_unstable();
+        edges.dedup();
+        let count = self.carriers.len();
+        let mut neighbours = vec![0; count];
+        edges.iter().flat_map(|&(a, b)| [a, b]).for_each(|carrier| neighbours[carrier as usize] += 1);
+        if neighbours.iter().any(|&count| count >= HUB) {
+            return None;
+        }
+        let order = fill_reducing_order(count, &edges);
+        let mut place = vec![0; count];
+        order.iter().enumerate().for_each(|(k, &carrier)| place[carrier as usize] = k);
+        let mut rows_after = vec![Vec::new(); count + 1];
+        for (row, own) in (self.coordinates..).zip(carriers_of) {
+            let last = own.iter().map(|&carrier| place[carrier as usize] + 1).max().unwrap_or(0);
+            rows_after[last].push(row);
+        }
+        let mut unknowns = std::mem::take(&mut rows_after[0]);
+        for (&carrier, rows) in order.iter().zip(&rows_after[1..]) {
+            unknowns.extend(self.carriers[carrier as usize].clone().chain(rows.iter().copied()));
+        }
+        Some(unknowns)
+    }
+}
+
+/// All pairs of some unknowns.
+fn square(all: &[u32]) -> impl Iterator<Item = (u32, u32)> {
+    all.iter().flat_map(move |&a| all.iter().map(move |&b| (a, b)))
+}
+
+impl Twists {
+    /// Plans the matrix of a system with the nodes of its rigid bodies, each of which has its own, in the order of the rows that keep them rigid,
+    /// which come first. `None` where that is not so, and where one of them has so many neighbours that the rows at these should not wait for it.
+    pub fn new(system: &System, scales: &Scales, bodies: &[Vec<NodeId>]) -> Option<Self> {
+        let (dim, free) = (system.dim, system.free);
+        let (bodies, inner_rows) = rigid(system, bodies)?;
+        let numbering = Numbering::new(system, &bodies);
+        let Numbering { motions, carriers, carrier_of, coordinates } = &numbering;
+        let rows = inner_rows..system.constraints();
+        let multiplier = |row: usize| coordinates + (row - inner_rows) as u32;
         let nodes_of = |row: usize| {
             system.slots.rows[row].clone().map(|slot| (slot, system.slots.nodes[slot] as usize)).filter(|&(_, node)| node < free)
         };
@@ -55,99 +109,66 @@ impl Twists {
             .filter(|&node| carrier_of[node] >= bodies.len())
             .flat_map(|a| system.mass.row(a).filter(|&(b, _)| b < free).map(move |(b, block)| (a, b, block)))
             .collect();
-        let mut edges: Vec<(u32, u32)> = lone.iter().map(|&(a, b, _)| (carrier_of[a] as u32, carrier_of[b] as u32)).collect();
-        let mut carriers_of: Vec<Vec<u32>> = Vec::with_capacity(outer.len());
-        for &row in &outer {
-            let mut own: Vec<u32> = nodes_of(row).map(|(_, node)| carrier_of[node] as u32).collect();
-            own.sort_unstable();
-            own.dedup();
-            for &a in &own {
-                edges.extend(own.iter().map(|&b| (a, b)));
-            }
-            carriers_of.push(own);
-        }
-        edges.retain(|(a, b)| a < b);
-        edges.sort_unstable();
-        edges.dedup();
-        let mut neighbours = vec![0; carriers.len()];
-        edges.iter().flat_map(|&(a, b)| [a, b]).for_each(|carrier| neighbours[carrier as usize] += 1);
-        if neighbours.iter().any(|&count| count >= HUB) {
-            return None;
-        }
-        let order = elimination_order(&carriers, &edges, &carriers_of, coordinates);
-        // A row touches velocities and angular velocities.
+        let edges = lone.iter().map(|&(a, b, _)| (carrier_of[a] as u32, carrier_of[b] as u32)).collect();
+        let carriers_of: Vec<Vec<u32>> = rows
+            .clone()
+            .map(|row| {
+                let own: BTreeSet<u32> = nodes_of(row).map(|(_, node)| carrier_of[node] as u32).collect();
+                own.into_iter().collect()
+            })
+            .collect();
+        let order = numbering.order(edges, &carriers_of)?;
+        // A row touches velocities and angular velocities, each by the first of its unknowns.
         let (mut touched, mut slots) = (BTreeMap::<(usize, u32), u32>::new(), Vec::new());
-        for &row in &outer {
-            for (slot, node) in nodes_of(row) {
-                let touches = [motions[node].moves, motions[node].turns].map(|first| {
-                    let next = touched.len() as u32;
-                    first.map(|first| *touched.entry((row, first)).or_insert(next))
-                });
-                slots.push(Slot { slot, node, row, touches });
-            }
+        for (row, (slot, node)) in rows.clone().flat_map(|row| nodes_of(row).map(move |of| (row, of))) {
+            let touches = [motions[node].moves, motions[node].turns].map(|first| {
+                let next = touched.len() as u32;
+                first.map(|first| *touched.entry((row, first)).or_insert(next))
+            });
+            slots.push(Slot { slot, node, row, touches });
         }
         let mut of_touches: Vec<(usize, u32)> = vec![(0, 0); touched.len()];
         touched.iter().for_each(|(&key, &touch)| of_touches[touch as usize] = key);
-        let mut is_turn = vec![false; coordinates as usize];
+        let mut is_turn = vec![false; *coordinates as usize];
         motions.iter().filter_map(|motion| motion.turns).for_each(|first| is_turn[first as usize] = true);
-        let width = |first: u32| if is_turn[first as usize] { turns(dim) as u32 } else { dim as u32 };
-        let multiplier = |row: usize| coordinates + (row - inner_rows) as u32;
-        let mut entries: Vec<(u32, u32)> = Vec::new();
-        let square = |all: &[u32], entries: &mut Vec<(u32, u32)>| all.iter().for_each(|&a| entries.extend(all.iter().map(|&b| (a, b))));
-        carriers.iter().for_each(|carrier| square(&carrier.clone().collect::<Vec<_>>(), &mut entries));
+        let all_of = |first: u32| first..first + if is_turn[first as usize] { turns(dim) } else { dim } as u32;
+        let coordinates_of =
+            |row: usize| -> Vec<u32> { touched.range((row, 0)..(row + 1, 0)).flat_map(|(&(_, first), _)| all_of(first)).collect() };
         let block = |a: usize, b: usize| {
             let [a, b] = [a, b].map(|node| motions[node].moves.expect("it is no body's"));
             (0..dim as u32).flat_map(move |c| (0..dim as u32).map(move |d| (a + c, b + d)))
         };
-        lone.iter().for_each(|&(a, b, _)| entries.extend(block(a, b)));
+        let own: Vec<Vec<u32>> = carriers.iter().map(|carrier| carrier.clone().collect()).collect();
+        let light: Vec<(usize, Vec<u32>)> =
+            rows.clone().filter(|&row| scales.has_light[row]).map(|row| (row, coordinates_of(row))).collect();
+        let mut entries: Vec<(u32, u32)> = own.iter().chain(light.iter().map(|(_, own)| own)).flat_map(|own| square(own)).collect();
+        entries.extend(lone.iter().flat_map(|&(a, b, _)| block(a, b)));
         for &(row, first) in &of_touches {
-            entries.extend((first..first + width(first)).flat_map(|q| [(q, multiplier(row)), (multiplier(row), q)]));
+            entries.extend(all_of(first).flat_map(|q| [(q, multiplier(row)), (multiplier(row), q)]));
         }
-        let light: Vec<usize> = outer.iter().copied().filter(|&row| scales.has_light[row]).collect();
-        let coordinates_of = |row: usize| -> Vec<u32> {
-            let own = touched.range((row, 0)..(row + 1, 0));
-            own.flat_map(|(&(_, first), _)| first..first + width(first)).collect()
-        };
-        light.iter().for_each(|&row| square(&coordinates_of(row), &mut entries));
-        entries.extend(outer.iter().map(|&row| (multiplier(row), multiplier(row))));
-        let size = coordinates as usize + outer.len();
+        entries.extend(rows.clone().map(|row| (multiplier(row), multiplier(row))));
+        let size = *coordinates as usize + rows.len();
         let plan = Plan::new(&system.plans, size, &entries, &order);
         drop(entries);
         let places = plan.places();
-        let at = |row: u32, column: u32| places.position(row as usize, column as usize);
-        let augmented = light.iter().map(|&row| {
-            let own = coordinates_of(row);
-            Augmented {
-                weight: 1.0 / scales.softness[row],
-                row: multiplier(row),
-                diagonal: at(multiplier(row), multiplier(row)),
-                pairs: own.iter().flat_map(|&a| own.iter().map(move |&b| (a, b))).map(|(a, b)| at(a, b)).collect(),
-                column: vec![0.0; own.len()],
-                entries: own.iter().map(|&q| [q, at(q, multiplier(row)), at(multiplier(row), q)]).collect(),
-            }
-        });
+        let at = |(row, column): (u32, u32)| places.position(row as usize, column as usize);
+        let beside = |q: u32, row: usize| [at((q, multiplier(row))), at((multiplier(row), q))];
+        let diagonal = |row: usize| at((multiplier(row), multiplier(row)));
+        let augmented = |(row, own): &(usize, Vec<u32>)| Augmented {
+            weight: 1.0 / scales.softness[*row],
+            row: multiplier(*row),
+            diagonal: diagonal(*row),
+            pairs: square(own).map(at).collect(),
+            column: vec![0.0; own.len()],
+            entries: own.iter().map(|&q| (q, beside(q, *row))).map(|(q, [column, row])| [q, column, row]).collect(),
+        };
         let mut twists = Self {
             dim,
-            augmented: augmented.collect(),
-            touches: of_touches
-                .iter()
-                .map(|&(row, first)| Touch {
-                    places: (first..first + width(first)).map(|q| [at(q, multiplier(row)), at(multiplier(row), q)]).collect(),
-                })
-                .collect(),
-            lone: lone.iter().map(|&(a, b, mass)| Lone { mass, places: block(a, b).map(|(a, b)| at(a, b)).collect() }).collect(),
-            bodies: bodies
-                .into_iter()
-                .zip(&carriers)
-                .map(|(body, own)| Body {
-                    places: own.clone().flat_map(|a| own.clone().map(move |b| (a, b))).map(|(a, b)| at(a, b)).collect(),
-                    ..body
-                })
-                .collect(),
-            outer: outer
-                .iter()
-                .map(|&row| Outer { row, unknown: multiplier(row) as usize, diagonal: at(multiplier(row), multiplier(row)) })
-                .collect(),
+            augmented: light.iter().map(augmented).collect(),
+            touches: of_touches.iter().map(|&(row, first)| Touch { places: all_of(first).map(|q| beside(q, row)).collect() }).collect(),
+            lone: lone.iter().map(|&(a, b, mass)| Lone { mass, places: block(a, b).map(at).collect() }).collect(),
+            bodies: bodies.into_iter().zip(&own).map(|(body, own)| Body { places: square(own).map(at).collect(), ..body }).collect(),
+            outer: rows.map(|row| Outer { row, unknown: multiplier(row) as usize, diagonal: diagonal(row) }).collect(),
             gradients: vec![[0.0; 3]; of_touches.len()],
             slots,
             solver: Solver::new(plan.clone()),
@@ -156,7 +177,7 @@ impl Twists {
             inertial: vec![0.0; free * dim],
             reduced: vec![0.0; size],
             unknowns: vec![0.0; system.coordinates() + system.constraints()],
-            motions,
+            motions: numbering.motions,
         };
         twists.set_units(system, scales);
         Some(twists)
@@ -225,21 +246,4 @@ fn rigid(system: &System, bodies: &[Vec<NodeId>]) -> Option<(Vec<Body>, usize)> 
         found.push(Body { nodes, inner, mass, places: Vec::new() });
     }
     Some((found, row))
-}
-
-/// Bodies and nodes by least fill-in, each row right after the last of its own.
-fn elimination_order(carriers: &[Carrier], edges: &[(u32, u32)], carriers_of: &[Vec<u32>], coordinates: u32) -> Vec<u32> {
-    let order = fill_reducing_order(carriers.len(), edges);
-    let mut place = vec![0; carriers.len()];
-    order.iter().enumerate().for_each(|(k, &carrier)| place[carrier as usize] = k);
-    let mut rows_after = vec![Vec::new(); carriers.len() + 1];
-    for (row, own) in (coordinates..).zip(carriers_of) {
-        let last = own.iter().map(|&carrier| place[carrier as usize] + 1).max().unwrap_or(0);
-        rows_after[last].push(row);
-    }
-    let mut unknowns = std::mem::take(&mut rows_after[0]);
-    for (&carrier, rows) in order.iter().zip(&rows_after[1..]) {
-        unknowns.extend(carriers[carrier as usize].clone().chain(rows.iter().copied()));
-    }
-    unknowns
 }
