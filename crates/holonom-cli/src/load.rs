@@ -185,6 +185,10 @@ fn require_entry(key: &str, source: &Source) -> Result<(), Failure> {
     if !has_entries || section == "start" || entries.get(name).is_some() {
         return Ok(());
     }
+    if let Some((all, _)) = name.split_once('[').filter(|(all, _)| entries.get(all).is_some()) {
+        let cure = format!("set it for all of them, {section}.{all}.KEY, by a formula of the index where they differ");
+        return Err(Failure::usage(format!("`{name}` is one of those that `{section}.{all}` repeats, and cannot be set alone"), cure));
+    }
     let cure = nearest(name, entries.keys()).map_or_else(
         || format!("name one that is there, or set all of a new one: {section}.{name}={{ … }}"),
         |near| format!("did you mean `{section}.{near}`?"),

@@ -26,6 +26,7 @@ fn wrong_use_ends_with_two_and_says_what_there_is() {
         ("run example:four-bar --set parameters.n=3".into(), "did you mean `N`"),
         ("check example:slider-crank --set body.crnk.mass=3".into(), "no body `crnk`"),
         ("check example:slider-crank --set body.crnk.mass=3".into(), "did you mean `body.crank`?"),
+        ("check example:chain --set point.P[1].mass=3".into(), "set it for all of them, point.P.KEY"),
         ("check example:slider-crank --set force.spring.stiffness=3".into(), "set all of a new one: force.spring={ … }"),
         ("check example:four-bar --set parameters.stiffness=3".into(), "no parameter `stiffness`"),
         ("compare example:four-bar --set N=3".into(), "write parameters.N="),
