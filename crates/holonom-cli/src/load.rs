@@ -177,12 +177,12 @@ pub fn require_key(key: &str, source: &Source) -> Result<(), Failure> {
 /// Refuses a key of an entry that is not there. All of an entry at once may be new, and `[start]` names the joints of the model.
 fn require_entry(key: &str, source: &Source) -> Result<(), Failure> {
     let [section, name, _] = key.splitn(3, '.').collect::<Vec<_>>()[..] else { return Ok(()) };
-    let has_entries = matches!(of_file(section), Some(Value::Table(shape)) if shape.get("propertyNames").is_some());
+    let has_entries = || matches!(of_file(section), Some(Value::Table(shape)) if shape.get("propertyNames").is_some());
     let entries = match source.get(section) {
         Some(Value::Table(table)) => table,
         _ => &Table::default(),
     };
-    if !has_entries || section == "start" || entries.get(name).is_some() {
+    if section == "start" || entries.get(name).is_some() || !has_entries() {
         return Ok(());
     }
     if let Some((all, _)) = name.split_once('[').filter(|(all, _)| entries.get(all).is_some()) {

@@ -8,7 +8,9 @@ mod fault;
 mod function;
 mod native;
 mod run;
+mod running;
 mod simulator;
+mod state;
 mod study;
 mod value;
 
@@ -28,7 +30,9 @@ mod _engine {
     #[pymodule_export]
     use crate::run::{Recorded, run};
     #[pymodule_export]
-    use crate::simulator::{Simulator, State};
+    use crate::simulator::Simulator;
+    #[pymodule_export]
+    use crate::state::State;
     #[pymodule_export]
     use crate::study::Sweep;
     #[pymodule_export]

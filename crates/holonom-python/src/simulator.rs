@@ -5,10 +5,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, OnceLock, TryLockError};
 use std::time::{Duration, Instant};
 
-use holonom::model::{Value, nearest};
-use holonom::record::{Constraints, Recorder, RecorderMark};
+use holonom::model::nearest;
 use holonom::run::RunError;
-use holonom::simulation::{Checkpoint, Divisions, Method, Observer, Simulation, Status, Verdict};
+use holonom::simulation::{Method, Simulation};
 use holonom_cli::Loaded;
 use holonom_report::Frames;
 use pyo3::exceptions::PyKeyError;
@@ -20,15 +19,11 @@ use crate::draft::{Draft, run_error};
 use crate::fault::refuse;
 use crate::function::Trouble;
 use crate::run::{read_changes, unknown};
-
-/// Time between two looks for signals and for other threads that wait.
-const LOOK: Duration = Duration::from_millis(50);
+use crate::running::{Running, find_forces};
+use crate::state::{State, sum};
 
 /// Longest time that other threads are given then.
 const TURN: Duration = Duration::from_millis(1);
-
-/// Steps that take less time keep the interpreter to themselves: to give it away and to take it back would be a good part of them.
-const SHORT: Duration = Duration::from_micros(100);
 
 /// Time between two looks whether another thread is done.
 const PAUSE: Duration = Duration::from_micros(20);
@@ -51,146 +46,10 @@ pub struct Simulator {
     sum: OnceLock<String>,
 }
 
-struct Running {
-    simulation: Simulation,
-    recorder: Recorder<'static>,
-    /// The columns at the present state, and whether they are those.
-    row: Vec<f64>,
-    is_row_new: bool,
-    /// Those of the motion alone, which need no forces, and whether they are of the present state.
-    motion: Vec<f64>,
-    is_motion_new: bool,
-    /// Whether forces of joints and accelerations are those of the present state: they take time, and are found when they are looked at.
-    are_forces_new: bool,
-    /// Whether inputs were set since the last step.
-    are_inputs_new: bool,
-    /// Whether the last step that was taken alone was a short one.
-    is_short: bool,
-    /// Why the last step was the last, and the event that it was.
-    ended: Option<String>,
-    event: Option<String>,
-}
-
-/// Lets a recorder see where a step is divided. Where measures are of the whole run, it sees every step, too.
-struct Watch<'a>(&'a mut Recorder<'static>);
-
-impl Observer for Watch<'_> {
-    fn after_step(&mut self, _: &Simulation) -> Verdict {
-        Verdict::GoOn
-    }
-
-    fn wants_forces(&self) -> bool {
-        sees_all(self.0)
-    }
-
-    fn divisions(&self) -> Divisions {
-        if sees_all(self.0) { Divisions::Inside } else { Divisions::Unseen }
-    }
-
-    fn at_division(&mut self, simulation: &Simulation) {
-        self.0.at_division(simulation);
-    }
-}
-
-/// Whether a recorder has measures of the whole run.
-fn sees_all(recorder: &Recorder<'_>) -> bool {
-    recorder.divisions() == Divisions::Inside
-}
-
-/// All that a simulation goes on from.
-#[pyclass(frozen, eq, module = "holonom._engine")]
-#[derive(PartialEq)]
-pub struct State {
-    point: (Checkpoint, RecorderMark),
-    /// Sum of what its mechanism is made of.
-    model: String,
-}
-
-impl Running {
-    /// Looks at the state that was just reached, of which forces were found or not.
-    fn arrive(&mut self, are_forces_new: bool) {
-        (self.is_row_new, self.is_motion_new, self.are_forces_new) = (false, false, are_forces_new);
-        if sees_all(&self.recorder) {
-            // A recorder wants no run to stop.
-            let _ = self.recorder.after_step(&self.simulation);
-        }
-    }
-
-    /// Whether the run goes on after a step. What a function has raised is why it does not, whatever came of that.
-    fn judge(&mut self, status: Status, trouble: &Trouble) -> bool {
-        (self.ended, self.event) = match (trouble.words(), status) {
-            (Some(words), _) => (Some(words), None),
-            (None, Status::Stopped { reason, .. }) => (Some(reason), None),
-            (None, Status::Completed) => {
-                let event = self.simulation.ended_by().map(|last| last.event.clone());
-                (event.as_ref().map(|event| format!("ended by the event `{event}`")), event)
-            }
-        };
-        self.ended.is_none()
-    }
-
-    /// Takes nominal steps, but no more than there is time for until the next look. Gives their number, and whether the run goes on.
-    fn advance(&mut self, count: i64, trouble: &Trouble) -> (i64, bool) {
-        let begun = Instant::now();
-        if std::mem::take(&mut self.are_inputs_new) && sees_all(&self.recorder) {
-            // What jumps with an input is seen before and after, as where an event sets it.
-            self.find_forces();
-            self.recorder.at_division(&self.simulation);
-        }
-        let (mut taken, mut goes_on) = (0, true);
-        while goes_on && taken < count && (taken == 0 || begun.elapsed() < LOOK) {
-            let status = self.simulation.step_observed(&mut Watch(&mut self.recorder));
-            self.arrive(sees_all(&self.recorder));
-            goes_on = self.judge(status, trouble);
-            taken += 1;
-        }
-        self.is_short = count == 1 && begun.elapsed() < SHORT;
-        (taken, goes_on)
-    }
-
-    /// Finds the forces at the present state, where they are not known.
-    fn find_forces(&mut self) {
-        if !std::mem::replace(&mut self.are_forces_new, true) {
-            self.simulation.update_reactions();
-        }
-    }
-
-    /// All columns.
-    fn look(&mut self) -> &[f64] {
-        if !self.is_row_new {
-            self.find_forces();
-            self.row.clear();
-            self.row.extend_from_slice(match sees_all(&self.recorder) {
-                true => self.recorder.look_beside_run(&self.simulation),
-                false => self.recorder.look(&self.simulation),
-            });
-            self.is_row_new = true;
-        }
-        &self.row
-    }
-
-    /// The value of a column.
-    fn value(&mut self, place: usize) -> f64 {
-        if self.is_row_new || !self.recorder.is_of_motion(place) {
-            return self.look()[place];
-        }
-        if !self.is_motion_new {
-            self.motion.clear();
-            self.motion.extend_from_slice(self.recorder.look_at_motion(&self.simulation));
-            self.is_motion_new = true;
-        }
-        self.motion[place]
-    }
-}
-
 impl Simulator {
-    /// Sum of what the mechanism is made of: of all of the model but how it is run and what is shown of it.
+    /// Sum of what the mechanism is made of.
     fn sum(&self) -> &str {
-        self.sum.get_or_init(|| {
-            let Value::Table(whole) = self.loaded.source.value() else { return String::new() };
-            let parts: Vec<_> = whole.iter().filter(|(key, _)| !["title", "simulation", "output"].contains(key)).collect();
-            holonom_io::sha256(format!("{parts:?} {:?}", self.loaded.source.files()).as_bytes())
-        })
+        self.sum.get_or_init(|| sum(&self.loaded.source))
     }
 
     /// The simulation, once no other thread is at it. A function that a step calls cannot have it.
@@ -277,9 +136,7 @@ impl Simulator {
         let begin = || {
             let method = Method::resolve(&model.choice(method))?;
             let mut simulation = Simulation::new(model.system.clone(), method, model.step()?)?;
-            if model.output.constraints() != Constraints::Nothing || !model.channels.efforts.is_empty() {
-                model.find_reactions(&mut simulation);
-            }
+            find_forces(model, &mut simulation);
             Ok(simulation)
         };
         let begun = py.detach(begin);
@@ -287,22 +144,7 @@ impl Simulator {
             return Err(raised);
         }
         let simulation = begun.map_err(|error: RunError| run_error(py, error))?;
-        // The start is the only row that it keeps.
-        let recorder = Recorder::new(&model.channels, &model.system, u64::MAX, model.output.constraints()).into_owned();
-        let mut running = Running {
-            simulation,
-            recorder,
-            row: Vec::new(),
-            is_row_new: false,
-            motion: Vec::new(),
-            is_motion_new: false,
-            are_forces_new: false,
-            are_inputs_new: false,
-            is_short: false,
-            ended: None,
-            event: None,
-        };
-        running.arrive(true);
+        let running = Running::new(model, simulation);
         let notes = holonom_cli::notes(&loaded, &running.simulation);
         trouble.take().map_or(
             Ok(Self { running: Mutex::new(running), waiting: AtomicUsize::new(0), notes, loaded, trouble, sum: OnceLock::new() }),
@@ -466,14 +308,8 @@ impl Simulator {
                 "take one that state() of this simulation gave",
             ));
         };
-        if model.output.constraints() != Constraints::Nothing || !model.channels.efforts.is_empty() {
-            model.find_reactions(&mut simulation);
-        }
-        let recorder = Recorder::new(&model.channels, &model.system, u64::MAX, model.output.constraints()).into_owned().resume(mark);
-        (running.simulation, running.recorder, running.is_row_new) = (simulation, recorder, false);
-        running.are_inputs_new = true;
-        (running.ended, running.event) = (None, None);
-        running.arrive(true);
+        find_forces(model, &mut simulation);
+        running.go_on(model, simulation, mark);
         self.raise(running)
     }
 }
@@ -487,32 +323,5 @@ impl Simulator {
             (None, None) => "add it with m.input(…) before".into(),
         };
         PyKeyError::new_err(format!("no input is called `{name}`: {cure}"))
-    }
-}
-
-#[pymethods]
-impl State {
-    /// Time, s.
-    #[getter]
-    fn time(&self) -> f64 {
-        self.point.0.state.t
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<state at {} s>", self.point.0.state.t)
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
-        let State { point, model } = slf.get();
-        let bytes = serde_json::to_vec(&(point, model)).expect("a state is plain data");
-        Ok((slf.get_type().getattr("of_bytes")?, (PyBytes::new(slf.py(), &bytes),)))
-    }
-
-    /// What was pickled.
-    #[staticmethod]
-    fn of_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
-        let (point, model) =
-            serde_json::from_slice(bytes).map_err(|error| refuse(py, "state", error.to_string(), "give what a state was pickled to"))?;
-        Ok(Self { point, model })
     }
 }

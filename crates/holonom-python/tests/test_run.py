@@ -4,7 +4,6 @@ import copy
 import json
 import os
 import pickle
-import signal
 import subprocess
 import sys
 import threading
@@ -91,19 +90,6 @@ def test_a_run_that_stops_is_a_result():
     # It falls into the centre at t = 0.5.
     assert run.t[-1] <= run.summary["stopped_at"] <= 0.5 + 1e-3 and run.t[-1] > 0.4
     assert "stopped at" in repr(run)
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows sends no SIGINT to a thread")
-def test_ctrl_c_stops_and_keeps():
-    # Where the tests are started in the background, the signal is ignored from the start.
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
-        run = hm.load(PENDULUM).simulate(end=2e4, step=1e-3, every=1000)
-    finally:
-        signal.signal(signal.SIGINT, before)
-    assert (run.status, run.reason) == ("stopped", "interrupted")
-    assert len(run) > 1 and run.t[-1] < 2e4
 
 
 def test_the_interpreter_goes_on_while_a_run_does():

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -50,6 +51,32 @@ def pendulum():
     m = hm.load("example:double-pendulum")
     m.output(every=1000)
     return m
+
+
+def test_ctrl_c_stops_a_run_and_keeps_it(interrupt):
+    run = pendulum().simulate(**LONG)
+    assert (run.status, run.reason) == ("stopped", "interrupted")
+    assert len(run) > 1 and run.t[-1] < 2e4
+
+
+# Where the tests are started in the background, the signal is ignored from the start.
+STUDY = """
+import signal, sys, holonom as hm
+signal.signal(signal.SIGINT, signal.default_int_handler)
+m = hm.load("example:double-pendulum")
+study = hm.sweep(m, rows={"simulation.end": [0.01] + [1e6] * 3}, step=0.01, columns=["energy"], out=sys.argv[1], threads=2)
+print(len(study), study.whole, flush=True)
+"""
+
+
+def test_ctrl_c_ends_a_study_and_keeps_what_there_is(tmp_path):
+    study = subprocess.Popen([sys.executable, "-c", STUDY, str(tmp_path)], stdout=subprocess.PIPE, text=True)
+    journal = tmp_path / "sweep.journal"
+    while not (journal.exists() and journal.read_bytes().count(b"\n") >= 2):
+        assert study.poll() is None
+        time.sleep(0.02)
+    study.send_signal(signal.SIGINT)
+    assert study.communicate(timeout=60)[0].split() == ["1", "False"] and study.returncode == 0
 
 
 def test_one_ctrl_c_ends_a_comparison(interrupt):

@@ -1,11 +1,8 @@
 """Studies: their tables against closed forms, whatever the threads, the engine and the interruptions."""
 
-import os
-import signal
 import subprocess
 import sys
 import threading
-import time
 
 import numpy as np
 import pytest
@@ -108,27 +105,6 @@ def test_a_study_in_a_folder_goes_on(tmp_path):
         hm.sweep(throw(), {"parameters.v": [1, 2, 4]}, columns=COLUMNS, out=tmp_path / "out")
     assert "force=True" in str(told.value)
     hm.sweep(throw(), {"parameters.v": [1, 2, 4]}, columns=COLUMNS, out=tmp_path / "out", force=True)
-
-
-# Where the tests are started in the background, the signal is ignored from the start.
-LONG = """
-import signal, sys, holonom as hm
-signal.signal(signal.SIGINT, signal.default_int_handler)
-m = hm.load("example:double-pendulum")
-study = hm.sweep(m, rows={"simulation.end": [0.01] + [1e6] * 3}, step=0.01, columns=["energy"], out=sys.argv[1], threads=2)
-print(len(study), study.whole, flush=True)
-"""
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="signals are sent otherwise there")
-def test_ctrl_c_ends_a_study_and_keeps_what_there_is(tmp_path):
-    study = subprocess.Popen([sys.executable, "-c", LONG, str(tmp_path)], stdout=subprocess.PIPE, text=True)
-    journal = tmp_path / "sweep.journal"
-    while not (journal.exists() and journal.read_bytes().count(b"\n") >= 2):
-        assert study.poll() is None
-        time.sleep(0.02)
-    study.send_signal(signal.SIGINT)
-    assert study.communicate(timeout=60)[0].split() == ["1", "False"] and study.returncode == 0
 
 
 def test_functions_of_python_are_called_and_what_they_raise_is_a_row():

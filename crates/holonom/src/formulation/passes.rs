@@ -62,6 +62,7 @@ pub(super) fn meet(matrix: &mut impl LinearSystem, system: &System, t: f64, work
         let leaves = matrix.factor(STIFFER * RHO, work)?;
         end = passes(matrix, Passes { leaves, pushed, most: MOST }, system, work)?;
     }
+    work.add_reactions(system);
     Ok(is_met(end, system, t, work))
 }
 
@@ -70,6 +71,9 @@ pub(super) fn meet(matrix: &mut impl LinearSystem, system: &System, t: f64, work
 pub(super) fn react(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
     let level = std::mem::replace(&mut work.level, Level::ACCELERATION);
     let outcome = react_at_level(matrix, system, t, work);
+    if outcome.is_ok() {
+        work.add_reactions(system);
+    }
     work.level = level;
     outcome
 }
@@ -107,9 +111,8 @@ fn react_at_level(matrix: &mut impl LinearSystem, system: &System, t: f64, work:
     Ok(is_met(end, system, t, work) && is_sure)
 }
 
-/// Whether accelerations are known where passes ended so; adds their forces.
+/// Whether accelerations are known where passes ended so.
 fn is_met(end: End, system: &System, t: f64, work: &mut Workspace) -> bool {
-    work.add_reactions(system);
     if end == End::Met {
         return true;
     }

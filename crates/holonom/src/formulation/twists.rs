@@ -8,13 +8,15 @@
 //! ```
 //! has the rows between bodies alone: of a body in space 6 unknowns in place of 12 and 6 multipliers.
 
+use nalgebra::Matrix3;
+
 use super::failure::{Failure, Unknown};
 use super::kkt::Augmented;
 use super::passes::{LinearSystem, react};
 use super::rank::REDUNDANT;
 use super::workspace::Workspace;
 use crate::linalg::{Singular, Solver};
-use crate::system::{MassBlock, System};
+use crate::system::{MassBlock, System, cross};
 
 mod plan;
 
@@ -37,6 +39,8 @@ struct Body {
     mass: Vec<MassBlock>,
     /// Where its block of the matrix is, by rows.
     places: Vec<u32>,
+    /// The inverse of the products of its edges, where the matrix was last written.
+    reciprocal: Matrix3<f64>,
 }
 
 /// The block of two nodes that are no body's.
@@ -119,12 +123,13 @@ impl LinearSystem for Twists {
         let dim = self.dim;
         let values = self.solver.values_mut();
         values.fill(0.0);
-        for body in &self.bodies {
+        for body in &mut self.bodies {
             let first = body.nodes[0] * dim;
             for &node in &body.nodes[1..] {
                 let from = if self.motions[node].moves.is_some() { &work.end.x[first..first + dim] } else { &[0.0; 3][..dim] };
                 (0..dim).for_each(|c| self.arms[node * dim + c] = work.end.x[node * dim + c] - from[c]);
             }
+            body.reciprocal = body.products(dim, &self.arms).try_inverse().ok_or(Failure::Singular(Unknown::Node(body.nodes[1])))?;
             let block = body.inertia(dim, &self.motions, &self.arms);
             let size = body.places.len().isqrt();
             for (k, &place) in body.places.iter().enumerate() {
@@ -174,7 +179,7 @@ impl LinearSystem for Twists {
         let dim = self.dim;
         let Self { motions, bodies, slots, outer, augmented, solver, arms, inner, inertial, reduced, unknowns, .. } = self;
         let (forces, rows) = unknowns.split_at_mut(motions.len() * dim);
-        bodies.iter().for_each(|body| body.keep_rigid(dim, motions, arms, rows, inner));
+        bodies.iter().for_each(|body| body.keep_rigid(dim, arms, rows, inner));
         system.mass.times(dim, inner, inertial);
         reduced.fill(0.0);
         for (node, motion) in motions.iter().enumerate() {
@@ -217,7 +222,7 @@ impl LinearSystem for Twists {
 impl Body {
     /// BᵀM B, by the velocity of the first point, then the angular velocity.
     fn inertia(&self, dim: usize, motions: &[Motion], arms: &[f64]) -> [[f64; 6]; 6] {
-        let arm = |k: usize| &arms[self.nodes[k] * dim..(self.nodes[k] + 1) * dim];
+        let arm = |k: usize| self.arm(k, dim, arms);
         // Mass, first moments and second ones.
         let (mut mass, mut first, mut second) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
         let count = self.nodes.len();
@@ -259,18 +264,28 @@ impl Body {
         matrix
     }
 
+    /// The arm of a node of it, and its edges, the arms of all but the first.
+    fn arm<'a>(&self, k: usize, dim: usize, arms: &'a [f64]) -> &'a [f64] {
+        &arms[self.nodes[k] * dim..(self.nodes[k] + 1) * dim]
+    }
+
+    /// Products of its edges, and 1 where there are fewer than three.
+    fn products(&self, dim: usize, arms: &[f64]) -> Matrix3<f64> {
+        let mut products = Matrix3::identity();
+        for i in 1..self.nodes.len() {
+            for j in 1..self.nodes.len() {
+                let pairs = self.arm(i, dim, arms).iter().zip(self.arm(j, dim, arms));
+                products[(i - 1, j - 1)] = pairs.map(|(a, b)| a * b).sum();
+            }
+        }
+        products
+    }
+
     /// The motion of its edges that changes their products by what stands at the rows which keep it rigid: half of that along the edges that are
     /// reciprocal to them.
-    fn keep_rigid(&self, dim: usize, motions: &[Motion], arms: &[f64], rows: &[f64], motion: &mut [f64]) {
+    fn keep_rigid(&self, dim: usize, arms: &[f64], rows: &[f64], motion: &mut [f64]) {
         let edges = self.nodes.len() - 1;
-        let mut products = nalgebra::Matrix3::<f64>::identity();
-        let arm = |k: usize| &arms[self.nodes[k + 1] * dim..(self.nodes[k + 1] + 1) * dim];
-        for i in 0..edges {
-            (0..edges).for_each(|j| products[(i, j)] = arm(i).iter().zip(arm(j)).map(|(a, b)| a * b).sum());
-        }
-        let inverse = products.try_inverse().unwrap_or_default();
-        let mut row = self.inner;
-        let mut change = nalgebra::Matrix3::<f64>::zeros();
+        let (mut row, mut change) = (self.inner, Matrix3::zeros());
         for i in 0..edges {
             for j in i..edges {
                 let asked = if i == j { rows[row] } else { 0.5 * rows[row] };
@@ -278,14 +293,13 @@ impl Body {
                 row += 1;
             }
         }
-        let shares = change * inverse;
+        let shares = change * self.reciprocal;
         for i in 0..edges {
             let out = self.nodes[i + 1] * dim;
             for c in 0..dim {
-                motion[out + c] = (0..edges).map(|j| shares[(i, j)] * arm(j)[c]).sum();
+                motion[out + c] = (0..edges).map(|j| shares[(i, j)] * self.arm(j + 1, dim, arms)[c]).sum();
             }
         }
-        debug_assert!(motions[self.nodes[0]].moves.is_some(), "the first node of a body is a point");
     }
 }
 
@@ -298,7 +312,7 @@ fn turns(dim: usize) -> usize {
 fn turned(arm: &[f64], force: &[f64]) -> [f64; 3] {
     match (arm, force) {
         (&[x, y], &[fx, fy]) => [x * fy - y * fx, 0.0, 0.0],
-        (&[x, y, z], &[fx, fy, fz]) => [y * fz - z * fy, z * fx - x * fz, x * fy - y * fx],
+        (&[x, y, z], &[fx, fy, fz]) => cross(&[x, y, z], &[fx, fy, fz]),
         _ => unreachable!("vectors of the plane or of space"),
     }
 }
@@ -307,7 +321,7 @@ fn turned(arm: &[f64], force: &[f64]) -> [f64; 3] {
 fn carried(rate: &[f64], arm: &[f64]) -> [f64; 3] {
     match (rate, arm) {
         (&[w], &[x, y]) => [-w * y, w * x, 0.0],
-        (&[wx, wy, wz], &[x, y, z]) => [wy * z - wz * y, wz * x - wx * z, wx * y - wy * x],
+        (&[wx, wy, wz], &[x, y, z]) => cross(&[wx, wy, wz], &[x, y, z]),
         _ => unreachable!("vectors of the plane or of space"),
     }
 }

@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
+use nalgebra::Matrix3;
+
 use super::{Augmented, Body, Lone, Motion, Outer, Slot, Touch, Twists, turns};
 use crate::formulation::scales::Scales;
 use crate::linalg::{Plan, Solver, fill_reducing_order};
@@ -243,7 +245,7 @@ fn rigid(system: &System, bodies: &[Vec<NodeId>]) -> Option<(Vec<Body>, usize)> 
         let block =
             |a: usize, b: usize| system.mass.row(a).find(|&(other, _)| other == b).map_or(MassBlock { m: 0.0, s: 0.0 }, |(_, block)| block);
         let mass = nodes.iter().flat_map(|&a| nodes.iter().map(move |&b| (a, b))).map(|(a, b)| block(a, b)).collect();
-        found.push(Body { nodes, inner, mass, places: Vec::new() });
+        found.push(Body { nodes, inner, mass, places: Vec::new(), reciprocal: Matrix3::identity() });
     }
     Some((found, row))
 }
