@@ -11,7 +11,7 @@ use super::independence::{independence, independent};
 use super::iteration::Multipliers;
 use super::kkt::Block;
 use super::newton::Newton;
-use super::passes::{LinearSystem, meet, pass, react};
+use super::passes::{LinearSystem, STIFFER, meet, pass, react};
 use super::rank::RHO;
 use super::workspace::Workspace;
 use crate::system::System;
@@ -19,9 +19,12 @@ use crate::system::System;
 impl Newton {
     /// Writes [M Gᵀ; G −δ] at the evaluation of the end, with the proximal δ, and factors it. False when it cannot be.
     pub fn factor_inertia(&mut self, work: &Workspace) -> bool {
-        self.proximal(1.0, None, &work.scales);
-        self.assemble_inertia(work);
-        self.factor(&work.scales).is_ok()
+        LinearSystem::factor(self, RHO, work).is_ok()
+    }
+
+    /// The same with a δ that is a thousand times smaller, for rows that hardly differ from others.
+    pub fn factor_stiffer_inertia(&mut self, work: &Workspace) -> bool {
+        LinearSystem::factor(self, STIFFER * RHO, work).is_ok()
     }
 
     /// The same with hardly any δ for rows that are independent by their geometry.

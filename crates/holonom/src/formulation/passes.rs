@@ -22,7 +22,7 @@ const SLOWEST: f64 = 0.999;
 
 /// How many times smaller δ is where passes leave too much: rows that hardly differ add less than it does. What redundant rows make of round-off
 /// grows as much.
-const STIFFER: f64 = 1e3;
+pub(super) const STIFFER: f64 = 1e3;
 
 /// Share of the accelerations that may be left open, and by what share of themselves velocities are off the rows that round-off makes of what stands
 /// still.
