@@ -232,11 +232,38 @@ fn cells_are_empty_where_a_run_has_no_such_value() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert_eq!(cells(&folder, "bars", "max(P[3].x)").iter().map(String::is_empty).collect::<Vec<_>>(), [false, true]);
     assert!(cells(&folder, "bars", "max(P[1].x)").iter().all(|cell| !cell.is_empty()));
+    // A formula of what is not there is no formula.
+    let output = sweep(&folder, "example:four-bar", "max(P[3].x - P[1].x)", "--vary parameters.N=4,2 --end 0.1 --quiet --out formula");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(cells(&folder, "formula", "status"), ["completed", "refused"]);
+    assert_eq!(cells(&folder, "formula", "reason")[1], "`max(P[3].x - P[1].x)`: the name `P[3].x` is not known here");
     // A run that ends before a time has no value there.
     let output = sweep(&folder, PAPER, "at(m1.x, 0.5),max(m1.x)", "--vary simulation.end=0.4,0.5,1 --quiet --out ends");
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert_eq!(cells(&folder, "ends", "at(m1.x, 0.5)").iter().map(String::is_empty).collect::<Vec<_>>(), [true, false, false]);
     assert!(cells(&folder, "ends", "max(m1.x)").iter().all(|cell| !cell.is_empty()));
+}
+
+/// The oscillation has twice its amplitude from one end to the other, and a speed of ω times that through the middle.
+#[test]
+fn formulas_of_columns_are_columns() {
+    let folder = folder();
+    fs::write(folder.path().join("oscillator.toml"), OSCILLATOR).unwrap();
+    let columns = "max(m.x) - min(m.x), max(sqrt(m.vx^2 + m.vy^2)), at(2*m.x - n, 0.5), mean(distance(ground, m)),max(abs(1 - m.x))";
+    let output = sweep(&folder, "oscillator.toml", columns, "--vary parameters.n=1,2 --quiet --out formulas");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    for (k, n) in [1.0, 2.0].into_iter().enumerate() {
+        for (name, exact, within) in [
+            ("max(m.x) - min(m.x)", 0.2, 1e-8),
+            ("max(sqrt(m.vx^2 + m.vy^2))", 0.1 * TAU * n, 1e-8),
+            ("at(2*m.x - n, 0.5)", 2.0 + 0.2 * (0.5 * TAU * n).cos() - n, 1e-7),
+            ("mean(distance(ground, m))", 1.0, 1e-9),
+            ("max(abs(1 - m.x))", 0.1, 1e-8),
+        ] {
+            let found = numbers(&folder, "formulas", name)[k];
+            assert!((found - exact).abs() <= within, "{name}: {found} and {exact}");
+        }
+    }
 }
 
 #[test]
@@ -253,6 +280,8 @@ fn columns_that_there_are_not_are_refused_before_anything_runs() {
         ("at(m1.x, 21)", "after the end of the runs, 20 s"),
         ("at(m1.x, soon)", "seconds"),
         ("max(rod1.lambda)", "cure"),
+        ("max(m1.x - m2.xx)", "`max(m1.x - m2.xx)`: the name `m2.xx` is not known here"),
+        ("m1.x-m2.x", "write a difference with blanks, `m1.x - m2.x`"),
     ] {
         let output = sweep(&folder, PAPER, columns, "--vary point.m1.mass=1,2");
         let message = text(&output.stderr);

@@ -17,9 +17,12 @@ use crate::failure::Failure;
 use crate::load::{self, OF_METHOD};
 use crate::output;
 
-/// Refuses keys that nothing can be made of, a model that is not sound and columns that there are not; finds out what the columns take.
-pub fn check(asked: &[String], source: &Source, method: Option<&str>, plan: &Plan) -> Result<Columns, Failure> {
-    let asked = read(asked)?;
+/// Refuses keys that nothing can be made of, a model that is not sound and columns that there are not; finds out what the columns take. Formulas among these
+/// become measures of the model.
+pub fn check(asked: &[String], source: &mut Source, method: Option<&str>, plan: &Plan) -> Result<Columns, Failure> {
+    let mut asked = read(asked)?;
+    make_measures(&mut asked, source)?;
+    let source = &*source;
     plan.varied.iter().try_for_each(|vary| check_key(vary, source, method))?;
     let mut first = source.clone();
     for (vary, setting) in plan.varied.iter().zip(plan.settings(1)) {
@@ -28,6 +31,9 @@ pub fn check(asked: &[String], source: &Source, method: Option<&str>, plan: &Pla
     // A value may be missing in the file and given by each run, or the values of the first run may not be possible.
     let model = match compile(&first, &asked) {
         Err(faults) => {
+            if let Some(failure) = of_formula(&faults, &asked) {
+                return Err(failure);
+            }
             let of_keys: Vec<Fault> = faults.0.iter().filter(|fault| is_of_key(fault, plan, source)).cloned().collect();
             if !of_keys.is_empty() {
                 return Err(Failure::Model(first.render(&Faults(of_keys))));
@@ -41,6 +47,27 @@ pub fn check(asked: &[String], source: &Source, method: Option<&str>, plan: &Pla
     };
     refuse_late(&asked, source, plan)?;
     if asked.is_empty() { Ok(usual(&model)) } else { columns(&model, asked) }
+}
+
+/// Makes measures of the formulas asked for, which are the columns asked for then.
+fn make_measures(asked: &mut [Asked], source: &mut Source) -> Result<(), Failure> {
+    for (k, asked) in asked.iter_mut().enumerate().filter(|(_, asked)| asked.is_formula) {
+        let name = format!("formula_of_column_{}", k + 1);
+        source.put(&path_of(&name), Value::Text(std::mem::replace(&mut asked.of, name))).map_err(Failure::Model)?;
+    }
+    Ok(())
+}
+
+/// Where the formula of a measure stands.
+fn path_of(measure: &str) -> String {
+    format!("measure.{measure}.value")
+}
+
+/// What is wrong with a formula that was typed.
+pub fn of_formula(faults: &Faults, asked: &[Asked]) -> Option<Failure> {
+    let typed = |fault: &Fault| asked.iter().find(|asked| asked.is_formula && path_of(&asked.of) == fault.path);
+    let (fault, asked) = faults.0.iter().find_map(|fault| Some((fault, typed(fault)?)))?;
+    Some(Failure::usage(format!("`{}`: {}", asked.text, fault.message), fault.cure.clone()))
 }
 
 /// SHA-256 of the files that runs of a plan read, by their names. Runs get them as they were read here.
@@ -209,7 +236,15 @@ fn columns(model: &Model, asked: Vec<Asked>) -> Result<Columns, Failure> {
             }
             continue;
         }
-        let Some(takes) = Takes::of(of, model, &recorders) else { return Err(unknown(of, recorders[recorded(model)].recording())) };
+        let Some(takes) = Takes::of(of, model, &recorders) else {
+            return Err(match of.split_once('-').filter(|(from, _)| Takes::of(from, model, &recorders).is_some()) {
+                Some((from, to)) => {
+                    let cure = format!("names may have a minus: write a difference with blanks, `{from} - {to}`");
+                    Failure::usage(format!("there is no column `{of}`"), cure)
+                }
+                None => unknown(of, recorders[recorded(model)].recording()),
+            });
+        };
         if takes.level > recorded(model) {
             return Err(Failure::usage(format!("runs of this model do not record `{of}`"), "give --set output.reactions=true"));
         }

@@ -1,30 +1,37 @@
-//! A column of the table as it is typed: a column of the trajectory, a function of one over the run, such as `max(chassis.az)`, or the time of an event.
+//! A column of the table as it is typed: a column of the trajectory or a formula of some, a function of these over the run, such as `max(chassis.az)`, or
+//! the time of an event.
 
-use holonom::model::nearest;
+use holonom::model::{is_formula_function, nearest};
 
 use super::reduction::Function;
 use crate::failure::Failure;
+use crate::items::items;
 
 /// What a column of the table shows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Asked {
     /// As it was typed: what the column is called.
     pub text: String,
-    /// The column of the trajectory, or the event.
+    /// The column of the trajectory, the formula of such columns, or the event.
     pub of: String,
+    /// Whether that is a formula.
+    pub is_formula: bool,
     /// Whether its size is meant, without its sign.
     pub is_absolute: bool,
     /// What is made of its values over the run.
     pub function: Function,
 }
 
-const CURE: &str = "write a column of the trajectory such as chassis.az, or max(chassis.az), min(…), mean(…), rms(…), last(…), \
-                    at(chassis.az, 2.5), and abs(…) inside these, or time(EVENT)";
+const CURE: &str = "write a column of the trajectory such as chassis.az or a formula of some such as A.x - B.x, or max(chassis.az), min(…), mean(…), \
+                    rms(…), last(…), at(chassis.az, 2.5) of these, or time(EVENT)";
+
+/// Signs that only a formula has. A name may have a minus, so that a difference has blanks.
+const OF_FORMULAS: [char; 7] = ['+', '*', '/', '^', '(', '\'', ' '];
 
 impl Asked {
     /// The last value of a column of the trajectory.
     pub fn last(of: &str) -> Self {
-        Self { text: of.into(), of: of.into(), is_absolute: false, function: Function::Last }
+        Self { text: of.into(), of: of.into(), is_formula: false, is_absolute: false, function: Function::Last }
     }
 
     /// Reads what was typed.
@@ -33,10 +40,9 @@ impl Asked {
         if text.is_empty() {
             return Err(Failure::usage("--columns has an empty place in its list", CURE));
         }
-        let Some((name, inner)) = call(text).map_err(refuse)? else { return Ok(Self::last(text)) };
-        let (function, inner) = match name {
-            "abs" => (Function::Last, text),
-            "at" => {
+        let (function, of) = match call(text).map_err(refuse)? {
+            None | Some(("abs", _)) => (Function::Last, text),
+            Some(("at", inner)) => {
                 let (inner, t) = inner.rsplit_once(',').ok_or_else(|| refuse("does not say when"))?;
                 let t: f64 = t.trim().parse().map_err(|_| refuse("wants a number of seconds behind its comma"))?;
                 if !(t.is_finite() && t >= 0.0) {
@@ -44,35 +50,68 @@ impl Asked {
                 }
                 (Function::At(t), inner.trim())
             }
-            "time" => (Function::TimeOf, inner),
-            name => match Function::NAMED.iter().find(|(known, _)| *known == name) {
+            Some(("time", inner)) => (Function::TimeOf, inner),
+            Some((name, inner)) => match Function::NAMED.iter().find(|(known, _)| *known == name) {
                 Some((_, function)) => (*function, inner),
+                None if is_formula_function(name) => (Function::Last, text),
                 None => {
-                    let known = Function::NAMED.iter().map(|(known, _)| *known).chain(["at", "abs", "time"]);
-                    let near = nearest(name, known).map_or(CURE.to_string(), |near| format!("did you mean `{near}`?"));
+                    let near = nearest(name, functions()).map_or(CURE.to_string(), |near| format!("did you mean `{near}`?"));
                     return Err(Failure::usage(format!("there is no function `{name}` of columns"), near));
                 }
             },
         };
-        let (is_absolute, of) = match call(inner).map_err(refuse)? {
-            Some(("abs", inner)) if function != Function::TimeOf => (true, inner),
-            Some(_) => return Err(refuse("has a function inside that is not abs(…)")),
-            None => (false, inner),
+        let is_time = function == Function::TimeOf;
+        let is_of_columns = |(name, inner): (&str, &str)| functions().any(|known| known == name) && items(inner).len() == 1;
+        let (is_absolute, of) = match call(of).map_err(refuse)? {
+            Some(_) if is_time => return Err(refuse("has a function inside that is not abs(…)")),
+            Some(("abs", inner)) if call(inner).map_err(refuse)?.is_some_and(is_of_columns) => {
+                return Err(refuse("does not name one column inside its brackets"));
+            }
+            Some(("abs", inner)) => {
+                if inner.contains(OF_FORMULAS) {
+                    (false, of)
+                } else {
+                    (true, inner)
+                }
+            }
+            Some(inner) if is_of_columns(inner) => return Err(refuse("has a function inside that is not abs(…)")),
+            _ => (false, of),
         };
-        if of.is_empty() || of.contains(['(', ')', ',']) {
+        let is_formula = of.contains(OF_FORMULAS);
+        if of.is_empty() || is_time && is_formula || items(of).len() > 1 {
             return Err(refuse("does not name one column inside its brackets"));
         }
-        Ok(Self { text: text.into(), of: of.into(), is_absolute, function })
+        Ok(Self { text: text.into(), of: of.into(), is_formula, is_absolute, function })
     }
 }
 
-/// Name and contents of a function, if the text is one.
+/// Names of all functions of columns.
+fn functions() -> impl Iterator<Item = &'static str> {
+    Function::NAMED.iter().map(|(known, _)| *known).chain(["at", "abs", "time"])
+}
+
+/// Name and contents of a function, if the text is one and nothing else.
 fn call(text: &str) -> Result<Option<(&str, &str)>, &'static str> {
-    let Some((name, rest)) = text.split_once('(') else {
-        return if text.contains(')') { Err("has a bracket too many") } else { Ok(None) };
-    };
-    let inner = rest.strip_suffix(')').ok_or("does not end with the bracket that closes it")?;
-    Ok(Some((name.trim(), inner.trim())))
+    let (mut depth, mut closes) = (0, None);
+    for (at, c) in text.char_indices() {
+        match c {
+            '(' => depth += 1,
+            ')' if depth == 0 => return Err("has a bracket too many"),
+            ')' => {
+                depth -= 1;
+                closes = closes.or((depth == 0).then_some(at));
+            }
+            _ => (),
+        }
+    }
+    if depth > 0 {
+        return Err("does not end with the bracket that closes it");
+    }
+    let Some((name, rest)) = text.split_once('(') else { return Ok(None) };
+    let name = name.trim();
+    let is_name = !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || c == '_');
+    let is_whole = is_name && closes == Some(text.len() - 1);
+    Ok(is_whole.then(|| (name, rest[..rest.len() - 1].trim())))
 }
 
 #[cfg(test)]
@@ -94,6 +133,22 @@ mod tests {
         assert_eq!(read("at( abs( m2.x ) , 1e-1 )"), ("m2.x".into(), true, Function::At(0.1)));
         assert_eq!(read("time(lands)"), ("lands".into(), false, Function::TimeOf));
         assert_eq!(Asked::parse("rms( m2.x )").unwrap().text, "rms( m2.x )");
+    }
+
+    #[test]
+    fn formulas_are_told_from_columns() {
+        let read = |text: &str| {
+            let asked = Asked::parse(text).unwrap();
+            (asked.of, asked.is_formula, asked.function)
+        };
+        assert_eq!(read("left-strut.force"), ("left-strut.force".into(), false, Function::Last));
+        assert_eq!(read("a.x - b.x"), ("a.x - b.x".into(), true, Function::Last));
+        assert_eq!(read("rms(a.x - b.x)"), ("a.x - b.x".into(), true, Function::Running(Running::Rms)));
+        assert_eq!(read("max(abs(a.x - b.x))"), ("abs(a.x - b.x)".into(), true, Function::Running(Running::Max)));
+        assert_eq!(read("max(a.x) - min(a.x)"), ("max(a.x) - min(a.x)".into(), true, Function::Last));
+        assert_eq!(read("sqrt(a.vx^2+a.vy^2)"), ("sqrt(a.vx^2+a.vy^2)".into(), true, Function::Last));
+        assert_eq!(read("at(min(a.x, b.x), 2)"), ("min(a.x, b.x)".into(), true, Function::At(2.0)));
+        assert_eq!(read("mean(distance(a, b))"), ("distance(a, b)".into(), true, Function::Running(Running::Mean)));
     }
 
     #[test]

@@ -9,6 +9,7 @@ use holonom::record::Constraints;
 use holonom::simulation::{Divisions, Method, Observer, Simulation, Status, Verdict};
 use holonom_io::Source;
 
+use super::check::of_formula;
 use super::plan::Plan;
 use super::vary::Setting;
 use super::watch::{Columns, Watch};
@@ -92,7 +93,12 @@ impl Runner<'_> {
         };
         let mut model = match model {
             Ok(model) => model,
-            Err(faults) => return Some(refused(faults.to_string())),
+            Err(faults) => {
+                return Some(refused(match of_formula(&faults, &self.columns.asked) {
+                    Some(Failure::Usage { message, .. }) => message,
+                    _ => faults.to_string(),
+                }));
+            }
         };
         Arc::make_mut(&mut model.system).share_plans(&self.eliminations);
         match self.simulate(&model) {

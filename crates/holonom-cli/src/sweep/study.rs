@@ -48,8 +48,8 @@ impl Study {
     ///
     /// # Errors
     /// Keys that nothing can be made of, a model that is not sound, and columns that there are not.
-    pub fn new(source: Source, name: &str, plan: Plan, method: Option<&str>, columns: &[String]) -> Result<Self, Failure> {
-        let columns = check(columns, &source, method, &plan)?;
+    pub fn new(mut source: Source, name: &str, plan: Plan, method: Option<&str>, columns: &[String]) -> Result<Self, Failure> {
+        let columns = check(columns, &mut source, method, &plan)?;
         let sheet = Sheet::new(&plan, &columns);
         if let Some(name) = sheet.twice() {
             let message = format!("the table would have two columns `{name}`: one of the motion, and one that it has for every run");

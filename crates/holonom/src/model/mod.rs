@@ -57,7 +57,7 @@ pub use ends::{End, from_to};
 pub use entries::{Entries, Named};
 pub use entry::{Entry, Spot, Written};
 pub use event::Event;
-pub use expression::{External, ExternalFunction, Functions, differences};
+pub use expression::{External, ExternalFunction, Functions, differences, is_formula_function};
 pub use fault::{Fault, Faults, Read, Refused, nearest, nearest_few};
 pub use fields::{Described, Field, Keys, List, Map, Number, Place, Rows, Site, Turn};
 pub use input::Input;

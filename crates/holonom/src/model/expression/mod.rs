@@ -29,6 +29,13 @@ pub use names::{Names, Nothing};
 /// Most numbers an expression may hold at once while it is evaluated.
 const STACK: usize = 32;
 
+/// Whether formulas of what a mechanism does have a function of this name, but for those that a model has of its own.
+pub fn is_formula_function(name: &str) -> bool {
+    let functions = functions::FUNCTIONS.iter().map(|(known, ..)| *known);
+    let of_motion = names::OF_PLACES.iter().map(|(known, ..)| *known).chain(names::RUNNING.iter().map(|(known, _)| *known));
+    functions.chain(of_motion).chain([names::LOCAL.0]).any(|known| known == name)
+}
+
 /// A mistake in the text of an expression.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mistake {
