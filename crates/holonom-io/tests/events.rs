@@ -258,3 +258,73 @@ fn close_events_happen_in_the_order_of_time() {
         }
     }
 }
+
+/// A force of 10 N on 1 kg that is on for nine tenths of each 20 ms: its edges are nominal times, where rounding decides on which side of them they are.
+#[test]
+fn pulses_with_edges_at_nominal_times_miss_none() {
+    let text = "plane = \"xy\"\ngravity = [0, 0]\n[point.m]\nmass = 1\nposition = [0, 0]\n[input.u]\ndefault = 1\n\
+                [event.off]\nwhen = \"mod(t, 0.02) - 0.9*0.02\"\ndirection = \"rising\"\nset = { u = 0 }\n\
+                [event.on]\nwhen = \"mod(t, 0.02) - 0.9*0.02\"\ndirection = \"falling\"\nset = { u = 1 }\n\
+                [force.f]\ntype = \"expression\"\npoint = \"m\"\nforce = [\"10*u\", 0]\n";
+    let model = model(text);
+    for method in ["conserving-ggl", "radau", "dopri5"] {
+        for step in [2e-3, 1e-3, 4e-4] {
+            let (simulation, recording) = run(&model, method, step, 1.0, 1);
+            let found = last(&recording, "m.vx");
+            assert!((found - 9.0).abs() < 1e-8, "{method}, {step} s: {found} m/s");
+            let count = |name: &str| simulation.events().iter().filter(|event| event.event == name).count();
+            assert_eq!([count("off"), count("on")], [50, 50], "{method}, {step} s");
+        }
+    }
+}
+
+/// An event of time inside a step of a method that reads what is between the ends of its steps: what it sets counts from its time on, once.
+#[test]
+fn what_is_set_inside_long_steps_counts_from_then_on() {
+    let text = "plane = \"xy\"\ngravity = [0, 0]\n[point.m]\nmass = 1\nposition = [0, 0]\n[input.u]\n[input.n]\n\
+                [event.a]\nwhen = \"step(t - 50) - 0.5\"\nset = { u = 1, n = \"n + 1\" }\n\
+                [force.f]\ntype = \"expression\"\npoint = \"m\"\nforce = [\"u\", 0]\n";
+    let model = model(text);
+    for method in ["dopri5", "dop853", "radau"] {
+        for accuracy in [1e-4, 1e-8] {
+            let choice = Choice { accuracy: Some(accuracy), ..Choice::default().named(method) };
+            let recording = common::run(&model, choice, 10.0, 100.0).1;
+            let [x, v, n] = ["m.x", "m.vx", "n"].map(|name| last(&recording, name));
+            assert!((x - 1250.0).abs() < 1e-6 && (v - 50.0).abs() < 1e-8 && n == 1.0, "{method}, {accuracy:e}: {x} m, {v} m/s, {n}");
+        }
+    }
+}
+
+/// A ball passes a height and comes back, and one event is for each way, where another divides the same step.
+#[test]
+fn an_event_for_each_way_through_a_height() {
+    let text = "plane = \"xz\"\n[point.ball]\nmass = 1\nposition = [0, 0]\nvelocity = [1, 5]\n[input.on]\n\
+                [event.up]\nwhen = \"ball.z - 1.274\"\ndirection = \"rising\"\nset = { on = 1 }\n\
+                [event.down]\nwhen = \"ball.z - 1.274\"\ndirection = \"falling\"\nset = { on = 0 }\n\
+                [event.e]\nwhen = \"sin(3*t) - 0.9999\"\n";
+    let model = model(text);
+    let root = (25.0_f64 - 2.0 * 9.81 * 1.274).sqrt();
+    for method in ["radau", "gauss", "conserving-ggl", "dopri5", "generalized-alpha"] {
+        let (simulation, recording) = run(&model, method, 0.02, 1.0, 1);
+        let times: Vec<f64> = simulation.events().iter().filter(|event| event.event != "e").map(|event| event.t).collect();
+        let exact = [(5.0 - root) / 9.81, (5.0 + root) / 9.81];
+        let within = if method == "generalized-alpha" { 1e-3 } else { 1e-9 };
+        assert!(times.len() == 2 && times.iter().zip(exact).all(|(t, exact)| (t - exact).abs() < within), "{method}: {times:?}");
+        assert_eq!(last(&recording, "on"), 0.0, "{method}");
+    }
+}
+
+/// A height that is passed at the time at which something else happens, where a method ends its steps on both sides of that time.
+#[test]
+fn two_events_at_one_time_of_a_formula_end() {
+    let text = "plane = \"xy\"\ngravity = [0, 0]\n[point.m]\nmass = 1\nposition = [0, 0]\nvelocity = [0, 1]\n[input.u]\n[input.n]\n\
+                [event.a]\nwhen = \"m.y - 0.5\"\nset = { u = 1, n = \"n + 1\" }\n[event.e]\nwhen = \"step(t - 0.5) - 0.5\"\nset = { n = \"n + 10\" }\n\
+                [force.f]\ntype = \"expression\"\npoint = \"m\"\nforce = [\"10*u\", 0]\n";
+    let model = model(text);
+    for method in ["dop853", "dopri5", "radau", "conserving-ggl"] {
+        let choice = Choice { accuracy: Some(1e-6), ..Choice::default().named(method) };
+        let recording = common::run(&model, choice, 0.005, 1.0).1;
+        let [x, v, n] = ["m.x", "m.vx", "n"].map(|name| last(&recording, name));
+        assert!((x - 1.25).abs() < 1e-6 && (v - 5.0).abs() < 1e-6 && n == 11.0, "{method}: {x} m, {v} m/s, {n}");
+    }
+}

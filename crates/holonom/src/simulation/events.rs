@@ -28,6 +28,9 @@ pub(super) const SHORTEST: f64 = 1e-6;
 /// Tries to find the time of an event. Each halves the interval at least every other time.
 pub(super) const MOST_TRIES: usize = 100;
 
+/// Share of the time that is its rounding, where formulas take it apart.
+const TIME_ROUNDED: f64 = 4.0 * f64::EPSILON;
+
 /// An event that has happened so often at one time goes on for ever.
 const CHATTER: usize = 16;
 
@@ -114,7 +117,7 @@ impl Simulation {
             if samples || jumped.is_some() {
                 self.show_division(observer);
             }
-            if stops || self.state.t == target {
+            if stops || self.state.t >= target {
                 self.watched = Some((self.state.t, from));
                 self.join_parts(&first);
                 return Ok(stops);
@@ -134,24 +137,33 @@ impl Simulation {
                 if crossed(&from, &now).is_some() {
                     return Ok(true);
                 }
-                (lower, low, from) = (low, simulation.state.t, now);
+                (lower, low) = (low, simulation.state.t);
+                pass(&mut from, now);
                 simulation.show_inside(divisions, observer);
                 Ok(false)
             };
             self.advance(until, reacts, Some(&mut Inside { look: &mut look, everywhere: true }))?;
             let to = self.indicate().inspect_err(|_| self.restore(&before))?;
             let (t, k, beside) = match crossed(&from, &to) {
-                Some(k) => self.locate(before, [lower, low], k, &from, shortest, wants_forces, &|to: &[f64]| crossed(&from, to))?,
+                Some(k) => self.locate(before, [lower, low, until], k, &from, shortest, wants_forces, &|to: &[f64]| crossed(&from, to))?,
                 None => {
-                    from = to;
-                    continue;
+                    // What happens within the rounding of a nominal time is taken there.
+                    let at = self.indicate_about(to)?;
+                    match crossed(&from, &at) {
+                        Some(k) => (self.state.t, k, at),
+                        None => {
+                            pass(&mut from, at);
+                            continue;
+                        }
+                    }
                 }
             };
             let now = self.indicate()?;
+            let now = if self.state.t == until { self.indicate_about(now)? } else { now };
             let happens = |at: usize| at == k || system.events[at].trigger.is_between(from[at], now[at]);
             let happening: Vec<usize> = (0..now.len()).filter(|&at| happens(at)).collect();
             if self.state.t > begin {
-                from = now;
+                pass(&mut from, now);
             } else {
                 // What went through zero here, and turned round when inputs were set, may go through it again.
                 turned.extend((0..).zip(beside).filter(|&(at, beside)| from[at] == 0.0 && beside != 0.0));
@@ -215,7 +227,10 @@ impl Simulation {
     fn jump(&mut self, from: &mut [f64]) -> Result<Option<bool>, Failure> {
         let (mut jumps, mut has_jumped) = (None, vec![false; from.len()]);
         for _ in 0..=from.len() {
-            let now = self.indicate()?;
+            let mut now = self.indicate_about(self.indicate()?)?;
+            // What is past zero by nothing stays so until it moves.
+            let is_past = |(now, from): &(&mut f64, &f64)| **now == 0.0 && from.abs() == f64::MIN_POSITIVE;
+            now.iter_mut().zip(&*from).filter(is_past).for_each(|(now, from)| *now = *from);
             let is_between = |k: usize| !has_jumped[k] && self.system.events[k].trigger.is_between(from[k], now[k]);
             let jumped: Vec<usize> = (0..now.len()).filter(|&k| is_between(k)).collect();
             jumped.iter().for_each(|&k| has_jumped[k] = true);
@@ -313,10 +328,29 @@ impl Simulation {
 
     /// Values of all indicators at the present state.
     pub(super) fn indicate(&self) -> Result<Vec<f64>, Failure> {
-        let found = self.system.indicators(self.look());
+        self.known(self.system.indicators(self.look()))
+    }
+
+    /// These values `now`, but of those that time alone takes to the other side of zero within its rounding, that behind it: at a nominal time
+    /// rounding decides on which side they are.
+    fn indicate_about(&self, mut now: Vec<f64>) -> Result<Vec<f64>, Failure> {
+        let t = self.state.t;
+        let ahead = self.known(self.system.indicators(Look { t: t + TIME_ROUNDED * t.abs(), ..self.look() }))?;
+        now.iter_mut().zip(ahead).filter(|(now, ahead)| **now * ahead <= 0.0 && *ahead != 0.0).for_each(|(now, ahead)| *now = ahead);
+        Ok(now)
+    }
+
+    fn known(&self, found: Vec<f64>) -> Result<Vec<f64>, Failure> {
         match found.iter().position(|found| found.is_nan()) {
             Some(event) => Err(Failure::NoIndicator { event }),
             None => Ok(found),
         }
     }
+}
+
+/// Goes from indicators to what they are `now`. One that has come to zero without its event, which happens the other way, is past it.
+fn pass(from: &mut [f64], now: Vec<f64>) {
+    from.iter_mut()
+        .zip(now)
+        .for_each(|(from, now)| *from = if now == 0.0 { -from.signum() * f64::MIN_POSITIVE * f64::from(*from != 0.0) } else { now });
 }

@@ -8,12 +8,12 @@ use crate::formulation::Failure;
 
 impl Simulation {
     /// Goes to where the first event happens in the part that began at `before` and in which the k-th has happened after the time `low`, and
-    /// says when that is, which it is, and what the indicators are just behind. All that comes before `lower` is done once.
+    /// says when that is, which it is, and what the indicators are just behind. All that comes before `lower` is done once. The part was to end at `until`.
     #[expect(clippy::too_many_arguments)] // what is known of the event and of the part
     pub(super) fn locate(
         &mut self,
         mut before: Moment,
-        [lower, low]: [f64; 2],
+        [lower, low, until]: [f64; 3],
         mut k: usize,
         from: &[f64],
         shortest: f64,
@@ -21,17 +21,18 @@ impl Simulation {
         crossed: &dyn Fn(&[f64]) -> Option<usize>,
     ) -> Result<(f64, usize, Vec<f64>), Failure> {
         let end = self.state.t;
+        let mut here = end;
         let mut beside = self.indicate()?;
         if lower > before.t() && low - lower > 2.0 * shortest {
             self.restore(&before);
             self.advance(lower, wants_forces, None)?;
             before = self.moment();
+            here = lower;
         }
         let begin = before.t();
         // None has happened at its beginning, and the k-th has at its end.
         let mut bracket = Bracket::new([low, end], [from[k], beside[k]]);
         let width = (LOCATED * (end - begin)).max(f64::EPSILON * end.abs());
-        let mut here = end;
         for _ in 0..MOST_TRIES {
             if bracket.high - bracket.low <= width {
                 break;
@@ -60,7 +61,7 @@ impl Simulation {
             }
         }
         let high = bracket.high;
-        let lands = if end - high < shortest { end } else { high };
+        let lands = if until - high < shortest { until } else { high };
         if here != lands {
             self.restore(&before);
             self.advance(lands, wants_forces, None)?;
