@@ -105,14 +105,17 @@ impl Simulation {
         };
         // Indicators that went through zero here and lie beside it again before anything else happens.
         let mut turned: Vec<(usize, f64)> = Vec::new();
+        // Indicators at the last event, and when it has happened: that may lie a little behind the state at which it was taken.
+        let (mut at_last, mut last) = (vec![0.0; from.len()], self.state.t);
         loop {
+            let shortest = self.shortest(target - self.state.t).min(shortest);
             let due = self.due(shortest);
             let samples = !due.is_empty();
             if samples {
                 observer.at_division(self);
                 self.sample(&due, shortest)?;
             }
-            let jumped = self.jump(&mut from)?;
+            let jumped = self.jump(&mut from, &at_last)?;
             let stops = jumped == Some(true);
             if samples || jumped.is_some() {
                 self.show_division(observer);
@@ -133,6 +136,9 @@ impl Simulation {
             // Where the step is taken in parts it ends with the part in which something happens.
             let (mut low, mut lower) = (self.state.t, self.state.t);
             let mut look = |simulation: &mut Self| {
+                if simulation.state.t <= last {
+                    return Ok(false);
+                }
                 let now = simulation.indicate()?;
                 if crossed(&from, &now).is_some() {
                     return Ok(true);
@@ -144,13 +150,13 @@ impl Simulation {
             };
             self.advance(until, reacts, Some(&mut Inside { look: &mut look, everywhere: true }))?;
             let to = self.indicate().inspect_err(|_| self.restore(&before))?;
-            let (t, k, beside) = match crossed(&from, &to) {
+            let (t, behind, k, beside) = match crossed(&from, &to) {
                 Some(k) => self.locate(before, [lower, low, until], k, &from, shortest, wants_forces, &|to: &[f64]| crossed(&from, to))?,
                 None => {
                     // What happens within the rounding of a nominal time is taken there.
                     let at = self.indicate_about(to)?;
                     match crossed(&from, &at) {
-                        Some(k) => (self.state.t, k, at),
+                        Some(k) => (self.state.t, self.state.t, k, at),
                         None => {
                             pass(&mut from, at);
                             continue;
@@ -162,6 +168,7 @@ impl Simulation {
             let now = if self.state.t == until { self.indicate_about(now)? } else { now };
             let happens = |at: usize| at == k || system.events[at].trigger.is_between(from[at], now[at]);
             let happening: Vec<usize> = (0..now.len()).filter(|&at| happens(at)).collect();
+            at_last.copy_from_slice(&now);
             if self.state.t > begin {
                 pass(&mut from, now);
             } else {
@@ -169,6 +176,7 @@ impl Simulation {
                 turned.extend((0..).zip(beside).filter(|&(at, beside)| from[at] == 0.0 && beside != 0.0));
             }
             self.require_no_chatter(k, t, shortest)?;
+            last = behind;
             self.show_inside(divisions, observer);
             let stops = self.happen(&happening, t, &mut from)?;
             self.show_division(observer);
@@ -223,14 +231,13 @@ impl Simulation {
     }
 
     /// Lets the events happen whose indicators jumped through zero when inputs were set, one after the other and each once, and says whether
-    /// one ends the run; nothing where there were none.
-    fn jump(&mut self, from: &mut [f64]) -> Result<Option<bool>, Failure> {
+    /// one ends the run; nothing where there were none. Those beside zero since the last event jump where they are not as they were then.
+    fn jump(&mut self, from: &mut [f64], at_last: &[f64]) -> Result<Option<bool>, Failure> {
         let (mut jumps, mut has_jumped) = (None, vec![false; from.len()]);
         for _ in 0..=from.len() {
             let mut now = self.indicate_about(self.indicate()?)?;
-            // What is past zero by nothing stays so until it moves.
-            let is_past = |(now, from): &(&mut f64, &f64)| **now == 0.0 && from.abs() == f64::MIN_POSITIVE;
-            now.iter_mut().zip(&*from).filter(is_past).for_each(|(now, from)| *now = *from);
+            let stays = |((now, from), at_last): &((&mut f64, &f64), &f64)| **now == **at_last && from.abs() == f64::MIN_POSITIVE;
+            now.iter_mut().zip(&*from).zip(at_last).filter(stays).for_each(|((now, from), _)| *now = *from);
             let is_between = |k: usize| !has_jumped[k] && self.system.events[k].trigger.is_between(from[k], now[k]);
             let jumped: Vec<usize> = (0..now.len()).filter(|&k| is_between(k)).collect();
             jumped.iter().for_each(|&k| has_jumped[k] = true);
@@ -293,9 +300,10 @@ impl Simulation {
         }
     }
 
-    /// Shortest part of a step of some length, and of the shortest period, s.
+    /// Shortest part of a step of some length, of the next one that is chosen for an accuracy, and of the shortest period, s.
     fn shortest(&self, length: f64) -> f64 {
-        SHORTEST * self.periods().map(|(_, period, _)| period).fold(length, f64::min)
+        let chosen = self.pilot.iter().map(|pilot| pilot.control.step).filter(|step| *step > 0.0);
+        SHORTEST * self.periods().map(|(_, period, _)| period).chain(chosen).fold(length, f64::min)
     }
 
     /// Counts as happened what lies before the present time, at which a run begins.

@@ -8,7 +8,7 @@ use crate::formulation::Failure;
 
 impl Simulation {
     /// Goes to where the first event happens in the part that began at `before` and in which the k-th has happened after the time `low`, and
-    /// says when that is, which it is, and what the indicators are just behind. All that comes before `lower` is done once. The part was to end at `until`.
+    /// says when that is, a time by which it has happened, which it is, and what the indicators are then. All that comes before `lower` is done once. The part was to end at `until`.
     #[expect(clippy::too_many_arguments)] // what is known of the event and of the part
     pub(super) fn locate(
         &mut self,
@@ -19,7 +19,7 @@ impl Simulation {
         shortest: f64,
         wants_forces: bool,
         crossed: &dyn Fn(&[f64]) -> Option<usize>,
-    ) -> Result<(f64, usize, Vec<f64>), Failure> {
+    ) -> Result<(f64, f64, usize, Vec<f64>), Failure> {
         let end = self.state.t;
         let mut here = end;
         let mut beside = self.indicate()?;
@@ -44,7 +44,7 @@ impl Simulation {
                 let time = |at: usize| (Bracket::new([begin, bracket.high], [from[at], beside[at]]).secant(), at);
                 let first = (0..beside.len()).filter(happens).map(time).min_by(|a, b| a.0.total_cmp(&b.0));
                 let (t, k) = first.unwrap_or((bracket.secant(), k));
-                return Ok((t, k, beside));
+                return Ok((t, bracket.high, k, beside));
             }
             here = bracket.next(width).max(begin + shortest).min(bracket.high);
             self.restore(&before);
@@ -66,6 +66,6 @@ impl Simulation {
             self.restore(&before);
             self.advance(lands, wants_forces, None)?;
         }
-        Ok((high, k, beside))
+        Ok((high, high, k, beside))
     }
 }
