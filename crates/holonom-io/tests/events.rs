@@ -328,3 +328,62 @@ fn two_events_at_one_time_of_a_formula_end() {
         assert!((x - 1.25).abs() < 1e-6 && (v - 5.0).abs() < 1e-6 && n == 11.0, "{method}: {x} m, {v} m/s, {n}");
     }
 }
+
+/// Pulses of 1 N at 100 Hz whose width follows a sine: the widths are found here by halving. Steps by accuracy end where `mod` jumps, and what it did before
+/// that counts.
+#[test]
+fn pulses_of_changing_width_miss_none() {
+    let text = "plane = \"xy\"\ngravity = [0, 0]\n[point.m]\nmass = 1\nposition = [0, 0]\n[input.u]\ndefault = 1\n[input.n]\n\
+                [event.off]\nwhen = \"0.5 + 0.45*sin(6*t) - mod(t, 0.01)/0.01\"\ndirection = \"falling\"\nset = { u = 0, n = \"n + 1\" }\n\
+                [event.on]\nwhen = \"0.5 + 0.45*sin(6*t) - mod(t, 0.01)/0.01\"\ndirection = \"rising\"\nset = { u = 1, n = \"n + 1\" }\n\
+                [force.f]\ntype = \"expression\"\npoint = \"m\"\nforce = [\"u\", 0]\n";
+    let width = |k: u32| {
+        let (mut low, mut high) = (0.0, 0.01);
+        for _ in 0..60 {
+            let t = 0.5 * (low + high);
+            *if 0.5 + 0.45 * (6.0 * (0.01 * f64::from(k) + t)).sin() > t / 0.01 { &mut low } else { &mut high } = t;
+        }
+        low
+    };
+    let speed: f64 = (0..100).map(width).sum();
+    let model = model(text);
+    for (method, accuracy, step) in [
+        ("conserving-ggl", None, 1e-3),
+        ("conserving-ggl", Some(1e-6), 0.1),
+        ("radau", Some(1e-6), 0.1),
+        ("radau", Some(1e-6), 0.01),
+        ("dopri5", Some(1e-6), 0.1),
+        ("dop853", Some(1e-6), 7e-3),
+        ("ggl/bdf", Some(1e-6), 0.1),
+    ] {
+        let choice = Choice { accuracy, ..Choice::default().named(method) };
+        let recording = common::run(&model, choice, step, 1.0).1;
+        let [v, n] = ["m.vx", "n"].map(|name| last(&recording, name));
+        assert!((v - speed).abs() < 1e-9 && n == 200.0, "{method}, {accuracy:?}, {step} s: {v} m/s in place of {speed}, {n}");
+    }
+}
+
+/// Events within a millionth of a step behind a nominal time, at which others happen, happen once.
+#[test]
+fn events_right_behind_a_nominal_time_happen_once() {
+    let conditions = ["p.y^2 - 0.25", "p.y - 0.500000001", "floor(t/0.500000001) - 0.5", "t - 0.5"];
+    let event = |(k, when): (usize, &str)| {
+        format!("[input.n{k}]\n[event.e{k}]\nwhen = \"{when}\"\ndirection = \"rising\"\nset = {{ n{k} = \"n{k} + 1\" }}\n")
+    };
+    let events: String = conditions.into_iter().enumerate().map(event).collect();
+    let text = format!(
+        "plane = \"xy\"\ngravity = [0, 0]\n[point.p]\nmass = 1\nposition = [0, 0]\nvelocity = [0, 1]\n\
+         [input.c]\n[event.clock]\nevery = 0.037\nset = {{ c = \"c + 1\" }}\n{events}\
+         [force.f]\ntype = \"expression\"\npoint = \"p\"\nforce = [\"n0 + n1 + n2 + n3\", 0]\n"
+    );
+    let model = model(&text);
+    for (method, accuracy) in
+        [("radau", None), ("radau", Some(1e-7)), ("conserving-ggl", None), ("dopri5", Some(1e-7)), ("ggl/bdf", Some(1e-5))]
+    {
+        let choice = Choice { accuracy, ..Choice::default().named(method) };
+        let recording = common::run(&model, choice, 0.01, 1.0).1;
+        let counts = ["n0", "n1", "n2", "n3", "c"].map(|name| last(&recording, name));
+        assert_eq!(counts, [1.0, 1.0, 1.0, 1.0, 28.0], "{method}, {accuracy:?}");
+        assert!((last(&recording, "p.vx") - 2.0).abs() < 1e-6, "{method}, {accuracy:?}: {}", last(&recording, "p.vx"));
+    }
+}

@@ -88,7 +88,8 @@ impl Simulation {
             return self.advance(target, wants_forces, (divisions != Divisions::Unseen).then_some(&mut inside)).map(|()| false);
         }
         let system = self.system.clone();
-        let shortest = self.shortest(target - self.state.t);
+        let length = target - self.state.t;
+        let shortest = self.shortest(length);
         let first = (self.audit.clone(), self.steps);
         // Indicators where the part begins, before inputs were set there; zero of events that happened there, also at the end of the step
         // before.
@@ -108,7 +109,7 @@ impl Simulation {
         // Indicators at the last event, and when it has happened: that may lie a little behind the state at which it was taken.
         let (mut at_last, mut last) = (vec![0.0; from.len()], self.state.t);
         loop {
-            let shortest = self.shortest(target - self.state.t).min(shortest);
+            let shortest = self.shortest(length);
             let due = self.due(shortest);
             let samples = !due.is_empty();
             if samples {
@@ -133,13 +134,23 @@ impl Simulation {
             // Where a sample follows, forces are found when it is taken, unless somebody looks at those before it.
             let reacts = wants_forces && (divisions == Divisions::Inside || next > until + shortest);
             let crossed = |from: &[f64], to: &[f64]| (0..to.len()).find(|&k| system.events[k].trigger.is_between(from[k], to[k]));
+            let seen = |simulation: &Self, from: &[f64]| {
+                let now = simulation.indicate()?;
+                // What time alone takes back in a jump has been there before it.
+                let t = simulation.state.t - TIME_ROUNDED * simulation.state.t.abs();
+                if t <= last || crossed(from, &now).is_some() {
+                    return Ok(now);
+                }
+                let before = simulation.known(system.indicators(Look { t, ..simulation.look() }))?;
+                Ok(if crossed(from, &before).is_some() { before } else { now })
+            };
             // Where the step is taken in parts it ends with the part in which something happens.
             let (mut low, mut lower) = (self.state.t, self.state.t);
             let mut look = |simulation: &mut Self| {
                 if simulation.state.t <= last {
                     return Ok(false);
                 }
-                let now = simulation.indicate()?;
+                let now = seen(simulation, &from)?;
                 if crossed(&from, &now).is_some() {
                     return Ok(true);
                 }
@@ -149,9 +160,11 @@ impl Simulation {
                 Ok(false)
             };
             self.advance(until, reacts, Some(&mut Inside { look: &mut look, everywhere: true }))?;
-            let to = self.indicate().inspect_err(|_| self.restore(&before))?;
+            let to = seen(self, &from).inspect_err(|_| self.restore(&before))?;
             let (t, behind, k, beside) = match crossed(&from, &to) {
-                Some(k) => self.locate(before, [lower, low, until], k, &from, shortest, wants_forces, &|to: &[f64]| crossed(&from, to))?,
+                Some(k) => {
+                    self.locate(before, [lower, low, until], (k, to), &from, shortest, wants_forces, &|to: &[f64]| crossed(&from, to))?
+                }
                 None => {
                     // What happens within the rounding of a nominal time is taken there.
                     let at = self.indicate_about(to)?;

@@ -8,13 +8,14 @@ use crate::formulation::Failure;
 
 impl Simulation {
     /// Goes to where the first event happens in the part that began at `before` and in which the k-th has happened after the time `low`, and
-    /// says when that is, a time by which it has happened, which it is, and what the indicators are then. All that comes before `lower` is done once. The part was to end at `until`.
+    /// says when that is, a time by which it has happened, which it is, and what the indicators are then. All that comes before `lower` is done once;
+    /// what the indicators are at the end is `beside` the number of the event. The part was to end at `until`.
     #[expect(clippy::too_many_arguments)] // what is known of the event and of the part
     pub(super) fn locate(
         &mut self,
         mut before: Moment,
         [lower, low, until]: [f64; 3],
-        mut k: usize,
+        (mut k, mut beside): (usize, Vec<f64>),
         from: &[f64],
         shortest: f64,
         wants_forces: bool,
@@ -22,7 +23,6 @@ impl Simulation {
     ) -> Result<(f64, f64, usize, Vec<f64>), Failure> {
         let end = self.state.t;
         let mut here = end;
-        let mut beside = self.indicate()?;
         if lower > before.t() && low - lower > 2.0 * shortest {
             self.restore(&before);
             self.advance(lower, wants_forces, None)?;
