@@ -13,7 +13,7 @@ const WIDEST: usize = 120;
 /// A fault of a file as TOML.
 pub(super) fn syntax(name: &str, text: &str, error: &SyntaxError) -> String {
     let message = error.message.trim().replace('\n', ", ");
-    at(name, text, error.bytes.clone(), "", &message, error.cure)
+    at(name, text, error.bytes.clone(), "", &message, &error.cure)
 }
 
 /// A fault of a description.

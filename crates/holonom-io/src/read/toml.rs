@@ -12,15 +12,16 @@ use super::places::Places;
 pub(super) struct SyntaxError {
     pub message: String,
     pub bytes: Range<usize>,
-    pub cure: &'static str,
+    pub cure: String,
 }
 
 /// Parses a file and notes the place of everything in it.
 pub(super) fn parse(text: &str, places: &mut Places) -> Result<Value, SyntaxError> {
-    let table = DeTable::parse(text).map_err(|error| SyntaxError {
-        message: error.message().to_string(),
-        bytes: error.span().unwrap_or(0..0),
-        cure: cure(error.message()),
+    let table = DeTable::parse(text).map_err(|error| {
+        let bytes = error.span().unwrap_or(0..0);
+        let told = NO_VALUE.iter().any(|beginning| error.message().starts_with(beginning)).then(|| bare(text, bytes.start)).flatten();
+        let (message, cure) = told.unwrap_or_else(|| (error.message().to_string(), cure(error.message()).into()));
+        SyntaxError { message, bytes, cure }
     })?;
     convert_table("", table.get_ref(), places).map(Value::Table)
 }
@@ -29,11 +30,38 @@ pub(super) fn parse(text: &str, places: &mut Places) -> Result<Value, SyntaxErro
 const CURES: &[(&str, &str)] = &[
     ("duplicate key", "a key or table may be there only once: remove one, or give it another name"),
     ("string values must be quoted", "write a value behind the =; texts and expressions stand in quotes"),
+    ("unclosed table", "end the line with ]; a name has no index there: `repeat` makes many of one"),
     ("key with no value", "write KEY = VALUE, or [TABLE] above its keys"),
     ("missing comma", "put a comma between items, and end the list with ]"),
     ("unexpected key or value", "write one key a line; decimal numbers have a point: 1.5"),
     ("invalid basic string", "end the text with \" on the same line"),
 ];
+
+/// Beginnings of messages about what is no value.
+const NO_VALUE: &[&str] = &["string values must be quoted", "invalid float", "invalid boolean", "invalid integer"];
+
+/// Longest formula that is written into a message, bytes.
+const LONGEST: usize = 60;
+
+/// What is wrong with a text or a formula without quotes that has the byte `at`, and the cure.
+fn bare(text: &str, at: usize) -> Option<(String, String)> {
+    let start = text.get(..at)?.rfind(['[', '{', '=', ',', '\n']).map_or(0, |before| before + 1);
+    let mut depth = 0_i32;
+    let ends = |c: char| {
+        depth += i32::from(c == '(') - i32::from(c == ')');
+        matches!(c, ']' | '}' | '#' | '\n') || c == ',' && depth == 0
+    };
+    let end = text[at..].find(ends).map_or(text.len(), |length| at + length);
+    let word = text[start..end].trim();
+    if word.is_empty() || word.len() > LONGEST || word.contains(|c: char| c.is_control() || matches!(c, '"' | '\'')) {
+        return None;
+    }
+    let cure = match word.to_lowercase().as_str() {
+        flag @ ("true" | "false") => format!("write {flag}"),
+        _ => format!("texts and formulas stand in quotes: \"{word}\""),
+    };
+    Some((format!("`{word}` is neither a number nor a text in quotes"), cure))
+}
 
 fn cure(message: &str) -> &'static str {
     let known = CURES.iter().find(|(beginning, _)| message.trim_start().starts_with(beginning));
@@ -65,7 +93,7 @@ fn convert(path: &str, value: &Spanned<DeValue<'_>>, places: &mut Places) -> Res
     if !matches!(value.get_ref(), DeValue::Table(_)) || path.ends_with(']') {
         places.add_value(path, value.span());
     }
-    let refuse = |message: &str, cure| SyntaxError { message: message.into(), bytes: value.span(), cure };
+    let refuse = |message: &str, cure: &str| SyntaxError { message: message.into(), bytes: value.span(), cure: cure.into() };
     match value.get_ref() {
         DeValue::String(text) => Ok(Value::text(text.as_ref())),
         DeValue::Boolean(flag) => Ok(Value::Bool(*flag)),
