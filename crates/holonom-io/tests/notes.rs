@@ -133,3 +133,22 @@ fn a_stop_that_pushes_from_the_start_is_noted() {
     assert_eq!(flap("lower = 0.1\nupper = 0.2", "[start.h]\nangle = 0.5\n"), [upper]);
     assert_eq!(flap("lower = -0.1\nupper = 0", ""), [""; 0]);
 }
+
+/// Degrees where radians are meant are taken as they are written, and noted.
+#[test]
+fn orientations_of_more_than_a_turn_are_noted() {
+    let notes = |orientation: &str| {
+        let text = format!("[body.a]\nmass = 1\ninertia = [1, 1, 1]\nposition = [0, 0, 0]\norientation = {{ {orientation} }}\n");
+        model(&text).notes
+    };
+    let note = |key: &str, angle: f64| {
+        format!("body.a.orientation.{key}: {angle} rad is more than a full turn; degrees are written as `{key}_deg`")
+    };
+    assert_eq!(notes("axis = [0, 0, 1], angle = 90"), [note("angle", 90.0)]);
+    assert_eq!(notes("rpy = [0, 0, -90]"), [note("rpy", -90.0)]);
+    for right in ["axis = [0, 0, 1], angle = \"-tau\"", "axis = [0, 0, 1], angle_deg = 90", "rpy_deg = [0, 0, 90]", "rpy = [0, 3, 6]"] {
+        assert_eq!(notes(right), [""; 0], "{right}");
+    }
+    let planar = "plane = \"xy\"\n[body.a]\nmass = 1\ninertia = 1\nposition = [0, 0]\norientation = { angle = 45 }\n";
+    assert_eq!(model(planar).notes, [note("angle", 45.0)]);
+}

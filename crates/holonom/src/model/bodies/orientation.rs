@@ -126,7 +126,11 @@ impl Orientation {
                 // By its largest number first, as squares could overflow.
                 Ok(Rotation3::from_axis_angle(&Unit::new_normalize(axis.map(|c| c / largest)), angle).into_inner())
             }
-            Self { rpy: Some(angles), .. } => Ok(rotation_of(angles.vector(entry, "rpy", 3)?)),
+            Self { rpy: Some(angles), .. } => {
+                let angles = angles.vector(entry, "rpy", 3)?;
+                note_degrees(entry, "rpy", &angles);
+                Ok(rotation_of(angles))
+            }
             Self { rpy_deg: Some(angles), .. } => {
                 Ok(rotation_of(angles.vector(entry, "rpy_deg", 3)?.map(|angle| std::f64::consts::PI / 180.0 * angle)))
             }
@@ -144,19 +148,36 @@ impl Orientation {
     pub(super) fn radians(&self, entry: &Entry<'_>) -> Read<f64> {
         match (&self.angle, &self.angle_deg) {
             (Some(_), Some(_)) => Err(entry.refuse_key("angle_deg", "`angle` and `angle_deg` exclude each other", "keep one of the two")),
-            (Some(angle), None) => angle.number(entry, "angle"),
+            (Some(angle), None) => angle.number(entry, "angle").inspect(|angle| note_degrees(entry, "angle", &[*angle])),
             (None, Some(angle)) => angle.number(entry, "angle_deg").map(f64::to_radians),
             (None, None) => Err(entry.refuse_all("this orientation has no angle", "add angle = … in radians, or angle_deg = … in degrees")),
         }
     }
 }
 
+/// Notes angles of more than a turn, which may be degrees.
+fn note_degrees(entry: &Entry<'_>, key: &str, radians: &[f64]) {
+    if let Some(angle) = radians.iter().find(|angle| angle.abs() > std::f64::consts::TAU) {
+        entry.note(key, format!("{angle} rad is more than a full turn; degrees are written as `{key}_deg`"));
+    }
+}
+
 fn refuse_bare(entry: &Entry<'_>, spot: Spot<'_>, value: &Value) -> Refused {
     match value {
+        Value::List(items) if items.len() == 3 => entry.refuse(
+            spot,
+            "three bare numbers do not say whether they are angles, and in which order",
+            "write orientation = { rpy_deg = [roll, pitch, yaw] }, { rpy = [..] } in radians, or { axis = [x, y, z], angle_deg = … }",
+        ),
         Value::List(_) => {
             let cure = "write orientation = { quat_wxyz = [w, x, y, z] } or { quat_xyzw = [x, y, z, w] }";
             entry.refuse(spot, "four bare numbers do not say which comes first", cure)
         }
+        Value::Number(angle) => entry.refuse(
+            spot,
+            "a bare number does not say whether it is in radians or degrees",
+            format!("write orientation = {{ angle_deg = {angle} }} or {{ angle = {angle} }}, in space with an axis = [x, y, z] beside it"),
+        ),
         _ => entry.refuse_no_table(spot, value),
     }
 }
