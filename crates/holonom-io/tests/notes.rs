@@ -152,3 +152,16 @@ fn orientations_of_more_than_a_turn_are_noted() {
     let planar = "plane = \"xy\"\n[body.a]\nmass = 1\ninertia = 1\nposition = [0, 0]\norientation = { angle = 45 }\n";
     assert_eq!(model(planar).notes, [note("angle", 45.0)]);
 }
+
+#[test]
+fn gravity_across_the_plane_is_noted() {
+    let notes = |head: &str| model(&format!("{head}\n[point.a]\nmass = 1\nposition = [0, 0]\n")).notes;
+    let note = |across: &str| {
+        format!("gravity: its {across} m/s² is across the plane xz of the model and does not act: write two numbers, or take another plane")
+    };
+    assert_eq!(notes("plane = \"xz\"\ngravity = [0, 3, -9.81]"), [note("y = 3")]);
+    assert_eq!(notes("plane = \"xz\"\ngravity = [0, -9.81, 0]"), [note("y = -9.81")]);
+    for right in ["gravity = [0, 0, -9.81]", "gravity = [1, -9.81]", ""] {
+        assert_eq!(notes(&format!("plane = \"xz\"\n{right}")), [""; 0], "{right}");
+    }
+}

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::adrift;
 use super::assembly::{Assembly, Axes};
 use super::bodies::nodes::{self, Member};
-use super::bodies::{Files, RigidBody};
+use super::bodies::{Files, RigidBody, short};
 use super::description::{Description, Unread};
 use super::element::Boxed;
 use super::entries::{Entries, Named};
@@ -231,7 +231,18 @@ impl Compiler<'_> {
         let plane = root.optional("plane", &keys.plane, |plane, root, key| root.choice(key, plane, &planes)).unwrap_or(None);
         let axes = Axes::ALL.into_iter().find(|axes| plane.is_some_and(|plane| axes.name == plane)).unwrap_or(Axes::ALL[0]);
         let gravity = root.optional("gravity", &keys.gravity, |gravity, root, key| match gravity.len() {
-            3 => Ok(axes.of_world(gravity.vector(root, key, 3)?)),
+            3 => {
+                let world = gravity.vector(root, key, 3)?;
+                let inside = axes.of_world(world);
+                if let Some(k) = (0..3).find(|&k| axes.in_world(inside)[k] != world[k]) {
+                    let (across, plane) = (["x", "y", "z"][k], axes.name);
+                    root.note(
+                        key,
+                        format!("its {across} = {} m/s² is across the plane {plane} of the model and does not act: write two numbers, or take another plane", short(world[k])),
+                    );
+                }
+                Ok(inside)
+            }
             _ => gravity.vector(root, key, axes.dimension()),
         });
         (axes, gravity.map_or_else(|_| Vec3::default(), |gravity| gravity.unwrap_or(axes.of_world(GRAVITY))))
