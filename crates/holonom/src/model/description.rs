@@ -17,6 +17,7 @@ use super::points::Point;
 use super::reader::Reader;
 use super::settings::{OutputKeys, SimulationKeys};
 use super::start::Start;
+use super::synonyms::same;
 use super::tables::Curve;
 use super::value::{Table, Value, key_path};
 use super::{GROUND, Model, compile};
@@ -261,6 +262,14 @@ const TABLES: [&str; 15] = [
     "output",
 ];
 
+/// What to write for a table that is called like a kind.
+fn as_kind(key: &str, kinds: &Kinds) -> Option<String> {
+    let tables = [("joint", &kinds.joints), ("force", &kinds.forces), ("constraint", &kinds.constraints), ("drive", &kinds.drives)];
+    let kind = |word: &str| tables.iter().find_map(|(table, kinds)| Some((table, same(word, kinds.iter().map(|kind| kind.name))?)));
+    let (table, kind) = kind(key).or_else(|| kind(key.strip_suffix('s')?))?;
+    Some(format!("write [{table}.NAME] with type = \"{kind}\""))
+}
+
 /// Reads all tables of a model. What cannot be read is left out.
 pub(super) fn read(value: &Value, kinds: &Kinds, sink: &Sink) -> Read<Partial> {
     let Value::Table(table) = value else {
@@ -268,7 +277,7 @@ pub(super) fn read(value: &Value, kinds: &Kinds, sink: &Sink) -> Read<Partial> {
     };
     let root = Reader::new("", "", table, sink);
     let tables = TABLES.map(|name| Key::optional(name, Shape::Table(&[]), "", "", ""));
-    root.refuse_unknown_keys("a model", ModelKeys::KEYS.iter().chain(&tables));
+    root.refuse_keys_but("a model", ModelKeys::KEYS.iter().chain(&tables), |key| as_kind(key, kinds));
     let parameters = match table.get("parameters") {
         Some(Value::Table(table)) => table.clone(),
         Some(other) => {

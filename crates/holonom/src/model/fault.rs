@@ -4,6 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::fmt;
 
 use super::expression::Program;
+use super::synonyms;
 
 /// One thing that is wrong, where it is, and how to put it right.
 #[derive(Clone, Debug, PartialEq)]
@@ -144,9 +145,11 @@ const NEAR: f64 = 0.5;
 /// Characters of a name that are compared.
 const LONGEST: usize = 64;
 
-/// The known name nearest to a misspelt one, unless all are far.
+/// The known name that is meant by one that is misspelt, or called so elsewhere, unless all are far.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    nearest_few(name, known, 1).first().copied()
+    let known: Vec<&str> = known.into_iter().collect();
+    let near = || nearest_few(name, known.iter().copied(), 1).first().copied();
+    synonyms::same(name, known.iter().copied()).or_else(near)
 }
 
 /// The known names nearest to a misspelt one, the nearest first, at most `most` of them.
@@ -190,6 +193,7 @@ mod tests {
         assert_eq!(nearest("m3", ["m1", "other"]), Some("m1"));
         assert_eq!(nearest("stiffness", ["x", "damping"]), None);
         assert_eq!(nearest("anything", []), None);
+        assert_eq!(nearest("slider", ["linear", "prismatic"]), Some("prismatic"));
         assert_eq!(nearest("π", ["e", "t"]), None);
         assert_eq!(nearest_few("car.azz", ["t", "car.ax", "car.az", "car.vx", "wheel.az"], 3), ["car.az", "car.ax", "car.vx"]);
     }

@@ -42,6 +42,7 @@ mod spline;
 mod start;
 mod stroke;
 mod sum;
+mod synonyms;
 mod tables;
 #[cfg(test)]
 mod tests;

@@ -50,12 +50,22 @@ impl<'a> Reader<'a> {
 
     /// Records every key that is not among the known ones.
     pub(super) fn refuse_unknown_keys<'k>(&self, what: &str, known: impl Iterator<Item = &'k Key> + Clone) {
+        self.refuse_keys_but(what, known, |_| None);
+    }
+
+    /// The same, where there is another cure for some of them.
+    pub(super) fn refuse_keys_but<'k>(
+        &self,
+        what: &str,
+        known: impl Iterator<Item = &'k Key> + Clone,
+        cure: impl Fn(&str) -> Option<String>,
+    ) {
         for key in self.table.keys() {
             if self.sink.is_full() {
                 // What is not shown need not be put into words.
                 self.sink.report(|| unreachable!("a full sink makes no fault"));
             } else if !known.clone().any(|known| known.name == key) {
-                let cure = suggest(key, known.clone().map(|known| known.name));
+                let cure = cure(key).unwrap_or_else(|| suggest(key, known.clone().map(|known| known.name)));
                 let fault =
                     || Fault { on_key: true, ..Fault::new(key_path(self.path, key), key, format!("{what} has no key `{key}`"), cure) };
                 self.sink.report(fault);

@@ -5,6 +5,7 @@ use super::lex::Token;
 use super::names::{self, LOCAL, OF_PLACES, RUNNING};
 use super::parse::Parser;
 use super::{External, Functions, Mistake, Op, Program};
+use crate::model::GROUND;
 use crate::model::fault::nearest;
 
 /// Names of all functions.
@@ -148,7 +149,7 @@ impl Parser<'_> {
         let &(_, count, example) = OF_PLACES.iter().find(|known| known.0 == name).expect("it is one of these");
         let axes = self.axes_of(name, "places")?;
         let places = self.named(count, &format!("`{name}` takes {count} names of places"), example)?;
-        for (place, begin) in places.iter().filter(|(place, _)| place != "ground") {
+        for (place, begin) in places.iter().filter(|(place, _)| place != GROUND) {
             self.is_place(place, &axes[..1]).map_err(|mistake| Mistake { character: *begin, ..mistake })?;
         }
         let places: Vec<String> = places.into_iter().map(|(place, _)| place).collect();
@@ -220,7 +221,8 @@ impl Parser<'_> {
             return Ok(());
         }
         let (known, suffix) = (self.names.known(), format!(".{axis}"));
-        let cure = match nearest(place, known.iter().filter_map(|name| name.strip_suffix(&suffix))) {
+        let places = known.iter().filter_map(|name| name.strip_suffix(&suffix));
+        let cure = match nearest(place, places.chain([GROUND])) {
             Some(near) => format!("did you mean `{near}`?"),
             None => "name a point, a body, BODY.POINT or ground; a fixed place is a [point.NAME] with `fixed = true`".into(),
         };
