@@ -16,7 +16,7 @@ use super::measure::Measure;
 use super::points::Point;
 use super::reader::Reader;
 use super::settings::{OutputKeys, SimulationKeys};
-use super::start::Start;
+use super::start::{Start, one_of};
 use super::synonyms::same;
 use super::tables::Curve;
 use super::value::{Table, Value, key_path};
@@ -366,7 +366,7 @@ fn section<T>(
         let valid = names.check(section, name);
         let Value::Table(table) = value else {
             let message = format!("`{path}` is {}, and a table is wanted", value.type_name());
-            names.sink.report(|| Fault::new(&*path, value.quoted(), message, format!("write [{section}.NAME] and its keys below")));
+            names.sink.report(|| Fault::new(&*path, value.quoted(), message, format!("write [{section}.{name}] and its keys below")));
             unread.insert(name.to_string());
             continue;
         };
@@ -419,7 +419,8 @@ impl Names<'_> {
             return Err(report(format!("`{GROUND}` is the name of the origin"), "give it another name"));
         }
         if name.is_empty() || !name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-') {
-            return Err(report(format!("\"{name}\" cannot be a name"), "use letters, digits, _ and -"));
+            let cure = one_of(name).filter(|_| section == "start" && name.ends_with(']'));
+            return Err(report(format!("\"{name}\" cannot be a name"), cure.as_deref().unwrap_or("use letters, digits, _ and -")));
         }
         if !self.known.insert(name.to_string()) {
             return Err(report(format!("the name `{name}` is used twice"), "give one of them another name: all entries share their names"));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::assembly::{Assembly, CONTRADICTION, Effort};
 use super::bodies::short;
 use super::entry::Entry;
-use super::fault::Read;
+use super::fault::{Read, nearest};
 use super::fields::{Keys, Number};
 use super::joints::{Coordinate, coordinate};
 use crate::simulation::{Choice, Method, Simulation};
@@ -122,6 +122,7 @@ impl Start {
             let cure = "give a coordinate of the joint, as `angle` or `displacement`, or its rate, as `angle_rate`";
             return Err(entry.refuse_all("nothing is said of the start", cure));
         }
+        require_single(assembly, entry)?;
         for (key, value, rate_key, rate) in given {
             let (value, rate) = (entry.optional(key, value, Number::number)?, entry.optional(rate_key, rate, Number::number)?);
             if value.is_none() && rate.is_none() {
@@ -139,6 +140,29 @@ impl Start {
         }
         Ok(())
     }
+}
+
+/// Refuses the bare name of a joint that is repeated, also where it is misspelt.
+fn require_single(assembly: &Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+    let name = entry.name;
+    if name.contains('[') || assembly.joint_names.contains_key(name) || assembly.faulty_joints.contains(name) {
+        return Ok(());
+    }
+    let names = || assembly.joints.iter().map(|joint| joint.name.as_str());
+    let of_family = names().find(|known| known.strip_prefix(name).is_some_and(|rest| rest.starts_with('[')));
+    match of_family.or_else(|| nearest(name, names())).and_then(|one| Some((one, one_of(one)?))) {
+        Some((one, cure)) if of_family.is_some() => Err(entry.refuse_all(format!("`{name}` is repeated, as `{one}` and others"), cure)),
+        Some((_, cure)) => Err(entry.refuse_all(format!("there is no joint `{name}`"), cure)),
+        None => Ok(()),
+    }
+}
+
+/// How a start is written for one of those that a joint is repeated to, such as `hinge[2]`.
+pub(super) fn one_of(joint: &str) -> Option<String> {
+    let (base, indices) = joint.split_once('[')?;
+    let indices = indices.trim_end_matches(']').split("][").zip('i'..='z');
+    let ranges: Vec<String> = indices.map(|(value, index)| format!("{index} = {value} to {value}")).collect();
+    Some(format!("for `{joint}` alone write [start.{base}] with repeat = \"{}\", and a longer range for several", ranges.join(", ")))
 }
 
 /// First share of the way that is tried at once, and the least.
