@@ -65,7 +65,7 @@ impl Resumed {
     /// Reads a checkpoint, or that of a folder, for a run that is the same but for its end.
     pub fn open(path: &Path, run: &Provenance, source: &Source) -> Result<Self, Failure> {
         let path = if path.is_dir() { path.join(FILE) } else { path.into() };
-        let fail = |source| Failure::File { doing: "read", path: path.clone(), source };
+        let fail = |source| Failure::unread(&path, source, "give the folder of an earlier run, or run from the start, without --resume");
         let mut file = File::open(&path).map_err(fail)?;
         let folder = Folder::of(path.parent().filter(|parent| *parent != Path::new("")).unwrap_or(Path::new(".")))?;
         let mut bytes = Vec::new();

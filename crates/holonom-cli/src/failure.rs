@@ -1,5 +1,6 @@
 //! What can go wrong in the command, and the exit status it ends with.
 
+use std::io::ErrorKind;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -21,6 +22,16 @@ pub enum Failure {
         /// What to do about it.
         cure: String,
     },
+    #[error("error: cannot read {path}: there is no such file or folder\n  cure: {cure}", path = .path.display())]
+    /// A file or a folder that is not there.
+    NotThere {
+        /// Which one.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+        /// What to give in its place.
+        cure: &'static str,
+    },
     #[error("error: cannot {doing} {path}: {source}", path = .path.display())]
     /// A file that cannot be read or written.
     File {
@@ -38,7 +49,15 @@ impl Failure {
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::Model(_) | Self::Usage { .. } => ExitCode::from(2),
-            Self::File { .. } => ExitCode::from(4),
+            Self::NotThere { .. } | Self::File { .. } => ExitCode::from(4),
+        }
+    }
+
+    /// A file that cannot be read, with the cure for one that is not there.
+    pub fn unread(path: impl Into<PathBuf>, source: std::io::Error, cure: &'static str) -> Self {
+        match source.kind() {
+            ErrorKind::NotFound => Self::NotThere { path: path.into(), source, cure },
+            _ => Self::File { doing: "read", path: path.into(), source },
         }
     }
 

@@ -120,7 +120,7 @@ const STANDARD_INPUT: &str = "-";
 
 /// Reads a model file, or an example, as a description with the overrides of the command line; and its name.
 pub fn open(argument: &str, overrides: &Overrides) -> Result<(Source, String), Failure> {
-    let fail = |source| Failure::File { doing: "read", path: argument.into(), source };
+    let fail = |source| Failure::unread(argument, source, "give a model file, or an example, such as example:four-bar");
     // The name, the file as messages call it, its bytes, and the folder of the files that it names.
     let (name, shown, bytes, folder) = match (argument, argument.strip_prefix("example:")) {
         (_, Some(name)) => (name.to_string(), format!("{name}.toml"), example(name)?.as_bytes().to_vec(), None),

@@ -87,6 +87,7 @@ fn files_that_cannot_be_used_end_with_four() {
         ("run nothing.toml".to_string(), "cannot read nothing.toml"),
         ("check nothing.toml".into(), "cannot read nothing.toml"),
         (format!("run {PAPER} --end 0.1 --resume nothing.json"), "cannot read nothing.json"),
+        (format!("run {PAPER} --end 0.1 --resume nothing"), "give the folder of an earlier run"),
         (format!("run {PAPER} --end 0.1 --out file/results"), "cannot create file/results"),
         (format!("compare {PAPER} --end 0.1 --method conserving --out file/results"), "cannot create file/results"),
         ("examples chain --copy file/results".into(), "cannot create file/results"),

@@ -1,5 +1,7 @@
 //! What is wrong, as `holonom.ModelError`.
 
+use std::path::PathBuf;
+
 use holonom::model::Fault;
 use holonom_cli::Failure;
 use pyo3::exceptions::PyOSError;
@@ -39,12 +41,17 @@ pub fn failure(py: Python<'_>, failure: Failure) -> PyErr {
     match failure {
         Failure::Model(text) => model_error(py, vec![Fault::new("", "", text.clone(), "").into()], Some(text)),
         Failure::Usage { message, cure } => refuse(py, "", message, cure),
-        Failure::File { doing, path, source } => {
-            let text = format!("cannot {doing} {}: {source}", path.display());
-            match source.raw_os_error() {
-                Some(number) => PyOSError::new_err((number, text, path)),
-                None => PyOSError::new_err(text),
-            }
+        Failure::NotThere { path, source, cure } => {
+            system_error(format!("cannot read {}: {source} ({cure})", path.display()), &source, path)
         }
+        Failure::File { doing, path, source } => system_error(format!("cannot {doing} {}: {source}", path.display()), &source, path),
+    }
+}
+
+/// What the system said about a file.
+fn system_error(text: String, source: &std::io::Error, path: PathBuf) -> PyErr {
+    match source.raw_os_error() {
+        Some(number) => PyOSError::new_err((number, text, path)),
+        None => PyOSError::new_err(text),
     }
 }
