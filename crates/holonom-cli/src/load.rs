@@ -253,6 +253,7 @@ impl Loaded {
     /// # Errors
     /// A model without step or end.
     pub fn provenance(&self, method: &Method, named: Option<&str>, every: Option<u64>) -> Result<Provenance, Failure> {
+        let [step, end] = self.model.times().map_err(run_failure)?;
         let json = |value: Option<&Value>| value.map_or(serde_json::Value::Null, holonom_io::to_json);
         let replaced = |(key, file): &(String, Option<Value>)| Override {
             key: key.clone(),
@@ -268,8 +269,8 @@ impl Loaded {
             date: now(),
             command: command_line(),
             method: method.name.clone(),
-            step: self.step()?,
-            end: self.end()?,
+            step,
+            end,
             every: every.unwrap_or_else(|| self.every()),
             overrides,
             files: self.source.files(),
@@ -288,6 +289,9 @@ impl Loaded {
 /// What a model lacks to run, with its cure.
 pub fn run_failure(error: RunError) -> Failure {
     match error {
+        RunError::NoTimes => {
+            Failure::usage(error.to_string(), "add both there, or give --end 10 --step 0.01; --accuracy 1e-6 chooses the steps")
+        }
         RunError::Missing { key } => {
             let example = if key == "end" { 10.0 } else { 0.01 };
             Failure::usage(error.to_string(), format!("add `{key} = …` there, or give --{key} {example}"))

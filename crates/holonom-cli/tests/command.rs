@@ -75,6 +75,8 @@ fn a_wrong_model_is_answered_with_every_fault() {
     fs::write(folder.path().join("short.toml"), sound).unwrap();
     assert!(fails(&folder, "run short.toml --end 1", 2).contains("--step"));
     assert!(fails(&folder, "run short.toml --step 0.1", 2).contains("--end"));
+    assert!(fails(&folder, "run short.toml", 2).contains("neither `end` nor `step`"));
+    assert!(fails(&folder, "run short.toml --accuracy 1e-6", 2).contains("no `end`"));
     assert!(fails(&folder, "run short.toml --step 0.1 --end -1", 2).contains("`end` is -1, and must be above 0"));
     prints(&folder, "run short.toml --step 0.1 --end 1", 0);
 }

@@ -44,7 +44,7 @@ pub fn stability(
 ) -> PyResult<Answer> {
     let trouble = Trouble::default();
     let loaded = Draft::snapshot(draft)?.load_with(py, &read_changes(py, changes)?, &trouble)?;
-    loaded.model.step().and(loaded.model.end()).map_err(|error| run_error(py, error))?;
+    loaded.model.times().map_err(|error| run_error(py, error))?;
     let interrupted = AtomicBool::new(false);
     let search = || largest_steps(&loaded, &methods, &interrupted);
     let found = if can_interrupt { watched(py, &interrupted, search)? } else { py.detach(search) };

@@ -408,6 +408,9 @@ pub fn run_error(py: Python<'_>, error: RunError) -> PyErr {
             let example = if key == "end" { "10" } else { "0.01" };
             refuse(py, key, error.to_string(), format!("give {key}={example} here, or m.simulation({key}={example}) in the model"))
         }
+        RunError::NoTimes => {
+            refuse(py, "end", error.to_string(), "give end=10, step=0.01 here, or m.simulation(end=10, step=0.01) in the model")
+        }
         error => failure(py, run_failure(error)),
     }
 }

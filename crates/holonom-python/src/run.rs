@@ -54,7 +54,7 @@ pub fn run(
     let trouble = Trouble::default();
     let (draft, changes) = (Draft::snapshot(draft)?, read_changes(py, changes)?);
     let loaded = draft.load_with(py, &changes, &trouble)?;
-    loaded.model.step().and(loaded.model.end()).map_err(|error| run_error(py, error))?;
+    loaded.model.times().map_err(|error| run_error(py, error))?;
     let mut order = Order::new(&loaded, method, None, true).map_err(|fault| failure(py, fault))?;
     order.provenance.command = "holonom in Python".into();
     let finished = match can_interrupt {

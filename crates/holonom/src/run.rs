@@ -12,6 +12,9 @@ pub enum RunError {
         /// `step` or `end`.
         key: &'static str,
     },
+    /// Neither of the times that a run needs.
+    #[error("the model has neither `end` nor `step` in [simulation]")]
+    NoTimes,
     /// There is no method of this name, or its parts do not go together.
     #[error(transparent)]
     Method(#[from] MethodError),
@@ -54,6 +57,17 @@ impl Model {
     /// A model without one.
     pub fn end(&self) -> Result<f64, RunError> {
         self.settings.end.ok_or(RunError::Missing { key: "end" })
+    }
+
+    /// Nominal step and end of the run, s.
+    ///
+    /// # Errors
+    /// A model without one of them, or without both.
+    pub fn times(&self) -> Result<[f64; 2], RunError> {
+        match (self.step(), self.end()) {
+            (Err(_), Err(end)) => Err(if self.settings.choice.accuracy.is_some() { end } else { RunError::NoTimes }),
+            (step, end) => Ok([step?, end?]),
+        }
     }
 
     /// The simulation that the model asks for, at its start.

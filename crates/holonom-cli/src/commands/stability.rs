@@ -34,8 +34,8 @@ struct Bounds {
 
 impl Bounds {
     fn of(loaded: &Loaded) -> Result<Self, Failure> {
-        let end = loaded.end()?;
-        Ok(Self { end, first: loaded.step()?, limit: LARGEST_SHARE * end })
+        let [first, end] = loaded.model.times().map_err(load::run_failure)?;
+        Ok(Self { end, first, limit: LARGEST_SHARE * end })
     }
 }
 
