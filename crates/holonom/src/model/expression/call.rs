@@ -15,6 +15,10 @@ fn functions() -> impl Iterator<Item = &'static str> + Clone {
     of_numbers.chain(of_runs).chain(OF_PLACES.iter().map(|known| known.0)).chain([LOCAL.0])
 }
 
+/// What to write in space where `local` is not known.
+const IN_BODY_AXES: &str = "give a force or torque in body axes by axes = \"body\", a spring along = \"BODY.AXIS\"; for a component take two places of the \
+                            body one metre apart along the axis: (BODY.Q.x - BODY.P.x)*BODY.vx + (BODY.Q.y - BODY.P.y)*BODY.vy + (BODY.Q.z - BODY.P.z)*BODY.vz";
+
 /// Functions that other programs have, and how their values are written here.
 const ELSEWHERE: &[(&str, &str)] = &[
     ("log", "ln(x), or log10(x)"),
@@ -164,6 +168,12 @@ impl Parser<'_> {
         let named = self.named(2, &format!("`{name}` takes a body and a component of a vector"), example)?;
         let [(body, of_body), (component, of_vector)] = &named[..] else { unreachable!("two were asked for") };
         self.is_place(body, &axes[..1]).map_err(|mistake| Mistake { character: *of_body, ..mistake })?;
+        if let (3, Err(mistake)) = (axes.len(), self.names.variable(&super::indexed(&format!("{body}.qw"), self.scope)?))
+            && !mistake.known
+        {
+            let message = "`local` in space needs the orientation of a body, which forces and events do not know: only measures may ask so";
+            return Err(Mistake::new(start, message, IN_BODY_AXES));
+        }
         // A quaternion is no vector.
         let axis = component.chars().last().filter(|_| !component.contains(".q")).and_then(|letter| axes.find(letter));
         let Some((k, vector)) = axis.map(|k| (k, &component[..component.len() - 1])) else {
