@@ -19,6 +19,7 @@ mod pilot;
 mod promise;
 mod reactions;
 mod reason;
+mod sharp;
 mod sight;
 mod start;
 mod state;

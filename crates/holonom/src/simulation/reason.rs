@@ -27,6 +27,13 @@ impl Simulation {
             return format!("the force of `{force}` {what} at t = {t:.6} s");
         }
         let what = format!("{} at t = {t:.6} s{row}", failure.describe(&self.system));
+        // What rows are to blame for no force is.
+        let may_be_sharp = matches!(failure, Failure::NotConverged { .. } | Failure::Crawling { .. }) && row.is_empty();
+        if may_be_sharp && let Some((force, speed)) = self.sharp_force() {
+            return format!(
+                "{what}; `{force}` turns round within {speed:.1e} m/s or rad/s, which steps jump across: give friction a larger `speed`"
+            );
+        }
         let is_of_rows = matches!(failure, Failure::NotConverged { .. } | Failure::Broken { .. } | Failure::Singular(_));
         // What cannot move has no step that is short enough either.
         if !is_of_rows && failure != Failure::TooSmall {
