@@ -35,3 +35,18 @@ fn friction_that_is_hardly_smoothed_is_named() {
     says(&block("1e-9"), &["stopped at", "`rust` turns round within 1.0e-9 m/s or rad/s", "larger `speed`"], 3);
     says(&block("1e-3"), &["completed"], 0);
 }
+
+#[test]
+fn points_in_a_line_are_not_told_of_as_a_door() {
+    let point = |name: &str, x: f64| format!("[point.{name}]\nmass = 1\nposition = [{x}, 0, 0]\n");
+    let rod = |name: &str, ends: &str| format!("[constraint.{name}]\ntype = \"distance\"\nbetween = {ends}\n");
+    let text = format!(
+        "{}{}{}{}{}[simulation]\nend = 1\nstep = 0.01\n",
+        point("a", 1.0),
+        point("b", 2.0),
+        rod("one", "[\"ground\", \"a\"]"),
+        rod("two", "[\"a\", \"b\"]"),
+        rod("three", "[\"ground\", \"b\"]"),
+    );
+    says(&text, &["stopped at", "(redundant)", "three distances along a line"], 3);
+}

@@ -55,8 +55,9 @@ impl Simulation {
         match self.redundant_rows().min(at_start) {
             0 => String::new(),
             redundant => format!(
-                "; {redundant} of the constraints follow from others: where they differ from these in the last digits that are written, as hinges of a door \
-                 whose axes are a little off, nothing meets them all"
+                "; {redundant} of the equations of the constraints follow from the others (redundant): either they differ from these in the last digits that \
+                 are written, as those of two hinges whose axes are a little off or of three distances along a line, so that nothing meets them all, or the \
+                 position is singular (write the places with all digits, take away what is redundant, or put a bushing or a spring in its place)"
             ),
         }
     }
