@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use holonom::analysis::{self, Undetermined};
+use holonom::analysis::{self, Rank, Undetermined};
 use holonom::model::{Model, StartChange};
 use holonom::record::{Channels, RecordedJoint, Recording};
 use holonom::simulation::{Method, Simulation, Start};
@@ -168,10 +168,16 @@ pub fn costly(method: &Method) -> Option<String> {
     Some(format!("`{}` is of order 2, and takes very many steps for an accuracy of {}: `radau` takes few", method.name, short(accuracy)))
 }
 
+/// That two drives lead one freedom, where rows are redundant and none asks for what cannot be.
+pub fn rivals(simulation: &mut Simulation, rank: &Rank) -> Option<String> {
+    let [one, other] = if rank.redundant.is_empty() || simulation.start().conflict.is_some() { None } else { simulation.rivals() }?;
+    Some(format!("`{one}` and `{other}` lead the same freedom, so that it is not known which of them does the work: remove one of the two"))
+}
+
 /// That no motion begins with the velocities of a start.
 pub fn nowhere(start: &Start) -> Option<String> {
     let text = match &start.conflict {
-        Some(row) => format!("`{row}` asks for a motion that the other constraints do not allow"),
+        Some(conflict) => conflict.to_string(),
         None => "no motion begins with the start velocities: at this singular position no accelerations keep all constraints, and what comes is one way of \
                  many (give the velocities of one of the ways in which it can move from there)"
             .into(),

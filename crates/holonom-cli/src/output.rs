@@ -22,7 +22,7 @@ use crate::folder::{Folder, holds};
 use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
 use crate::message::note;
-use crate::notes::{corrections, costly, long_turns, lost_energy, rows_without_forces, shared_forces, slips, unknown_measures};
+use crate::notes::{corrections, costly, long_turns, lost_energy, rivals, rows_without_forces, shared_forces, slips, unknown_measures};
 use crate::options::Destination;
 use crate::progress::Watched;
 use crate::provenance::Provenance;
@@ -146,6 +146,7 @@ pub(crate) fn simulate_kept(
         }
     };
     let rank = analysis::rank_of(&simulation);
+    let overruled = rivals(&mut simulation, &rank);
     if model.output.constraints() != Constraints::Nothing || !model.channels.efforts.is_empty() {
         model.find_reactions(&mut simulation);
     }
@@ -179,7 +180,8 @@ pub(crate) fn simulate_kept(
     let without = rows_without_forces(model, watched.recorder.recording());
     let turns = long_turns(model, simulation.method(), watched.recorder.recording());
     let of_steps = lost_energy(&simulation).filter(|_| status == Status::Completed).into_iter().chain(turns);
-    let of_results: Vec<String> = unknown.into_iter().chain(without).chain(shared_forces(model, &simulation)).chain(of_steps).collect();
+    let of_results: Vec<String> =
+        overruled.into_iter().chain(unknown).chain(without).chain(shared_forces(model, &simulation)).chain(of_steps).collect();
     if !quiet {
         of_results.iter().for_each(|text| note(text));
     }

@@ -23,6 +23,61 @@ fn says(model: &str, words: &[&str], status: i32) {
     }
 }
 
+/// A slider-crank that is driven at its piston, with its crank at an angle from the dead centre.
+fn driven_piston(angle: f64, profile: &str) -> String {
+    let (r, l) = (0.1, 0.4);
+    let (sine, cosine) = angle.sin_cos();
+    let (y, tilt) = (r * sine, (r / l * sine).asin());
+    let wrist = r * cosine + l * tilt.cos();
+    format!(
+        "plane = \"xy\"\n[body]\ncrank = {{ mass = 1.2, inertia = 0.01, position = [{}, {}] }}\n\
+         rod = {{ mass = 0.8, inertia = 0.02, position = [{}, {}] }}\npiston = {{ mass = 2, inertia = 0.01, position = [{wrist}, 0] }}\n\
+         [joint]\nmain = {{ type = \"revolute\", between = [\"ground\", \"crank\"], at = [0, 0] }}\n\
+         pin = {{ type = \"revolute\", between = [\"crank\", \"rod\"], at = [{}, {y}] }}\n\
+         wrist = {{ type = \"revolute\", between = [\"rod\", \"piston\"], at = [{wrist}, 0] }}\n\
+         guide = {{ type = \"prismatic\", between = [\"ground\", \"piston\"], axis = [1, 0] }}\n\
+         [drive.motor]\ntype = \"displacement\"\njoint = \"guide\"\nprofile = \"{profile}\"\n[simulation]\nend = 0.01\nstep = 1e-3\n",
+        0.5 * r * cosine,
+        0.5 * y,
+        0.5 * (r * cosine + wrist),
+        0.5 * y,
+        r * cosine,
+    )
+}
+
+#[test]
+fn a_drive_at_a_dead_centre_is_told_as_one() {
+    let said = "leads in a direction in which the mechanism cannot move there: at a dead centre";
+    says(&driven_piston(0.0, "-0.1*t"), &["error: ", "`motor`", said], 2);
+    for profile in ["-0.1*t^2", "-0.01*t^3"] {
+        says(&driven_piston(0.0, profile), &["stopped at", "`motor`", said], 3);
+        says(&driven_piston(0.5, profile), &["completed"], 0);
+    }
+}
+
+/// Two wheels that mesh, each with a motor of its own.
+fn two_motors(profile: &str) -> String {
+    let wheel = |name: &str, x: f64, profile: &str| {
+        format!(
+            "[body.{name}]\nmass = 1\ninertia = 0.1\nposition = [{x}, 0]\n[joint.axle-{name}]\ntype = \"revolute\"\nbetween = [\"ground\", \"{name}\"]\n\
+             at = [{x}, 0]\n[drive.motor-{name}]\ntype = \"angle\"\njoint = \"axle-{name}\"\nprofile = \"{profile}\"\n"
+        )
+    };
+    format!(
+        "plane = \"xy\"\n{}{}[joint.mesh]\ntype = \"gear\"\njoints = [\"axle-a\", \"axle-b\"]\nratio = -1\n[simulation]\nend = 0.1\nstep = 0.01\n",
+        wheel("a", 0.0, "t^2"),
+        wheel("b", 1.0, profile)
+    )
+}
+
+#[test]
+fn two_drives_of_one_freedom_are_both_named() {
+    let said = "`motor-b` asks for a motion that the other constraints do not allow: it leads the same freedom as `motor-a`";
+    says(&two_motors("-2*t^2"), &[said, "stopped at"], 3);
+    says(&two_motors("-2*t"), &["error: ", "`motor-b` leads the same freedom as `motor-a`"], 2);
+    says(&two_motors("-t^2"), &["note: `motor-a` and `motor-b` lead the same freedom", "completed"], 0);
+}
+
 #[test]
 fn friction_that_is_hardly_smoothed_is_named() {
     let block = |speed: &str| {

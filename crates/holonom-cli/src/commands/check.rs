@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use holonom::analysis::{Rank, projection_form, rank_of, undetermined};
 use holonom::model::{Model, StartChange};
 use holonom::projection::Solve;
-use holonom::simulation::{Method, ModelSize, PENALTY, Simulation};
+use holonom::simulation::{Conflict, Method, ModelSize, PENALTY, Simulation};
 use holonom_io::Source;
 use serde_json::json;
 
@@ -73,7 +73,7 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
         "model": loaded.name, "method": name, "coordinates": size.coordinates, "constraints": size.constraints,
         "rank": size.rank, "redundant": size.redundant, "dof": size.dof, "redundant_rows": found.redundant,
         "rows_in_redundancies": held.involved, "reactions_not_unique": held.not_unique, "notes": held.notes,
-        "conflict": held.conflict, "near_singular": near, "moved": start.moved, "start_changes": changed,
+        "conflict": held.conflict.as_ref().map(|conflict| &conflict.row), "near_singular": near, "moved": start.moved, "start_changes": changed,
         "residual": { "position": audit.phi, "velocity": audit.phi_dot, "acceleration": audit.phi_ddot },
         "energy": { "kinetic": audit.kinetic, "potential": audit.potential + audit.lift },
     });
@@ -112,9 +112,8 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
         ("gravity", loaded.gravity()),
         ("method", name),
     ];
-    if let Some(row) = &held.conflict {
-        let words = format!("`{row}` asks for a motion that the other constraints do not allow, in the first step");
-        items.insert(3, ("conflict", words));
+    if let Some(conflict) = &held.conflict {
+        items.insert(3, ("conflict", format!("in the first step {conflict}")));
     }
     let mut text = format!("{}\n{}", loaded.title(), list(&items));
     held.notes.iter().for_each(|note| text.push_str(&format!("\nnote: {note}")));
@@ -159,7 +158,7 @@ struct Held {
     /// Components of forces and moments of joints that redundancies leave undetermined.
     not_unique: Vec<String>,
     /// A row that asks for what the others do not allow.
-    conflict: Option<String>,
+    conflict: Option<Conflict>,
     /// What looks like a slip.
     notes: Vec<String>,
 }
@@ -168,7 +167,7 @@ impl Held {
     fn new(plain: &Loaded, method: Method, step: f64) -> Result<Self, Failure> {
         let model = &plain.model;
         let mut simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
-        let conflict = simulation.conflict().map(str::to_string);
+        let conflict = simulation.conflict();
         let (system, x) = (&model.system, &simulation.state().x);
         let rank = rank_of(&simulation);
         let size = rank.size(&model.system);

@@ -28,6 +28,7 @@ mod words;
 
 pub use audit::Audit;
 pub use checkpoint::Checkpoint;
+pub use conflict::Conflict;
 pub use events::Happening;
 pub use method::{
     Choice, LEVELS, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, OMEGA, PENALTY, ProjectionChoice, TOLERANCE, XI, combinations,
@@ -197,7 +198,7 @@ impl Simulation {
         }
         let mut simulation = Self { start, ..Self::assemble(system, method, integrator, step, newton, work, state) };
         if simulation.start.leads_nowhere {
-            simulation.start.conflict = simulation.conflict().map(str::to_string);
+            simulation.start.conflict = simulation.conflict().or_else(|| simulation.blocked());
         }
         Ok(simulation)
     }

@@ -39,13 +39,16 @@ impl Simulation {
         if !is_of_rows && failure != Failure::TooSmall {
             return what;
         }
-        if let Some(row) = self.conflict() {
-            return format!("`{row}` asks for a motion that the other constraints do not allow: {what}");
+        if let Some(conflict) = self.conflict() {
+            return format!("{conflict}; {what}");
         }
         if let Some(row) = self.stuck() {
             return format!("`{row}` leads to a dead centre or to the end of its reach, beyond which there is no way: {what}");
         }
-        if is_of_rows { what + &self.disagreement() } else { what }
+        if !is_of_rows {
+            return what;
+        }
+        self.blocked().map_or_else(|| what.clone() + &self.disagreement(), |conflict| format!("{conflict}; {what}"))
     }
 
     /// That redundant rows may not agree, where there are any.

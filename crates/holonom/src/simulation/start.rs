@@ -1,6 +1,7 @@
 //! The start: positions and velocities put on their constraints, accelerations and multipliers found.
 
 use super::Method;
+use super::conflict::{Conflict, why};
 use crate::formulation::{Failure, Level, Multipliers, Newton, Workspace};
 use crate::linalg::largest;
 use crate::system::System;
@@ -14,8 +15,8 @@ pub struct Start {
     pub turned: f64,
     /// Whether no motion begins with the velocities, as at a singular position no accelerations keep all rows then.
     pub leads_nowhere: bool,
-    /// The row, by name, that asks for a motion which the others do not allow, where no motion begins for that.
-    pub conflict: Option<String>,
+    /// What asks for a motion that the rows together do not allow, where no motion begins for that.
+    pub conflict: Option<Conflict>,
 }
 
 /// What is asked of a start: time, positions and velocities of all nodes (D × nodes), and the impulse (n) by which the momenta as
@@ -46,10 +47,12 @@ pub enum StartError {
         rows: String,
     },
     /// Velocities that cannot be put on Φ̇ = 0.
-    #[error("the velocities at the start cannot meet their constraints; worst: {rows}")]
+    #[error("the velocities at the start cannot meet their constraints; worst: {rows}{why}")]
     Velocity {
         /// The three rows that are missed most, by name, and by how much.
         rows: String,
+        /// Why the worst of them cannot be met, where it leads.
+        why: String,
     },
     /// A penalty on Φ, and rows that come of no Φ (methods §14).
     #[error("the formulation `{formulation}` holds positions only, and these rows hold velocities: {rows}")]
@@ -220,7 +223,13 @@ fn correct_velocities(
     start.turned = work.end.v.iter().zip(asked.v).fold(0.0, |m, (v, v0)| f64::max(m, (v - v0).abs()));
     match violation <= MET * size {
         true => Ok(()),
-        false => Err(StartError::Velocity { rows: worst(system, &work.rows) }),
+        false => {
+            let rows = worst(system, &work.rows);
+            let first = (0..work.rows.len()).max_by(|&a, &b| work.rows[a].abs().total_cmp(&work.rows[b].abs()));
+            let first = first.filter(|_| newton.factor_inertia(work));
+            let why = first.and_then(|row| Some(format!("; `{}` {}", system.row_names[row], why(row, system, newton, work)?)));
+            Err(StartError::Velocity { rows, why: why.unwrap_or_default() })
+        }
     }
 }
 
