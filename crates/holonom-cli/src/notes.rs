@@ -168,6 +168,15 @@ pub fn costly(method: &Method) -> Option<String> {
     Some(format!("`{}` is of order 2, and takes very many steps for an accuracy of {}: `radau` takes few", method.name, short(accuracy)))
 }
 
+/// That constraints leave nothing that could move, and nothing that moves is imposed.
+pub fn locked(model: &Model, rank: &Rank) -> Option<String> {
+    (rank.size(&model.system).dof == 0 && !model.system.is_driven()).then(|| {
+        "the mechanism is locked: its constraints leave 0 degrees of freedom and nothing drives it, so that it stays where it is (take away a constraint, \
+         or drive it in place of one)"
+            .into()
+    })
+}
+
 /// That two drives lead one freedom, where rows are redundant and none asks for what cannot be.
 pub fn rivals(simulation: &mut Simulation, rank: &Rank) -> Option<String> {
     let [one, other] = if rank.redundant.is_empty() || simulation.start().conflict.is_some() { None } else { simulation.rivals() }?;

@@ -22,7 +22,9 @@ use crate::folder::{Folder, holds};
 use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
 use crate::message::note;
-use crate::notes::{corrections, costly, long_turns, lost_energy, rivals, rows_without_forces, shared_forces, slips, unknown_measures};
+use crate::notes::{
+    corrections, costly, locked, long_turns, lost_energy, rivals, rows_without_forces, shared_forces, slips, unknown_measures,
+};
 use crate::options::Destination;
 use crate::progress::Watched;
 use crate::provenance::Provenance;
@@ -146,7 +148,7 @@ pub(crate) fn simulate_kept(
         }
     };
     let rank = analysis::rank_of(&simulation);
-    let overruled = rivals(&mut simulation, &rank);
+    let overruled = locked(model, &rank).or_else(|| rivals(&mut simulation, &rank));
     if model.output.constraints() != Constraints::Nothing || !model.channels.efforts.is_empty() {
         model.find_reactions(&mut simulation);
     }

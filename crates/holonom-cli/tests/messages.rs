@@ -78,6 +78,30 @@ fn two_drives_of_one_freedom_are_both_named() {
     says(&two_motors("-t^2"), &["note: `motor-a` and `motor-b` lead the same freedom", "completed"], 0);
 }
 
+/// A triangle of two bars on the ground.
+fn triangle(more: &str) -> String {
+    let bar = |name: &str, x: f64| format!("[body.{name}]\nmass = 1\ninertia = 0.1\nposition = [{x}, 0.5]\n");
+    let joint = |name: &str, between: &str, at: &str| format!("[joint.{name}]\ntype = \"revolute\"\nbetween = {between}\nat = {at}\n");
+    format!(
+        "plane = \"xy\"\ngravity = [0, -9.81]\n{}{}{}{}{more}[simulation]\nend = 0.1\nstep = 0.01\n",
+        bar("a", 0.5),
+        bar("b", 1.5),
+        joint("left", "[\"ground\", \"a\"]", "[0, 0]"),
+        joint("top", "[\"a\", \"b\"]", "[1, 1]"),
+    )
+}
+
+#[test]
+fn a_mechanism_that_cannot_move_is_noted() {
+    let foot = "[joint.right]\ntype = \"revolute\"\nbetween = [\"ground\", \"b\"]\nat = [2, 0]\n";
+    says(&triangle(foot), &["note: the mechanism is locked: its constraints leave 0 degrees of freedom", "completed"], 0);
+    let drive = |joint: &str| format!("[drive.{joint}-motor]\ntype = \"angle\"\njoint = \"{joint}\"\nprofile = \"0.1*t^2\"\n");
+    for sound in [String::new(), drive("left") + &drive("top")] {
+        let (said, code) = run(&triangle(&sound));
+        assert!(code == Some(0) && !said.contains("locked"), "{said}");
+    }
+}
+
 #[test]
 fn friction_that_is_hardly_smoothed_is_named() {
     let block = |speed: &str| {

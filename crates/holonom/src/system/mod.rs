@@ -219,7 +219,7 @@ impl System {
     }
 
     /// Whether rows or nodes move as time has it.
-    pub(crate) fn is_driven(&self) -> bool {
+    pub fn is_driven(&self) -> bool {
         self.rows.iter().any(|row| !row.is_constant()) || !(self.motions.is_empty() && self.custom.is_empty())
     }
 
