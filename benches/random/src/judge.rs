@@ -100,6 +100,7 @@ fn refusal(error: &StartError) -> &'static str {
         StartError::Velocity { .. } => "velocities at the start cannot be corrected",
         StartError::Nonholonomic { .. } => "rows that hold velocities",
         StartError::Step { .. } => "a step that leads nowhere",
+        StartError::Crowded { .. } => "too many rows on one node",
         StartError::Acceleration => "accelerations at the start cannot be found",
         StartError::NotFinite => "forces at the start are not finite",
         StartError::Other => "a state of another system",

@@ -129,3 +129,11 @@ fn points_in_a_line_are_not_told_of_as_a_door() {
     );
     says(&text, &["stopped at", "(redundant)", "three distances along a line"], 3);
 }
+
+#[test]
+fn more_equations_on_a_point_than_fit_a_matrix_are_refused() {
+    let text = "[point.a]\nmass = 1\nposition = [0, 0, 0]\n[constraint.f]\nrepeat = \"i = 1 to 100000\"\ntype = \"fixed\"\npoint = \"a\"\n\
+                [simulation]\nend = 0.1\nstep = 0.01\n";
+    says(text, &["error: 300000 equations of constraints", "`f[1][x]`", "cure: "], 2);
+    says(&text.replace("100000", "500"), &["completed"], 0);
+}

@@ -8,6 +8,7 @@ mod bracket;
 mod checkpoint;
 mod conflict;
 mod control;
+mod crowd;
 mod events;
 mod golden;
 mod landing;
@@ -186,6 +187,7 @@ impl Simulation {
     }
 
     fn begin(system: Arc<System>, method: Method, step: f64, asked: &Asked<'_>) -> Result<Self, StartError> {
+        crowd::require_few_rows(&system)?;
         let mut work = Workspace::new(&system);
         work.level = method.settings.level;
         let mut newton = Newton::new(&system, &work.scales, method.settings);

@@ -68,6 +68,16 @@ pub enum StartError {
         /// What was given, s.
         step: f64,
     },
+    /// More rows on one node than the matrix of a step can have.
+    #[error(
+        "{rows} equations of constraints are on one and the same point or body, `{row}` and others: no matrix of a step is large enough for them"
+    )]
+    Crowded {
+        /// The first of them, by name.
+        row: String,
+        /// How many there are.
+        rows: usize,
+    },
     /// Inertia that is zero where nothing holds it.
     #[error("the accelerations at the start cannot be found: the mass matrix is singular where nothing holds it")]
     Acceleration,
