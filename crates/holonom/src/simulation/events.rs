@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::advance::Inside;
 use super::{Audit, Divisions, Observer, Simulation};
 use crate::formulation::Failure;
-use crate::system::{Look, Trigger};
+use crate::system::Look;
 
 /// An event that happened.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -267,7 +267,7 @@ impl Simulation {
     }
 
     /// Sets inputs as an event says.
-    fn set_by(&mut self, event: usize) -> Result<(), Failure> {
+    pub(super) fn set_by(&mut self, event: usize) -> Result<(), Failure> {
         let system = self.system.clone();
         let set = system.settings(&system.events[event], self.look());
         if set.iter().any(|(_, value)| !value.is_finite()) {
@@ -275,64 +275,6 @@ impl Simulation {
         }
         self.set_inputs(&set);
         Ok(())
-    }
-
-    /// Periods of events, with how often they have happened.
-    fn periods(&self) -> impl Iterator<Item = (usize, f64, u64)> {
-        let period = |(k, taken): (usize, &u64)| match self.system.events[k].trigger {
-            Trigger::Every(period) => Some((k, period, *taken)),
-            Trigger::When(..) => None,
-        };
-        self.samples.iter().enumerate().filter_map(period)
-    }
-
-    /// When the next event with a period happens.
-    fn next_sample(&self) -> Option<f64> {
-        self.periods().map(|(_, period, taken)| taken as f64 * period).reduce(f64::min)
-    }
-
-    /// Events whose periods are over, up to so much later.
-    fn due(&self, within: f64) -> Vec<usize> {
-        self.periods().filter(|(_, period, taken)| *taken as f64 * period <= self.state.t + within).map(|(k, ..)| k).collect()
-    }
-
-    /// Lets these happen.
-    fn sample(&mut self, due: &[usize], within: f64) -> Result<(), Failure> {
-        for &k in due {
-            self.set_by(k)?;
-            self.samples[k] = self.taken(k, within);
-        }
-        Ok(())
-    }
-
-    /// How often an event with a period happens up to the present time, from t = 0 on.
-    fn taken(&self, event: usize, within: f64) -> u64 {
-        match self.system.events[event].trigger {
-            Trigger::Every(period) => ((self.state.t + within) / period).floor().max(0.0) as u64 + 1,
-            Trigger::When(..) => 0,
-        }
-    }
-
-    /// Shortest part of a step of some length, of the next one that is chosen for an accuracy, and of the shortest period, s.
-    fn shortest(&self, length: f64) -> f64 {
-        let chosen = self.pilot.iter().map(|pilot| pilot.control.step).filter(|step| *step > 0.0);
-        SHORTEST * self.periods().map(|(_, period, _)| period).chain(chosen).fold(length, f64::min)
-    }
-
-    /// Counts as happened what lies before the present time, at which a run begins.
-    pub(super) fn begin_periods(&mut self) {
-        let before = -self.shortest(self.step);
-        self.samples = (0..self.system.events.len()).map(|k| if self.state.t > 0.0 { self.taken(k, before) } else { 0 }).collect();
-    }
-
-    /// Lets what happens at the beginning of a run happen, and says whether there was anything.
-    pub(super) fn begin_sampling(&mut self) -> Result<bool, Failure> {
-        if self.watched.as_ref().is_none_or(|(t, _)| *t != self.state.t) {
-            self.watched = Some((self.state.t, self.indicate()?));
-        }
-        let within = self.shortest(self.step);
-        let due = self.due(within);
-        self.sample(&due, within).map(|()| !due.is_empty())
     }
 
     pub(super) fn look(&self) -> Look<'_> {

@@ -16,6 +16,7 @@ mod locate;
 mod method;
 mod no_value;
 mod passage;
+mod periods;
 mod pilot;
 mod promise;
 mod reactions;
