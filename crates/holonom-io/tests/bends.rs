@@ -273,3 +273,37 @@ fn several_bends_at_one_time_are_passed() {
         }
     }
 }
+
+/// A slide is knocked to and fro within a fifth of a second in the course of 200 s, and a mass hangs on it by a spring: what is left of its motion is an integral of
+/// the knock with a sine. Steps by accuracy are far longer before it.
+#[test]
+fn a_knock_of_a_drive_is_not_passed_unseen() {
+    let (width, begin, end, rate) = (0.05, 55.0123, 200.0, 50.0_f64.sqrt());
+    let knock = |t: f64| 0.1 * (-((t - begin) / width).powi(2)).exp();
+    // What vanishes with all its derivatives at both ends is integrated by equal parts to round-off.
+    let part = 1e-3;
+    let moved: f64 = (-1000..1000).map(|k| begin + part * f64::from(k)).map(|t| part * rate * knock(t) * (rate * (end - t)).sin()).sum();
+    let text = |moves: &str| {
+        format!(
+            "plane = \"xy\"\ngravity = [0, 0]\n[point.m]\nmass = 1\nposition = [1, 0]\n\
+             [constraint.rail]\ntype = \"point-on-line\"\npoint = \"m\"\ndirection = [1, 0]\n[point.p]\nposition = [0, 0]\n{moves}\n\
+             [force.s]\ntype = \"spring\"\nbetween = [\"p\", \"m\"]\nstiffness = 50\nrest_length = 1\n"
+        )
+    };
+    let bump = "0.1*exp(-((t - 55.0123)/0.05)^2)";
+    let driven = format!("mass = 1\n[drive.d]\ntype = \"point\"\npoint = \"p\"\nprofile = [\"{bump}\", 0]");
+    let carried = format!("motion = [\"{bump}\", 0]");
+    for (moves, method, accuracy) in [
+        (&driven, "radau", 1e-7),
+        (&driven, "ggl/bdf", 1e-6),
+        (&driven, "ode/dopri5", 1e-7),
+        (&driven, "ode/dop853", 1e-6),
+        (&driven, "conserving-ggl", 1e-4),
+        (&carried, "radau", 1e-6),
+    ] {
+        let text = format!("{}[simulation]\nend = {end}\nstep = 10\naccuracy = {accuracy:e}\n", text(moves));
+        let choice = Choice { accuracy: Some(accuracy), ..Choice::default().named(method) };
+        let found = common::last(&common::run(&model(&text), choice, 10.0, end).1, "m.x");
+        assert!((found - 1.0 - moved).abs() < accuracy, "{method}, {accuracy:e}: {found} m in place of {}", 1.0 + moved);
+    }
+}

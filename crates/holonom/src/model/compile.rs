@@ -13,11 +13,12 @@ use super::description::{Description, Unread};
 use super::element::Boxed;
 use super::entries::{Entries, Named};
 use super::entry::{Entry, Written};
-use super::expression::{Functions, Mistake, Scope, TimeProgram, Value as Known};
+use super::expression::{Functions, Mistake, Program, Scope, TimeProgram, Value as Known};
 use super::fault::{Fault, Faults, Read, Refused, Sink};
 use super::geometry::{self, Vec3, unit};
 use super::joints::{self, Geometry, Survey};
 use super::jumps;
+use super::knocks;
 use super::repeat::{self, Repetition};
 use super::settings::{Output, Settings};
 use super::signals::{Formula, Signals};
@@ -67,6 +68,11 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
         for (path, motion) in sink.motions.take() {
             if let Some(message) = settings.end.and_then(|end| jumps::jump(motion, end)) {
                 sink.note(&path, || message);
+            }
+        }
+        if let (Some(end), Some(_)) = (settings.end, settings.choice.accuracy) {
+            for time in sink.peaked.take().iter().flat_map(|program| knocks::times(program, end)) {
+                assembly.builder.switch(Arc::new(TimeProgram(Program::since(time))));
             }
         }
         for program in sink.switches.take() {

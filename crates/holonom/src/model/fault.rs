@@ -4,7 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::fmt;
 
 use super::expression::Program;
-use super::synonyms;
+use super::{knocks, synonyms};
 
 /// One thing that is wrong, where it is, and how to put it right.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,6 +77,8 @@ pub struct Sink {
     pub switches: RefCell<Vec<Program>>,
     /// Motions that are told by formulas of time which may change abruptly, with their paths; of a repeated entry the first.
     pub motions: RefCell<Vec<(String, Program)>>,
+    /// Motions that may have short peaks.
+    pub peaked: RefCell<Vec<Program>>,
     /// What looks like a slip and is no fault, with its path.
     notes: RefCell<Vec<(String, String)>>,
 }
@@ -91,6 +93,13 @@ impl Sink {
             self.dropped.set(self.dropped.get() + 1);
         }
         Refused
+    }
+
+    /// Records a motion that may have short peaks.
+    pub fn moves(&self, formula: &Program) {
+        if knocks::may_have(formula) {
+            self.peaked.borrow_mut().push(formula.clone());
+        }
     }
 
     /// Records a motion that may change abruptly.

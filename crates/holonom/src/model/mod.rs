@@ -28,6 +28,7 @@ mod geometry;
 mod input;
 mod jumps;
 mod key;
+mod knocks;
 mod measure;
 mod parameters;
 mod points;

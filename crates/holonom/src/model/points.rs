@@ -54,7 +54,7 @@ impl Point {
         let mass = entry.optional("mass", &self.mass, Number::not_negative);
         let position = entry.optional("position", &self.position, |position, entry, key| position.vector(entry, key, dim));
         let velocity = entry.optional("velocity", &self.velocity, |velocity, entry, key| velocity.vector(entry, key, dim));
-        let motion = entry.optional("motion", &self.motion, |motion, entry, key| motion.formulas(entry, key, dim, &["t"]));
+        let motion = entry.optional("motion", &self.motion, |motion, entry, key| motion.motions(entry, key, dim));
         let (mass, position, velocity, motion) = (mass?, position?, velocity?, motion?);
         let fixed = self.fixed.unwrap_or(false);
         let (start, motion) = match motion {

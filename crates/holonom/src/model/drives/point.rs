@@ -44,7 +44,7 @@ impl Element for Point {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let dim = assembly.dimension();
         let point = assembly.point(entry, "point", &self.point);
-        let profile = self.profile.formulas(entry, "profile", dim, &["t"]);
+        let profile = self.profile.motions(entry, "profile", dim);
         let (point, profile) = (point?, profile?);
         assembly.require_free(entry, "point", std::slice::from_ref(&point))?;
         let mut start = [0.0; 3];

@@ -58,9 +58,11 @@ impl List<Number> {
         Ok(std::array::from_fn(|k| numbers.get(k).copied().unwrap_or(0.0)))
     }
 
-    /// As many formulas of some variables as the model has axes.
-    pub fn formulas(&self, entry: &Entry<'_>, key: &str, dim: usize, variables: &[&str]) -> Read<Vec<Program>> {
-        self.formulas_reading(entry, key, dim, variables, &mut Nothing)
+    /// As many formulas of the time as the model has axes, of a motion.
+    pub fn motions(&self, entry: &Entry<'_>, key: &str, dim: usize) -> Read<Vec<Program>> {
+        let programs = self.formulas_reading(entry, key, dim, &["t"], &mut Nothing)?;
+        programs.iter().for_each(|program| entry.sink.moves(program));
+        Ok(programs)
     }
 
     /// The same of formulas that also read what the mechanism does.

@@ -118,6 +118,9 @@ impl Number {
         if variables == ["t"] && !program.switches(0).is_empty() {
             entry.sink.motion(entry.path_of(at), &program);
         }
+        if variables == ["t"] {
+            entry.sink.moves(&program);
+        }
         Ok(program)
     }
 
