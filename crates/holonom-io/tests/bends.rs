@@ -286,12 +286,12 @@ fn a_knock_of_a_drive_is_not_passed_unseen() {
     let text = |moves: &str| {
         format!(
             "plane = \"xy\"\ngravity = [0, 0]\n[point.m]\nmass = 1\nposition = [1, 0]\n\
-             [constraint.rail]\ntype = \"point-on-line\"\npoint = \"m\"\ndirection = [1, 0]\n[point.p]\nposition = [0, 0]\n{moves}\n\
+             [constraint.rail]\ntype = \"point-on-line\"\npoint = \"m\"\ndirection = [1, 0]\n[point.p]\n{moves}\n\
              [force.s]\ntype = \"spring\"\nbetween = [\"p\", \"m\"]\nstiffness = 50\nrest_length = 1\n"
         )
     };
     let bump = "0.1*exp(-((t - 55.0123)/0.05)^2)";
-    let driven = format!("mass = 1\n[drive.d]\ntype = \"point\"\npoint = \"p\"\nprofile = [\"{bump}\", 0]");
+    let driven = format!("mass = 1\nposition = [0, 0]\n[drive.d]\ntype = \"point\"\npoint = \"p\"\nprofile = [\"{bump}\", 0]");
     let carried = format!("motion = [\"{bump}\", 0]");
     for (moves, method, accuracy) in [
         (&driven, "radau", 1e-7),
