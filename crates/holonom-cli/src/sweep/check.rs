@@ -31,8 +31,8 @@ pub fn check(asked: &[String], source: &mut Source, method: Option<&str>, plan: 
     // A value may be missing in the file and given by each run, or the values of the first run may not be possible.
     let model = match compile(&first, &asked) {
         Err(faults) => {
-            if let Some(failure) = of_formula(&faults, &asked) {
-                return Err(failure);
+            if let Some((message, cure)) = of_formula(&faults, &asked) {
+                return Err(Failure::usage(message, cure));
             }
             let of_keys: Vec<Fault> = faults.0.iter().filter(|fault| is_of_key(fault, plan, source)).cloned().collect();
             if !of_keys.is_empty() {
@@ -63,11 +63,11 @@ fn path_of(measure: &str) -> String {
     format!("measure.{measure}.value")
 }
 
-/// What is wrong with a formula that was typed.
-pub fn of_formula(faults: &Faults, asked: &[Asked]) -> Option<Failure> {
+/// What is wrong with a formula that was typed, and the cure.
+pub fn of_formula(faults: &Faults, asked: &[Asked]) -> Option<(String, String)> {
     let typed = |fault: &Fault| asked.iter().find(|asked| asked.is_formula && path_of(&asked.of) == fault.path);
     let (fault, asked) = faults.0.iter().find_map(|fault| Some((fault, typed(fault)?)))?;
-    Some(Failure::usage(format!("`{}`: {}", asked.text, fault.message), fault.cure.clone()))
+    Some((format!("`{}`: {}", asked.text, fault.message), fault.cure.clone()))
 }
 
 /// SHA-256 of the files that runs of a plan read, by their names. Runs get them as they were read here.

@@ -67,14 +67,8 @@ impl Asked {
             Some(("abs", inner)) if call(inner).map_err(refuse)?.is_some_and(is_of_columns) => {
                 return Err(refuse("does not name one column inside its brackets"));
             }
-            Some(("abs", inner)) => {
-                if inner.contains(OF_FORMULAS) {
-                    (false, of)
-                } else {
-                    (true, inner)
-                }
-            }
-            Some(inner) if is_of_columns(inner) => return Err(refuse("has a function inside that is not abs(…)")),
+            Some(("abs", inner)) if !inner.contains(OF_FORMULAS) => (true, inner),
+            Some(inner) if inner.0 != "abs" && is_of_columns(inner) => return Err(refuse("has a function inside that is not abs(…)")),
             _ => (false, of),
         };
         let is_formula = of.contains(OF_FORMULAS);

@@ -94,10 +94,8 @@ impl Runner<'_> {
         let mut model = match model {
             Ok(model) => model,
             Err(faults) => {
-                return Some(refused(match of_formula(&faults, &self.columns.asked) {
-                    Some(Failure::Usage { message, .. }) => message,
-                    _ => faults.to_string(),
-                }));
+                let reason = of_formula(&faults, &self.columns.asked).map_or_else(|| faults.to_string(), |(message, _)| message);
+                return Some(refused(reason));
             }
         };
         Arc::make_mut(&mut model.system).share_plans(&self.eliminations);

@@ -2,15 +2,15 @@
 //! pass them unseen.
 
 use super::expression::Program;
-use crate::system::Bend;
+use crate::system::{Bend, Signal, zeros};
 
-/// Times of a run between which no more than one peak of a function is looked for.
+/// Times of a run at which it is seen how far a logarithm goes.
 const LOOKS: usize = 10_000;
 
 /// How far the logarithm of what has a peak rises and falls in the run where that is short: to a thousandth.
 const SHORT: f64 = 7.0;
 
-/// Places at which the slope is seen are so far apart, over the time.
+/// Times by whose logarithms a slope is known are so far from its own, over the length of the run.
 const APART: f64 = 1e-8;
 
 /// Whether a formula of t has what may have peaks.
@@ -20,35 +20,33 @@ pub(super) fn may_have(program: &Program) -> bool {
 
 /// The times before `end` (s) at which a formula of t has short peaks.
 pub(super) fn times(program: &Program, end: f64) -> Vec<f64> {
-    let at = |k: usize| end * k as f64 / LOOKS as f64;
-    let looks: Vec<Vec<f64>> = (0..=LOOKS).map(|k| logarithms(program, at(k))).collect();
-    let count = looks[0].len();
-    let is_short = |peak: usize| {
-        let finite = looks.iter().filter_map(|look| look.get(peak)).filter(|logarithm| logarithm.is_finite());
-        let (least, most) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| (least.min(*x), most.max(*x)));
+    let looks: Vec<Vec<f64>> = (0..=LOOKS).map(|k| logarithms(program, end * k as f64 / LOOKS as f64)).collect();
+    let is_short = |peak: &usize| {
+        let finite = looks.iter().map(|look| look[*peak]).filter(|logarithm| logarithm.is_finite());
+        let (least, most) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| (least.min(x), most.max(x)));
         most - least > SHORT
     };
-    let mut times = Vec::new();
-    for peak in (0..count).filter(|&peak| is_short(peak)) {
-        let rises = |t: f64| {
-            let [before, after] = [-APART, APART].map(|apart| logarithms(program, t + apart * end).get(peak).copied().unwrap_or(f64::NAN));
-            after > before
-        };
-        let mut rose = rises(at(0));
-        for k in 1..=LOOKS {
-            let does = rises(at(k));
-            if rose && !does {
-                let (mut low, mut high) = (at(k - 1), at(k));
-                while high - low > APART * end {
-                    let middle = 0.5 * (low + high);
-                    *(if rises(middle) { &mut low } else { &mut high }) = middle;
-                }
-                times.push(0.5 * (low + high));
-            }
-            rose = does;
-        }
+    let tops = |peak: usize| {
+        let slope = Slope { program: program.clone(), peak, apart: APART * end };
+        // It also turns where it is least.
+        zeros(&slope, end).into_iter().filter(move |t| slope.at(t - slope.apart)[0] > 0.0)
+    };
+    (0..looks[0].len()).filter(is_short).flat_map(tops).collect()
+}
+
+/// The sign of the slope of a logarithm that is largest at a peak.
+struct Slope {
+    program: Program,
+    peak: usize,
+    /// s
+    apart: f64,
+}
+
+impl Signal for Slope {
+    fn at(&self, t: f64) -> [f64; 3] {
+        let [before, after] = [-self.apart, self.apart].map(|apart| logarithms(&self.program, t + apart)[self.peak]);
+        [after - before, 0.0, 0.0]
     }
-    times
 }
 
 /// Logarithms that are largest at the peaks of parts of a formula.

@@ -109,6 +109,7 @@ impl Simulation {
         // Indicators at the last event, and when it has happened: that may lie a little behind the state at which it was taken.
         let (mut at_last, mut last) = (vec![0.0; from.len()], self.state.t);
         loop {
+            // The step that an accuracy takes is another after each event.
             let shortest = self.shortest(length);
             let due = self.due(shortest);
             let samples = !due.is_empty();
@@ -303,6 +304,7 @@ impl Simulation {
         Ok(now)
     }
 
+    /// These indicators, where all have a value.
     fn known(&self, found: Vec<f64>) -> Result<Vec<f64>, Failure> {
         match found.iter().position(|found| found.is_nan()) {
             Some(event) => Err(Failure::NoIndicator { event }),

@@ -7,9 +7,9 @@ use super::events::{LOCATED, MOST_TRIES};
 use crate::formulation::Failure;
 
 impl Simulation {
-    /// Goes to where the first event happens in the part that began at `before` and in which the k-th has happened after the time `low`, and
-    /// says when that is, a time by which it has happened, which it is, and what the indicators are then. All that comes before `lower` is done once;
-    /// what the indicators are at the end is `beside` the number of the event. The part was to end at `until`.
+    /// Goes to where the first event happens in the part that began at `before` and was to end at `until`. The k-th event has happened after the time
+    /// `low`, and `beside` is what the indicators are where the part ended. Says when the event happens, a time by which it has happened, which it is,
+    /// and what the indicators are then. All that comes before `lower` is done once.
     #[expect(clippy::too_many_arguments)] // what is known of the event and of the part
     pub(super) fn locate(
         &mut self,
