@@ -38,8 +38,10 @@ const MISSED: f64 = 1e-6;
 /// still is no motion, and no accelerations keep it on all rows.
 const FOLLOWS: f64 = 100.0;
 
-/// Passes end where the next would change less than this share of accelerations and multipliers.
+/// Passes end where the next would change less than this share of accelerations and multipliers: of those that a step goes on with, whose errors add
+/// up, and of those that are shown.
 const ROUNDED: f64 = 0.1 * f64::EPSILON;
+const SHOWN: f64 = 1e-12;
 
 /// The matrix of the system.
 pub(super) trait LinearSystem {
@@ -57,10 +59,10 @@ pub(super) trait LinearSystem {
 pub(super) fn meet(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
     let pushed = work.begin_pass(system, t);
     let leaves = matrix.factor(RHO, work)?;
-    let mut end = passes(matrix, Passes { leaves, pushed, most: MOST }, system, work)?;
+    let mut end = passes(matrix, Passes { leaves, pushed, most: MOST, open: ROUNDED }, system, work)?;
     if end == End::Slow {
         let leaves = matrix.factor(STIFFER * RHO, work)?;
-        end = passes(matrix, Passes { leaves, pushed, most: MOST }, system, work)?;
+        end = passes(matrix, Passes { leaves, pushed, most: MOST, open: ROUNDED }, system, work)?;
     }
     work.add_reactions(system);
     Ok(is_met(end, system, t, work))
@@ -81,7 +83,7 @@ pub(super) fn react(matrix: &mut impl LinearSystem, system: &System, t: f64, wor
 fn react_at_level(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
     let pushed = work.begin_pass(system, t);
     let leaves = matrix.factor(RHO, work)?;
-    let end = passes(matrix, Passes { leaves, pushed, most: PASSES }, system, work)?;
+    let end = passes(matrix, Passes { leaves, pushed, most: PASSES, open: SHOWN }, system, work)?;
     if end != End::Slow {
         return Ok(is_met(end, system, t, work));
     }
@@ -100,7 +102,7 @@ fn react_at_level(matrix: &mut impl LinearSystem, system: &System, t: f64, work:
     let mut solve = |work: &mut Workspace| {
         let pushed = work.begin_pass(system, t);
         work.lambda.fill(0.0);
-        passes(matrix, Passes { leaves, pushed, most: MOST }, system, work)
+        passes(matrix, Passes { leaves, pushed, most: MOST, open: ROUNDED }, system, work)
     };
     solve(work)?;
     let others = work.a[..n].to_vec();
@@ -148,20 +150,22 @@ struct Passes {
     pushed: f64,
     /// How many there may be.
     most: usize,
+    /// What share of accelerations and multipliers may be left open.
+    open: f64,
 }
 
 fn passes(matrix: &mut impl LinearSystem, of: Passes, system: &System, work: &mut Workspace) -> Result<End, Failure> {
     let mut before = [f64::INFINITY; 2];
     for count in 1..=of.most {
         let [taken, whole] = pass(matrix, system, work)?;
-        if (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(of.leaves) <= ROUNDED * whole[k]) {
+        let matters = [whole[0].max(of.pushed), whole[1]];
+        if (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(of.leaves) <= of.open * matters[k]) {
             return Ok(End::Met);
         }
         let share = taken[1] / before[1];
         before = taken;
         if count % PASSES == 0 {
             let is_slow = share.is_nan() || share >= SLOWEST;
-            let matters = [whole[0].max(of.pushed), whole[1]];
             if (0..2).any(|k| taken[k] <= MATTERS * matters[k]) {
                 return Ok(if is_slow && taken[1] >= GROWS * whole[1] { End::Grows } else { End::Met });
             }

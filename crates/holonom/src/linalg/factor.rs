@@ -22,16 +22,14 @@ pub(super) struct Pivoting {
     least: f64,
     /// Largest number in L, each row in its unit, without an exchange of rows.
     most: f64,
-    /// The largest unit of the front's rows over the smallest.
-    spread: f64,
 }
 
 impl Pivoting {
-    pub(super) const EXCHANGE: Self = Self { least: 0.0, most: 1.0 / SMALL, spread: 1.0 };
+    pub(super) const EXCHANGE: Self = Self { least: 0.0, most: 1.0 / SMALL };
 
     /// Drops those smaller than `least`, and takes all others as they come.
     pub(super) fn drop_below(least: f64) -> Self {
-        Self { least, most: f64::INFINITY, spread: 1.0 }
+        Self { least, most: f64::INFINITY }
     }
 }
 
@@ -43,7 +41,7 @@ impl<const DROPS: bool> WithSimd for Factor<'_, DROPS> {
         if let Some(blocks) = self.plan.one_front() {
             return with_blocks(self, simd, blocks);
         }
-        let Numbers { stale, exchange, exchanged, reciprocal, rows, units, own_units, spread, .. } = self.numbers;
+        let Numbers { stale, exchange, exchanged, reciprocal, rows, units, own_units, .. } = self.numbers;
         let (plan, Parts { lower, upper, rest }, pivoting) = (self.plan, self.parts, self.pivoting);
         for (k, (front, exchanged)) in plan.fronts.iter().zip(exchanged).enumerate() {
             if !std::mem::take(&mut stale[k]) {
@@ -70,9 +68,8 @@ impl<const DROPS: bool> WithSimd for Factor<'_, DROPS> {
             let exchange = &mut exchange[front.block * LANES..front.block * LANES + front.pivots];
             let own_units = &mut own_units[..front.head];
             own_units.copy_from_slice(&units[front.blocks()]);
-            *exchanged =
-                eliminate::<S, DROPS>(simd, front, &mut square, exchange, rows, own_units, Pivoting { spread: spread[k], ..pivoting })
-                    .map_err(|pivot| Singular { pivot: plan.row[front.block * LANES + pivot] as usize })?;
+            *exchanged = eliminate::<S, DROPS>(simd, front, &mut square, exchange, rows, own_units, pivoting)
+                .map_err(|pivot| Singular { pivot: plan.row[front.block * LANES + pivot] as usize })?;
             let diagonals = square.columns.iter().step_by(front.size + 1);
             reciprocal[front.blocks()].iter_mut().zip(diagonals).for_each(|(out, tile)| *out = diagonal(tile));
         }
@@ -85,20 +82,12 @@ impl<const DROPS: bool> OneFront for Factor<'_, DROPS> {
     #[inline(always)]
     fn one<S: Simd, const B: usize>(self, simd: S) -> Self::Output {
         let front = Front { head: B, size: B, ..self.plan.fronts[0] };
-        let Numbers { exchange, exchanged, reciprocal, rows, units, spread, .. } = self.numbers;
+        let Numbers { exchange, exchanged, reciprocal, rows, units, .. } = self.numbers;
         let tiles = &mut self.parts.lower[..B * B];
         let mut own_units: [Block; B] = std::array::from_fn(|k| units[k]);
         let mut square = Square { columns: &mut *tiles, beside: &mut [], rest: &mut [] };
-        exchanged[0] = eliminate::<S, DROPS>(
-            simd,
-            &front,
-            &mut square,
-            &mut exchange[..front.pivots],
-            rows,
-            &mut own_units,
-            Pivoting { spread: spread[0], ..self.pivoting },
-        )
-        .map_err(|pivot| Singular { pivot: self.plan.row[pivot] as usize })?;
+        exchanged[0] = eliminate::<S, DROPS>(simd, &front, &mut square, &mut exchange[..front.pivots], rows, &mut own_units, self.pivoting)
+            .map_err(|pivot| Singular { pivot: self.plan.row[pivot] as usize })?;
         (0..B).for_each(|k| reciprocal[k] = diagonal(&tiles[k * (B + 1)]));
         let inverse: [Tile; B] = std::array::from_fn(|k| lower(&tiles[k * (B + 1)]));
         for k in 0..B {
@@ -193,32 +182,18 @@ fn eliminate<S: Simd, const DROPS: bool>(
 /// the pivoting allows, where each row has its unit.
 #[inline(always)]
 fn in_order<S: Simd, const DROPS: bool>(simd: S, panel: &[Tile], units: &[Block], pivoting: Pivoting) -> Option<Factors> {
-    let (diagonal, below) = panel.split_first()?;
-    let Pivoting { least, most, spread } = pivoting;
-    let factors = Factors::of::<S, DROPS>(simd, diagonal, &[1.0; LANES], least);
-    let mut largest = factors.largest()?;
-    for tile in below {
-        factors.over_upper(simd, tile).iter().for_each(|column| raise(&mut largest, column, 1.0));
-    }
-    // Where all are fit whatever their units the units need not be looked at. Neither infinite numbers nor what is no number pass.
-    match largest.iter().all(|l| l * spread <= most) {
-        true => Some(factors),
-        false => in_units(simd, panel, units, most).then_some(factors),
-    }
-}
-
-/// Whether nothing in L is larger than `most` where each row has its unit.
-#[inline(never)]
-fn in_units<S: Simd>(simd: S, panel: &[Tile], units: &[Block], most: f64) -> bool {
-    let per_unit = units[0].map(|unit| 1.0 / unit);
-    let factors = Factors::of::<S, false>(simd, &panel[0], &per_unit, 0.0);
-    let fits = |largest: &Block, units: &Block| largest.iter().zip(units).all(|(l, unit)| l * unit <= most);
-    let of_tile = |(tile, units): (&Tile, &Block)| {
+    let ([diagonal, below @ ..], [own, others @ ..]) = (panel, units) else { return None };
+    let per_unit = own.map(|unit| 1.0 / unit);
+    let factors = Factors::of::<S, DROPS>(simd, diagonal, &per_unit, pivoting.least);
+    // Neither infinite numbers nor what is no number pass. Without a branch all rows are looked at together.
+    let fits = |largest: &Block, units: &Block| largest.iter().zip(units).fold(true, |fits, (l, unit)| fits & (l * unit <= pivoting.most));
+    let mut all = fits(&factors.largest()?, own);
+    for (tile, units) in below.iter().zip(others) {
         let mut largest = [0.0; LANES];
         factors.over_upper(simd, tile).iter().zip(per_unit).for_each(|(column, unit)| raise(&mut largest, column, unit));
-        fits(&largest, units)
-    };
-    factors.largest().is_some_and(|largest| fits(&largest, &units[0])) && panel[1..].iter().zip(&units[1..]).all(of_tile)
+        all &= fits(&largest, units);
+    }
+    all.then_some(factors)
 }
 
 /// Exchanges the row of each pivot of a block that is far smaller than the largest number below it among the pivots for the

@@ -50,8 +50,6 @@ pub(super) struct Numbers {
     /// What the rows of all fronts are multiplied by when their numbers are compared; those of one front, exchanged with them.
     pub(super) units: Vec<Block>,
     pub(super) own_units: Vec<Block>,
-    /// The largest of a front's pivots over the smallest.
-    pub(super) spread: Vec<f64>,
 }
 
 impl Multifrontal {
@@ -69,7 +67,6 @@ impl Multifrontal {
             rows: vec![[0.0; LANES]; pivots],
             units: vec![[1.0; LANES]; blocks],
             own_units: vec![[1.0; LANES]; pivots.div_ceil(LANES)],
-            spread: vec![1.0; plan.fronts.len()],
         };
         let values = if plan.one_front().is_some() { Vec::new() } else { vec![0.0; plan.entries.len()] };
         let [lower, upper, rest] = [plan.tiles.lower, plan.tiles.upper, plan.tiles.rest].map(|tiles| vec![[0.0; TILE]; tiles]);
@@ -79,7 +76,6 @@ impl Multifrontal {
     pub(super) fn twin(&self) -> Self {
         let mut twin = Self::new(self.plan.clone());
         twin.numbers.units.clone_from(&self.numbers.units);
-        twin.numbers.spread.clone_from(&self.numbers.spread);
         twin
     }
 
@@ -95,11 +91,6 @@ impl Multifrontal {
     pub(super) fn set_units(&mut self, units: &[f64]) {
         for (&place, &unit) in self.plan.place.iter().zip(units) {
             self.numbers.units.as_flattened_mut()[place as usize] = unit;
-        }
-        for (front, spread) in self.plan.fronts.iter().zip(&mut self.numbers.spread) {
-            let own = &self.numbers.units.as_flattened()[front.block * LANES..][..front.pivots];
-            let (least, most) = own.iter().fold((f64::INFINITY, 0.0_f64), |(least, most), &unit| (least.min(unit), most.max(unit)));
-            *spread = most / least;
         }
     }
 
