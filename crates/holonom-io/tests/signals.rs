@@ -279,3 +279,31 @@ fn jumps_of_measures_end_steps_as_those_of_forces() {
     });
     assert_eq!(counts[0], counts[1]);
 }
+
+/// Written out, the first of sixty measures, each of which reads the two before it, would have 10¹² terms; a chain of ten thousand is read without
+/// recursion. What jumps within one of them ends steps as where it is written in the force.
+#[test]
+fn measures_of_measures_are_worked_out_once() {
+    let chain = |count: usize, formula: &dyn Fn(usize) -> String| -> String {
+        (0..count).map(|k| format!("[measure.a{k}]\nvalue = \"{}\"\n", formula(k))).collect()
+    };
+    let last = |k: usize| format!("[measure.a{k}]\nvalue = \"1 - bob.x\"\n");
+    let of_two = chain(60, &|k| format!("0.5*a{} + 0.5*a{}", k + 1, k + 2)) + &last(60) + &last(61);
+    let of_one = chain(10_000, &|k| format!("a{} + 0", k + 1)) + &last(10_000);
+    for measures in [of_two, of_one] {
+        let force = "[force.f]\ntype = \"expression\"\npoint = \"bob\"\nforce = [\"5*a0\", 0, 0]\n";
+        // With the spring of 4 N/m about 1 m the frequency is 3 rad/s.
+        let (simulation, _) = run(&model(&format!("{OSCILLATOR}{measures}{force}")), "radau", 2e-2, 1.0, 1);
+        assert!((simulation.state().x[0] - 1.0 - 3.0_f64.cos()).abs() < 1e-8);
+    }
+    let jumps =
+        ["step(late)*late + step(late)*(1 + late)", "step(t - 0.4321)*(t - 0.4321) + step(t - 0.4321)*(1 + t - 0.4321)"].map(|push| {
+            let text = format!(
+                "{OSCILLATOR}[measure.late]\nvalue = \"t - 0.4321\"\n[measure.push]\nvalue = \"{push}\"\n\
+             [force.f]\ntype = \"expression\"\npoint = \"bob\"\nforce = [\"push + 0*push\", 0, 0]\n"
+            );
+            let choice = Choice { method: Some("radau".into()), accuracy: Some(1e-10), ..Choice::default() };
+            common::run(&model(&text), choice, 0.1, 1.0).0.state().x[0].to_bits()
+        });
+    assert_eq!(jumps[0], jumps[1]);
+}

@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 
 use super::assembly::{Assembly, GROUND};
 use super::entry::Entry;
-use super::expression::{Mistake, Names, Program, Scope};
+use super::expression::{Mistake, Names, Program, Scope, indexed, names_in};
 use super::fields::Number;
 use super::geometry::unit;
 use super::measure::like;
@@ -128,13 +128,13 @@ pub(super) struct Reader<'a, 'b> {
     pub assembly: &'a mut Assembly<'b>,
     pub entry: &'a Entry<'a>,
     pub readings: &'a mut Readings,
-    /// Measures whose formulas are being read.
-    pub open: Vec<String>,
+    /// The formulas of measures that have been read.
+    read: HashMap<String, Program>,
 }
 
 impl<'a, 'b> Reader<'a, 'b> {
     pub fn new(assembly: &'a mut Assembly<'b>, entry: &'a Entry<'a>, readings: &'a mut Readings) -> Self {
-        Self { assembly, entry, readings, open: Vec::new() }
+        Self { assembly, entry, readings, read: HashMap::new() }
     }
 
     fn leaf(&mut self, name: &str, leaf: Leaf) -> usize {
@@ -217,6 +217,12 @@ impl<'a, 'b> Reader<'a, 'b> {
         self.readings.turns.push(axes);
         self.readings.names[2].push(owner.to_string());
         Ok(Some(Leaf::Turn(self.readings.turns.len() - 1, axis)))
+    }
+
+    /// A measure that a formula names and that has not been read.
+    fn unread(&self, text: &str, scope: &Scope<'_>) -> Option<String> {
+        let names = names_in(text).into_iter().filter_map(|name| indexed(&name, scope).ok());
+        names.into_iter().find(|name| self.assembly.signals.measures.contains_key(name) && !self.read.contains_key(name))
     }
 
     /// Whether a name begins with one of an entry that could not be read.
@@ -310,23 +316,37 @@ impl Names for Reader<'_, '_> {
     }
 
     fn formula(&mut self, name: &str) -> Result<Option<Program>, Mistake> {
-        let Some(Formula { value, indices }) = self.assembly.signals.measures.get(name).cloned() else { return Ok(None) };
-        if self.open.iter().any(|open| open == name) {
-            let round: Vec<&str> = self.open.iter().map(String::as_str).chain([name]).collect();
-            return Err(Mistake::new(0, format!("measures go round in a circle: {}", round.join(" → ")), "let one of them read no other"));
+        let measures = &self.assembly.signals.measures;
+        if !measures.contains_key(name) {
+            return Ok(None);
         }
-        let text = match value {
-            Number::Given(number) => return Ok(Some(Program::constant(number))),
-            Number::Formula(text) => text,
-        };
-        self.open.push(name.to_string());
-        let scope = Scope { indices: &indices, ..self.entry.scope };
-        let program = Program::parse_with(&text, &["t"], self, &scope);
-        self.open.pop();
-        program.map(Some).map_err(|inner| match inner.known {
-            true => inner,
-            false => Mistake::new(0, format!("the measure `{name}` cannot be read here: {}", inner.message), inner.cure),
-        })
+        // Each after all it reads, without recursion: a chain of measures may be long.
+        let mut open = vec![name.to_string()];
+        while let Some(name) = open.last().filter(|name| !self.read.contains_key(*name)).cloned() {
+            let Formula { value, indices } = self.assembly.signals.measures[&name].clone();
+            let scope = Scope { indices: &indices, ..self.entry.scope };
+            let program = match value {
+                Number::Given(number) => Program::constant(number),
+                Number::Formula(text) => match self.unread(&text, &scope) {
+                    Some(need) if open.contains(&need) => {
+                        let round: Vec<&str> = open.iter().skip_while(|open| **open != need).map(String::as_str).collect();
+                        let message = format!("measures go round in a circle: {} → {need}", round.join(" → "));
+                        return Err(Mistake::new(0, message, "let one of them read no other"));
+                    }
+                    Some(need) => {
+                        open.push(need);
+                        continue;
+                    }
+                    None => Program::parse_with(&text, &["t"], self, &scope).map_err(|inner| match inner.known {
+                        true => inner,
+                        false => Mistake::new(0, format!("the measure `{name}` cannot be read here: {}", inner.message), inner.cure),
+                    })?,
+                },
+            };
+            self.read.insert(name, program);
+            open.pop();
+        }
+        Ok(self.read.get(name).cloned())
     }
 
     fn axes(&self) -> Option<&'static str> {

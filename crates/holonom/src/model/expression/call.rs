@@ -63,7 +63,8 @@ impl Parser<'_> {
             self.at += 2;
             self.sum()?;
             self.close()?;
-            return self.emit(Op::OfTable(curve));
+            self.emit(Op::OfTable(curve));
+            return Ok(());
         }
         if let Some(functions) = self.scope.functions
             && let Some((function, value)) = external(functions, name).map_err(|inner| Mistake { character: start, ..inner })?
@@ -99,8 +100,7 @@ impl Parser<'_> {
         self.sum()?;
         if let (Some(&(_, running)), Token::Close) = (running, self.peek()) {
             self.at += 1;
-            let inner = Program { ops: self.ops.drain(begin..).collect() };
-            self.used -= 1;
+            let inner = Program::new(self.ops.drain(begin..).collect(), Vec::new());
             let Some(variable) = self.names.running(running, inner) else {
                 let message = match function {
                     Some(_) => format!("`{name}` takes 2 arguments; of one number it is the largest or smallest of a run so far"),
@@ -108,7 +108,8 @@ impl Parser<'_> {
                 };
                 return Err(Mistake::new(start, message, format!("use {name}(…) in a [measure.NAME] that no force and no event reads")));
             };
-            return self.emit(Op::Variable(self.variables.len() + variable));
+            self.emit(Op::Variable(self.variables.len() + variable));
+            return Ok(());
         }
         let Some(&(_, arguments, function)) = function else {
             return Err(Mistake::new(start, format!("`{name}` takes one argument"), format!("write {name}(a)")));
@@ -126,6 +127,7 @@ impl Parser<'_> {
             (_, 1) => self.emit(Op::OfOne(function)),
             _ => self.emit(Op::OfTwo(function)),
         }
+        Ok(())
     }
 
     /// A value of a function that a program gives.
@@ -144,7 +146,8 @@ impl Parser<'_> {
             return Err(Mistake::new(start, message, "separate arguments by commas"));
         }
         self.close()?;
-        self.emit(Op::OfMany(function, value))
+        self.emit(Op::OfMany(function, value));
+        Ok(())
     }
 
     /// A function of places, such as `distance(A, B)`, written out as a formula of their coordinates.
@@ -221,7 +224,8 @@ impl Parser<'_> {
     fn written_out(&mut self, start: usize, text: &str) -> Result<(), Mistake> {
         let written = Program::parse_with(text, self.variables, self.names, self.scope);
         let program = written.map_err(|inner| Mistake { character: start, ..inner })?;
-        program.ops.into_iter().try_for_each(|op| self.emit(op))
+        program.ops.into_iter().for_each(|op| self.emit(op));
+        Ok(())
     }
 
     /// Refuses what has no coordinate of this name as no place, in words of what was written.

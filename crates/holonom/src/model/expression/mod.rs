@@ -5,12 +5,14 @@
 //! names have dots, as `hinge.angle`, and stand in single quotes where they have other signs: `'left-strut.force'`.
 
 mod call;
+mod cells;
 mod curve;
 mod external;
 mod functions;
 mod lex;
 mod names;
 mod parse;
+mod switches;
 #[cfg(test)]
 mod tests;
 
@@ -18,6 +20,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use num_dual::Dual2_64;
+use smallvec::SmallVec;
 
 use crate::record::Formula;
 use crate::system::{Bend, Number, Signal};
@@ -26,8 +29,8 @@ pub use external::{External, ExternalFunction, Functions, differences};
 use functions::{Function, quotient};
 pub use names::{Names, Nothing};
 
-/// Most numbers an expression may hold at once while it is evaluated.
-const STACK: usize = 32;
+/// Numbers at once, while an expression is evaluated, that are not put on the heap.
+const NUMBERS: usize = 32;
 
 /// Whether formulas of what a mechanism does have a function of this name, but for those that a model has of its own.
 pub fn is_formula_function(name: &str) -> bool {
@@ -154,12 +157,20 @@ enum Op {
     OfTable(Arc<Curve>),
     /// A value of a function that a program gives.
     OfMany(External, usize),
+    /// Keeps the number in a cell, too.
+    Keep(usize),
+    /// The number in a cell.
+    Kept(usize),
 }
 
 /// An expression ready to be evaluated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
     ops: Box<[Op]>,
+    /// The measures whose numbers are kept, a cell each.
+    kept: Box<[Arc<str>]>,
+    /// Numbers it has at once: those that are kept, and those that wait for an operation.
+    room: usize,
 }
 
 impl Program {
@@ -181,7 +192,7 @@ impl Program {
 
     /// The expression that is always `value`.
     pub fn constant(value: f64) -> Self {
-        Self { ops: Box::new([Op::Constant(value)]) }
+        Self::new(vec![Op::Constant(value)], Vec::new())
     }
 
     /// The value, if it depends on no variable.
@@ -197,70 +208,17 @@ impl Program {
         self.ops.iter().any(|op| matches!(op, Op::Variable(k) if *k >= variables))
     }
 
-    /// The expressions of the variable `t` alone, and of nothing else, at whose zeros this one jumps or has a kink, as programs of
-    /// one variable: the arguments of `step`, `sign` and `abs`, the difference of those of `min` and `max`, the first of `atan2`, the cosine of
-    /// that of `tan`, and what is zero where `floor` and `mod` jump.
-    pub fn switches(&self, t: usize) -> Vec<Self> {
-        let mut found = Vec::new();
-        // Where the operations of each number on the stack begin.
-        let mut begins: Vec<usize> = Vec::new();
-        for (k, op) in self.ops.iter().enumerate() {
-            match op {
-                Op::Constant(_) | Op::Variable(_) => begins.push(k),
-                Op::OfOne(Function::Step | Function::Sign | Function::Abs) => {
-                    found.extend(self.of_time(t, &self.ops[begins[begins.len() - 1]..k], &[]));
-                }
-                Op::OfOne(Function::Floor) => {
-                    found.extend(self.of_time(t, &self.ops[begins[begins.len() - 1]..k], &AT_INTEGERS));
-                }
-                Op::OfOne(Function::Tan) => {
-                    found.extend(self.of_time(t, &self.ops[begins[begins.len() - 1]..k], &[Op::OfOne(Function::Cos)]));
-                }
-                Op::OfTable(curve) => {
-                    let argument = &self.ops[begins[begins.len() - 1]..k];
-                    found.extend(curve.kinks().filter_map(|kink| self.of_time(t, argument, &kink)));
-                }
-                Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) => (),
-                // What it jumps at is not known.
-                Op::OfMany(function, _) => begins.truncate(begins.len() + 1 - function.arguments()),
-                _ => {
-                    let second = begins.pop().expect("two numbers are on the stack");
-                    let first = begins[begins.len() - 1];
-                    match op {
-                        Op::OfTwo(Function::Min | Function::Max) => found.extend(self.of_time(t, &self.ops[first..k], &[Op::Sub])),
-                        Op::OfTwo(Function::Mod) => {
-                            found.extend(self.of_time(t, &self.ops[first..k], &[&[Op::Div], &AT_INTEGERS[..]].concat()))
-                        }
-                        Op::OfTwo(Function::Atan2) => found.extend(self.of_time(t, &self.ops[first..second], &[])),
-                        _ => (),
-                    }
-                }
-            }
-        }
-        found
-    }
-
     /// How many variables it needs: one more than the largest number of one.
     pub fn variables(&self) -> usize {
         self.ops.iter().map(|op| if let Op::Variable(k) = op { k + 1 } else { 0 }).max().unwrap_or(0)
     }
 
-    /// A program of these operations, where they depend on the variable `t` alone.
-    fn of_time(&self, t: usize, ops: &[Op], last: &[Op]) -> Option<Self> {
-        let mut variables = ops.iter().filter_map(|op| if let Op::Variable(k) = op { Some(*k) } else { None }).peekable();
-        if variables.peek().is_none() || variables.any(|k| k != t) {
-            return None;
-        }
-        let of_one = ops.iter().map(|op| if let Op::Variable(_) = op { Op::Variable(0) } else { op.clone() });
-        Some(Self { ops: of_one.chain(last.iter().cloned()).collect() })
-    }
-
     /// The expression t − `time`.
     pub fn since(time: f64) -> Self {
-        Self { ops: Box::new([Op::Variable(0), Op::Constant(time), Op::Sub]) }
+        Self::new(vec![Op::Variable(0), Op::Constant(time), Op::Sub], Vec::new())
     }
 
-    /// The value for values of the variables. Nothing is allocated.
+    /// The value for values of the variables. Nothing is allocated but for more numbers at once than [`NUMBERS`].
     pub fn evaluate<N: Number>(&self, variables: &[N]) -> N {
         self.run::<N, false>(variables, |_| ())
     }
@@ -274,7 +232,8 @@ impl Program {
 
     /// The value, and with `TELLS` where the expression bends.
     fn run<N: Number, const TELLS: bool>(&self, variables: &[N], mut note: impl FnMut(Bend)) -> N {
-        let mut stack = [N::from(0.0); STACK];
+        let mut numbers: SmallVec<[N; NUMBERS]> = SmallVec::from_elem(N::from(0.0), self.room);
+        let (cells, stack) = numbers.split_at_mut(self.kept.len());
         let mut top = 0;
         for (k, op) in self.ops.iter().enumerate() {
             match op {
@@ -286,6 +245,15 @@ impl Program {
                 Op::Variable(k) => {
                     stack[top] = variables[*k];
                     top += 1;
+                    continue;
+                }
+                Op::Kept(cell) => {
+                    stack[top] = cells[*cell];
+                    top += 1;
+                    continue;
+                }
+                Op::Keep(cell) => {
+                    cells[*cell] = stack[top - 1];
                     continue;
                 }
                 _ => {}
@@ -358,9 +326,6 @@ fn tell_of_two(op: &Op, [x, y]: [f64; 2], is_scaled: bool, note: &mut impl FnMut
 fn at_integers(x: f64) -> f64 {
     (std::f64::consts::PI * x).sin()
 }
-
-/// The same as operations.
-const AT_INTEGERS: [Op; 3] = [Op::Constant(std::f64::consts::PI), Op::Mul, Op::OfOne(Function::Sin)];
 
 impl Formula for Program {
     fn evaluate(&self, values: &[f64]) -> f64 {

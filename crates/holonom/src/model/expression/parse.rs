@@ -1,9 +1,11 @@
 //! From the text of an expression to a program, by recursive descent; every mistake has a character and a cure.
 
+use std::sync::Arc;
+
 use super::functions::{CONSTANTS, FUNCTIONS, Function, UNITS, integer_power, real_power};
 use super::lex::{Token, lex};
 use super::names::Names;
-use super::{Mistake, Op, Program, STACK, Scope, Value};
+use super::{Mistake, Op, Program, Scope, Value};
 use crate::model::fault::{nearest, suggest};
 
 /// Deepest nesting of brackets, signs and powers.
@@ -12,13 +14,13 @@ const DEPTH: usize = 50;
 /// Parses an expression of the given variables and of what `names` knows.
 pub(super) fn parse(text: &str, variables: &[&str], names: &mut dyn Names, scope: &Scope<'_>) -> Result<Program, Mistake> {
     let tokens = lex(text)?;
-    let mut parser = Parser { text, tokens: &tokens, at: 0, depth: 0, variables, names, scope, ops: Vec::new(), used: 0 };
+    let mut parser = Parser { text, tokens: &tokens, at: 0, depth: 0, variables, names, scope, ops: Vec::new(), kept: Vec::new() };
     if tokens.len() == 1 {
         return Err(Mistake::new(0, "the expression is empty", "write a number or a formula"));
     }
     parser.sum()?;
     match parser.peek() {
-        Token::End => Ok(Program { ops: parser.ops.into_boxed_slice() }),
+        Token::End => Ok(Program::new(parser.ops, parser.kept)),
         Token::Close => Err(parser.mistake("this bracket was never opened", "remove it, or open one before")),
         Token::Comma => Err(parser.mistake("a comma only separates arguments of a function", "decimal numbers have a point: 0.5")),
         Token::Number(_) | Token::Name(_) | Token::Open => Err(parser.mistake("an operator is missing here", parser.as_product())),
@@ -36,8 +38,8 @@ pub(super) struct Parser<'a> {
     pub(super) names: &'a mut dyn Names,
     pub(super) scope: &'a Scope<'a>,
     pub(super) ops: Vec<Op>,
-    /// Numbers on the stack after the operations so far.
-    pub(super) used: usize,
+    /// The measures whose numbers are kept, a cell each.
+    pub(super) kept: Vec<Arc<str>>,
 }
 
 impl Parser<'_> {
@@ -81,7 +83,7 @@ impl Parser<'_> {
         self.product()?;
         while let Some(c) = self.operator(&['+', '-']) {
             self.product()?;
-            self.emit(if c == '+' { Op::Add } else { Op::Sub })?;
+            self.emit(if c == '+' { Op::Add } else { Op::Sub });
         }
         Ok(())
     }
@@ -90,7 +92,7 @@ impl Parser<'_> {
         self.signed()?;
         while let Some(c) = self.operator(&['*', '/']) {
             self.signed()?;
-            self.emit(if c == '*' { Op::Mul } else { Op::Div })?;
+            self.emit(if c == '*' { Op::Mul } else { Op::Div });
         }
         Ok(())
     }
@@ -104,14 +106,14 @@ impl Parser<'_> {
         match self.operator(&['+', '-']) {
             Some('-') => {
                 self.signed()?;
-                self.emit(Op::Neg)?;
+                self.emit(Op::Neg);
             }
             Some(_) => self.signed()?,
             None => {
                 self.operand()?;
                 if self.operator(&['^']).is_some() {
                     self.signed()?;
-                    self.power()?;
+                    self.power();
                 }
             }
         }
@@ -120,12 +122,11 @@ impl Parser<'_> {
     }
 
     /// Powers with a constant exponent have their own operations: right for negative bases, and so are the derivatives.
-    pub(super) fn power(&mut self) -> Result<(), Mistake> {
+    pub(super) fn power(&mut self) {
         match self.ops.last() {
             Some(&Op::Constant(p)) => {
                 self.ops.pop();
-                self.used -= 1;
-                self.emit(if p.fract() == 0.0 && p.abs() <= f64::from(i32::MAX) { Op::IntegerPower(p as i32) } else { Op::RealPower(p) })
+                self.emit(if p.fract() == 0.0 && p.abs() <= f64::from(i32::MAX) { Op::IntegerPower(p as i32) } else { Op::RealPower(p) });
             }
             _ => self.emit(Op::OfTwo(Function::Pow)),
         }
@@ -135,7 +136,8 @@ impl Parser<'_> {
         match self.peek().clone() {
             Token::Number(number) => {
                 self.at += 1;
-                self.emit(Op::Constant(number))
+                self.emit(Op::Constant(number));
+                Ok(())
             }
             Token::Open => {
                 self.at += 1;
@@ -146,7 +148,7 @@ impl Parser<'_> {
             Token::Name(name) => {
                 let op = self.value_of(&name)?;
                 match op {
-                    Some(op) => self.emit(op)?,
+                    Some(op) => self.emit(op),
                     None => self.name(&name)?,
                 }
                 self.at += 1;
@@ -182,21 +184,18 @@ impl Parser<'_> {
         let place = |mistake: Mistake| Mistake { character: at, ..mistake };
         let full = super::indexed(name, self.scope).map_err(|mistake| Mistake { character: at + mistake.character, ..mistake })?;
         if let Some(program) = self.names.formula(&full).map_err(place)? {
-            let t = self.variables.iter().position(|&variable| variable == "t");
-            return program.ops.into_iter().try_for_each(|op| match op {
-                Op::Variable(0) => self.emit(Op::Variable(t.ok_or_else(|| self.unknown("t"))?)),
-                Op::Variable(k) => self.emit(Op::Variable(self.variables.len() + k - 1)),
-                other => self.emit(other),
-            });
+            return self.take_over(&full, &program);
         }
-        match self.names.variable(&full).map_err(place)? {
-            Some(variable) => self.emit(Op::Variable(self.variables.len() + variable)),
+        let op = match self.names.variable(&full).map_err(place)? {
+            Some(variable) => Op::Variable(self.variables.len() + variable),
             // Whatever the model calls so comes first.
             None => match UNITS.iter().find(|unit| unit.0 == name) {
-                Some(&(_, value)) => self.emit(Op::Constant(value)),
-                None => Err(self.unknown(name)),
+                Some(&(_, value)) => Op::Constant(value),
+                None => return Err(self.unknown(name)),
             },
-        }
+        };
+        self.emit(op);
+        Ok(())
     }
 
     /// What a name stands for that is no name of something in the mechanism: a variable, an index or parameter, or a constant.
@@ -216,7 +215,7 @@ impl Parser<'_> {
         }
     }
 
-    fn unknown(&self, name: &str) -> Mistake {
+    pub(super) fn unknown(&self, name: &str) -> Mistake {
         let constants = CONSTANTS.iter().chain(UNITS).map(|constant| constant.0);
         // Parameters have no order of their own, and messages must be the same every time.
         let mut named: Vec<&str> = self.scope.names().collect();
@@ -257,27 +256,17 @@ impl Parser<'_> {
     }
 
     /// Appends an operation, or its result when all it works on is constant.
-    pub(super) fn emit(&mut self, op: Op) -> Result<(), Mistake> {
-        let takes = match op {
-            Op::Constant(_) | Op::Variable(_) => 0,
-            Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) | Op::OfTable(_) => 1,
-            Op::Add | Op::Sub | Op::Mul | Op::Div | Op::OfTwo(_) => 2,
-            Op::OfMany(ref function, _) => function.arguments(),
-        };
-        let is_external = matches!(op, Op::OfMany(..));
-        self.used = self.used + 1 - takes;
-        if self.used > STACK {
-            return Err(self.mistake("this expression holds too many numbers at once", "split it over [parameters]"));
-        }
-        let first = self.ops.len() - takes.min(self.ops.len());
+    pub(super) fn emit(&mut self, op: Op) {
+        let takes = op.takes();
         // What a program gives is called when it runs.
+        let is_external = matches!(op, Op::OfMany(..));
+        let first = self.ops.len() - takes.min(self.ops.len());
         let constant = takes > 0 && !is_external && self.ops[first..].iter().all(|op| matches!(op, Op::Constant(_)));
         self.ops.push(op);
         if constant {
-            let folded = Program { ops: self.ops.drain(first..).collect() }.evaluate::<f64>(&[]);
+            let folded = Program::new(self.ops.drain(first..).collect(), Vec::new()).evaluate::<f64>(&[]);
             self.ops.push(Op::Constant(folded));
         }
-        Ok(())
     }
 }
 

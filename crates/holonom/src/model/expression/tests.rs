@@ -5,7 +5,7 @@ use std::sync::Arc;
 use num_dual::{Dual2_64, Dual64, HyperDual64};
 
 use super::functions::FUNCTIONS;
-use super::{Beyond, Curve, Program, STACK, Scope, TimeProgram, Value};
+use super::{Beyond, Curve, Program, Scope, TimeProgram, Value};
 use crate::system::{Bend, Signal, zeros};
 
 fn value(text: &str) -> f64 {
@@ -86,8 +86,10 @@ fn hostile_lengths_and_depths_are_refused() {
     for text in ["(".repeat(9_000), "-".repeat(9_000), "2^".repeat(4_000), "1".repeat(20_000), format!("{}t", "sin(".repeat(2000))] {
         mistake(&text);
     }
-    let wide = "1+t*(2+".repeat(STACK) + "t" + &")".repeat(STACK);
-    assert!(mistake(&wide).1.contains("split"));
+    let nested = |depth: usize| "1+t*(2+".repeat(depth) + "t" + &")".repeat(depth);
+    assert!(mistake(&nested(60)).1.contains("split"));
+    // Eighty numbers wait for an operation: at t = 1 each bracket adds three.
+    assert_eq!(Program::parse(&nested(40), &["t"], &Scope::default()).unwrap().evaluate(&[1.0]), 121.0);
     let long = vec!["t"; 1000].join("+");
     assert_eq!(Program::parse(&long, &["t"], &Scope::default()).unwrap().evaluate(&[2.0]), 2000.0);
 }
