@@ -472,3 +472,27 @@ fn windows_with_a_light_upright_pass_through_a_line() {
         }
     }
 }
+
+/// Two links with springs under a load that follows the last, below the load at which they flutter (Ziegler 1952), hardly bent: what the load does along
+/// the rounding of places is far more than what moves.
+#[test]
+fn a_loaded_column_swings_by_next_to_nothing() {
+    for (x, angle) in [(0.0, 1e-5), (0.0, 1e-7), (1e4, 1e-3)] {
+        let text = format!(
+            "plane = \"xz\"\ngravity = [0, 0]\n\
+             [body.a]\nmass = 2\ncom = [0.5, 0]\ninertia = 1e-6\nposition = [{}, 0]\n\
+             [body.b]\nmass = 1\ncom = [0.5, 0]\ninertia = 1e-6\nposition = [{}, 0]\npoints = {{ end = [0.5, 0] }}\n\
+             [joint.h]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [{x}, 0]\n\
+             [joint.k]\ntype = \"revolute\"\nbetween = [\"a\", \"b\"]\nat = [{}, 0]\n\
+             [force.spring-h]\ntype = \"torsion\"\njoint = \"h\"\nstiffness = 1\n[force.spring-k]\ntype = \"torsion\"\njoint = \"k\"\nstiffness = 1\n\
+             [force.P]\ntype = \"force\"\nbody = \"b\"\nat = \"b.end\"\naxes = \"body\"\nforce = [-1.9, 0]\n[start.h]\nangle = {angle}\n",
+            x + 0.5,
+            x + 1.5,
+            x + 1.0
+        );
+        for of in CONSERVING {
+            let summary = run("column", &model(&text), of, 0.02, 20.0);
+            assert!(summary.energy.max_drift < 1e-12 * 1.9, "{of} at {x}: {:e}", summary.energy.max_drift);
+        }
+    }
+}

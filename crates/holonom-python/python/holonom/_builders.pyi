@@ -519,7 +519,7 @@ class Builders:
 
         joints: two joints, or coordinates of joints as "JOINT.angle" or "JOINT.displacement"
         radii: radii of the two wheels [m]
-        crossed: whether the belt crosses itself, so that the wheels turn against each other; default: false
+        crossed: whether the belt crosses itself, so that the wheels turn against each other, whichever way their joints are written; default: false
         pretension: tension of the belt at rest, 0 for a chain; with it the force of the belt is recorded, and the bearings of the wheels feel it [N]; default: the belt's pull is left out
         repeat: makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"; default: one entry
         """

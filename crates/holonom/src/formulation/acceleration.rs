@@ -11,7 +11,7 @@ use super::independence::{independence, independent};
 use super::iteration::Multipliers;
 use super::kkt::Block;
 use super::newton::Newton;
-use super::passes::{LinearSystem, STIFFER, meet, pass, react};
+use super::passes::{LinearSystem, ROUNDED, STIFFER, meet, pass, react};
 use super::rank::RHO;
 use super::workspace::Workspace;
 use crate::system::System;
@@ -55,7 +55,7 @@ impl Newton {
 
     /// The same where the workspace has the evaluation at the end position.
     pub fn react_as_evaluated(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
-        react(self, system, t, work)
+        react(self, ROUNDED, system, t, work)
     }
 
     /// Accelerations and multipliers at the end position and velocity by the formulation itself, which must be one that

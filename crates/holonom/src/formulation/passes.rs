@@ -40,8 +40,8 @@ const FOLLOWS: f64 = 100.0;
 
 /// Passes end where the next would change less than this share of accelerations and multipliers: of those that a step goes on with, whose errors add
 /// up, and of those that are shown.
-const ROUNDED: f64 = 0.1 * f64::EPSILON;
-const SHOWN: f64 = 1e-12;
+pub(super) const ROUNDED: f64 = 0.1 * f64::EPSILON;
+pub(super) const SHOWN: f64 = 1e-12;
 
 /// The matrix of the system.
 pub(super) trait LinearSystem {
@@ -68,11 +68,11 @@ pub(super) fn meet(matrix: &mut impl LinearSystem, system: &System, t: f64, work
     Ok(is_met(end, system, t, work))
 }
 
-/// The same for forces that are to be trusted. Near a singular position accelerations are known where they are the same, but for little, at another
+/// The same for forces that are to be trusted, of which passes may leave the share `open`. Near a singular position accelerations are known where they are the same, but for little, at another
 /// place that meets the rows as well as numbers can, with the velocities that belong to it.
-pub(super) fn react(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
+pub(super) fn react(matrix: &mut impl LinearSystem, open: f64, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
     let level = std::mem::replace(&mut work.level, Level::ACCELERATION);
-    let outcome = react_at_level(matrix, system, t, work);
+    let outcome = react_at_level(matrix, open, system, t, work);
     if outcome.is_ok() {
         work.add_reactions(system);
     }
@@ -80,10 +80,10 @@ pub(super) fn react(matrix: &mut impl LinearSystem, system: &System, t: f64, wor
     outcome
 }
 
-fn react_at_level(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
+fn react_at_level(matrix: &mut impl LinearSystem, open: f64, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
     let pushed = work.begin_pass(system, t);
     let leaves = matrix.factor(RHO, work)?;
-    let end = passes(matrix, Passes { leaves, pushed, most: PASSES, open: SHOWN }, system, work)?;
+    let end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
     if end != End::Slow {
         return Ok(is_met(end, system, t, work));
     }

@@ -12,7 +12,7 @@ use nalgebra::Matrix3;
 
 use super::failure::{Failure, Unknown};
 use super::kkt::Augmented;
-use super::passes::{LinearSystem, react};
+use super::passes::{LinearSystem, SHOWN, react};
 use super::rank::REDUNDANT;
 use super::workspace::Workspace;
 use crate::linalg::{Singular, Solver};
@@ -100,7 +100,7 @@ impl Twists {
     /// Accelerations and multipliers at the end position and velocity of a workspace that has the evaluation there, as
     /// [`Newton::react_as_evaluated`](super::Newton::react_as_evaluated) finds them; multipliers of the rows that keep bodies rigid stay zero.
     pub fn react(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
-        react(self, system, t, work)
+        react(self, SHOWN, system, t, work)
     }
 
     /// The node or row whose pivot is none, where its numbers are such.

@@ -1,7 +1,6 @@
 //! A nominal step: in parts where it fails as a whole, each audited, projected and judged before it becomes the state.
 
 use super::{Audit, Simulation};
-use crate::energy;
 use crate::formulation::{Failure, Iteration, Sampling};
 use crate::integrator::Step;
 
@@ -132,15 +131,15 @@ impl Simulation {
         self.judge.velocities(system, target, step, work)?;
         audit.closed(system, method, &self.found_a, target, &self.newton, work);
         self.judge.accelerations(step, work)?;
-        let of_laws = if self.judge.holds_energy() { energy::size(system, work, &work.end.x) } else { 0.0 };
-        self.judge.energy(system, step, [&self.audit, &audit], of_laws, work)?;
+        let of_places = self.judge.of_places(system, work);
+        self.judge.energy(step, [&self.audit, &audit], of_places, work)?;
         self.judge.dampers(system, [self.state.t, target], step, &audit, work)?;
         // A part that takes the nominal step out of its bound can be taken again.
-        self.judge.whole(step, &audit, of_laws, work)?;
+        self.judge.whole(step, &audit, of_places, work)?;
         self.next_gauges.copy_from(&self.gauges);
         system.measure(&work.end.x, &work.end.v, &mut self.next_gauges);
         self.judge.turns(system, step, &self.gauges, &self.next_gauges)?;
-        self.judge.take(of_laws);
+        self.judge.take(of_places);
         self.commit(audit, step, target);
         Ok(taken)
     }

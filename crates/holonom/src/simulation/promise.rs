@@ -129,7 +129,7 @@ pub(super) struct Judge {
     weight: f64,
     /// Farthest that an angle may turn in a step, rad.
     farthest: f64,
-    /// Largest size of what laws make of rounded positions at the ends of the parts of the nominal step so far, J.
+    /// Largest size of what rounded positions make of energies in the parts of the nominal step so far, J.
     stiffest: f64,
     /// Measures how near a singular position is, from when that is first asked, and how many rows are redundant everywhere, as far as is known.
     independence: Option<(Box<Independence>, usize)>,
@@ -167,31 +167,36 @@ impl Judge {
         self.stiffest = 0.0;
     }
 
-    /// Takes note of a step that is taken, with the size of what laws make there of rounded positions, J.
-    pub(super) fn take(&mut self, of_laws: f64) {
-        self.stiffest = self.stiffest.max(of_laws);
+    /// Takes note of a step that is taken, with the size of what rounded positions make of its energies, J.
+    pub(super) fn take(&mut self, of_places: f64) {
+        self.stiffest = self.stiffest.max(of_places);
     }
 
-    /// Looks at the energy after a step of length `h` (s); `before` and `after` are the audits around it, `of_laws` is the size of what laws
-    /// make of rounded positions, J.
-    pub(super) fn energy(
-        &self,
-        system: &System,
-        h: f64,
-        [before, after]: [&Audit; 2],
-        of_laws: f64,
-        work: &Workspace,
-    ) -> Result<(), Failure> {
-        self.hold_energy([before.energy(), before.work], after, || self.energy_bound(system, h, [before, after], of_laws, work))
+    /// Looks at the energy after a step of length `h` (s); `before` and `after` are the audits around it, `of_places` is the size of what
+    /// rounded positions make of it, J.
+    pub(super) fn energy(&self, h: f64, [before, after]: [&Audit; 2], of_places: f64, work: &Workspace) -> Result<(), Failure> {
+        self.hold_energy([before.energy(), before.work], after, || self.energy_bound(h, [before, after], of_places, work))
+    }
+
+    /// The size of what laws make of rounded positions, and of what the multipliers and the forces that do work do along them, J: also where hardly
+    /// anything moves.
+    pub(super) fn of_places(&self, system: &System, work: &Workspace) -> f64 {
+        if !self.holds_energy() {
+            return 0.0;
+        }
+        let scales = &work.scales;
+        let rows = work.lambda.iter().zip(&scales.gradient).map(|(lambda, g)| (lambda * g).abs()).sum::<f64>();
+        let working = if work.is_worked_on() { energy::size_of_working_forces(system, work) } else { 0.0 };
+        energy::size(system, work, &work.end.x) + (rows + working) * scales.length
     }
 
     /// Looks at the energy after a nominal step, or so far, of length `h` (s): parts of it may each be round-off and add up to more.
-    pub(super) fn whole(&self, h: f64, after: &Audit, of_laws: f64, work: &Workspace) -> Result<(), Failure> {
+    pub(super) fn whole(&self, h: f64, after: &Audit, of_places: f64, work: &Workspace) -> Result<(), Failure> {
         let before = after.start_of_step();
         let moved = after.kinetic_at_start_of_step() + (after.work - before[1]).abs();
-        // A stiff law may have acted in one part and not in those after it.
-        let of_laws = self.stiffest.max(of_laws);
-        self.hold_energy(before, after, || self.nothing(h, moved, after, work) + ROUND_OFF * of_laws)
+        // Much may have acted in one part and not in those after it.
+        let of_places = self.stiffest.max(of_places);
+        self.hold_energy(before, after, || self.nothing(h, moved, after, work) + ROUND_OFF * of_places)
     }
 
     /// Looks after a nominal step of length `h` (s) at what energy nothing supplied. Shorter steps would only add more slowly to it.
@@ -267,13 +272,10 @@ impl Judge {
 
     /// Round-off of energies, of the work of rows and laws, and of velocities, which are increments of rounded positions over
     /// the step; and what the tolerance leaves of these.
-    fn energy_bound(&self, system: &System, h: f64, [before, after]: [&Audit; 2], of_laws: f64, work: &Workspace) -> f64 {
+    fn energy_bound(&self, h: f64, [before, after]: [&Audit; 2], of_places: f64, work: &Workspace) -> f64 {
         let scales = &work.scales;
         let kinetic = before.kinetic.abs() + after.kinetic.abs();
-        let rows = work.lambda.iter().zip(&scales.gradient).map(|(lambda, g)| (lambda * g).abs()).sum::<f64>() * scales.length;
-        // What forces do along rounded positions, also where hardly anything moves.
-        let working = if work.is_worked_on() { energy::size_of_working_forces(system, work) * scales.length } else { 0.0 };
-        let sizes = kinetic + of_laws + (after.work - before.work).abs() + rows + working;
+        let sizes = kinetic + of_places + (after.work - before.work).abs();
         ROUND_OFF * sizes + self.most_momentum(kinetic) * scales.length * 2.0 / h.abs() * (ROUNDED + self.tolerance)
     }
 

@@ -51,7 +51,7 @@ pub struct Pulley {
     /// radii of the two wheels
     #[key(unit = "m", shape = Shape::Numbers(2, 2))]
     pub radii: List<Number>,
-    /// whether the belt crosses itself, so that the wheels turn against each other
+    /// whether the belt crosses itself, so that the wheels turn against each other, whichever way their joints are written
     #[key(default = "false")]
     pub crossed: Option<bool>,
     /// tension of the belt at rest, 0 for a chain; with it the force of the belt is recorded, and the bearings of the wheels feel it
@@ -66,12 +66,14 @@ impl Element for Pulley {
         let joints = two(assembly, entry, &self.joints, Some([true, true]));
         let radii = self.radii.sizes::<2>(entry, "radii");
         let ([first, second], [r1, r2]) = (joints?, radii?);
-        let sign = if self.crossed.unwrap_or(false) { 1.0 } else { -1.0 };
+        let against = if self.crossed.unwrap_or(false) { 1.0 } else { -1.0 };
+        // Wheels turn against each other, not the angles of joints that may be written either way; where axes are not parallel these are all there is.
+        let seats = Seats::find(assembly, entry, [&first, &second])?;
+        let sign = against * seats.map_or(1.0, |Seats { senses: [a, b], .. }| a * b);
         let pretension = entry.optional("pretension", &self.pretension, |tension, entry, key| tension.not_negative(entry, key))?;
         if let Some(pretension) = pretension {
             let seats = Seats::of(assembly, entry, "pretension", [&first, &second])?;
-            let [a, b] = seats.senses;
-            let rise = if a * b * sign > 0.0 { r1 + r2 } else { r1 - r2 };
+            let rise = if against > 0.0 { r1 + r2 } else { r1 - r2 };
             let distance = seats.distance;
             if distance <= rise.abs() {
                 let message = format!("the axes are {distance} m apart, and no belt goes around both wheels");

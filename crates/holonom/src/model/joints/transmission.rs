@@ -29,6 +29,12 @@ const SKEW: f64 = 1e-6;
 impl Seats {
     /// Of joints that turn about parallel axes, or of one that turns and one that slides at right angles to that axis; `key` asks for them.
     pub fn of(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &'static str, coordinates: [&Coordinate; 2]) -> Read<Self> {
+        let none = |message| entry.refuse_key(key, message, format!("leave `{key}` out: then bearings do not feel the coupler"));
+        Self::find(assembly, entry, coordinates)?.map_err(none)
+    }
+
+    /// The same, or why there are none.
+    pub fn find(assembly: &Assembly<'_>, entry: &Entry<'_>, coordinates: [&Coordinate; 2]) -> Read<Result<Self, String>> {
         let infos: [&JointInfo; 2] = {
             let spot = |k| Spot { key: "joints", item: Some(k) };
             [assembly.joint(entry, spot(0), &coordinates[0].joint)?, assembly.joint(entry, spot(1), &coordinates[1].joint)?]
@@ -38,11 +44,10 @@ impl Seats {
         let common: Vec<Member> = first.into_iter().filter(|member| second.contains(member)).collect();
         let ([carrier], [Some(first), Some(second)], true) = (&common[..], coordinates.map(|known| known.about), coordinates[0].is_angle)
         else {
-            let message = format!(
+            return Ok(Err(format!(
                 "`{}` and `{}` are not two axles, or an axle and a rail, on one part that carries both",
                 infos[0].name, infos[1].name
-            );
-            return Err(entry.refuse_key(key, message, format!("leave `{key}` out: then bearings do not feel the coupler")));
+            )));
         };
         let sides = infos.map(|info| if info.geometry.members[0] == *carrier { 1.0 } else { -1.0 });
         let is_planar = assembly.dimension() == 2;
@@ -55,18 +60,18 @@ impl Seats {
         let (sine, cosine) = (norm(cross(axis, other)), dot(axis, other));
         if (if slides { cosine.abs() } else { sine }) > SKEW {
             let what = if slides { "the rack goes along the axis of the wheel" } else { "the axes are not parallel" };
-            return Err(entry.refuse_key(key, format!("{what}, and where teeth touch is not known"), format!("leave `{key}` out")));
+            return Ok(Err(format!("{what}, and where teeth touch is not known")));
         }
         let apart = subtract(infos[1].geometry.at[0], infos[0].geometry.at[0]);
         let across = norm(subtract(apart, scale(axis, dot(axis, apart))));
-        Ok(Self {
+        Ok(Ok(Self {
             joints: infos.map(|info| assembly.joint_names[&info.name]),
             sides,
             carrier: *carrier,
             axes: [axis, other],
             distance: if across > CONTRADICTION * assembly.builder.size() { across } else { 0.0 },
             senses: [sides[0], sides[1] * if slides { 1.0 } else { cosine.signum() }],
-        })
+        }))
     }
 
     /// The way of a rack, as a direction of the carrier.
