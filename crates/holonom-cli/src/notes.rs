@@ -133,7 +133,9 @@ pub fn long_turns(model: &Model, method: &Method, recording: &Recording) -> Opti
 
 /// What looks like a slip, and what was put right before the start.
 pub fn notes(loaded: &Loaded, simulation: &Simulation) -> Vec<String> {
-    slips(loaded).chain(corrections(&loaded.model, simulation)).collect()
+    let model = &loaded.model;
+    let unseen = model.settings.end.map_or(Vec::new(), |end| model.unseen(simulation.method(), simulation.nominal_step(), end));
+    slips(loaded).chain(corrections(model, simulation)).chain(unseen).collect()
 }
 
 /// What looks like a slip in a model, or in how it is run.

@@ -141,6 +141,7 @@ pub(crate) fn simulate_kept(
             let simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
             let mut corrections = corrections(model, &simulation);
             corrections.extend(costly(simulation.method()));
+            corrections.extend(model.unseen(simulation.method(), step, end));
             if !quiet {
                 slips(loaded).chain(corrections.clone()).for_each(|text| note(&text));
             }

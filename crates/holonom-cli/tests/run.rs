@@ -204,7 +204,8 @@ fn what_looks_like_a_slip_is_noted_by_run_and_check() {
     let folder = folder();
     let model = "[body.door]\nmass = 1\ninertia = [0, 0, 1]\ncheck_inertia = false\nposition = [0.5, 0, 0]\n\
                  [joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"door\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n\
-                 [drive.motor]\ntype = \"angle\"\njoint = \"hinge\"\nprofile = \"max(t - 1, 0)\"\n[simulation]\nend = 0.9\nstep = 0.01\n";
+                 [drive.motor]\ntype = \"angle\"\njoint = \"hinge\"\nprofile = \"max(t - 1, 0)\"\n\
+                 [force.shaker]\ntype = \"torque\"\nbody = \"door\"\ntorque = [0, 0, \"cos(2*pi*100*t)\"]\n[simulation]\nend = 0.9\nstep = 0.01\n";
     fs::write(folder.path().join("door.toml"), model).unwrap();
     let notes = |words: &str| {
         let output = holonom(&folder, words);
@@ -214,18 +215,22 @@ fn what_looks_like_a_slip_is_noted_by_run_and_check() {
     let inertia = "note: body.door.inertia: the moments 0, 0, 1 cannot belong to a body: 1 exceeds 0 + 0 by 1";
     let blow = "note: drive.motor.profile: its rate jumps by 1 per s at 1 s";
     let step = "note: simulation.step: the step of 5 s is longer than the run of 0.9 s";
+    let unseen = "note: force.shaker.torque[2]: steps of 0.01 s do not see what this does within them: from 0 s to 0.01 s its mean is 0 and is taken to be -1 \
+                  (a step of 0.005 s sees it, and so do steps by accuracy)";
     for (words, expected) in [
-        ("run door.toml --no-report", [true, false, false]),
-        ("run door.toml --no-report --end 1.2", [true, true, false]),
-        ("run door.toml --no-report --step 5", [true, false, true]),
-        ("run door.toml --no-report --quiet", [false, false, false]),
-        ("check door.toml --set simulation.end=1.2", [true, true, false]),
-        ("check door.toml --json --set simulation.step=5", [false, false, false]),
+        ("run door.toml --no-report", [true, false, false, true]),
+        ("run door.toml --no-report --end 1.2", [true, true, false, true]),
+        ("run door.toml --no-report --step 5", [true, false, true, false]),
+        ("run door.toml --no-report --step 0.001", [true, false, false, false]),
+        ("run door.toml --no-report --accuracy 1e-4", [true, false, false, false]),
+        ("run door.toml --no-report --quiet", [false, false, false, false]),
+        ("check door.toml --set simulation.end=1.2", [true, true, false, true]),
+        ("check door.toml --json --set simulation.step=5", [false, false, false, false]),
     ] {
         let said = notes(words);
-        assert_eq!([inertia, blow, step].map(|note| said.contains(note)), expected, "{words}\n{said}");
+        assert_eq!([inertia, blow, step, unseen].map(|note| said.contains(note)), expected, "{words}\n{said}");
     }
-    assert_eq!(json(&folder, "check door.toml --json --set simulation.step=5")["notes"].as_array().unwrap().len(), 2);
+    assert_eq!(json(&folder, "check door.toml --json --set simulation.step=5")["notes"].as_array().unwrap().len(), 3);
 }
 
 /// What a drive moves needs no velocity of its own; one that was written and is another in the run is told.

@@ -42,6 +42,7 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
     let projection = method.projection.clone();
     let name = method.name.clone();
     let step = loaded.step().unwrap_or(1e-3);
+    let unseen = loaded.model.times().map_or(Vec::new(), |[step, end]| loaded.model.unseen(&method, step, end));
     let simulation = Simulation::new(system.clone(), method, step).map_err(load::start_failure)?;
     let size = rank_of(&simulation).size(system);
     let changes = loaded.model.start_changes(&simulation.state().x, simulation.velocities());
@@ -50,6 +51,7 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
     drop(simulation);
     let mut held = Held::new(&plain, load::method(&plain.model, None)?, step)?;
     held.notes.extend(unused_parameters(&loaded.source));
+    held.notes.extend(unseen);
     // What asks for too much has a line of its own.
     held.notes.extend(nowhere(&start).filter(|_| held.conflict.is_none()));
     let found = &held.rank;

@@ -20,6 +20,24 @@ fn kahan_li() -> Vec<f64> {
     half.iter().copied().chain([middle]).chain(half.iter().rev().copied()).collect()
 }
 
+/// The parts of a step of some order, as shares of it.
+fn shares(order: u8) -> Vec<f64> {
+    match order {
+        4 => suzuki(),
+        6 => kahan_li(),
+        _ => vec![1.0],
+    }
+}
+
+/// The middles of the parts of a step, with the lengths of these.
+pub(super) fn looks(order: u8) -> Vec<[f64; 2]> {
+    let middle = |end: &mut f64, share: f64| {
+        *end += share;
+        Some([*end - 0.5 * share, share])
+    };
+    shares(order).into_iter().scan(0.0, middle).collect()
+}
+
 pub(super) struct Composed {
     inner: Box<dyn Integrator>,
     shares: Vec<f64>,
@@ -46,11 +64,10 @@ impl<'a> Memory<'a> {
 impl Composed {
     /// A scheme of order 2 itself, or composed to order 4 or 6.
     pub(super) fn of(inner: Box<dyn Integrator>, order: u8, system: &System) -> Box<dyn Integrator> {
-        let shares = match order {
-            2 => return inner,
-            4 => suzuki(),
-            _ => kahan_li(),
-        };
+        let shares = shares(order);
+        if shares.len() == 1 {
+            return inner;
+        }
         let memory = vec![0.0; inner.memory(system)];
         Box::new(Self { inner, shares, start: vec![0.0; system.nodes() * system.dim], memory })
     }

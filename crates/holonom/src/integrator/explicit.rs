@@ -33,6 +33,13 @@ enum Dense {
     },
 }
 
+impl Tableau {
+    /// Its nodes with their weights.
+    pub(super) fn looks(&self) -> Vec<[f64; 2]> {
+        self.nodes.iter().zip(self.rows[self.nodes.len()]).map(|(node, weight)| [*node, *weight]).collect()
+    }
+}
+
 /// The classical method of order 4.
 pub(super) const RK4: Tableau = Tableau {
     nodes: &[0.0, 0.5, 0.5, 1.0],

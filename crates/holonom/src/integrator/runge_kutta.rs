@@ -80,6 +80,11 @@ impl Tableau {
         (slope, error)
     }
 
+    /// Its nodes with their weights.
+    pub(super) fn looks(&self) -> Vec<[f64; 2]> {
+        self.nodes.iter().zip(&self.weights).map(|(node, weight)| [*node, *weight]).collect()
+    }
+
     fn stages(&self) -> usize {
         self.nodes.len()
     }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::composed::Composed;
+use super::composed::{self, Composed};
 use super::explicit::{DOP853, DOPRI5, Explicit, RK4};
 use super::generalized_alpha::GeneralizedAlpha;
 use super::runge_kutta::{RungeKutta, Tableau};
@@ -60,6 +60,8 @@ pub struct Entry {
     /// Order of convergence of positions, velocities and reactions that can be relied upon, for parameters, a
     /// formulation, and with or without projections.
     pub convergence: fn(&Parameters, &Formulation, bool) -> [u8; 3],
+    /// Where it takes forces: shares of a step, with their weights in the change of velocity.
+    pub looks: fn(&Parameters) -> Vec<[f64; 2]>,
     /// Makes it for a system, with all the room that it needs.
     pub make: fn(&System, &Newton, Parameters) -> Box<dyn Integrator>,
 }
@@ -114,6 +116,11 @@ fn full(parameters: &Parameters, _: &Formulation, _: bool) -> [u8; 3] {
     [parameters.order; 3]
 }
 
+/// At both ends of a step.
+fn at_ends(_: &Parameters) -> Vec<[f64; 2]> {
+    vec![[0.0, 0.5], [1.0, 0.5]]
+}
+
 const NEWTON: &[&str] = &["newton"];
 const LOOPS: &[&str] = &["newton", "simultaneous", "nested"];
 
@@ -137,6 +144,7 @@ pub const INTEGRATORS: &[Entry] = &[
         estimate: Estimate::History,
         dense: false,
         convergence: full,
+        looks: |parameters| composed::looks(parameters.order),
         make: |system, newton, parameters| {
             Composed::of(Box::new(conserving_ggl::ConservingGgl::new(system, newton)), parameters.order, system)
         },
@@ -163,6 +171,7 @@ pub const INTEGRATORS: &[Entry] = &[
             (4, true) => [3; 3],
             (order, _) => [order; 3],
         },
+        looks: |parameters| composed::looks(parameters.order),
         make: |system, _, parameters| Composed::of(Box::new(conserving::Conserving { rows: parameters.rows }), parameters.order, system),
     },
     Entry {
@@ -183,6 +192,7 @@ pub const INTEGRATORS: &[Entry] = &[
         estimate: Estimate::History,
         dense: false,
         convergence: full,
+        looks: at_ends,
         make: |_, _, _| Box::new(newmark::Newmark { beta: 0.25, gamma: 0.5 }),
     },
     Entry {
@@ -203,6 +213,7 @@ pub const INTEGRATORS: &[Entry] = &[
         estimate: Estimate::None,
         dense: false,
         convergence: |parameters, _, _| if parameters.gamma == 0.5 { [2; 3] } else { [1; 3] },
+        looks: |parameters| vec![[0.0, 1.0 - parameters.gamma], [1.0, parameters.gamma]],
         make: |_, _, parameters| Box::new(newmark::Newmark { beta: parameters.beta, gamma: parameters.gamma }),
     },
     Entry {
@@ -223,6 +234,7 @@ pub const INTEGRATORS: &[Entry] = &[
         estimate: Estimate::History,
         dense: false,
         convergence: full,
+        looks: at_ends,
         make: |_, _, parameters| Box::new(GeneralizedAlpha::hht(parameters.alpha)),
     },
     Entry {
@@ -243,6 +255,7 @@ pub const INTEGRATORS: &[Entry] = &[
         estimate: Estimate::History,
         dense: false,
         convergence: full,
+        looks: at_ends,
         make: |_, _, parameters| Box::new(GeneralizedAlpha::with_radius(parameters.rho)),
     },
     Entry {
@@ -263,6 +276,7 @@ pub const INTEGRATORS: &[Entry] = &[
         estimate: Estimate::History,
         dense: false,
         convergence: |_, formulation, projected| if projected || !formulation.is_at_position() { [2; 3] } else { [2, 0, 0] },
+        looks: |_| vec![[0.5, 1.0]],
         make: |_, _, _| Box::new(midpoint::Midpoint),
     },
     Entry {
@@ -283,6 +297,7 @@ pub const INTEGRATORS: &[Entry] = &[
         estimate: Estimate::History,
         dense: false,
         convergence: full,
+        looks: at_ends,
         make: |_, _, _| Box::new(rattle::Rattle),
     },
     Entry {
@@ -306,6 +321,7 @@ pub const INTEGRATORS: &[Entry] = &[
             order if projected || !formulation.is_at_position() => [order; 3],
             order => [order, order / 2 + 1, order / 2 + 1],
         },
+        looks: |parameters| Tableau::radau(parameters.order).looks(),
         make: |system, newton, parameters| Box::new(RungeKutta::new(system, &newton.settings, Tableau::radau(parameters.order))),
     },
     Entry {
@@ -326,6 +342,7 @@ pub const INTEGRATORS: &[Entry] = &[
         estimate: Estimate::OwnOfStates,
         dense: false,
         convergence: full,
+        looks: |_| vec![[1.0, 1.0]],
         make: |system, newton, parameters| Box::new(bdf::Bdf::new(system, &newton.settings, parameters.order, parameters.adapts)),
     },
     Entry {
@@ -349,6 +366,7 @@ pub const INTEGRATORS: &[Entry] = &[
             order if projected || formulation.index < 2 => [order; 3],
             order => [order, (order - 2).max(2), (order - 2).max(2)],
         },
+        looks: |parameters| Tableau::gauss(parameters.order).looks(),
         make: |system, newton, parameters| Box::new(RungeKutta::new(system, &newton.settings, Tableau::gauss(parameters.order))),
     },
     Entry {
@@ -369,6 +387,7 @@ pub const INTEGRATORS: &[Entry] = &[
         estimate: Estimate::None,
         dense: false,
         convergence: full,
+        looks: |_| RK4.looks(),
         make: |system, _, _| Box::new(Explicit::new(system, RK4)),
     },
     Entry {
@@ -389,6 +408,7 @@ pub const INTEGRATORS: &[Entry] = &[
         estimate: Estimate::Own,
         dense: true,
         convergence: full,
+        looks: |_| DOPRI5.looks(),
         make: |system, _, _| Box::new(Explicit::new(system, DOPRI5)),
     },
     Entry {
@@ -409,6 +429,7 @@ pub const INTEGRATORS: &[Entry] = &[
         estimate: Estimate::Own,
         dense: true,
         convergence: full,
+        looks: |_| DOP853.looks(),
         make: |system, _, _| Box::new(Explicit::new(system, DOP853)),
     },
 ];

@@ -23,6 +23,7 @@ use super::repeat::{self, Repetition};
 use super::settings::{Output, Settings};
 use super::signals::{Formula, Signals};
 use super::tables::Tables;
+use super::unseen::OverTime;
 use super::value::{Table, Value, key_path};
 use super::{GRAVITY, Model, SCHEMA, finish, measure, parameters, points, spinless, start, tables};
 use crate::record::Constraints;
@@ -57,7 +58,10 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
     compiler.joints(&description.joints, geometries, &mut assembly);
     compiler.each("start", &description.starts, |entry, start| start.build(&mut assembly, entry));
     compiler.build("drive", &description.drives, &mut assembly);
+    let motions = sink.over_time.take();
     compiler.build("force", &description.forces, &mut assembly);
+    let forces = sink.over_time.take().into_iter().map(|force| OverTime { is_motion: false, ..force });
+    let over_time = motions.into_iter().chain(forces).collect();
     compiler.each("event", &description.events, |entry, event| event.build(&mut assembly, entry));
     // Points of a bar with a fault may have their mass from it.
     if faulty_bars.is_empty() && unread.bars.is_empty() {
@@ -96,7 +100,7 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
             return Err(sink.finish().expect_err("there is a fault"));
         }
         let title = description.model.title.clone().unwrap_or_default();
-        let mut model = finish::finish(assembly, title, settings, output, bars);
+        let mut model = finish::finish(assembly, title, settings, output, bars, over_time);
         compiler.measures(description, &mut model);
         compiler.columns(description, &model);
         if sink.count() == 0 {

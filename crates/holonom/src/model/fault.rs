@@ -4,6 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::fmt;
 
 use super::expression::Program;
+use super::unseen::{Course, OverTime};
 use super::{knocks, synonyms};
 
 /// One thing that is wrong, where it is, and how to put it right.
@@ -79,6 +80,8 @@ pub struct Sink {
     pub motions: RefCell<Vec<(String, Program)>>,
     /// Motions that may have short peaks.
     pub peaked: RefCell<Vec<Program>>,
+    /// Parts of forces and motions that follow from time alone; of a repeated entry those of the first.
+    pub over_time: RefCell<Vec<OverTime>>,
     /// What looks like a slip and is no fault, with its path.
     notes: RefCell<Vec<(String, String)>>,
 }
@@ -107,6 +110,14 @@ impl Sink {
         let mut motions = self.motions.borrow_mut();
         if motions.last().is_none_or(|(known, _)| *known != path) {
             motions.push((path, formula.clone()));
+        }
+    }
+
+    /// Records what follows from time alone, as a motion, once for each path.
+    pub fn over_time(&self, path: String, courses: impl FnOnce() -> Vec<Course>) {
+        let mut known = self.over_time.borrow_mut();
+        if known.last().is_none_or(|last| last.path != path) {
+            known.extend(courses().into_iter().map(|course| OverTime { path: path.clone(), course, is_motion: true }));
         }
     }
 

@@ -3,12 +3,20 @@
 use super::assembly::{self, Assembly, Axes};
 use super::bodies::frame::Frame;
 use super::bodies::nodes::Member;
+use super::unseen::OverTime;
 use super::{BarInfo, BodyInfo, Model, Output, PointInfo, RigidBody, Settings, joints};
 use crate::record::{Channels, PointKind, RecordedEffort, RecordedJoint, RecordedPoint, Scene, SceneBody, ScenePoint};
 use crate::system::Place;
 
 /// Puts together what has been read without a fault.
-pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, output: Output, bars: Vec<BarInfo>) -> Model {
+pub(super) fn finish(
+    assembly: Assembly<'_>,
+    title: String,
+    settings: Settings,
+    output: Output,
+    bars: Vec<BarInfo>,
+    over_time: Vec<OverTime>,
+) -> Model {
     let notes = assembly.sink.notes();
     let Assembly {
         mut builder,
@@ -81,6 +89,7 @@ pub(super) fn finish(assembly: Assembly<'_>, title: String, settings: Settings, 
         bodies,
         joints,
         notes,
+        over_time,
         frames,
     }
 }

@@ -47,6 +47,7 @@ mod synonyms;
 mod tables;
 #[cfg(test)]
 mod tests;
+mod unseen;
 mod value;
 mod written;
 
@@ -134,6 +135,7 @@ pub struct Model {
     pub channels: Channels,
     /// What looks like a slip and was taken all the same, each with its place in the description.
     pub notes: Vec<String>,
+    over_time: Vec<unseen::OverTime>,
     frames: Vec<Frame>,
 }
 

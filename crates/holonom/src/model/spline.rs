@@ -67,6 +67,11 @@ impl Spline {
         Self { knots, values, bends, periodic: true }
     }
 
+    /// Where its points are.
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
     /// The value at `s`, with whatever derivatives the number carries.
     pub fn evaluate<N: Number>(&self, s: N) -> N {
         let (k, s) = self.interval(s);

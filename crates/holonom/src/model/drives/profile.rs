@@ -9,6 +9,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Field, Keys, List, Number};
 use crate::model::key::Shape;
 use crate::model::spline::Spline;
+use crate::model::unseen::Course;
 use crate::model::value::Value;
 use crate::system::Signal;
 
@@ -109,7 +110,11 @@ impl Profile {
     pub(super) fn signal(&self, entry: &Entry<'_>, key: &str) -> Read<Arc<dyn Signal>> {
         let signal: Arc<dyn Signal> = match self {
             Self::Formula(formula) => Arc::new(TimeProgram(formula.formula(entry, key, &["t"])?)),
-            Self::Table(table) => Arc::new(entry.within(key, table, |inner| table.spline(inner))?),
+            Self::Table(table) => {
+                let spline = entry.within(key, table, |inner| table.spline(inner))?;
+                entry.sink.over_time(entry.path_of(key.into()), || vec![Course::Table(spline.clone())]);
+                Arc::new(spline)
+            }
         };
         let start = signal.at(0.0);
         if start.iter().any(|value| !value.is_finite()) {

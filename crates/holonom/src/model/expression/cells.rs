@@ -44,6 +44,17 @@ impl Program {
         Self { room: kept.len() + most, ops: ops.into(), kept: kept.into() }
     }
 
+    /// The last operations of the numbers that one takes, from the last number to the first.
+    pub(super) fn operands(&self, k: usize, begins: &[usize]) -> Vec<usize> {
+        let mut end = k;
+        let before = |_| {
+            let last = end - 1;
+            end = begins[last];
+            last
+        };
+        (0..self.ops[k].takes()).map(before).collect()
+    }
+
     /// Appends some of its operations, which begin as in `begins`; what they find kept is worked out where it is first needed.
     pub(super) fn append(&self, range: Range<usize>, begins: &[usize], out: &mut Vec<Op>) {
         for op in &self.ops[range] {

@@ -11,8 +11,8 @@ mod external;
 mod functions;
 mod lex;
 mod names;
+mod of_time;
 mod parse;
-mod switches;
 #[cfg(test)]
 mod tests;
 
@@ -211,11 +211,6 @@ impl Program {
     /// How many variables it needs: one more than the largest number of one.
     pub fn variables(&self) -> usize {
         self.ops.iter().map(|op| if let Op::Variable(k) = op { k + 1 } else { 0 }).max().unwrap_or(0)
-    }
-
-    /// The expression t − `time`.
-    pub fn since(time: f64) -> Self {
-        Self::new(vec![Op::Variable(0), Op::Constant(time), Op::Sub], Vec::new())
     }
 
     /// The value for values of the variables. Nothing is allocated but for more numbers at once than [`NUMBERS`].

@@ -225,3 +225,19 @@ fn floor_and_mod_jump_where_they_are_seen_to() {
     }
     assert!(corners[0] * corners[2] < 0.0 && corners[1] * corners[3] < 0.0, "{corners:?}");
 }
+
+#[test]
+fn parts_of_time_are_the_largest_that_read_nothing_else() {
+    for (text, expected) in [
+        ("2*sin(t) + x", vec!["2*sin(t)"]),
+        ("x*sin(t) - max(cos(t), x)", vec!["sin(t)", "cos(t)"]),
+        ("(x + t^2) + exp(-t)", vec!["t^2", "exp(-t)"]),
+        ("sin(t)/(1 + t)", vec!["sin(t)/(1 + t)"]),
+        ("3 + x*2", vec![]),
+        ("4", vec![]),
+    ] {
+        let parse = |text: &str, variables: &[&str]| Program::parse(text, variables, &Scope::default()).unwrap();
+        let known: Vec<Program> = expected.iter().map(|part| parse(part, &["t"])).collect();
+        assert_eq!(parse(text, &["x", "t"]).parts_of_time(1), known, "{text}");
+    }
+}

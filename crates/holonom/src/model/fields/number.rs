@@ -2,6 +2,7 @@ use super::{Field, Shape};
 use crate::model::entry::{Entry, Spot};
 use crate::model::expression::{Names, Nothing, Program};
 use crate::model::fault::Read;
+use crate::model::unseen::Course;
 use crate::model::value::Value;
 
 /// A number, or a formula over parameters and, where a key says so, other variables.
@@ -136,9 +137,11 @@ impl Number {
             Self::Given(_) => return self.number(entry, at).map(Program::constant),
             Self::Formula(text) => text,
         };
-        let program = program(text, entry, at.into(), variables, names)?;
+        let at = at.into();
+        let program = program(text, entry, at, variables, names)?;
         if let Some(t) = variables.iter().position(|name| *name == "t") {
             entry.sink.switches.borrow_mut().extend(program.switches(t));
+            entry.sink.over_time(entry.path_of(at), || program.parts_of_time(t).into_iter().map(Course::Formula).collect());
         }
         Ok(program)
     }

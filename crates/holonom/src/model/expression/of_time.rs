@@ -1,4 +1,4 @@
-//! Where expressions jump or have kinks at known times.
+//! Parts of a formula that follow from time alone.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -33,6 +33,48 @@ impl Program {
             }
         }
         found
+    }
+
+    /// The largest parts of it that are formulas of the variable `t` and of nothing else, as programs of one variable; none that calls functions of
+    /// a program, which may take long.
+    pub fn parts_of_time(&self, t: usize) -> Vec<Self> {
+        let (begins, mut found) = (begins(&self.ops), Vec::new());
+        // Whether what each operation leaves depends on nothing but t, and what is kept.
+        let (mut is_own, mut of_kept) = (Vec::<bool>::new(), vec![false; self.kept.len()]);
+        for (k, op) in self.ops.iter().enumerate() {
+            let operands = self.operands(k, &begins);
+            let own = match op {
+                Op::Variable(variable) => *variable == t,
+                Op::OfMany(..) => false,
+                Op::Kept(cell) => of_kept[*cell],
+                _ => operands.iter().all(|&last| is_own[last]),
+            };
+            if let Op::Keep(cell) = op {
+                of_kept[*cell] = own;
+            }
+            if !own {
+                let parts = operands.iter().rev().filter(|&&last| is_own[last]);
+                found.extend(parts.filter_map(|&last| self.of_time(t, begins[last]..last + 1, &begins, &[])));
+            }
+            is_own.push(own);
+        }
+        if is_own.last() == Some(&true) {
+            found.extend(self.of_time(t, 0..self.ops.len(), &begins, &[]));
+        }
+        found
+    }
+
+    /// The expression t − `time`.
+    pub fn since(time: f64) -> Self {
+        Self::new(vec![Op::Variable(0), Op::Constant(time), Op::Sub], Vec::new())
+    }
+
+    /// The time at which it is zero, where it is t − that time.
+    pub fn as_since(&self) -> Option<f64> {
+        match self.ops[..] {
+            [Op::Variable(0), Op::Constant(time), Op::Sub] => Some(time),
+            _ => None,
+        }
     }
 
     /// A program of these operations and of `last` ones, where they depend on the variable `t` alone.

@@ -1,0 +1,239 @@
+//! What equal steps do not see of forces and motions that are formulas or tables of time: what happens within a step, and what is nearly the same in
+//! every step, as 100 Hz are in steps of 0.01 s.
+
+use super::bodies::short;
+use super::expression::{Program, TimeProgram};
+use super::spline::Spline;
+use super::{Model, knocks};
+use crate::simulation::Method;
+use crate::system::zeros;
+
+/// Most steps that are looked at, evenly over the run, and as many of those in which something jumps or has a peak.
+const MOST_STEPS: usize = 2000;
+
+/// Most places in a step of which its mean is found.
+const MOST_PLACES: usize = 256;
+
+/// To this share of how far a function goes in a step its mean is found.
+const MEAN: f64 = 1e-4;
+
+/// Where a step is divided first: not evenly, so that nothing has the same period.
+const DIVISIONS: [f64; 6] = [0.0, 0.137, 0.382, 0.55, 0.791, 1.0];
+
+/// Share of how far a function goes in the run that the mean over a step may be missed by.
+const MISSED: f64 = 0.1;
+
+/// How far a function goes over its largest value that is round-off.
+const ROUNDED: f64 = 1e-9;
+
+/// How far a function goes in the run times this is told as zero.
+const SMALL: f64 = 1e-3;
+
+/// Switches of a formula from which on their zeros are not looked for one by one.
+const MANY_SWITCHES: usize = 20;
+
+/// Shares of the step that may see what it does not.
+const FINER: [f64; 9] = [0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3];
+
+/// Most that are named.
+const MOST_NAMED: usize = 5;
+
+/// A part of a force or of a motion that follows from time alone.
+#[derive(Clone, Debug)]
+pub(crate) struct OverTime {
+    /// Where it is in the description.
+    pub path: String,
+    pub course: Course,
+    /// Whether it is a motion, of which steps see where it is at their ends.
+    pub is_motion: bool,
+}
+
+/// How it is told.
+#[derive(Clone, Debug)]
+pub(crate) enum Course {
+    Formula(Program),
+    Table(Spline),
+}
+
+impl Course {
+    fn at(&self, t: f64) -> f64 {
+        match self {
+            Self::Formula(program) => program.evaluate(&[t]),
+            Self::Table(spline) => spline.evaluate(t),
+        }
+    }
+
+    /// The times before `end` (s) at which it jumps, or has a kink or a short peak, as far as they are known; in order.
+    fn bends(&self, end: f64) -> Vec<f64> {
+        let mut times = match self {
+            Self::Table(spline) => spline.knots().to_vec(),
+            Self::Formula(program) => {
+                let switches = program.switches(0);
+                let are_many = switches.iter().filter(|switch| switch.as_since().is_none()).count() > MANY_SWITCHES;
+                let zeros = |switch: Program| match switch.as_since() {
+                    Some(time) => vec![time],
+                    None if are_many => Vec::new(),
+                    None => zeros(&TimeProgram(switch), end),
+                };
+                let peaks = if knocks::may_have(program) { knocks::times(program, end) } else { Vec::new() };
+                switches.into_iter().flat_map(zeros).chain(peaks).collect()
+            }
+        };
+        times.retain(|t| *t > 0.0 && *t < end);
+        times.sort_by(f64::total_cmp);
+        times
+    }
+}
+
+/// A step as it is: the function at its ends, its mean, and what a method takes for that.
+#[derive(Clone, Copy)]
+struct Seen {
+    number: usize,
+    ends: [f64; 2],
+    mean: f64,
+    taken: f64,
+}
+
+/// A step, or two, of which the method takes something else than there is.
+struct Missed {
+    /// Where it begins and ends, s.
+    times: [f64; 2],
+    mean: f64,
+    taken: f64,
+}
+
+impl Model {
+    /// What a method with equal steps of length `step` (s) up to `end` (s) does not see of forces and motions over time, with the step that would.
+    pub fn unseen(&self, method: &Method, step: f64, end: f64) -> Vec<String> {
+        if method.accuracy.is_some() {
+            return Vec::new();
+        }
+        let looks = (method.integrator.looks)(&method.parameters);
+        let note = |part: &OverTime| {
+            // Rows hold at the ends of steps, and at what stages there are.
+            let ends = [[0.0, 0.5], [1.0, 0.5]];
+            let looks = if part.is_motion && looks.len() == 1 { &ends[..] } else { &looks[..] };
+            let bends = part.course.bends(end);
+            let missed = first_missed(&part.course, &bends, looks, step, end)?;
+            let mut finer = FINER.iter().map(|share| share * step);
+            let cure = match finer.find(|step| first_missed(&part.course, &bends, looks, *step, end).is_none()) {
+                Some(step) => format!("a step of {} s sees it, and so do steps by accuracy", short(step)),
+                None => "steps by accuracy end where it changes".into(),
+            };
+            let Missed { times: [from, to], mean, taken } = missed;
+            Some(format!(
+                "{}: steps of {} s do not see what this does within them: from {} s to {} s its mean is {} and is taken to be {} ({cure})",
+                part.path,
+                short(step),
+                short(from),
+                short(to),
+                short(mean),
+                short(taken)
+            ))
+        };
+        let mut notes: Vec<String> = Vec::new();
+        for part in &self.over_time {
+            let is_new = notes.iter().all(|known| !known.starts_with(&format!("{}:", part.path)));
+            if notes.len() < MOST_NAMED && is_new {
+                notes.extend(note(part));
+            }
+        }
+        notes
+    }
+}
+
+/// The first step of which the mean is missed by more than a jump between its ends would explain.
+fn first_missed(course: &Course, bends: &[f64], looks: &[[f64; 2]], step: f64, end: f64) -> Option<Missed> {
+    let count = (end / step * (1.0 - ROUNDED)).ceil().max(1.0) as usize;
+    let spread = |most: usize, all: usize| (0..most.min(all)).map(move |k| (k as f64 * all as f64 / most.min(all) as f64) as usize);
+    let bending = spread(MOST_STEPS, bends.len()).map(|k| (bends[k] / step) as usize);
+    let mut numbers: Vec<usize> = spread(MOST_STEPS, count).chain(bending).flat_map(|k| [k.saturating_sub(1), k, k + 1]).collect();
+    numbers.retain(|k| *k < count);
+    numbers.sort_unstable();
+    numbers.dedup();
+    let steps: Vec<Seen> = numbers.into_iter().map(|number| Seen::of(course, bends, looks, step, number)).collect();
+    // How far it goes beside the straight line through its ends: a motion may go on for ever.
+    let [begin, last] = [0.0, end].map(|t| course.at(t));
+    let slope = (last - begin) / end;
+    let far = |seen: &Seen| {
+        let t = seen.number as f64 * step;
+        let beside = |later: f64, value: f64| (value - begin - slope * (t + later)).abs();
+        beside(0.0, seen.ends[0]).max(beside(step, seen.ends[1])).max(beside(0.5 * step, seen.mean))
+    };
+    let reach = steps.iter().map(far).filter(|far| far.is_finite()).fold(0.0, f64::max);
+    let largest = steps.iter().map(|seen| seen.mean.abs()).filter(|mean| mean.is_finite()).fold(0.0, f64::max);
+    if reach <= ROUNDED * largest {
+        return None;
+    }
+    let is_missed = |seen: &Seen, length: f64| {
+        let jump = seen.ends[1] - seen.ends[0] - slope * length;
+        (seen.taken - seen.mean).abs() - jump.abs() > MISSED * reach
+    };
+    let alone = steps.iter().copied().find(|seen| is_missed(seen, step)).map(|seen| (seen, step));
+    // What happens beside the end of a step is seen by both or by none.
+    let pairs = || steps.windows(2).filter(|pair| pair[1].number == pair[0].number + 1).map(|pair| pair[0].joined(&pair[1]));
+    let (seen, length) = alone.or_else(|| pairs().find(|seen| is_missed(seen, 2.0 * step)).map(|seen| (seen, 2.0 * step)))?;
+    let begin = seen.number as f64 * step;
+    let known = |value: f64| if value.abs() < SMALL * reach { 0.0 } else { value };
+    Some(Missed { times: [begin, begin + length], mean: known(seen.mean), taken: known(seen.taken) })
+}
+
+impl Seen {
+    /// This step and the next as one.
+    fn joined(&self, next: &Self) -> Self {
+        let both = |of: fn(&Self) -> f64| 0.5 * (of(self) + of(next));
+        Self { number: self.number, ends: [self.ends[0], next.ends[1]], mean: both(|seen| seen.mean), taken: both(|seen| seen.taken) }
+    }
+
+    fn of(course: &Course, bends: &[f64], looks: &[[f64; 2]], step: f64, number: usize) -> Self {
+        let [from, to] = [number, number + 1].map(|k| k as f64 * step);
+        let ends = [course.at(from), course.at(to)];
+        // What jumps at an end has one value there.
+        let at = |share: f64| if share == 1.0 { ends[1] } else { course.at(from + share * step) };
+        let taken = looks.iter().map(|[share, weight]| weight * at(*share)).sum();
+        let inside = &bends[bends.partition_point(|t| *t <= from)..bends.partition_point(|t| *t < to)];
+        let mut places: Vec<f64> = DIVISIONS.iter().map(|share| from + share * (to - from)).chain(inside.iter().copied()).collect();
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        let pieces: Vec<Piece> = places.windows(2).map(|ends| Piece::new(course, [ends[0], ends[1]])).collect();
+        let values = pieces.iter().flat_map(|piece| piece.values);
+        let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(value), most.max(value)));
+        let width = MEAN * (most - least) * (to - from);
+        let mut left = MOST_PLACES;
+        let integral: f64 = pieces.into_iter().map(|piece| piece.integral(course, width, &mut left)).sum();
+        Self { number, ends, mean: integral / (to - from), taken }
+    }
+}
+
+/// A part of a step, with the values at its ends and in its middle.
+struct Piece {
+    ends: [f64; 2],
+    values: [f64; 3],
+}
+
+impl Piece {
+    fn new(course: &Course, ends: [f64; 2]) -> Self {
+        let middle = 0.5 * (ends[0] + ends[1]);
+        Self { ends, values: [ends[0], middle, ends[1]].map(|t| course.at(t)) }
+    }
+
+    /// By Simpson's rule.
+    fn rule(&self) -> f64 {
+        (self.ends[1] - self.ends[0]) / 6.0 * (self.values[0] + 4.0 * self.values[1] + self.values[2])
+    }
+
+    /// The same on halves until both are as near as `width`, at no more than as many places as are `left`.
+    fn integral(self, course: &Course, width: f64, left: &mut usize) -> f64 {
+        let ([begin, end], [first, middle, last]) = (self.ends, self.values);
+        let half = 0.5 * (begin + end);
+        let [early, late] = [0.5 * (begin + half), 0.5 * (half + end)].map(|t| course.at(t));
+        let halves =
+            [Self { ends: [begin, half], values: [first, early, middle] }, Self { ends: [half, end], values: [middle, late, last] }];
+        let found = halves[0].rule() + halves[1].rule();
+        *left = left.saturating_sub(2);
+        if *left > 0 && (found - self.rule()).abs() > width {
+            return halves.into_iter().map(|half| half.integral(course, width, left)).sum();
+        }
+        found
+    }
+}
