@@ -156,6 +156,25 @@ fn pulses_in_formulas_are_seen() {
     }
 }
 
+/// What jumps at the very start, at which it is a third thing, pushes from there on: 1 kg goes t² far under 2 N.
+#[test]
+fn jumps_at_the_start_are_behind_it() {
+    for (force, way) in [("2*sign(t)", 1.0), ("2*step(t)", 1.0), ("2*sign(t) - 4*step(t - 0.5)", 0.5)] {
+        let text = format!(
+            "gravity = [0, 0, 0]\n[point.m]\nmass = 1\nposition = [0, 0, 0]\n[force.push]\ntype = \"expression\"\npoint = \"m\"\nforce = [\"{force}\", 0, 0]\n"
+        );
+        let model = model(&text);
+        for method in ["conserving-ggl", "trapezoidal-projected", "radau", "bdf", "dopri5", "dop853"] {
+            let choice = Choice { method: Some(method.into()), accuracy: Some(1e-6), ..Choice::default() };
+            let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&choice).unwrap(), 0.01).unwrap();
+            let status = simulation.run(1.0, &mut |_: &Simulation| Verdict::GoOn);
+            assert_eq!(status, Status::Completed, "{force} by {method}");
+            let off = simulation.state().x[0] - way;
+            assert!(off.abs() < 1e-9, "{force} by {method}: off by {off}");
+        }
+    }
+}
+
 /// Windows of bars that come to lie in a line, where a second way opens and the motion goes on all the same.
 #[test]
 fn steps_by_accuracy_pass_singular_positions() {

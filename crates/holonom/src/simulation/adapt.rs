@@ -28,6 +28,10 @@ impl Simulation {
             self.pilot = Some(pilot);
             return;
         }
+        if self.system.is_at_switch(self.state.t) {
+            // At the switch itself forces may be others than behind it, as those by `sign` are.
+            self.go_behind();
+        }
         pilot.end = end;
         pilot.v.copy_from_slice(&self.shown_v);
         pilot.control.begin(&self.state, &pilot.v, end - self.state.t, self.work.scales.length);
@@ -233,11 +237,17 @@ impl Simulation {
     fn pass_switch(&mut self, pilot: &mut Pilot) -> bool {
         let has_switch = pilot.switches.contains(&self.state.t);
         if has_switch {
-            self.state.t = self.state.t.next_up().next_up();
+            self.go_behind();
             pilot.sight = self.sight();
-            self.turn(pilot);
+            pilot.control.begin_anew(&self.state, &pilot.v);
         }
         has_switch
+    }
+
+    /// Goes to just behind the present time, and begins anew there.
+    fn go_behind(&mut self) {
+        self.state.t = self.state.t.next_up().next_up();
+        self.begin_anew();
     }
 
     /// Goes on from here as at a start.

@@ -13,6 +13,11 @@ impl System {
         times.dedup();
         times
     }
+
+    /// Whether a switch is at zero at a time (s).
+    pub(crate) fn is_at_switch(&self, t: f64) -> bool {
+        self.switches.iter().any(|switch| switch.at(t)[0] == 0.0)
+    }
 }
 
 /// Times of a run at which a function of time changes its sign, each a rounding before.
