@@ -8,9 +8,14 @@ use common::{folder, holonom, text};
 
 /// All that a run of a model says, and its exit status.
 fn run(model: &str) -> (String, Option<i32>) {
+    command(model, "run model.toml --no-report")
+}
+
+/// The same of a command.
+fn command(model: &str, words: &str) -> (String, Option<i32>) {
     let folder = folder();
     fs::write(folder.path().join("model.toml"), model).unwrap();
-    let output = holonom(&folder, "run model.toml --no-report");
+    let output = holonom(&folder, words);
     (format!("{}{}", text(&output.stderr), text(&output.stdout)), output.status.code())
 }
 
@@ -75,7 +80,13 @@ fn two_drives_of_one_freedom_are_both_named() {
     let said = "`motor-b` asks for a motion that the other constraints do not allow: it leads the same freedom as `motor-a`";
     says(&two_motors("-2*t^2"), &[said, "stopped at"], 3);
     says(&two_motors("-2*t"), &["error: ", "`motor-b` leads the same freedom as `motor-a`"], 2);
-    says(&two_motors("-t^2"), &["note: `motor-a` and `motor-b` lead the same freedom", "completed"], 0);
+    let note = "note: `motor-a` and `motor-b` lead the same freedom";
+    says(&two_motors("-t^2"), &[note, "completed"], 0);
+    // What does not agree is told of as a conflict alone.
+    for (profile, is_noted) in [("-t^2", true), ("-2*t^2", false)] {
+        let (said, code) = command(&two_motors(profile), "check model.toml");
+        assert!(code == Some(0) && said.contains(note) == is_noted, "{said}");
+    }
 }
 
 /// A triangle of two bars on the ground.
@@ -113,6 +124,14 @@ fn friction_that_is_hardly_smoothed_is_named() {
     };
     says(&block("1e-9"), &["stopped at", "`rust` turns round within 1.0e-9 m/s or rad/s", "larger `speed`"], 3);
     says(&block("1e-3"), &["completed"], 0);
+    // Under its weight a flap comes to rest between two swings.
+    let flap = "plane = \"xy\"\ngravity = [0, -9.81]\n[body.flap]\nmass = 1\ninertia = 0.1\nposition = [0.5, 0]\n\
+                [joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"flap\"]\nat = [0, 0]\n\
+                [force.rust]\ntype = \"friction\"\njoint = \"hinge\"\neffort = 3\nspeed = 1e-9\n[simulation]\nend = 3\nstep = 0.01\n";
+    for method in ["conserving-ggl", "radau"] {
+        let (said, code) = command(flap, &format!("run model.toml --no-report --accuracy 1e-6 --method {method}"));
+        assert!(code == Some(3) && said.contains("`rust` turns round within 1.0e-9 m/s or rad/s"), "{said}");
+    }
 }
 
 #[test]

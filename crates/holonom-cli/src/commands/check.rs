@@ -13,7 +13,7 @@ use crate::failure::Failure;
 use crate::found::Found;
 use crate::load::{self, Loaded};
 use crate::message::{listed, unused_parameters};
-use crate::notes::{changes_in_words, nowhere, open_columns};
+use crate::notes::{changes_in_words, nowhere, open_columns, rivals};
 use crate::options::CheckArguments;
 use crate::table::{list, short};
 
@@ -179,7 +179,9 @@ impl Held {
             involved = free.rows().into_iter().map(|row| model.system.row_names()[row].clone()).collect();
             not_unique = open_columns(&free, &model.channels, &system.in_world(x), model);
         }
-        Ok(Self { rank, size, involved, not_unique, conflict, notes: notes(model) })
+        let mut notes = notes(model);
+        notes.extend(rivals(&mut simulation, &rank).filter(|_| conflict.is_none()));
+        Ok(Self { rank, size, involved, not_unique, conflict, notes })
     }
 }
 

@@ -28,7 +28,9 @@ impl Simulation {
         }
         let what = format!("{} at t = {t:.6} s{row}", failure.describe(&self.system));
         // What rows are to blame for no force is.
-        let may_be_sharp = matches!(failure, Failure::NotConverged { .. } | Failure::Crawling { .. }) && row.is_empty();
+        let of_steps = matches!(failure, Failure::NotConverged { .. } | Failure::Crawling { .. });
+        let by_accuracy = self.pilot.is_some() && matches!(failure, Failure::JumpsBack { .. } | Failure::Broken { .. });
+        let may_be_sharp = (of_steps || by_accuracy) && row.is_empty();
         if may_be_sharp && let Some((force, speed)) = self.sharp_force() {
             return format!(
                 "{what}; `{force}` turns round within {speed:.1e} m/s or rad/s, which steps jump across: give friction a larger `speed`"
