@@ -11,6 +11,10 @@ use crate::system::zeros;
 /// Most steps that are looked at, evenly over the run, and as many of those in which something jumps or has a peak.
 const MOST_STEPS: usize = 2000;
 
+/// The same of all functions together, and fewest of each where there are very many.
+const ALL_STEPS: usize = 100_000;
+const FEWEST_STEPS: usize = 20;
+
 /// Most places in a step of which its mean is found.
 const MOST_PLACES: usize = 256;
 
@@ -109,14 +113,15 @@ impl Model {
             return Vec::new();
         }
         let looks = (method.integrator.looks)(&method.parameters);
+        let most = (ALL_STEPS / self.over_time.len().max(1)).clamp(FEWEST_STEPS, MOST_STEPS);
         let note = |part: &OverTime| {
             // Rows hold at the ends of steps, and at what stages there are.
             let ends = [[0.0, 0.5], [1.0, 0.5]];
             let looks = if part.is_motion && looks.len() == 1 { &ends[..] } else { &looks[..] };
             let bends = part.course.bends(end);
-            let missed = first_missed(&part.course, &bends, looks, step, end)?;
+            let missed = first_missed(&part.course, &bends, looks, most, [step, end])?;
             let mut finer = FINER.iter().map(|share| share * step);
-            let cure = match finer.find(|step| first_missed(&part.course, &bends, looks, *step, end).is_none()) {
+            let cure = match finer.find(|step| first_missed(&part.course, &bends, looks, most, [*step, end]).is_none()) {
                 Some(step) => format!("a step of {} s sees it, and so do steps by accuracy", short(step)),
                 None => "steps by accuracy end where it changes".into(),
             };
@@ -142,12 +147,12 @@ impl Model {
     }
 }
 
-/// The first step of which the mean is missed by more than a jump between its ends would explain.
-fn first_missed(course: &Course, bends: &[f64], looks: &[[f64; 2]], step: f64, end: f64) -> Option<Missed> {
+/// The first of at most so many steps, and of as many that bend, whose mean is missed by more than a jump between its ends would explain.
+fn first_missed(course: &Course, bends: &[f64], looks: &[[f64; 2]], most: usize, [step, end]: [f64; 2]) -> Option<Missed> {
     let count = (end / step * (1.0 - ROUNDED)).ceil().max(1.0) as usize;
-    let spread = |most: usize, all: usize| (0..most.min(all)).map(move |k| (k as f64 * all as f64 / most.min(all) as f64) as usize);
-    let bending = spread(MOST_STEPS, bends.len()).map(|k| (bends[k] / step) as usize);
-    let mut numbers: Vec<usize> = spread(MOST_STEPS, count).chain(bending).flat_map(|k| [k.saturating_sub(1), k, k + 1]).collect();
+    let spread = |all: usize| (0..most.min(all)).map(move |k| (k as f64 * all as f64 / most.min(all) as f64) as usize);
+    let bending = spread(bends.len()).map(|k| (bends[k] / step) as usize);
+    let mut numbers: Vec<usize> = spread(count).chain(bending).flat_map(|k| [k.saturating_sub(1), k, k + 1]).collect();
     numbers.retain(|k| *k < count);
     numbers.sort_unstable();
     numbers.dedup();
