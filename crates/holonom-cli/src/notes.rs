@@ -104,11 +104,11 @@ pub fn lost_energy(simulation: &Simulation) -> Option<String> {
     })
 }
 
-/// Share of itself by which a rotation lags from which on that is said.
+/// Share of itself by which a rotation lags or leads from which on that is said.
 const LAG: f64 = 0.01;
 
-/// That steps are long for what spins: schemes of order 2 turn it by a twelfth of the cube of the angle too little in each (methods §8.1), so that
-/// angles come on by less than their rates say.
+/// That steps are long for what spins: schemes of order 2 turn it by a twelfth of the cube of the angle too little in each (methods §8.1), and RATTLE
+/// by a sixth of that too much, so that angles come on by less or more than their rates say.
 pub fn long_turns(model: &Model, method: &Method, recording: &Recording) -> Option<String> {
     if method.accuracy.is_some() || method.order() > 2 {
         return None;
@@ -122,11 +122,12 @@ pub fn long_turns(model: &Model, method: &Method, recording: &Recording) -> Opti
         is_spin.then(|| 1.0 - came / spans.sum::<f64>())
     };
     let lags = model.system.gauges().iter().filter(|gauge| gauge.ends_with("angle")).filter_map(|gauge| Some((gauge, lag(gauge)?)));
-    let (name, lag) = lags.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    (lag > LAG).then(|| {
+    let (name, lag) = lags.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    let [less, lags] = if lag > 0.0 { ["less", "lags"] } else { ["more", "leads"] };
+    (lag.abs() > LAG).then(|| {
         format!(
-            "`{name}` comes on by {:.0} % less than its rate says: a method of order 2 lags where steps are long for what spins (a shorter step, or gauss)",
-            100.0 * lag
+            "`{name}` comes on by {:.0} % {less} than its rate says: a method of order 2 {lags} where steps are long for what spins (a shorter step, or gauss)",
+            100.0 * lag.abs()
         )
     })
 }

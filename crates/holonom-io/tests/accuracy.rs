@@ -404,3 +404,13 @@ fn a_weak_damper_leaves_the_error() {
         assert!(error <= 10.0 * accuracy, "{accuracy:e}: {error:e} m");
     }
 }
+
+#[test]
+fn accuracies_below_round_off_are_refused() {
+    let resolve = |accuracy| Method::resolve(&Choice { accuracy: Some(accuracy), ..Choice::default().named("radau") });
+    assert!(resolve(1e-13).is_ok());
+    for accuracy in [1e-15, 0.0, -1e-6, f64::NAN, f64::INFINITY] {
+        let error = resolve(accuracy).err().expect("no such accuracy").to_string();
+        assert!(error.contains("1e-13"), "{error}");
+    }
+}

@@ -150,6 +150,9 @@ pub(super) fn order(choice: &Choice, integrator: &Entry) -> Result<u8, MethodErr
     }
 }
 
+/// The least accuracy that makes sense: steps by thousands each round to 2e-16.
+const FINEST: f64 = 1e-13;
+
 /// The accuracy asked for, if the integrator can estimate its errors; `is_unstable` for want of projections.
 pub(super) fn accuracy(choice: &Choice, integrator: &Entry, order: u8, is_unstable: bool) -> Result<Option<f64>, MethodError> {
     let Some(accuracy) = choice.accuracy else { return Ok(None) };
@@ -169,7 +172,8 @@ pub(super) fn accuracy(choice: &Choice, integrator: &Entry, order: u8, is_unstab
         let name = if integrator.orders.len() > 1 { format!("{name} of order {order}") } else { name.into() };
         return Err(MethodError::NoEstimate { integrator: name, partners });
     }
-    positive("accuracy", Some(accuracy), 0.0).map(Some)
+    let allowed = "a positive number from 1e-13 on: numbers have sixteen digits, and round-off adds up";
+    within("accuracy", Some(accuracy), 0.0, FINEST, f64::MAX, allowed).map(Some)
 }
 
 /// The fixed number of Newton iterations in a step, if one is asked for and can be kept.
