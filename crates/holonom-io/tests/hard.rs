@@ -473,7 +473,7 @@ fn windows_with_a_light_upright_pass_through_a_line() {
     }
 }
 
-/// Two links with springs under a load that follows the last, below the load at which they flutter (Ziegler 1952), hardly bent: what the load does along
+/// Two links with springs under a load that follows the last, below the load at which they flutter, hardly bent: what the load does along
 /// the rounding of places is far more than what moves.
 #[test]
 fn a_loaded_column_swings_by_next_to_nothing() {

@@ -158,14 +158,14 @@ fn passes(matrix: &mut impl LinearSystem, of: Passes, system: &System, work: &mu
     let mut before = [f64::INFINITY; 2];
     for count in 1..=of.most {
         let [taken, whole] = pass(matrix, system, work)?;
-        let matters = [whole[0].max(of.pushed), whole[1]];
-        if (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(of.leaves) <= of.open * matters[k]) {
+        if (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(of.leaves) <= of.open * whole[k]) {
             return Ok(End::Met);
         }
         let share = taken[1] / before[1];
         before = taken;
         if count % PASSES == 0 {
             let is_slow = share.is_nan() || share >= SLOWEST;
+            let matters = [whole[0].max(of.pushed), whole[1]];
             if (0..2).any(|k| taken[k] <= MATTERS * matters[k]) {
                 return Ok(if is_slow && taken[1] >= GROWS * whole[1] { End::Grows } else { End::Met });
             }

@@ -178,16 +178,13 @@ impl Judge {
         self.hold_energy([before.energy(), before.work], after, || self.energy_bound(h, [before, after], of_places, work))
     }
 
-    /// The size of what laws make of rounded positions, and of what the multipliers and the forces that do work do along them, J: also where hardly
-    /// anything moves.
+    /// The size of what laws make of rounded positions, and of what the forces that do work do along them, J: also where hardly anything moves.
     pub(super) fn of_places(&self, system: &System, work: &Workspace) -> f64 {
         if !self.holds_energy() {
             return 0.0;
         }
-        let scales = &work.scales;
-        let rows = work.lambda.iter().zip(&scales.gradient).map(|(lambda, g)| (lambda * g).abs()).sum::<f64>();
         let working = if work.is_worked_on() { energy::size_of_working_forces(system, work) } else { 0.0 };
-        energy::size(system, work, &work.end.x) + (rows + working) * scales.length
+        energy::size(system, work, &work.end.x) + working * work.scales.length
     }
 
     /// Looks at the energy after a nominal step, or so far, of length `h` (s): parts of it may each be round-off and add up to more.
@@ -275,7 +272,8 @@ impl Judge {
     fn energy_bound(&self, h: f64, [before, after]: [&Audit; 2], of_places: f64, work: &Workspace) -> f64 {
         let scales = &work.scales;
         let kinetic = before.kinetic.abs() + after.kinetic.abs();
-        let sizes = kinetic + of_places + (after.work - before.work).abs();
+        let rows = work.lambda.iter().zip(&scales.gradient).map(|(lambda, g)| (lambda * g).abs()).sum::<f64>() * scales.length;
+        let sizes = kinetic + of_places + (after.work - before.work).abs() + rows;
         ROUND_OFF * sizes + self.most_momentum(kinetic) * scales.length * 2.0 / h.abs() * (ROUNDED + self.tolerance)
     }
 
