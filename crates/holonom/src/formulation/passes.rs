@@ -68,8 +68,8 @@ pub(super) fn meet(matrix: &mut impl LinearSystem, system: &System, t: f64, work
     Ok(is_met(end, system, t, work))
 }
 
-/// The same for forces that are to be trusted, of which passes may leave the share `open`. Near a singular position accelerations are known where they are the same, but for little, at another
-/// place that meets the rows as well as numbers can, with the velocities that belong to it.
+/// The same for forces that are to be trusted, of which passes may leave the share `open`. Near a singular position accelerations are known where they
+/// are the same, but for little, at another place that meets the rows as well as numbers can, with the velocities that belong to it.
 pub(super) fn react(matrix: &mut impl LinearSystem, open: f64, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
     let level = std::mem::replace(&mut work.level, Level::ACCELERATION);
     let outcome = react_at_level(matrix, open, system, t, work);

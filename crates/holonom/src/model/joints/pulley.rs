@@ -69,10 +69,10 @@ impl Element for Pulley {
         let against = if self.crossed.unwrap_or(false) { 1.0 } else { -1.0 };
         // Wheels turn against each other, not the angles of joints that may be written either way; where axes are not parallel these are all there is.
         let seats = Seats::find(assembly, entry, [&first, &second])?;
-        let sign = against * seats.map_or(1.0, |Seats { senses: [a, b], .. }| a * b);
+        let sign = against * seats.as_ref().map_or(1.0, |Seats { senses: [a, b], .. }| a * b);
         let pretension = entry.optional("pretension", &self.pretension, |tension, entry, key| tension.not_negative(entry, key))?;
         if let Some(pretension) = pretension {
-            let seats = Seats::of(assembly, entry, "pretension", [&first, &second])?;
+            let seats = Seats::wanted(seats, entry, "pretension")?;
             let rise = if against > 0.0 { r1 + r2 } else { r1 - r2 };
             let distance = seats.distance;
             if distance <= rise.abs() {

@@ -29,11 +29,15 @@ const SKEW: f64 = 1e-6;
 impl Seats {
     /// Of joints that turn about parallel axes, or of one that turns and one that slides at right angles to that axis; `key` asks for them.
     pub fn of(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &'static str, coordinates: [&Coordinate; 2]) -> Read<Self> {
-        let none = |message| entry.refuse_key(key, message, format!("leave `{key}` out: then bearings do not feel the coupler"));
-        Self::find(assembly, entry, coordinates)?.map_err(none)
+        Self::wanted(Self::find(assembly, entry, coordinates)?, entry, key)
     }
 
-    /// The same, or why there are none.
+    /// Those that were found, which `key` asks for.
+    pub fn wanted(found: Result<Self, String>, entry: &Entry<'_>, key: &'static str) -> Read<Self> {
+        found.map_err(|message| entry.refuse_key(key, message, format!("leave `{key}` out: then bearings do not feel the coupler")))
+    }
+
+    /// Those of two joints, or why there are none.
     pub fn find(assembly: &Assembly<'_>, entry: &Entry<'_>, coordinates: [&Coordinate; 2]) -> Read<Result<Self, String>> {
         let infos: [&JointInfo; 2] = {
             let spot = |k| Spot { key: "joints", item: Some(k) };
