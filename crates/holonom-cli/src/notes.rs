@@ -104,6 +104,20 @@ pub fn lost_energy(simulation: &Simulation) -> Option<String> {
     })
 }
 
+/// That steps are too long for how forces without a potential change along the way, so that the energy is booked and yet wrong.
+pub fn unsure_work(simulation: &Simulation) -> Option<String> {
+    let (unsure, supply, name) = simulation.unsure_work()?;
+    (unsure > LOST * supply).then(|| {
+        format!(
+            "the work of forces without a potential may be wrong by {} J of the {} J that could move, most of it that of `{name}`: steps are long for \
+             how it changes along the way, and the balance cannot show that (a shorter step or an accuracy; a spring, a stop or an energy keeps its \
+             energy at any step)",
+            short(unsure),
+            short(supply)
+        )
+    })
+}
+
 /// Share of itself by which a rotation lags or leads from which on that is said.
 const LAG: f64 = 0.01;
 

@@ -283,6 +283,49 @@ fn output_chooses_columns_by_patterns() {
     }
 }
 
+/// A formula that is stiff beside the step makes energy that no balance shows: a ball that falls by 1 m comes up to 1 m, and no higher. A pulse of one
+/// step and a step that is short for what a controller does are well.
+#[test]
+fn work_that_steps_get_wrong_is_told() {
+    let folder = folder();
+    let ball = "[point.ball]\nmass = 1\nposition = [0, 0, 1]\n[force.floor]\ntype = \"expression\"\npoint = \"ball\"\n\
+                force = [0, 0, \"1e7*max(0, -z)\"]\n[measure.height]\nvalue = \"max(ball.z)\"\nunit = \"m\"\n[simulation]\nend = 5\nstep = 1e-3\n";
+    let rope = "plane = \"xz\"\n[point.load]\nmass = 2\nposition = [1, 0]\nvelocity = [0.6, 0]\n[force.rope]\ntype = \"rope\"\n\
+                between = [\"ground\", \"load\"]\nlength = \"1 + 0.2*sin(3*t)\"\nstiffness = 1e7\ndamping = 1000\n[simulation]\nend = 4\nstep = 0.01\n";
+    let held = |effort: &str| {
+        format!(
+            "[body.arm]\nmass = 1\ninertia = [0.01, 0.1, 0.1]\nposition = [1, 0, 0]\n[joint.pin]\ntype = \"revolute\"\nbetween = [\"ground\", \"arm\"]\n\
+             at = [0, 0, 0]\naxis = [0, 1, 0]\n[force.motor]\ntype = \"effort\"\njoint = \"pin\"\neffort = \"{effort}\"\n\
+             [simulation]\nend = 4\nstep = 0.01\n"
+        )
+    };
+    let notes = |model: &str, words: &str| {
+        fs::write(folder.path().join("model.toml"), model).unwrap();
+        text(&holonom(&folder, &format!("run model.toml --no-report --force --out a {words}")).stderr)
+    };
+    let told = |name: &str| format!(" J that could move, most of it that of `{name}`: steps are long for how it changes");
+    for method in ["conserving", "conserving-ggl", "midpoint"] {
+        let said = notes(ball, &format!("--method {method}"));
+        assert!(said.contains(&told("floor")), "{method}: {said}");
+        let said = notes(rope, &format!("--method {method}"));
+        assert!(said.contains(&told("rope")), "{method}: {said}");
+        for (model, words) in [
+            (ball, "--step 1e-4"),
+            (rope, "--step 1e-4"),
+            (&held("-200*(q - 1) - 20*q_rate"), ""),
+            (&held("100*(step(t - 0.5) - step(t - 0.51))"), ""),
+        ] {
+            let said = notes(model, &format!("--method {method} {words}"));
+            assert!(!said.contains("may be wrong"), "{method}: {said}");
+        }
+    }
+    // These damp it whatever the step is.
+    for method in ["conserving", "conserving-ggl"] {
+        let said = notes(&held("-2e4*(q - 1) - 2e3*q_rate"), &format!("--method {method}"));
+        assert!(!said.contains("may be wrong"), "{method}: {said}");
+    }
+}
+
 /// Steps that are long for what spins, and a method that loses much of the energy, are told beside figures that are all round-off.
 #[test]
 fn long_steps_are_told() {

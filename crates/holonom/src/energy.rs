@@ -2,7 +2,7 @@
 
 use crate::formulation::{Sampling, Stage, Workspace};
 use crate::linalg::largest;
-use crate::system::{Evaluation, InvariantId, System};
+use crate::system::{Evaluation, InvariantId, LawEntry, Response, System};
 
 /// Kinetic energy ½ vᵀ M v, J.
 pub fn kinetic(system: &System, v: &[f64]) -> f64 {
@@ -77,13 +77,7 @@ pub fn work_between(system: &System, stage: &Stage, work: &Workspace) -> f64 {
     let (n, dim, h) = (system.coordinates(), system.dim, stage.step);
     let mut sum = loads_along(system, work, |i| work.d[i]);
     for (law, response) in system.laws.iter().zip(&work.forces.responses).filter(|(law, _)| !law.law.conservative()) {
-        for (k, id) in law.invariants.iter().enumerate() {
-            let rise = match stage.sampling {
-                Sampling::Between => work.end.at.value[id.0 as usize] - work.start.at.value[id.0 as usize],
-                _ => h * system.along(&system.invariants.slots_of(*id), &system.slots.nodes, &work.sampled.at, &work.sampled.v),
-            };
-            sum -= response.force[k] * rise;
-        }
+        sum += work_of_law(system, law, response, stage, work);
     }
     for i in n..work.end.x.len() {
         sum += work.forces.sum[i] * (work.end.x[i] - work.start.x[i]);
@@ -107,6 +101,18 @@ pub fn work_between(system: &System, stage: &Stage, work: &Workspace) -> f64 {
             };
     }
     sum
+}
+
+/// Work of a law in such a step, from its response, J.
+pub(crate) fn work_of_law(system: &System, law: &LawEntry, response: &Response, stage: &Stage, work: &Workspace) -> f64 {
+    let of_invariant = |(id, force): (&InvariantId, &f64)| {
+        let rise = match stage.sampling {
+            Sampling::Between => work.end.at.value[id.0 as usize] - work.start.at.value[id.0 as usize],
+            _ => stage.step * system.along(&system.invariants.slots_of(*id), &system.slots.nodes, &work.sampled.at, &work.sampled.v),
+        };
+        -force * rise
+    };
+    law.invariants.iter().zip(&response.force).map(of_invariant).sum()
 }
 
 /// Power of everything that [`work_between`] counts, at a state with its accelerations, W. Needs the state sampled.

@@ -46,6 +46,11 @@ pub struct Damping {
 }
 
 impl Damping {
+    /// Whether the law takes its rates later than in the middle of the step.
+    pub(super) fn is_late(&self) -> bool {
+        self.late > 0.0
+    }
+
     /// Forces of a law between two positions, at the mean rate of the step or later, by values at its end.
     pub(super) fn respond(&self, law: &dyn Law, reach: Reach<'_>) -> Response {
         let mut out = Response::default();

@@ -57,6 +57,17 @@ pub struct Audit {
     rejected: u64,
     power: f64,
     penalty: Option<f64>,
+    unsure: Unsure,
+}
+
+/// What is not sure of the work of forces without a potential, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Unsure {
+    /// By how much it would be another by Simpson's rule, and the largest so far.
+    sum: f64,
+    largest: f64,
+    /// The force that differed most in one step, by its number, and by how much.
+    most: (usize, f64),
 }
 
 /// What was booked at the start of a nominal step.
@@ -125,6 +136,7 @@ impl Audit {
             rejected: 0,
             power,
             penalty,
+            unsure: Unsure::default(),
         };
         work.rate_violation(system, state.t);
         audit.phi_dot = norm(&work.rows);
@@ -232,7 +244,13 @@ impl Audit {
                 self.power = power;
                 done
             }
-            Work::Between(extra) => energy::work_between(system, &taken.stage, work) + extra,
+            Work::Between(extra) => {
+                // Steps by accuracy are as long as that allows.
+                if work.estimate.allowed == 0.0 {
+                    self.doubt(work.unsure_work(system, &taken.stage));
+                }
+                energy::work_between(system, &taken.stage, work) + extra
+            }
             Work::Sum(done) => done,
         };
         system.constraint_values(&work.end.at, t, &mut work.phi);
@@ -245,6 +263,22 @@ impl Audit {
         self.work += done;
         self.kinetic = kinetic;
         Accounts { potential }
+    }
+
+    /// Books by how much the work of a step would be another, and of which force most.
+    fn doubt(&mut self, (by, most): (f64, (usize, f64))) {
+        let kept = &mut self.unsure;
+        kept.sum += by;
+        kept.largest = kept.largest.max(kept.sum.abs());
+        if most.1.abs() > kept.most.1.abs() {
+            kept.most = most;
+        }
+    }
+
+    /// By how much the work of forces without a potential would be another by Simpson's rule at most so far, J, and the force, by its number among
+    /// [`System::working_forces`], that differs most.
+    pub(super) fn unsure_work(&self) -> (f64, usize) {
+        (self.unsure.largest, self.unsure.most.0)
     }
 
     /// ‖Φ̈‖ of the accelerations the integrator found, where it takes its forces.

@@ -155,9 +155,21 @@ impl Simulation {
     /// mechanism stands about still, or that is round-off.
     pub fn made_energy(&self) -> [f64; 2] {
         let (made, [_, supply]) = (self.audit.made(), self.audit.supply());
+        [if made.abs() > self.nothing() { made } else { 0.0 }, supply]
+    }
+
+    /// By how much the work that a step between positions books of forces without a potential may be another, J, as Simpson's rule has it with their
+    /// power at the ends of steps too; all there was to move, J; and the name of the force that differs most. Nothing where that is round-off.
+    pub fn unsure_work(&self) -> Option<(f64, f64, &str)> {
+        let (unsure, number) = self.audit.unsure_work();
+        let name = self.system.working_forces().nth(number)?;
+        (unsure > self.nothing()).then(|| (unsure, self.audit.supply()[1], name))
+    }
+
+    /// Energy that is nothing beside what the mechanism has, J: where it stands about still, and round-off.
+    fn nothing(&self) -> f64 {
         let length = self.work.scales.length;
         let still = self.judge.motion(STILL * length / self.state.t.abs());
-        let rounded = ROUNDED * (self.judge.lift(length) + self.audit.potential.abs() + self.audit.work.abs());
-        [if made.abs() > still + rounded { made } else { 0.0 }, supply]
+        still + ROUNDED * (self.judge.lift(length) + self.audit.potential.abs() + self.audit.work.abs())
     }
 }

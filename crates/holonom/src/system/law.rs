@@ -46,6 +46,11 @@ pub trait Law: Send + Sync {
     /// Whether [`Law::energy`] accounts for all the law does.
     fn conservative(&self) -> bool;
 
+    /// Whether it may give energy as well as take it, as a formula may.
+    fn may_supply(&self) -> bool {
+        false
+    }
+
     /// Hands over where the force bends: steps by accuracy end there. It is as much at every state.
     fn bends(&self, _value: &[f64], _rate: &[f64], _t: f64, _note: &mut dyn FnMut(Bend)) {}
 

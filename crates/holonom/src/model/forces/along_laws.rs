@@ -39,6 +39,10 @@ impl Law for Along<Force> {
         false
     }
 
+    fn may_supply(&self) -> bool {
+        true
+    }
+
     fn at(&self, value: &[f64], rate: &[f64], t: f64, out: &mut Response) {
         (out.force[0], out.by_value[0][0], out.by_rate[0][0]) = self.0.tension(value[0], rate[0], t);
     }

@@ -227,6 +227,10 @@ impl Law for Effort {
         false
     }
 
+    fn may_supply(&self) -> bool {
+        true
+    }
+
     fn at(&self, value: &[f64], rate: &[f64], t: f64, out: &mut Response) {
         let (effort, by_value, by_rate) = self.evaluate(value, rate, t);
         out.force[0] = -effort;

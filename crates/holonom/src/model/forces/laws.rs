@@ -207,6 +207,10 @@ impl Law for Force {
         false
     }
 
+    fn may_supply(&self) -> bool {
+        true
+    }
+
     fn at(&self, value: &[f64], rate: &[f64], t: f64, out: &mut Response) {
         let (r, slope) = length(value[0]);
         let speed = rate[0] / r;
