@@ -75,3 +75,18 @@ fn a_generic_joint_holds_at_a_quarter_turn() {
         }
     }
 }
+
+/// Where a mechanism of points alone begins at the world's origin nothing tells how large it is, and a joint there holds all the same.
+#[test]
+fn points_at_the_origin_are_held() {
+    for (joint, axis, free) in [("point-on-plane", "axis = [0, 0, 1]", 2), ("point-on-line", "axis = [1, 1, 0]", 1)] {
+        let text = format!(
+            "[point.bead]\nmass = 1\nposition = [0, 0, 0]\nvelocity = [1, 1, 0]\n\
+             [joint.wire]\ntype = \"{joint}\"\nbetween = [\"ground\", \"bead\"]\nat = [0, 0, 0]\n{axis}\n"
+        );
+        let model = model(&text);
+        assert_eq!(freedom(&model)[0], free, "{joint}");
+        let (_, recording) = common::run_every(&model, "conserving-ggl", 0.1, 1.0, 1);
+        assert!(common::last(&recording, "bead.z").abs() < 1e-12 && (common::last(&recording, "bead.y") - 1.0).abs() < 1e-12, "{joint}");
+    }
+}

@@ -265,3 +265,74 @@ fn joints_with_several_coordinates_begin_where_they_are_put() {
         assert!((first(name) - value).abs() < 1e-12, "{name}: {}", first(name));
     }
 }
+
+/// A step of a run, whose first row is where it begins.
+fn begun(text: &str) -> Recording {
+    common::run_every(&common::model(text), "radau", 1e-2, 0.01, 1).1
+}
+
+/// Wheels roll to where a run begins: one on a rail by its radius times the angle, and the two of a cart on circles about one middle.
+#[test]
+fn wheels_roll_to_the_start() {
+    let wheel = |name: &str, y: f64| {
+        format!(
+            "[body.{name}]\nmass = 1\nshape = {{ cylinder = [0.2, 0.02] }}\norientation = {{ axis = [1, 0, 0], angle = \"pi/2\" }}\n\
+             position = [0, {y}, 0.2]\n\
+             [joint.axle-{name}]\ntype = \"revolute\"\nbetween = [\"cart\", \"{name}\"]\nat = \"{name}\"\naxis = [0, 1, 0]\n\
+             [joint.tread-{name}]\ntype = \"rolling\"\nbetween = [\"ground\", \"{name}\"]\nat = \"{name}\"\naxis = [0, 1, 0]\n\
+             normal = [0, 0, 1]\nradius = 0.2\n"
+        )
+    };
+    let cart = "[body.cart]\nmass = 20\ninertia = [2, 3, 4]\nposition = [0.3, 0, 0.3]\n";
+    let rail = "[joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"cart\"]\naxis = [1, 0, 0]\n";
+    for motor in ["", "[drive.motor]\ntype = \"angle\"\njoint = \"axle-one\"\nprofile = \"7*t\"\n"] {
+        for (start, way) in [("axle-one.angle = 3", 0.6), ("axle-one.angle = -0.1", -0.02), ("rail.displacement = 1", 1.0)] {
+            if !motor.is_empty() && start.starts_with("rail") {
+                continue;
+            }
+            let recording = begun(&format!("{cart}{rail}{}{motor}[start]\n{start}\n", wheel("one", 0.1)));
+            let first = |name: &str| recording.column(name).unwrap()[0];
+            assert!((first("rail.displacement") - way).abs() < 1e-11, "{start}: {}", first("rail.displacement"));
+            // The wheel turns by more than half a turn for a way of 1 m: its angle goes on.
+            assert!((0.2 * first("axle-one.angle") - way).abs() < 1e-11, "{start}: {}", first("axle-one.angle"));
+        }
+    }
+    let foot = "[joint.foot]\ntype = \"point-on-plane\"\nbetween = [\"ground\", \"cart\"]\nat = [0.8, 0, 0]\naxis = [0, 0, 1]\n";
+    let text = format!("{cart}{}{}{foot}[start]\naxle-left.angle = 0.5\n", wheel("left", 0.4), wheel("right", -0.4));
+    let recording = begun(&text);
+    let first = |name: &str| recording.column(name).unwrap()[0];
+    let ways = ["left", "right"].map(|name| 0.2 * first(&format!("axle-{name}.angle")));
+    assert!((ways[0] - 0.1).abs() < 1e-12 && ways[1] > 0.0);
+    let (mean, yaw) = (0.5 * (ways[0] + ways[1]), (ways[1] - ways[0]) / 0.8);
+    let expected = [mean / yaw * yaw.sin(), mean / yaw * (1.0 - yaw.cos())];
+    for (k, axis) in ["x", "y"].into_iter().enumerate() {
+        let middle = 0.5 * (first(&format!("left.{axis}")) + first(&format!("right.{axis}")));
+        assert!((middle - expected[k]).abs() < 1e-11, "{axis}: {middle} and not {}", expected[k]);
+    }
+}
+
+/// A start may be many times farther than the mechanism is large, and begin where nothing shows how large it is.
+#[test]
+fn starts_are_as_far_as_they_are_written() {
+    let trolley = "[body.trolley]\nmass = 1\nshape = { box = [0.2, 0.2, 0.2] }\nposition = [0, 0, 0]\n\
+                   [joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"trolley\"]\naxis = [0, 1, 0]\n[start]\nrail.displacement = 1e4\n";
+    let bead = "plane = \"xy\"\n[point.bead]\nmass = 1\nposition = [0, 0]\n[joint.wire]\ntype = \"point-on-line\"\nbetween = [\"ground\", \"bead\"]\n\
+                at = [0, 0]\naxis = [0, 1]\n[start]\nwire.displacement = 1\n";
+    for (text, column, place) in [(trolley, "trolley.y", 1e4), (bead, "bead.y", 1.0)] {
+        let recording = begun(text);
+        assert!((recording.column(column).unwrap()[0] - place).abs() < 1e-12 * place);
+    }
+    let corners: Vec<String> = (0..24).map(|k| (15.0 * f64::from(k)).to_radians().sin_cos()).map(|(s, c)| format!("[{c}, {s}]")).collect();
+    for way in [2.0, 2.9, 3.0, 4.0, -4.0, 6.0, 10.0] {
+        let text = format!(
+            "plane = \"xy\"\n[point.bead]\nmass = 1\nposition = [1, 0]\n[joint.ring]\ntype = \"point-on-curve\"\nbetween = [\"ground\", \"bead\"]\n\
+             at = [1, 0]\nclosed = true\ncurve = [{}]\n[start]\nring.displacement = {way}\n",
+            corners.join(", ")
+        );
+        let recording = begun(&text);
+        let first = |name: &str| recording.column(name).unwrap()[0];
+        assert!((first("ring.displacement") - way).abs() < 1e-11);
+        // The spline is off the circle by 1e-5 of its radius, and shorter by less than 3e-3 in all.
+        assert!((first("bead.x") - way.cos()).abs() < 0.03 && (first("bead.y") - way.sin()).abs() < 0.03, "{way} m");
+    }
+}

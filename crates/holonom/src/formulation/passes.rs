@@ -83,7 +83,19 @@ pub(super) fn react(matrix: &mut impl LinearSystem, open: f64, system: &System, 
 fn react_at_level(matrix: &mut impl LinearSystem, open: f64, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
     let pushed = work.begin_pass(system, t);
     let leaves = matrix.factor(RHO, work)?;
-    let end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
+    let mut end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
+    if end != End::Met {
+        // Redundant rows ask for the same along velocities that meet them all, and for different forces, without bounds, along others.
+        let (v, strays) = (work.end.v.clone(), work.strays(system, t));
+        meet_rates(matrix, system, t, work)?;
+        let moved = work.end.v.iter().zip(&v).fold(0.0, |m: f64, (v, before)| m.max((v - before).abs()));
+        if moved <= FOLLOWS * strays * largest(&v) {
+            let pushed = work.begin_pass(system, t);
+            work.lambda.fill(0.0);
+            end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
+        }
+        work.end.v = v;
+    }
     if end != End::Slow {
         return Ok(is_met(end, system, t, work));
     }
@@ -94,11 +106,7 @@ fn react_at_level(matrix: &mut impl LinearSystem, open: f64, system: &System, t:
     let change = correction(matrix, system, work)?;
     work.end.x.iter_mut().zip(change).for_each(|(x, change)| *x += change);
     system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
-    for _ in 0..PASSES {
-        work.rate_violation(system, t);
-        let change = correction(matrix, system, work)?;
-        work.end.v.iter_mut().zip(change).for_each(|(v, change)| *v += change);
-    }
+    meet_rates(matrix, system, t, work)?;
     let mut solve = |work: &mut Workspace| {
         let pushed = work.begin_pass(system, t);
         work.lambda.fill(0.0);
@@ -120,6 +128,16 @@ fn is_met(end: End, system: &System, t: f64, work: &mut Workspace) -> bool {
     }
     let strays = work.strays(system, t);
     (end == End::Grows || strays > NOISE) && work.misses(system) <= MISSED.max(FOLLOWS * strays)
+}
+
+/// Moves the velocities at the end onto the rows, with the factors at hand.
+fn meet_rates(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
+    for _ in 0..PASSES {
+        work.rate_violation(system, t);
+        let change = correction(matrix, system, work)?;
+        work.end.v.iter_mut().zip(change).for_each(|(v, change)| *v += change);
+    }
+    Ok(())
 }
 
 /// The smallest change of the coordinates (n), in the metric of the mass, that takes back what stands in `rows`.

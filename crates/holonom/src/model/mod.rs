@@ -49,6 +49,7 @@ mod tables;
 mod tests;
 mod unseen;
 mod value;
+mod way;
 mod written;
 
 pub use assembly::{Assembly, Axes, GROUND};

@@ -8,6 +8,7 @@ use super::entry::Entry;
 use super::fault::{Read, nearest};
 use super::fields::{Keys, Number};
 use super::joints::{Coordinate, coordinate};
+use super::way::Way;
 use crate::simulation::{Choice, Method, Simulation};
 use crate::system::{Constant, HalfSquare, Shifted, Signal, SystemBuilder};
 
@@ -203,6 +204,8 @@ fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize])
         let message = "a velocity is written for the pose in the file, and the mechanism is moved from there".to_string();
         return Err((message, "remove the velocities, or write the bodies where they are at the start"));
     }
+    let written = builder.clone().build();
+    let (rolls, is_driven) = (written.is_nonholonomic(), written.is_driven());
     let (mut share, mut step) = (0.0, FIRST_SHARE);
     let mut here = builder.position().to_vec();
     // Angles there: joints may turn further than half a turn on the way.
@@ -211,9 +214,17 @@ fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize])
     let mut way = vec![0.0; here.len()];
     for tries in 1.. {
         let next = f64::min(share + step, 1.0);
-        let ahead: Vec<f64> = here.iter().zip(&way).map(|(x, way)| x + (next - share) * way).collect();
-        builder.move_to(&ahead, turned.each_ref().map(|angles| &angles[..]));
-        match at(builder.clone(), targets, released, next) {
+        let angles = turned.each_ref().map(|angles| &angles[..]);
+        let ways = Way { builder, targets, released, turned: angles, is_driven };
+        let ahead = match rolls {
+            true => ways.follow(&here, share, next),
+            false => {
+                // At a dead centre no velocity leads on.
+                let rate = ways.rate(&here, share).unwrap_or_else(|| way.clone());
+                Some(here.iter().zip(&rate).map(|(x, rate)| x + (next - share) * rate).collect())
+            }
+        };
+        match ahead.and_then(|ahead| ways.at(&ahead, next, 0.0)) {
             Some(simulation) => {
                 let state = simulation.state().clone();
                 let there = simulation.system().in_world(&state.x);
@@ -253,7 +264,7 @@ fn released(builder: &SystemBuilder, targets: &[Target], lengths: &[DrivenLength
             start(builder).map(|simulation| simulation.redundant_rows())
         };
         let mut led = held.clone();
-        lead(&mut led, targets, 0.0);
+        lead(&mut led, targets, 0.0, 0.0);
         Some(count(led)?.saturating_sub(count(held.clone())?))
     };
     let most = if lengths.is_empty() { None } else { more(None) };
@@ -304,11 +315,11 @@ fn extend(builder: &mut SystemBuilder, lengths: &[DrivenLength], efforts: &mut [
     Ok(())
 }
 
-/// Has coordinates lead to a share of the way.
-fn lead(builder: &mut SystemBuilder, targets: &[Target], share: f64) {
+/// Has coordinates lead to a share of the way, where they go on by `going` of it in a second.
+pub(super) fn lead(builder: &mut SystemBuilder, targets: &[Target], share: f64, going: f64) {
     for Target { coordinate, value, row, .. } in targets {
         let Some(value) = value else { continue };
-        let here = Arc::new(Constant(share * value));
+        let here = Arc::new(Rising([share * value, going * value]));
         if let Some(row) = row {
             builder.retarget(*row, here);
             continue;
@@ -319,15 +330,8 @@ fn lead(builder: &mut SystemBuilder, targets: &[Target], share: f64) {
     }
 }
 
-/// The mechanism with its coordinates at a share of the way, without the rows that are `released`, in their order.
-fn at(mut builder: SystemBuilder, targets: &[Target], released: &[usize], share: f64) -> Option<Simulation> {
-    lead(&mut builder, targets, share);
-    released.iter().rev().for_each(|&row| builder.remove_row(row));
-    start(builder)
-}
-
 /// The mechanism at its start, where it has one.
-fn start(builder: SystemBuilder) -> Option<Simulation> {
+pub(super) fn start(builder: SystemBuilder) -> Option<Simulation> {
     let method = Method::resolve(&Choice::default()).expect("the default method goes with everything");
     Simulation::new(Arc::new(builder.build()), method, 1e-3).ok()
 }

@@ -134,7 +134,8 @@ impl Pair<'_, '_> {
     pub fn d(&self) -> Vec<Term> {
         let [a, b] = [0, 1].map(|side| self.frames[side].point(self.geometry.at[side]));
         let size = self.assembly.builder.size();
-        self.apart([a, b], size, size)
+        // Points alone have no size, and share no nodes: each moves.
+        self.apart([a, b], size, if size > 0.0 { size } else { 1.0 })
     }
 
     /// How two sums of nodes differ, which are of this size and whose points move by as much as `of_points`, m; nothing where the bodies share them.
