@@ -496,7 +496,7 @@ class Builders:
 
         Equations: s − r θ = 0, θ counted over any number of turns
 
-        joints: two joints, or coordinates of joints as "JOINT.angle" or "JOINT.displacement"
+        joints: two joints in either order, or coordinates of joints as "JOINT.angle" or "JOINT.displacement"
         radius: displacement over angle; negative when they count against each other [m]
         pressure_angle: angle between what teeth push with and the way of the rack; with it the force of the teeth is recorded, and the bearings feel it [rad]; default: teeth are left out
         repeat: makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"; default: one entry

@@ -34,7 +34,7 @@ pub fn coordinate(assembly: &Assembly<'_>, entry: &Entry<'_>, spot: Spot<'_>, te
     }
 }
 
-/// Two coordinates at the key `joints`, each of the kind that `angles` says.
+/// Two coordinates at the key `joints`, each of the kind that `angles` says. Of two kinds they may be named in either order, as the kinds tell which is which.
 pub(super) fn two(assembly: &Assembly<'_>, entry: &Entry<'_>, texts: &[String], angles: Option<[bool; 2]>) -> Read<[Coordinate; 2]> {
     let [first, second] = texts else {
         return Err(entry.refuse(
@@ -48,9 +48,13 @@ pub(super) fn two(assembly: &Assembly<'_>, entry: &Entry<'_>, texts: &[String], 
         return Err(entry.refuse(spot(1), format!("`{first}` is coupled to itself"), "name two different joints"));
     }
     let (a, b) = (coordinate(assembly, entry, spot(0), first), coordinate(assembly, entry, spot(1), second));
-    let pair = [a?, b?];
+    let mut pair = [a?, b?];
     if pair[0].joint == pair[1].joint && pair[0].name == pair[1].name {
         return Err(entry.refuse(spot(1), format!("`{first}` is coupled to itself"), "name two different joints"));
+    }
+    if angles.is_some_and(|[one, other]| one != other && [pair[0].is_angle, pair[1].is_angle] == [other, one]) {
+        pair.swap(0, 1);
+        return Ok(pair);
     }
     for (k, wanted) in angles.into_iter().flatten().enumerate() {
         if pair[k].is_angle != wanted {

@@ -44,7 +44,7 @@ radius = 0.1
 "#
 )]
 pub struct RackAndPinion {
-    /// two joints, or coordinates of joints as "JOINT.angle" or "JOINT.displacement"
+    /// two joints in either order, or coordinates of joints as "JOINT.angle" or "JOINT.displacement"
     #[key(shape = Shape::Coordinates)]
     pub joints: List<String>,
     /// displacement over angle; negative when they count against each other
