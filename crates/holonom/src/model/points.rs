@@ -10,6 +10,7 @@ use super::expression::{Program, TimeProgram};
 use super::fault::{Fault, Read};
 use super::fields::{Keys, List, Number};
 use super::key::Shape;
+use super::tables::require_inside;
 use crate::system::{Constant, Signal};
 
 /// A particle, a place or a driven support.
@@ -85,6 +86,7 @@ fn driven_start(entry: &Entry<'_>, motion: &[Program]) -> Read<[f64; 3]> {
     for (k, program) in motion.iter().enumerate() {
         let values = TimeProgram(program.clone()).at(0.0);
         if values.iter().any(|value| !value.is_finite()) {
+            require_inside(entry, Spot { key: "motion", item: Some(k) }, program, &[0.0])?;
             let message = format!("position, velocity and acceleration are {values:?} at t = 0");
             return Err(entry.refuse(Spot { key: "motion", item: Some(k) }, message, "all must be finite"));
         }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::drives::{Row, rows};
 use super::entry::{Entry, Spot};
-use super::expression::{self, Beyond};
+use super::expression::{self, Beyond, Program};
 use super::fault::{Read, Sink, suggest};
 use super::fields::{Keys, List};
 use super::key::Shape;
@@ -133,6 +133,16 @@ impl Curve {
             }
         }
     }
+}
+
+/// Refuses a formula that has no value for these values of its variables, as it asks a table beyond its ends.
+pub(super) fn require_inside<'s>(entry: &Entry<'_>, spot: impl Into<Spot<'s>>, formula: &Program, at: &[f64]) -> Read<()> {
+    let refused = if formula.evaluate(at).is_finite() { None } else { formula.refused(at) };
+    let Some((curve, argument)) = refused else { return Ok(()) };
+    let is_it = |known: &Option<Arc<expression::Curve>>| known.as_deref().is_some_and(|known| std::ptr::eq(known, curve));
+    let name = entry.scope.tables.into_iter().flatten().find_map(|(name, known)| is_it(known).then_some(name.as_str()));
+    let [message, cure] = expression::refusal(name.unwrap_or_default(), curve, argument);
+    Err(entry.refuse(spot, format!("where the run starts {message}"), cure))
 }
 
 /// Tables by name, `None` where one could not be read.

@@ -9,6 +9,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Field, Keys, List, Number};
 use crate::model::key::Shape;
 use crate::model::spline::Spline;
+use crate::model::tables::require_inside;
 use crate::model::unseen::Course;
 use crate::model::value::Value;
 use crate::system::Signal;
@@ -109,7 +110,11 @@ impl Profile {
     /// The number over time, which must begin smoothly; `key` is where the profile stands.
     pub(super) fn signal(&self, entry: &Entry<'_>, key: &str) -> Read<Arc<dyn Signal>> {
         let signal: Arc<dyn Signal> = match self {
-            Self::Formula(formula) => Arc::new(TimeProgram(formula.formula(entry, key, &["t"])?)),
+            Self::Formula(formula) => {
+                let formula = formula.formula(entry, key, &["t"])?;
+                require_inside(entry, key, &formula, &[0.0])?;
+                Arc::new(TimeProgram(formula))
+            }
             Self::Table(table) => {
                 let spline = entry.within(key, table, |inner| table.spline(inner))?;
                 entry.sink.over_time(entry.path_of(key.into()), || vec![Course::Table(spline.clone())]);

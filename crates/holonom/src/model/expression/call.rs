@@ -1,5 +1,6 @@
 //! Calls in expressions: functions of numbers, tables, functions of places and of whole runs, and those that a program gives.
 
+use super::curve::refusal;
 use super::functions::{FUNCTIONS, Function};
 use super::lex::Token;
 use super::names::{self, LOCAL, OF_PLACES, RUNNING};
@@ -63,6 +64,12 @@ impl Parser<'_> {
             self.at += 2;
             self.sum()?;
             self.close()?;
+            if let Some(Op::Constant(argument)) = self.ops.last()
+                && curve.refuses(*argument)
+            {
+                let [message, cure] = refusal(name, &curve, *argument);
+                return Err(Mistake::new(start, message, cure));
+            }
             self.emit(Op::OfTable(curve));
             return Ok(());
         }

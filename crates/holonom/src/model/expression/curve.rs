@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use super::Op;
 use super::functions::Function;
+use crate::model::bodies::short;
 use crate::model::spline::Spline;
 use crate::system::{Bend, Number};
 
@@ -51,6 +52,18 @@ fn tops(knots: &[f64], values: &[f64]) -> Vec<[f64; 2]> {
         from = to + 1;
     }
     tops
+}
+
+/// What is wrong where a table refuses to have a value for an argument, and its cure.
+pub fn refusal(name: &str, curve: &Curve, argument: f64) -> [String; 2] {
+    let [first, end] = curve.range().map(short);
+    let asked = short(argument);
+    // Beside an end it is told with all digits.
+    let asked = if [&first, &end].contains(&&asked) { argument.to_string() } else { asked };
+    [
+        format!("the table `{name}` is asked at {asked}, and has values from {first} to {end}"),
+        "add points to it, or have it go on beyond them with another `outside`".into(),
+    ]
 }
 
 impl Curve {
@@ -151,6 +164,17 @@ impl Curve {
         };
         let distance = near.map(|knot| (s - knot).abs()).into_iter().fold(f64::INFINITY, f64::min);
         if (before as f64 + turns).rem_euclid(2.0) == 0.0 { distance } else { -distance }
+    }
+
+    /// The arguments of its ends.
+    pub fn range(&self) -> [f64; 2] {
+        [self.knots[0], self.knots[self.knots.len() - 1]]
+    }
+
+    /// Whether it has no value at `s`, as that is beyond its ends.
+    pub(super) fn refuses(&self, s: f64) -> bool {
+        let [first, end] = self.range();
+        self.beyond == Beyond::Refuse && (s < first || s > end)
     }
 
     /// The value at `s`, with whatever derivatives the number carries.

@@ -24,7 +24,7 @@ use smallvec::SmallVec;
 
 use crate::record::Formula;
 use crate::system::{Bend, Number, Signal};
-pub use curve::{Beyond, Curve};
+pub use curve::{Beyond, Curve, refusal};
 pub use external::{External, ExternalFunction, Functions, differences};
 use functions::{Function, quotient};
 pub use names::{Names, Nothing};
@@ -215,18 +215,31 @@ impl Program {
 
     /// The value for values of the variables. Nothing is allocated but for more numbers at once than [`NUMBERS`].
     pub fn evaluate<N: Number>(&self, variables: &[N]) -> N {
-        self.run::<N, false>(variables, |_| ())
+        self.run::<N, false>(variables, |_, _, _| ())
     }
 
     /// Hands over where the expression bends. It has corners where the arguments of `step`, `sign` and `abs` are zero, where those of `min` and
     /// `max` are equal, where `floor` and `mod` jump, and at the knots of a table. It may have peaks where the argument of `exp` is largest, where
     /// what is divided by is smallest, where the argument of `tanh`, `cosh` or `atan` is zero, and where a table is highest or lowest.
-    pub fn bends(&self, variables: &[f64], note: &mut dyn FnMut(Bend)) {
-        self.run::<f64, true>(variables, note);
+    pub fn bends(&self, variables: &[f64], mut note: &mut dyn FnMut(Bend)) {
+        self.run::<f64, true>(variables, |op, [x, y], is_scaled| match op.takes() {
+            1 => tell_of_one(op, x, &mut note),
+            _ => tell_of_two(op, [x, y], is_scaled, &mut note),
+        });
     }
 
-    /// The value, and with `TELLS` where the expression bends.
-    fn run<N: Number, const TELLS: bool>(&self, variables: &[N], mut note: impl FnMut(Bend)) -> N {
+    /// The first table that is asked where it refuses to have a value, and for which argument.
+    pub fn refused(&self, variables: &[f64]) -> Option<(&Curve, f64)> {
+        let mut refused = None;
+        self.run::<f64, true>(variables, |op, [argument, _], _| match op {
+            Op::OfTable(curve) if refused.is_none() && curve.refuses(argument) => refused = Some((&**curve, argument)),
+            _ => (),
+        });
+        refused
+    }
+
+    /// The value. With `TELLS` operations on one number and on two are shown with these, and whether the second is constant.
+    fn run<'a, N: Number, const TELLS: bool>(&'a self, variables: &[N], mut show: impl FnMut(&'a Op, [f64; 2], bool)) -> N {
         let mut numbers: SmallVec<[N; NUMBERS]> = SmallVec::from_elem(N::from(0.0), self.room);
         let (cells, stack) = numbers.split_at_mut(self.kept.len());
         let mut top = 0;
@@ -256,7 +269,7 @@ impl Program {
             let last = stack[top - 1];
             if let Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) | Op::OfTable(_) = op {
                 if TELLS {
-                    tell_of_one(op, last.re(), &mut note);
+                    show(op, [last.re(), 0.0], false);
                 }
                 stack[top - 1] = match op {
                     Op::Neg => -last,
@@ -276,7 +289,7 @@ impl Program {
             let first = stack[top - 1];
             if TELLS {
                 let is_scaled = matches!(self.ops[k - 1], Op::Constant(_));
-                tell_of_two(op, [first.re(), last.re()], is_scaled, &mut note);
+                show(op, [first.re(), last.re()], is_scaled);
             }
             stack[top - 1] = match op {
                 Op::Add => first + last,

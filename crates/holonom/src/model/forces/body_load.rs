@@ -17,6 +17,7 @@ use crate::model::fields::{List, Number, Turn};
 use crate::model::geometry::unit;
 use crate::model::signals::{ROOM, Reader, Readings, angular_velocity};
 use crate::model::sum::{Sum, cross};
+use crate::model::tables::require_inside;
 use crate::model::value::Value;
 use crate::record::{Exerts, Shows};
 use crate::system::{Bend, Differentiated, ForceFunction, Number as AnyNumber, Reading};
@@ -219,6 +220,7 @@ fn finite(entry: &Entry<'_>, key: &str, place: &End, formulas: &[Program], readi
         let value = formula.evaluate(&at);
         if !value.is_finite() {
             let item = (formulas.len() > 1).then_some(k);
+            require_inside(entry, Spot { key, item }, formula, &at)?;
             let message = format!("this formula is {value} where the body starts, at rest and at t = 0");
             return Err(entry.refuse(Spot { key, item }, message, "it must be finite"));
         }

@@ -14,6 +14,7 @@ use crate::model::joints::coordinate;
 use crate::model::key::Shape;
 use crate::model::parameters::require_name;
 use crate::model::signals::{ROOM, Reader, Readings};
+use crate::model::tables::require_inside;
 use crate::system::{Bend, Differentiated, ForceFunction, MAX_ARGUMENTS, Number as AnyNumber, Reading, Sense};
 
 /// a motor or any other effort along the coordinate of a joint, as a formula of time, of that coordinate and its rate, and of
@@ -91,8 +92,10 @@ impl Element for Effort {
         let mut quantities = vec![acted_on(assembly, &coordinates[0])];
         quantities.extend(coordinates[1..].iter().map(|coordinate| quantity(assembly, coordinate)));
         if readings.len() == 0 {
-            let at_start: f64 = effort.evaluate(&vec![0.0; variables.len()]);
+            let zero = vec![0.0; variables.len()];
+            let at_start: f64 = effort.evaluate(&zero);
             if !at_start.is_finite() {
+                require_inside(entry, "effort", &effort, &zero)?;
                 let message = format!("this formula is {at_start} at the start, where all coordinates are 0");
                 return Err(entry.refuse("effort", message, "it must be finite"));
             }

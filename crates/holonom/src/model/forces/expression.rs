@@ -6,6 +6,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
 use crate::model::key::Shape;
 use crate::model::signals::{Reader, Readings};
+use crate::model::tables::require_inside;
 use crate::system::Reading;
 
 /// Time, and position and velocity in world axes.
@@ -53,6 +54,7 @@ impl Element for Expression {
             let value = component.evaluate(&at);
             if !value.is_finite() {
                 let spot = Spot { key: "force", item: Some(k) };
+                require_inside(entry, spot, component, &at)?;
                 return Err(entry.refuse(
                     spot,
                     format!("this formula is {value} where the point starts, at rest and at t = 0"),

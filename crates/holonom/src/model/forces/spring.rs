@@ -16,6 +16,7 @@ use crate::model::geometry::{Vec3, dot, norm, scale};
 use crate::model::key::Shape;
 use crate::model::references::split_place;
 use crate::model::signals::{Reader, Readings};
+use crate::model::tables::require_inside;
 use crate::model::value::Value;
 use crate::record::{Lengths, LineKind, SceneAxis, Shows};
 use crate::system::{Differentiated, Law, Quantity, Reading, Term};
@@ -245,5 +246,6 @@ fn finite(entry: &Entry<'_>, key: &str, formula: &Program, at: &[f64]) -> Read<(
     if value.is_finite() {
         return Ok(());
     }
+    require_inside(entry, key, formula, at)?;
     Err(entry.refuse(key, format!("this formula is {value} for the length {} m of the start", at[0]), "it must be finite"))
 }

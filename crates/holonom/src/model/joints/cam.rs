@@ -11,6 +11,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
 use crate::model::jumps::corner;
 use crate::model::key::Shape;
+use crate::model::tables::require_inside;
 use crate::system::{Part, Signal};
 
 /// a coordinate that follows another by a formula or a table: a cam with a groove, a Geneva wheel, gears that are not round
@@ -67,6 +68,7 @@ impl Element for Cam {
         let ([first, second], lift) = (joints?, lift?);
         let [value, slope, bend] = TimeProgram(lift.clone()).at(0.0);
         if ![value, slope, bend].iter().all(|number| number.is_finite()) {
+            require_inside(entry, "lift", &lift, &[0.0])?;
             let message = format!("at q = 0, the start, this is {value}, its slope {slope} and its second derivative {bend}");
             return Err(entry.refuse("lift", message, "all three must be finite"));
         }
