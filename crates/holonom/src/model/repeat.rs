@@ -5,6 +5,9 @@ use super::expression::{self, Mistake, Program, Scope};
 /// Most entries that all repetitions of a model may make.
 pub const MOST: usize = 1_000_000;
 
+/// Beyond this size neighbouring whole numbers are no longer told apart.
+const APART: f64 = 9e15;
+
 /// Names of the indices and all their values.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Repetition {
@@ -108,8 +111,7 @@ fn fill(ranges: &[Range], index: &mut Vec<f64>, values: &mut Vec<f64>, room: &mu
     };
     let [low, high] = [&range.low, &range.high].map(|bound| bound.evaluate(index.as_slice()));
     for bound in [low, high] {
-        // Beyond this size neighbouring whole numbers are no longer told apart.
-        if bound.is_nan() || bound.abs() > 9e15 || (bound - bound.round()).abs() > 1e-9 {
+        if !bound.is_finite() || (bound - bound.round()).abs() > 1e-9 {
             return Err(mistake(
                 range.start,
                 format!("the range of `{}` runs to {bound}, which is no whole number", range.name),
@@ -117,10 +119,14 @@ fn fill(ranges: &[Range], index: &mut Vec<f64>, values: &mut Vec<f64>, room: &mu
             ));
         }
     }
-    let (low, high) = (low.round() as i64, high.round() as i64);
-    if high - low > *room as i64 {
+    if high.round() - low.round() > *room as f64 {
         return Err(too_many(range.start));
     }
+    if high.abs().max(low.abs()) > APART && high >= low {
+        let message = format!("the range of `{}` runs to {high:e}, where neighbouring whole numbers are not told apart", range.name);
+        return Err(mistake(range.start, message, "use smaller numbers"));
+    }
+    let (low, high) = (low.round() as i64, high.round() as i64);
     for value in low..=high {
         index.push(value as f64);
         // Counted at every level: empty ranges inside of long ones make no entries and still take time.
@@ -144,6 +150,7 @@ mod tests {
         assert_eq!(read("i = 0 to 2").unwrap(), [[0.0], [1.0], [2.0]]);
         assert_eq!(read("i = 1 to 2, j = i to min(2, 5)").unwrap(), [[1.0, 1.0], [1.0, 2.0], [2.0, 2.0]]);
         assert_eq!(read("i = 1 to 0").unwrap(), Vec::<Vec<f64>>::new());
+        assert_eq!(read("i = 1 to -9e18").unwrap(), Vec::<Vec<f64>>::new());
         assert_eq!(read("i = -1 to 0").unwrap().len(), 2);
     }
 
@@ -155,7 +162,11 @@ mod tests {
             ("i = 0 to 2.5", 0, "no whole number"),
             ("i = 0 to 1e7", 0, "more than"),
             ("i = 0 to 5000, j = 0 to 5000", 15, "more than"),
-            ("i = 0 to 1e300", 0, "no whole number"),
+            ("i = 0 to 9e18", 0, "more than 1000000"),
+            ("i = -9e18 to 0", 0, "more than 1000000"),
+            ("i = 0 to 1e300", 0, "more than 1000000"),
+            ("i = 0 to 1e300*1e300", 0, "no whole number"),
+            ("i = 1e16 to 1e16 + 4", 0, "not told apart"),
             ("i = 0 to x", 9, "not known"),
             ("i = 0 to 1, i = 0 to 1", 12, "something else"),
             ("pi = 0 to 1", 0, "something else"),
