@@ -351,4 +351,11 @@ fn times_of_events_are_columns() {
     }
     let refused = sweep(&folder, "m.toml", "time(midle)", "--vary parameters.n=1,2 --out b");
     assert!(text(&refused.stderr).contains("did you mean `middle`?"), "{}", text(&refused.stderr));
+    // One with a period happens at 0 first, and is taken before any step: what it sets counts from there.
+    fs::write(folder.path().join("m.toml"), format!("{OSCILLATOR}[input.k]\n[event.tick]\nevery = 0.3\nset = {{ k = \"k + 1\" }}\n"))
+        .unwrap();
+    let output = sweep(&folder, "m.toml", "time(tick), at(k, 0), last(k)", "--vary parameters.n=1,2 --out c --quiet");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let [times, at_start, last] = ["time(tick)", "at(k, 0)", "last(k)"].map(|name| numbers(&folder, "c", name));
+    assert_eq!((times, at_start, last), (vec![0.0; 2], vec![1.0; 2], vec![4.0; 2]));
 }

@@ -84,7 +84,7 @@ impl<'a> Watch<'a> {
         let value = |column: &Column| match column {
             Column::Of { gathered: Some(gathered), .. } => gathered.value(),
             Column::Of { place, is_absolute, gathered: None } => Some(signed(row[*place], *is_absolute)),
-            Column::Event(name) => simulation.events().iter().find(|happening| happening.event == *name).map(|happening| happening.t),
+            Column::Event(name) => simulation.first_time(name),
         };
         self.columns.iter().map(|column| column.as_ref().and_then(value)).collect()
     }

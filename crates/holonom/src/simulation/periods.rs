@@ -15,6 +15,13 @@ impl Simulation {
         self.samples.iter().enumerate().filter_map(period)
     }
 
+    /// When an event happened first; one with a period does at t = 0, where runs begin.
+    pub fn first_time(&self, event: &str) -> Option<f64> {
+        let has_period = |(k, _, taken): &(usize, f64, u64)| self.system.events[*k].name == event && *taken > 0;
+        let of_period = self.periods().any(|period| has_period(&period)).then_some(0.0);
+        of_period.or_else(|| self.happenings.iter().find(|happening| happening.event == event).map(|happening| happening.t))
+    }
+
     /// When the next event with a period happens.
     pub(super) fn next_sample(&self) -> Option<f64> {
         self.periods().map(|(_, period, taken)| taken as f64 * period).reduce(f64::min)
