@@ -118,6 +118,34 @@ pub fn unsure_work(simulation: &Simulation) -> Option<String> {
     })
 }
 
+/// Sine of 45°, beyond which the moment of a bushing falls.
+const STEEPEST: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// That bushings with moments turned farther than these rise.
+pub fn turned_bushings(model: &Model, recording: &Recording) -> Option<String> {
+    let times = recording.column("t")?;
+    let columns = |names: Vec<String>| names.iter().filter_map(|name| recording.column(name)).collect::<Vec<_>>();
+    let mut turned: Vec<(f64, String)> = Vec::new();
+    for force in &model.channels.forces {
+        let sines = columns(force.sines());
+        // Of a rotation about any axis that is the size of the three.
+        let sine = |row: usize| sines.iter().map(|values| values[row] * values[row]).sum::<f64>().sqrt();
+        let Some(row) = (0..times.len()).find(|&row| sine(row) > STEEPEST) else { continue };
+        let moments = columns(force.acts(model.axes).pop().unwrap_or_default());
+        if moments.iter().any(|values| values.iter().any(|moment| *moment != 0.0)) {
+            turned.push((times[row], format!("`{}`", force.name)));
+        }
+    }
+    let first = turned.iter().map(|(t, _)| *t).reduce(f64::min)?;
+    let names: Vec<String> = turned.into_iter().map(|(_, name)| name).collect();
+    Some(format!(
+        "{} turned by more than 45°, first at {} s: beyond it the moment of a bushing, k sin θ cos θ, falls, and beyond 90° it pushes on (for large rotations \
+         take a joint with a `torsion` spring, of moment k θ)",
+        listed(&names),
+        short(first)
+    ))
+}
+
 /// Share of itself by which a rotation lags or leads from which on that is said.
 const LAG: f64 = 0.01;
 

@@ -23,7 +23,8 @@ use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
 use crate::message::note;
 use crate::notes::{
-    corrections, costly, locked, long_turns, lost_energy, rivals, rows_without_forces, shared_forces, slips, unknown_measures, unsure_work,
+    corrections, costly, locked, long_turns, lost_energy, rivals, rows_without_forces, shared_forces, slips, turned_bushings,
+    unknown_measures, unsure_work,
 };
 use crate::options::Destination;
 use crate::progress::Watched;
@@ -183,7 +184,8 @@ pub(crate) fn simulate_kept(
     let without = rows_without_forces(model, watched.recorder.recording());
     let turns = long_turns(model, simulation.method(), watched.recorder.recording());
     let of_energy = lost_energy(&simulation).into_iter().chain(unsure_work(&simulation)).filter(|_| status == Status::Completed);
-    let of_steps = of_energy.chain(turns);
+    let far = turned_bushings(model, watched.recorder.recording());
+    let of_steps = of_energy.chain(far).chain(turns);
     let of_results: Vec<String> =
         overruled.into_iter().chain(unknown).chain(without).chain(shared_forces(model, &simulation)).chain(of_steps).collect();
     if !quiet {

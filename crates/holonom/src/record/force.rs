@@ -191,6 +191,13 @@ impl RecordedForce {
         }
     }
 
+    /// The columns of the sines of a bushing's rotations; none of other forces.
+    pub fn sines(&self) -> Vec<String> {
+        let Shows::Bushing { coordinates, .. } = &self.shows else { return Vec::new() };
+        let of_angles = coordinates.iter().filter(|along| along.is_angle).filter_map(|along| along.value.as_ref());
+        of_angles.map(|[suffix, _]| format!("{}.{suffix}", self.name)).collect()
+    }
+
     fn values(&self, at: &At<'_>, dim: usize, row: &mut Vec<f64>) {
         let (laws, loads) = (&at.system.laws[self.laws.clone()], &at.system.loads[self.loads.clone()]);
         let responses: Vec<_> = laws.iter().map(|law| at.response(law)).collect();
