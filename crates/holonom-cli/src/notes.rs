@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use holonom::analysis::{self, Rank, Undetermined};
+use holonom::formulation::Multipliers;
 use holonom::model::{Model, StartChange};
 use holonom::record::{Channels, RecordedJoint, Recording};
 use holonom::simulation::{Method, Simulation, Start};
@@ -116,6 +117,23 @@ pub fn unsure_work(simulation: &Simulation) -> Option<String> {
             short(supply)
         )
     })
+}
+
+/// Share of the mechanism's size from which on it is said that positions are off their constraints.
+const STRAYED: f64 = 1e-3;
+
+/// That positions were far off a constraint: by methods that do not hold them, such as those of a penalty.
+pub fn strayed(simulation: &Simulation) -> Option<String> {
+    let (name, way, share) = simulation.strayed().filter(|(_, _, share)| *share > STRAYED)?;
+    let settings = &simulation.method().settings;
+    let cure = match settings.multipliers {
+        Multipliers::Penalty(_) => {
+            "rows of a penalty are springs, which a larger `penalty` makes stiffer, and augmented-lagrangian holds them"
+        }
+        _ if settings.iterations.is_some() => "more `iterations` or shorter steps hold it",
+        _ => "shorter steps drift less, and conserving-ggl holds it",
+    };
+    Some(format!("positions were up to {} m off `{name}`, {} % of the mechanism's size: {cure}", short(way), short(100.0 * share)))
 }
 
 /// Sine of 45°, beyond which the moment of a bushing falls.

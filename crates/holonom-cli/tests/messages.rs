@@ -185,3 +185,33 @@ fn bushings_that_turn_too_far_are_noted() {
     // 8.66 rad/s turn it by 45° in 0.0907 s, hardly slowed.
     says(space, &["`mount` turned by more than 45°, first at 0.09"], 0);
 }
+
+/// A rod that a penalty leaves soft is said to be, with how far it stretches, in any units; a larger one is not, nor are methods that hold it.
+#[test]
+fn positions_far_off_their_rows_are_noted() {
+    let rod = |method: &str, metre: f64, second: f64| {
+        format!(
+            "gravity = [0, 0, {}]\n[point.bob]\nmass = 2e5\nposition = [{}, 0, {}]\n[constraint.rod]\ntype = \"distance\"\nbetween = [\"ground\", \"bob\"]\n\
+             [simulation]\nend = {}\nstep = {}\nmethod = {method}\n",
+            -9.81 * metre / (second * second),
+            0.6 * metre,
+            -0.8 * metre,
+            0.5 * second,
+            1e-3 * second
+        )
+    };
+    // The row is the spring ½ α Φ² with Φ = ½ (r² − 1 m²): m r'' = m g − α Φ r comes to 0.3298 m² in half a second (Euler's rule at 1e-4 s).
+    for (metre, second, way) in [(1.0, 1.0, "up to 0.329"), (1e3, 1e3, "up to 329.")] {
+        let penalty = 1e7 / (metre * second * metre * second);
+        let soft = format!("\"penalty/conserving\"\npenalty = {penalty:e}");
+        says(
+            &rod(&soft, metre, second),
+            &["note: positions were ", way, " m off `rod`, 32.9", " % of the mechanism's size: rows of a penalty"],
+            0,
+        );
+    }
+    for method in ["\"penalty/conserving\"\npenalty = 1e12", "\"augmented-lagrangian/conserving\"", "\"conserving-ggl\"", "\"radau\""] {
+        let (text, status) = run(&rod(method, 1.0, 1.0));
+        assert!(status == Some(0) && !text.contains("positions were"), "{method}: {text}");
+    }
+}

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{EnergySummary, MomentumSummary, ViolationSummary, WorkSummary};
-use super::{Method, State};
+use super::{Method, Promise, State};
 use crate::energy;
 use crate::formulation::{Level, Multipliers, Newton, Sampling, Workspace};
 use crate::integrator::{Step, Work};
@@ -51,6 +51,8 @@ pub struct Audit {
     integrator_total: f64,
     projection_total: f64,
     violation: ViolationSummary,
+    /// Where the method does not promise Φ = 0: the row that is farthest off so far, with |Φ_k| over its gradient, m, and that of the last step.
+    farthest: Option<[Stray; 2]>,
     total_iterations: u64,
     taken: u64,
     factorizations: u64,
@@ -79,6 +81,19 @@ struct Mark {
     integrator: f64,
     projection: f64,
     iterations: u64,
+}
+
+/// A row and how far positions are off it, m.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Stray {
+    pub row: usize,
+    pub way: f64,
+}
+
+impl Stray {
+    fn farther(self, other: Self) -> Self {
+        if other.way > self.way { other } else { self }
+    }
 }
 
 /// T, V and work of a step before its projection.
@@ -130,6 +145,7 @@ impl Audit {
             integrator_total: 0.0,
             projection_total: 0.0,
             violation: ViolationSummary::default(),
+            farthest: (!method.promises().contains(&Promise::Position)).then(Default::default),
             total_iterations: 0,
             taken: 0,
             factorizations: 0,
@@ -205,6 +221,9 @@ impl Audit {
         own.position = own.position.max(other.position);
         own.velocity = own.velocity.max(other.velocity);
         own.acceleration = own.acceleration.max(other.acceleration);
+        if let (Some([own, _]), Some([other, _])) = (&mut self.farthest, &shown.farthest) {
+            *own = own.farther(*other);
+        }
     }
 
     /// Goes on with the power at a state where forces have changed abruptly; `work` has them.
@@ -255,6 +274,10 @@ impl Audit {
         };
         system.constraint_values(&work.end.at, t, &mut work.phi);
         self.phi = norm(&work.phi);
+        if let Some([_, last]) = &mut self.farthest {
+            let ways = work.phi.iter().zip(&work.scales.gradient).map(|(phi, g)| phi.abs() / g).enumerate();
+            *last = ways.map(|(row, way)| Stray { row, way }).fold(Stray::default(), Stray::farther);
+        }
         let penalty = self.penalty.map(|alpha| (alpha, work.phi.as_slice()));
         let potential = energy::potential(system, &work.forces.weight, &work.end.x, &work.end.at, penalty);
         let kinetic = energy::kinetic(system, &work.end.v);
@@ -340,6 +363,14 @@ impl Audit {
         kept.position = kept.position.max(self.phi);
         kept.velocity = kept.velocity.max(self.phi_dot);
         kept.acceleration = kept.acceleration.max(self.phi_ddot);
+        if let Some([most, last]) = &mut self.farthest {
+            *most = most.farther(*last);
+        }
+    }
+
+    /// The row that positions were farthest off so far, where the method does not promise to hold them.
+    pub(super) fn farthest(&self) -> Option<Stray> {
+        self.farthest.map(|[most, _]| most)
     }
 
     /// Has a nominal step that was taken in parts begin where the audit `first` was.

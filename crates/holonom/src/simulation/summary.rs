@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::audit::Stray;
 use super::{Happening, Simulation};
 
 /// Everything a run is judged by. Keys are stable; additions are allowed.
@@ -151,6 +152,13 @@ const STILL: f64 = 1e-6;
 const ROUNDED: f64 = 1e-9;
 
 impl Simulation {
+    /// The constraint that positions were farthest off so far, how far, m, and which share of the mechanism's size that is; nothing where the method
+    /// holds them.
+    pub fn strayed(&self) -> Option<(&str, f64, f64)> {
+        let Stray { row, way } = self.audit.farthest()?;
+        Some((self.system.row_names().get(row)?.as_str(), way, way / self.work.scales.length))
+    }
+
     /// What the method has made of the energy so far, below zero where it has lost it, and all there was to move, J; nothing made where the
     /// mechanism stands about still, or that is round-off.
     pub fn made_energy(&self) -> [f64; 2] {
