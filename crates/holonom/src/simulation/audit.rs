@@ -45,6 +45,9 @@ pub struct Audit {
     first: [f64; 2],
     lowest: f64,
     input: f64,
+    /// The smallest V and the most work at the ends of steps that were taken, J: what is in the middle of a nominal step, or of a run by dense
+    /// output, has been there to move.
+    extremes: [f64; 2],
     before: Mark,
     max_drift: f64,
     max_rise: f64,
@@ -139,6 +142,7 @@ impl Audit {
             first: [kinetic, potential],
             lowest: potential,
             input: 0.0,
+            extremes: [potential, 0.0],
             before: Mark { energy: kinetic + potential, ..Mark::default() },
             max_drift: 0.0,
             max_rise: 0.0,
@@ -183,14 +187,14 @@ impl Audit {
     }
 
     /// What the integrator made or lost of the energy since an earlier state, over all there is to move; nothing where that is round-off. `still` is
-    /// nothing beside what there is to move, `of_places` are the sizes of what laws and weights make of rounded positions, J; all round-off counts
+    /// nothing beside what there is to move, `of_states` are the sizes of what laws, weights and mass make of rounded states, J; all round-off counts
     /// `amplified` times.
-    pub(super) fn made_since(&self, before: &Self, amplified: f64, still: f64, of_places: impl FnOnce() -> f64) -> f64 {
+    pub(super) fn made_since(&self, before: &Self, amplified: f64, still: f64, of_states: impl FnOnce() -> f64) -> f64 {
         let made = (self.integrator_total - before.integrator_total).abs();
         let sizes = self.kinetic + self.potential.abs() + self.work.abs() + self.integrator_total.abs();
         let rounded = ROUNDED * amplified;
         let round_off = rounded * sizes;
-        let is_round_off = made <= round_off || made <= round_off + rounded * of_places();
+        let is_round_off = made <= round_off || made <= round_off + rounded * of_states();
         if is_round_off { 0.0 } else { made / (self.supply()[1] + round_off + still) }
     }
 
@@ -285,6 +289,8 @@ impl Audit {
         self.integrator_total += change - done;
         self.work += done;
         self.kinetic = kinetic;
+        let [lowest, most] = self.extremes;
+        self.extremes = [lowest.min(potential), most.max(self.work)];
         Accounts { potential }
     }
 
@@ -402,7 +408,14 @@ impl Audit {
     pub(super) fn supply(&self) -> [f64; 2] {
         let input = self.input + (self.work - self.before.work).max(0.0);
         let [kinetic, potential] = self.first;
-        [self.energy() - self.initial - input, kinetic + (potential - self.lowest.min(self.potential)) + input]
+        let supply = kinetic + (potential - self.lowest.min(self.potential)) + input;
+        [self.energy() - self.initial - input, supply.max(self.most_to_move())]
+    }
+
+    /// The most energy that was there to move at the end of any step, J.
+    fn most_to_move(&self) -> f64 {
+        let ([kinetic, potential], [lowest, most]) = (self.first, self.extremes);
+        kinetic + (potential - lowest) + most
     }
 
     /// The energies of the summary.

@@ -204,10 +204,12 @@ impl Pilot {
         if comes_and_goes || drifts || is_unsure {
             return 0.0;
         }
-        let of_places = || energy::size(system, work, &state.x) + judge.lift(work.scales.length);
+        // Formulas of time round the velocities of what they drive as those of its largest speed, also where it comes to rest.
+        let of_speeds = judge.of_speeds(audit.kinetic.max(self.before.audit.kinetic), self.control.speed);
+        let of_states = || energy::size(system, work, &state.x) + judge.lift(work.scales.length) + of_speeds;
         // What comes on in the whole run by no more than its error may be stands still.
         let still = judge.motion(self.control.allowed() * work.scales.length);
-        let made = audit.made_since(&self.before.audit, amplified, still, of_places);
+        let made = audit.made_since(&self.before.audit, amplified, still, of_states);
         made / (WORSE * self.control.allowed() * step * self.control.share_of_way(work.scales.length))
     }
 

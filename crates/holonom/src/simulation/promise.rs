@@ -243,6 +243,11 @@ impl Judge {
         WHOLE * (after.kinetic + more) + WEIGHED * (after.potential.abs() + self.weight * length) + trembling
     }
 
+    /// Size of what a rounding of velocities at some speed (m/s) makes of the energy where the kinetic one is `kinetic`, J.
+    pub(super) fn of_speeds(&self, kinetic: f64, speed: f64) -> f64 {
+        (self.most_momentum(kinetic) + self.mass * ROUNDED * speed) * speed
+    }
+
     /// Most that Σ m |v| may be with a kinetic energy T: √(2 T Σ m), by Cauchy and Schwarz.
     fn most_momentum(&self, kinetic: f64) -> f64 {
         (2.0 * kinetic * self.mass).sqrt()
