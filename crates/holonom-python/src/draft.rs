@@ -311,6 +311,15 @@ impl Draft {
         let mut source = self.source(py)?;
         require_key(path, &source).map_err(|fault| failure(py, fault))?;
         source.put(path, value).map_err(|_| refuse(py, path, format!("`{path}` cannot be set"), "name a key, such as body.door.mass"))?;
+        // Of what is wrong with the shape of the model, what this key brings is said here; what others lack may come later.
+        if let Value::Table(table) = source.value() {
+            let is_below = |of: &str| of.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
+            let is_here = |of: &str| is_below(of) || path.split('.').next() == Some(of);
+            let faults: Vec<Placed> = Self::faults(table.clone()).into_iter().filter(|placed| is_here(&placed.fault.path)).collect();
+            if !faults.is_empty() {
+                return Err(model_error(py, faults.into_iter().map(|fault| Placed { place: line.clone(), ..fault }).collect(), None));
+            }
+        }
         (self.value, self.is_changed) = (source.value().clone(), true);
         self.lines.insert(path.into(), line);
         Ok(())

@@ -137,6 +137,21 @@ def test_repeated_entries_have_columns_each():
     assert [run[p[k]].position[0, 0] for k in range(4)] == [0, 1, 2, 3]
 
 
+def test_what_is_refused_is_not_set():
+    m = hm.Model(gravity=[0, 0, 0])
+    m.point("p", mass=1, position=[0, 0, 0])
+    m.spring("s", "ground", "p", stiffness=2)
+    for path, value in [("point.p.mas", 3), ("point.p.mass", [3]), ("gravitation", 1), ("force.s.stifness", 1)]:
+        with pytest.raises(hm.ModelError):
+            m.set(path, value)
+        assert m.get(path) in (None, 1)
+    # What changes in two steps may be wrong between them.
+    m.set("force.s.type", "torsion")
+    m.set("force.s.type", "spring")
+    m.set("force.t", {"type": "constant", "point": "p", "force": [1, 0, 0]})
+    assert m.simulate(end=0.1, step=0.1)["p.x"][1] > 0
+
+
 def test_a_parameter_is_called_as_it_is_written():
     m = hm.Model(gravity=[0, 0, 0])
     names = [m.parameter("k", 1000), m.parameter("k_", 5), m.parameter("_", 2)]
