@@ -105,6 +105,22 @@ pub fn lost_energy(simulation: &Simulation) -> Option<String> {
     })
 }
 
+/// Parts of a nominal step from which on it is said how many there are.
+const MANY_PARTS: f64 = 10.0;
+
+/// That nominal steps were taken in many parts, as they failed as a whole.
+pub fn in_parts(simulation: &Simulation) -> Option<String> {
+    let steps = simulation.steps();
+    let parts = simulation.audit().work_summary(steps).steps_taken as f64 / steps.max(1) as f64;
+    (simulation.method().accuracy.is_none() && parts >= MANY_PARTS).then(|| {
+        format!(
+            "nominal steps failed as a whole and were taken in {parts:.0} parts on average, as if the step were {} s (conserving-ggl and radau take longer \
+             steps than most where redundant or singular constraints are why)",
+            short(simulation.nominal_step() / parts)
+        )
+    })
+}
+
 /// That steps are too long for how forces without a potential change along the way, so that the energy is booked and yet wrong.
 pub fn unsure_work(simulation: &Simulation) -> Option<String> {
     let (unsure, supply, name) = simulation.unsure_work()?;
@@ -259,9 +275,10 @@ pub fn nowhere(start: &Start) -> Option<String> {
 
 /// Bodies and points with the change of their velocities at the start.
 pub fn changes_in_words(changes: &[StartChange]) -> String {
-    let words = changes.iter().map(|change| match change.angular_velocity > 0.0 {
-        true => format!("`{}` by {} m/s and {} rad/s", change.name, short(change.velocity), short(change.angular_velocity)),
-        false => format!("`{}` by {} m/s", change.name, short(change.velocity)),
+    let words = changes.iter().map(|change| {
+        let parts = [(change.velocity, "m/s"), (change.angular_velocity, "rad/s")].into_iter().filter(|(by, _)| *by > 0.0);
+        let parts: Vec<String> = parts.map(|(by, unit)| format!("{} {unit}", short(by))).collect();
+        format!("`{}` by {}", change.name, parts.join(" and "))
     });
     listed(&words.collect::<Vec<_>>())
 }

@@ -23,8 +23,8 @@ use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
 use crate::message::note;
 use crate::notes::{
-    corrections, costly, locked, long_turns, lost_energy, rivals, rows_without_forces, shared_forces, slips, strayed, turned_bushings,
-    unknown_measures, unsure_work,
+    corrections, costly, in_parts, locked, long_turns, lost_energy, rivals, rows_without_forces, shared_forces, slips, strayed,
+    turned_bushings, unknown_measures, unsure_work,
 };
 use crate::options::Destination;
 use crate::progress::Watched;
@@ -183,7 +183,7 @@ pub(crate) fn simulate_kept(
     let unknown = unknown_measures(model, watched.recorder.recording());
     let without = rows_without_forces(model, watched.recorder.recording());
     let turns = long_turns(model, simulation.method(), watched.recorder.recording());
-    let far = strayed(&simulation).into_iter().chain(turned_bushings(model, watched.recorder.recording()));
+    let far = strayed(&simulation).into_iter().chain(in_parts(&simulation)).chain(turned_bushings(model, watched.recorder.recording()));
     let of_energy = lost_energy(&simulation).into_iter().chain(unsure_work(&simulation)).filter(|_| status == Status::Completed);
     let of_steps = of_energy.chain(far).chain(turns);
     let of_results: Vec<String> =

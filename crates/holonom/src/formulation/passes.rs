@@ -86,15 +86,16 @@ fn react_at_level(matrix: &mut impl LinearSystem, open: f64, system: &System, t:
     let mut end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
     if end != End::Met {
         // Redundant rows ask for the same along velocities that meet them all, and for different forces, without bounds, along others.
-        let (v, strays) = (work.end.v.clone(), work.strays(system, t));
+        let strays = work.strays(system, t);
+        work.kept_v.copy_from_slice(&work.end.v);
         meet_rates(matrix, system, t, work)?;
-        let moved = work.end.v.iter().zip(&v).fold(0.0, |m: f64, (v, before)| m.max((v - before).abs()));
-        if moved <= FOLLOWS * strays * largest(&v) {
+        let moved = work.end.v.iter().zip(&work.kept_v).fold(0.0, |m: f64, (v, before)| m.max((v - before).abs()));
+        if moved <= FOLLOWS * strays * largest(&work.kept_v) {
             let pushed = work.begin_pass(system, t);
             work.lambda.fill(0.0);
             end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
         }
-        work.end.v = v;
+        work.end.v.copy_from_slice(&work.kept_v);
     }
     if end != End::Slow {
         return Ok(is_met(end, system, t, work));

@@ -62,6 +62,13 @@ pub struct Forces {
     pub(super) damping: Vec<Damping>,
 }
 
+impl Forces {
+    /// Whether a law, by its number, takes its rates later than in the middle of the step.
+    pub(crate) fn is_late(&self, law: usize) -> bool {
+        self.damping[law].is_late()
+    }
+}
+
 /// How gradients turn with a motion, D a slot.
 pub struct Turned {
     /// H v and H a of all rows' slots.
@@ -122,6 +129,8 @@ pub struct Workspace {
     pub memory: Vec<f64>,
     /// Scratch of all coordinates (full).
     pub full: Vec<f64>,
+    /// Velocities (full), m/s, that are put back after others were tried.
+    pub(super) kept_v: Vec<f64>,
     /// Scratch of the free coordinates (n).
     pub inertial: Vec<f64>,
     /// Scratch of the rows (r), in which their violation is left.
@@ -180,6 +189,7 @@ impl Workspace {
             inputs: system.inputs.iter().map(|(_, default)| *default).collect(),
             memory: Vec::new(),
             full: vec![0.0; all],
+            kept_v: vec![0.0; all],
             inertial: vec![0.0; n],
             rows: vec![0.0; r],
             sizes: vec![0.0; slots],

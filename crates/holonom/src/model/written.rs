@@ -53,9 +53,12 @@ impl Model {
         let turn = self.settings.end.map_or(0.0, |end| STILL / end);
         let least = [(ROUND_OFF * largest(0)).max(turn * size), (ROUND_OFF * largest(1)).max(turn)];
         let changes = all.iter().map(|&(name, [written, found])| {
-            let [velocity, angular_velocity] = [0, 1].map(|k| (found[k] - written[k]).norm());
+            let [velocity, angular_velocity] = [0, 1].map(|k| {
+                let change = (found[k] - written[k]).norm();
+                if change > least[k] { change } else { 0.0 }
+            });
             StartChange { name: name.clone(), velocity, angular_velocity, was_at_rest: written.iter().all(|v| v.norm() == 0.0) }
         });
-        changes.filter(|change| change.velocity > least[0] || change.angular_velocity > least[1]).collect()
+        changes.filter(|change| change.velocity > 0.0 || change.angular_velocity > 0.0).collect()
     }
 }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::doubts::{Stray, Strays, UnsureWork};
 use super::{EnergySummary, MomentumSummary, ViolationSummary, WorkSummary};
 use super::{Method, Promise, State};
 use crate::energy;
@@ -54,25 +55,15 @@ pub struct Audit {
     integrator_total: f64,
     projection_total: f64,
     violation: ViolationSummary,
-    /// Where the method does not promise Φ = 0: the row that is farthest off so far, with |Φ_k| over its gradient, m, and that of the last step.
-    farthest: Option<[Stray; 2]>,
+    /// Rows that positions were off, where the method does not promise Φ = 0.
+    strays: Option<Strays>,
     total_iterations: u64,
     taken: u64,
     factorizations: u64,
     rejected: u64,
     power: f64,
     penalty: Option<f64>,
-    unsure: Unsure,
-}
-
-/// What is not sure of the work of forces without a potential, J.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Unsure {
-    /// By how much it would be another by Simpson's rule, and the largest so far.
-    sum: f64,
-    largest: f64,
-    /// The force that differed most in one step, by its number, and by how much.
-    most: (usize, f64),
+    unsure: UnsureWork,
 }
 
 /// What was booked at the start of a nominal step.
@@ -84,19 +75,6 @@ struct Mark {
     integrator: f64,
     projection: f64,
     iterations: u64,
-}
-
-/// A row and how far positions are off it, m.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Stray {
-    pub row: usize,
-    pub way: f64,
-}
-
-impl Stray {
-    fn farther(self, other: Self) -> Self {
-        if other.way > self.way { other } else { self }
-    }
 }
 
 /// T, V and work of a step before its projection.
@@ -149,14 +127,14 @@ impl Audit {
             integrator_total: 0.0,
             projection_total: 0.0,
             violation: ViolationSummary::default(),
-            farthest: (!method.promises().contains(&Promise::Position)).then(Default::default),
+            strays: (!method.promises().contains(&Promise::Position)).then(Default::default),
             total_iterations: 0,
             taken: 0,
             factorizations: 0,
             rejected: 0,
             power,
             penalty,
-            unsure: Unsure::default(),
+            unsure: UnsureWork::default(),
         };
         work.rate_violation(system, state.t);
         audit.phi_dot = norm(&work.rows);
@@ -225,8 +203,8 @@ impl Audit {
         own.position = own.position.max(other.position);
         own.velocity = own.velocity.max(other.velocity);
         own.acceleration = own.acceleration.max(other.acceleration);
-        if let (Some([own, _]), Some([other, _])) = (&mut self.farthest, &shown.farthest) {
-            *own = own.farther(*other);
+        if let (Some(own), Some(other)) = (&mut self.strays, &shown.strays) {
+            own.follow(other);
         }
     }
 
@@ -270,7 +248,7 @@ impl Audit {
             Work::Between(extra) => {
                 // Steps by accuracy are as long as that allows.
                 if work.estimate.allowed == 0.0 {
-                    self.doubt(work.unsure_work(system, &taken.stage));
+                    self.unsure.add(energy::unsure_work(system, &taken.stage, work));
                 }
                 energy::work_between(system, &taken.stage, work) + extra
             }
@@ -278,9 +256,8 @@ impl Audit {
         };
         system.constraint_values(&work.end.at, t, &mut work.phi);
         self.phi = norm(&work.phi);
-        if let Some([_, last]) = &mut self.farthest {
-            let ways = work.phi.iter().zip(&work.scales.gradient).map(|(phi, g)| phi.abs() / g).enumerate();
-            *last = ways.map(|(row, way)| Stray { row, way }).fold(Stray::default(), Stray::farther);
+        if let Some(strays) = &mut self.strays {
+            strays.look(&work.phi, &work.scales.gradient);
         }
         let penalty = self.penalty.map(|alpha| (alpha, work.phi.as_slice()));
         let potential = energy::potential(system, &work.forces.weight, &work.end.x, &work.end.at, penalty);
@@ -294,20 +271,10 @@ impl Audit {
         Accounts { potential }
     }
 
-    /// Books by how much the work of a step would be another, and of which force most.
-    fn doubt(&mut self, (by, most): (f64, (usize, f64))) {
-        let kept = &mut self.unsure;
-        kept.sum += by;
-        kept.largest = kept.largest.max(kept.sum.abs());
-        if most.1.abs() > kept.most.1.abs() {
-            kept.most = most;
-        }
-    }
-
     /// By how much the work of forces without a potential would be another by Simpson's rule at most so far, J, and the force, by its number among
     /// [`System::working_forces`], that differs most.
     pub(super) fn unsure_work(&self) -> (f64, usize) {
-        (self.unsure.largest, self.unsure.most.0)
+        self.unsure.largest()
     }
 
     /// ‖Φ̈‖ of the accelerations the integrator found, where it takes its forces.
@@ -369,14 +336,14 @@ impl Audit {
         kept.position = kept.position.max(self.phi);
         kept.velocity = kept.velocity.max(self.phi_dot);
         kept.acceleration = kept.acceleration.max(self.phi_ddot);
-        if let Some([most, last]) = &mut self.farthest {
-            *most = most.farther(*last);
+        if let Some(strays) = &mut self.strays {
+            strays.keep();
         }
     }
 
     /// The row that positions were farthest off so far, where the method does not promise to hold them.
     pub(super) fn farthest(&self) -> Option<Stray> {
-        self.farthest.map(|[most, _]| most)
+        self.strays.map(|strays| strays.farthest)
     }
 
     /// Has a nominal step that was taken in parts begin where the audit `first` was.

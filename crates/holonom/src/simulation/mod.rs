@@ -9,6 +9,7 @@ mod checkpoint;
 mod conflict;
 mod control;
 mod crowd;
+mod doubts;
 mod events;
 mod golden;
 mod landing;

@@ -59,11 +59,22 @@ impl Simulation {
         let at_start = Independence::new(&self.system).count_redundant(&self.system, &self.system.start_position, 0.0);
         match self.redundant_rows().min(at_start) {
             0 => String::new(),
-            redundant => format!(
-                "; {redundant} of the equations of the constraints follow from the others (redundant): either they differ from these in the last digits that \
-                 are written, as those of two hinges whose axes are a little off or of three distances along a line, so that nothing meets them all, or the \
-                 position is singular (write the places with all digits, take away what is redundant, or put a bushing or a spring in its place)"
-            ),
+            redundant => {
+                // Positions and velocities at the end of a step are not those of one motion, and redundant rows of both ask for different ones.
+                let takes_them = ["conserving-ggl", "radau"].contains(&self.method.name.as_str());
+                let of_rates = match self.system.is_nonholonomic() && !takes_them {
+                    true => {
+                        "those that hold velocities, as two wheels on one axle, may ask for different motions within a step of this method, and do not with \
+                         conserving-ggl and radau; otherwise "
+                    }
+                    false => "",
+                };
+                format!(
+                    "; {redundant} of the equations of the constraints follow from the others (redundant): {of_rates}either they differ from these in the last \
+                     digits that are written, as those of two hinges whose axes are a little off or of three distances along a line, so that nothing meets them \
+                     all, or the position is singular (write the places with all digits, take away what is redundant, or put a bushing or a spring in its place)"
+                )
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::audit::Stray;
+use super::doubts::Stray;
 use super::{Happening, Simulation};
 
 /// Everything a run is judged by. Keys are stable; additions are allowed.
