@@ -184,7 +184,7 @@ fn passes(matrix: &mut impl LinearSystem, of: Passes, system: &System, work: &mu
         before = taken;
         if count % PASSES == 0 {
             let is_slow = share.is_nan() || share >= SLOWEST;
-            let matters = [whole[0].max(of.pushed), whole[1]];
+            let matters = [whole[0].max(of.pushed).max(work.of_motion()), whole[1]];
             if (0..2).any(|k| taken[k] <= MATTERS * matters[k]) {
                 return Ok(if is_slow && taken[1] >= GROWS * whole[1] { End::Grows } else { End::Met });
             }
@@ -236,12 +236,18 @@ impl Workspace {
         }
     }
 
+    /// Size of the accelerations that motion asks for, v²/L, m/s²: what is little beside it is round-off where nothing pushes.
+    fn of_motion(&self) -> f64 {
+        largest(&self.end.v).powi(2) / self.scales.length
+    }
+
     /// By how much the accelerations miss the rows, over the size of both.
     fn misses(&mut self, system: &System) -> f64 {
+        let of_motion = self.of_motion();
         let Self { phi, rows, a, sampled, .. } = self;
         rows.copy_from_slice(phi);
         system.slots.add_along(system.dim, 1.0, &sampled.at.gradient, a, rows);
-        self.scaled(&self.rows) / (self.scaled(&self.phi) + largest(&self.a[..system.coordinates()]))
+        self.scaled(&self.rows) / (self.scaled(&self.phi) + largest(&self.a[..system.coordinates()]) + of_motion)
     }
 
     /// By how much the velocities at the end are off the rows, over their size; nothing where there are none.

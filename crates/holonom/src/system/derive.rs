@@ -46,6 +46,12 @@ pub trait FollowedFunction: Send + Sync {
 
     /// Its value, where the number is `at`.
     fn evaluate<N: Number>(&self, value: &[N], at: f64) -> N;
+
+    /// Change of the invariants up to which the mean of its derivative, by Simpson's rule, is as exact as its own change, in which all that the
+    /// function comes of is rounded.
+    fn least_change(&self) -> f64 {
+        0.0
+    }
 }
 
 /// A followed function as an engine sees it.
@@ -55,6 +61,9 @@ pub trait Followed: Send + Sync {
 
     /// Value and derivatives, where the number is `at`.
     fn derivatives(&self, value: &[f64], at: f64) -> Derivatives;
+
+    /// [`FollowedFunction::least_change`]
+    fn least_change(&self) -> f64;
 }
 
 impl<F: FollowedFunction> Followed for Differentiated<F> {
@@ -64,6 +73,10 @@ impl<F: FollowedFunction> Followed for Differentiated<F> {
 
     fn derivatives(&self, value: &[f64], at: f64) -> Derivatives {
         derive(value, self.0.evaluate(value, at), |point| self.0.evaluate(point, at))
+    }
+
+    fn least_change(&self) -> f64 {
+        self.0.least_change()
     }
 }
 
@@ -136,14 +149,14 @@ pub(crate) const NO_CHANGE: f64 = 1e-6;
 /// The discrete derivative of a smooth function: D = g'(π̄) + (Δg − g'(π̄)·Δπ)/‖Δπ‖² Δπ, and what it changes by with the
 /// second position.
 pub(super) fn difference(smooth: &dyn Smooth, from: &[f64], to: &[f64]) -> Derivatives {
-    quotient(from, to, |_, value| smooth.derivatives(value))
+    quotient(from, to, 0.0, |_, value| smooth.derivatives(value))
 }
 
 /// The discrete derivative Δf/Δq of a function of one number, and what it changes by with the second place. Where the quotient would be
-/// round-off, it is the mean of the derivative by Simpson's rule.
-pub(super) fn chord(curve: &dyn Signal, from: f64, to: f64) -> (f64, f64) {
+/// round-off, for changes that are little beside `size` or the number, it is the mean of the derivative by Simpson's rule.
+pub(super) fn chord(curve: &dyn Signal, from: f64, to: f64, size: f64) -> (f64, f64) {
     let change = to - from;
-    if change.abs() <= NO_CHANGE * from.abs().max(to.abs()) {
+    if change.abs() <= NO_CHANGE * from.abs().max(to.abs()).max(size) {
         let [start, middle, end] = [from, 0.5 * (from + to), to].map(|q| curve.at(q));
         return ((start[1] + 4.0 * middle[1] + end[1]) / 6.0, (2.0 * middle[2] + end[2]) / 6.0);
     }
@@ -160,7 +173,8 @@ pub(super) enum Place {
     End,
 }
 
-pub(super) fn quotient(from: &[f64], to: &[f64], derivatives: impl Fn(Place, &[f64]) -> Derivatives) -> Derivatives {
+/// The discrete derivative between two positions of what has these derivatives; of changes up to `least` in all it is the mean of the derivative.
+pub(super) fn quotient(from: &[f64], to: &[f64], least: f64, derivatives: impl Fn(Place, &[f64]) -> Derivatives) -> Derivatives {
     let m = from.len();
     let (mut middle, mut change) = ([0.0; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS]);
     for i in 0..m {
@@ -172,7 +186,7 @@ pub(super) fn quotient(from: &[f64], to: &[f64], derivatives: impl Fn(Place, &[f
     out.hessian.iter_mut().flatten().for_each(|h| *h *= 0.5);
     let square = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>();
     let size = square(&change);
-    let is_small = size <= NO_CHANGE * NO_CHANGE * square(&middle);
+    let is_small = size <= (NO_CHANGE * NO_CHANGE * square(&middle)).max(least * least);
     if size == 0.0 {
         return out;
     }

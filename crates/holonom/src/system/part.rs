@@ -109,7 +109,9 @@ impl Part {
             Self::Curve { of, curve } => {
                 let end = |k: usize| of.at(pi[k], &mut first_of(followed[k]));
                 let [from, to] = [0, 1].map(end);
-                let (slope, turn) = chord(curve.as_ref(), from.value, to.value);
+                // Formulas of angles are of the size that they have in one radian, and rounded as that.
+                let size = if matches!(**of, Self::Angle { .. }) { 1.0 } else { 0.0 };
+                let (slope, turn) = chord(curve.as_ref(), from.value, to.value, size);
                 of.between(pi, followed).chained(0.0, slope, |k| turn * to.gradient[k])
             }
             // The mean of the ends: momenta and energy need no more, as Σ f_i Δπ_i vanishes.
@@ -125,7 +127,7 @@ impl Part {
             Self::Followed { of, function } => {
                 let ([start, end], m) = (pi.map(|pi| pick(of, pi)), of.len());
                 let at = followed.map(|followed| followed[0]);
-                quotient(&start[..m], &end[..m], |place, value| match place {
+                quotient(&start[..m], &end[..m], function.least_change(), |place, value| match place {
                     Place::Start => function.derivatives(value, at[0]),
                     Place::End => function.derivatives(value, at[1]),
                     Place::Middle => function.derivatives(value, function.locate(value, 0.5 * (at[0] + at[1]))),

@@ -75,7 +75,8 @@ impl Element for Cam {
         let reach = if first.is_angle { TAU } else { SIZES * assembly.builder.size() };
         if let Some(at) = corner(&lift, reach) {
             let message = format!("this has a corner or a jump at q = {}, where the speed of what follows would jump", short(at));
-            return Err(entry.refuse("lift", message, "round it off; in a table write interpolation = \"cubic\" or \"monotone\""));
+            let cure = "round it off; in a table write interpolation = \"cubic\" or \"monotone\", and outside = \"line\" or \"periodic\" for its ends";
+            return Err(entry.refuse("lift", message, cure));
         }
         let [leading, following] = [&first, &second].map(|coordinate| assembly.builder.part(&coordinate.form));
         let follows = Part::Curve { of: Box::new(leading), curve: Arc::new(TimeProgram(lift)) };

@@ -12,7 +12,13 @@ pub struct Curve {
     place: Vec<Spline>,
     /// A direction across, by its components; none in the plane, where that is the tangent's quarter turn.
     across: Vec<Spline>,
+    /// Length of all chords.
+    length: f64,
 }
+
+/// Share of its length in which a curve bends so little that the mean of a derivative by Simpson's rule has no error but round-off, also where a
+/// thousand points bend it.
+const STRAIGHT: f64 = 1e-5;
 
 /// Most Newton steps to the nearest point of a curve.
 const STEPS: usize = 50;
@@ -32,7 +38,7 @@ impl Curve {
             |values: Vec<f64>| if closed { Spline::periodic(knots.clone(), values) } else { Spline::natural(knots.clone(), values) };
         let place: Vec<Spline> = (0..dim).map(|c| spline(points.iter().map(|point| point[c]).collect())).collect();
         let across = if dim == 2 { Vec::new() } else { (0..3).map(|c| spline(carried_across(&place, &knots, closed, c))).collect() };
-        Self { place, across }
+        Self { place, across, length: knots[knots.len() - 1] }
     }
 
     /// The place at `s`.
@@ -142,6 +148,10 @@ impl FollowedFunction for Measured {
     fn locate(&self, value: &[f64], near: f64) -> f64 {
         let x = std::array::from_fn(|c| value.get(c).copied().unwrap_or(0.0));
         self.curve.nearest(x, near + self.start) - self.start
+    }
+
+    fn least_change(&self) -> f64 {
+        STRAIGHT * self.curve.length
     }
 
     fn evaluate<N: Number>(&self, value: &[N], at: f64) -> N {
