@@ -588,7 +588,7 @@ class Builders:
         points: Sequence[Place],
         repeat: str | None = None,
     ) -> Entry:
-        """Adds a constraint of the kind ``collinear``: keeps three or more points on a straight line by the cross products of the paper (§7), one of three redundant in space.
+        """Adds a constraint of the kind ``collinear``: keeps three or more points on a straight line by the cross products of the paper (§7), in space three with one redundant, or two where points slide.
 
         Equations: (x_1 − x_0) × (x_2 − x_1) = 0, (x_2 − x_1) × (x_3 − x_2) = 0, …; these rows turn with the mechanism but are not invariant: together with other rows that do not keep it straight, angular momentum may drift with O(h²)
 
@@ -627,7 +627,7 @@ class Builders:
     ) -> Entry:
         """Adds a constraint of the kind ``point-on-line``: keeps a point on a line of fixed direction, or on the line through two points.
 
-        Equations: e_k · (x − x_through) = 0 with e_k ⊥ direction: 2 rows in space, 1 in the plane; with line = [a, b]: (x_b − x_a) × (x − x_a) = 0, in space 3 rows of which one is redundant
+        Equations: e_k · (x − x_through) = 0 with e_k ⊥ direction: 2 rows in space, 1 in the plane; with line = [a, b]: (x_b − x_a) × (x − x_a) = 0, in space 3 rows with one redundant, or 2 where points slide
 
         point: the point that slides
         direction: direction of the line [any]; default: none: this or a line is needed

@@ -119,6 +119,8 @@ pub struct Assembly<'a> {
     pub(in crate::model) transmissions: Vec<RecordedTransmission>,
     /// Bars and constraints that keep a distance.
     pub(in crate::model) rods: Vec<RecordedRod>,
+    /// Places, as they were written, whose distance bars and constraints keep as it is at the start.
+    pub(in crate::model) kept_apart: Vec<[String; 2]>,
     /// What forces do, and what is to be shown of that which is built.
     pub(in crate::model) forces: Vec<RecordedForce>,
     shows: Shows,
@@ -172,6 +174,7 @@ impl<'a> Assembly<'a> {
             couplings: Vec::new(),
             transmissions: Vec::new(),
             rods: Vec::new(),
+            kept_apart: Vec::new(),
             forces: Vec::new(),
             shows: Shows::Power,
             signals: Signals::default(),
@@ -198,6 +201,11 @@ impl Assembly<'_> {
             Member::Point(k) => Frame::Particle(self.points[k].end.place().expect("a point is a node")),
             Member::Body(k) => self.frames[k].clone(),
         }
+    }
+
+    /// Whether a bar or a constraint that is built already keeps the distance of two places as it is.
+    pub fn keeps_apart(&self, a: &End, b: &End) -> bool {
+        self.kept_apart.iter().any(|[one, other]| [one, other] == [&a.name, &b.name] || [one, other] == [&b.name, &a.name])
     }
 
     /// Has this recorded of the laws and loads of the entry that is built. Of those of which nothing is said it is the power alone.

@@ -54,6 +54,7 @@ impl Bar {
         let places = a.place().zip(b.place()).map(|(a, b)| [a, b]);
         add_mass(assembly, &ends, mass);
         ends.iter().filter_map(|end| end.point).for_each(|point| assembly.points[point].carries_bar = true);
+        assembly.kept_apart.push([a.name.clone(), b.name.clone()]);
         let half_square = assembly.builder.square(&from_to(a, b));
         assembly.rods.push(RecordedRod { name: entry.name.into(), row: assembly.builder.rows(), length: Arc::new(Constant(length)) });
         assembly.builder.constant_row(entry.name, half_square, 0.5 * length * length);

@@ -1,14 +1,15 @@
+use super::straight;
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::ends::{End, difference, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Place};
-use crate::model::geometry::{cross, norm, unit};
+use crate::model::geometry::{cross, norm};
 use crate::model::key::Shape;
 use crate::record::LineKind;
 
-/// keeps three or more points on a straight line by the cross products of the paper (§7), one of three redundant in space
+/// keeps three or more points on a straight line by the cross products of the paper (§7), in space three with one redundant, or two where points slide
 #[derive(Clone, Debug, PartialEq, Keys)]
 #[kind(
     name = "collinear",
@@ -38,14 +39,14 @@ impl Element for Collinear {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let points = assembly.ends(entry, "points", &self.points, 3, usize::MAX)?;
         assembly.require_free(entry, "points", &points)?;
-        let each = if assembly.dimension() == 3 { 3 } else { 1 };
-        let rows = each * (points.len() - 2);
-        for (k, triple) in points.windows(3).enumerate() {
+        let keep_lengths = |triple: &[End]| triple.windows(2).all(|pair| assembly.keeps_apart(&pair[0], &pair[1]));
+        let kept: Vec<bool> = points.windows(3).map(keep_lengths).collect();
+        let rows = kept.iter().map(|kept| straight::count(assembly.dimension(), *kept)).sum();
+        let mut names = (0..rows).map(|row| Assembly::row_name(entry, row, rows));
+        for (triple, kept) in points.windows(3).zip(kept) {
             check(assembly, entry, triple)?;
-            for component in 0..each {
-                let product = assembly.builder.cross(unit(component), &from_to(&triple[0], &triple[1]), &from_to(&triple[1], &triple[2]));
-                assembly.builder.constant_row(Assembly::row_name(entry, each * k + component, rows), product, 0.0);
-            }
+            let [u, w] = [0, 1].map(|k| from_to(&triple[k], &triple[k + 1]));
+            straight::rows(assembly, &mut || names.next().expect("a name for each row"), &u, &w, kept);
         }
         assembly.draw(entry, LineKind::Guide, &points[0], &points[points.len() - 1]);
         Ok(())

@@ -48,6 +48,9 @@ impl Element for Distance {
         let stroke = entry.optional("stroke", &self.stroke, |stroke, entry, key| stroke.formula(entry, key, &["t"]));
         let (ends, length, stroke) = (ends?, length?, stroke?);
         let [a, b] = &ends;
+        if length.is_none() && stroke.is_none() {
+            assembly.kept_apart.push([a.name.clone(), b.name.clone()]);
+        }
         let target: Arc<dyn Signal> = match (length, stroke) {
             (Some(_), Some(_)) => {
                 return Err(entry.refuse_key("stroke", "the distance is given by `length` already", "keep one of the two"));

@@ -1,10 +1,11 @@
+use super::straight;
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::ends::{End, difference, fixed, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number, Place};
-use crate::model::geometry::{across, cross, dot, norm, unit};
+use crate::model::geometry::{across, cross, dot, norm};
 use crate::model::key::Shape;
 use crate::record::LineKind;
 
@@ -13,7 +14,7 @@ use crate::record::LineKind;
 #[kind(
     name = "point-on-line",
     equations = "e_k · (x − x_through) = 0 with e_k ⊥ direction: 2 rows in space, 1 in the plane; \
-                 with line = [a, b]: (x_b − x_a) × (x − x_a) = 0, in space 3 rows of which one is redundant",
+                 with line = [a, b]: (x_b − x_a) × (x − x_a) = 0, in space 3 rows with one redundant, or 2 where points slide",
     example = r#"
 [point.slider]
 mass = 1
@@ -93,11 +94,11 @@ impl PointOnLine {
         assembly.require_free(entry, "point", &[point.clone(), a.clone(), b.clone()])?;
         let (u, w) = (difference(&a, &b), difference(&a, &point));
         check(assembly, entry, [&point, &a, &b], norm(u), norm(cross(u, w)))?;
-        let rows = if assembly.dimension() == 3 { 3 } else { 1 };
-        for row in 0..rows {
-            let product = assembly.builder.cross(unit(row), &from_to(&a, &b), &from_to(&a, &point));
-            assembly.builder.constant_row(Assembly::row_name(entry, row, rows), product, 0.0);
-        }
+        let keep_lengths = [&b, &point].into_iter().all(|end| assembly.keeps_apart(&a, end));
+        let rows = straight::count(assembly.dimension(), keep_lengths);
+        let mut names = (0..rows).map(|row| Assembly::row_name(entry, row, rows));
+        let [u, w] = [&b, &point].map(|end| from_to(&a, end));
+        straight::rows(assembly, &mut || names.next().expect("a name for each row"), &u, &w, keep_lengths);
         assembly.draw(entry, LineKind::Guide, &a, &b);
         Ok(())
     }
