@@ -90,3 +90,19 @@ fn points_at_the_origin_are_held() {
         assert!(common::last(&recording, "bead.z").abs() < 1e-12 && (common::last(&recording, "bead.y") - 1.0).abs() < 1e-12, "{joint}");
     }
 }
+
+/// A spring of no length whose end is led away from rest begins where it has no direction: x = t² − (1 − cos ωt) 2/ω².
+#[test]
+fn a_spring_of_no_length_begins_to_pull() {
+    let text = "gravity = [0, 0, 0]\n[point.hand]\nmotion = [\"t^2\", 0, 0]\n[point.bob]\nmass = 2\nposition = [0, 0, 0]\n\
+                [force.spring]\ntype = \"spring\"\nbetween = [\"hand\", \"bob\"]\nstiffness = 10\nrest_length = 0\n";
+    let (model, square) = (model(text), 5.0_f64);
+    let expected = 0.25 - 2.0 / square * (1.0 - (0.5 * square.sqrt()).cos());
+    for method in ["conserving-ggl", "conserving", "radau"] {
+        for step in [0.01, 1e-3] {
+            let (_, recording) = common::run_every(&model, method, step, 0.5, 1);
+            let found = common::last(&recording, "bob.x");
+            assert!((found - expected).abs() < step * step, "{method}, {step} s: {found} and not {expected} m");
+        }
+    }
+}

@@ -203,7 +203,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Whether a bar or a constraint that is built already keeps the distance of two places as it is.
+    /// Whether a bar or a constraint keeps the distance of two places as it is.
     pub fn keeps_apart(&self, a: &End, b: &End) -> bool {
         self.kept_apart.iter().any(|[one, other]| [one, other] == [&a.name, &b.name] || [one, other] == [&b.name, &a.name])
     }

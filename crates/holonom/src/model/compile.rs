@@ -334,7 +334,7 @@ impl Compiler<'_> {
     /// Joints first, then what names their coordinates.
     fn joints(&self, entries: &Entries<Boxed>, mut geometries: Vec<Option<Vec<Geometry>>>, assembly: &mut Assembly<'_>) {
         for late in [false, true] {
-            for (named, of_entry) in entries.iter().zip(&mut geometries).filter(|(named, _)| named.entry.0.needs_joints() == late) {
+            for (named, of_entry) in entries.iter().zip(&mut geometries).filter(|(named, _)| named.entry.0.needs_others() == late) {
                 let Some(of_entry) = of_entry.take() else { continue };
                 assembly.geometries = of_entry.into_iter();
                 if self.instances("joint", named, &mut |entry, element: &Boxed| assembly.build(entry, &*element.0)).is_err() {
@@ -345,7 +345,12 @@ impl Compiler<'_> {
     }
 
     fn build(&self, section: &str, entries: &Entries<Boxed>, assembly: &mut Assembly<'_>) {
-        self.each(section, entries, |entry, element| assembly.build(entry, &*element.0));
+        for late in [false, true] {
+            for named in entries.iter().filter(|named| named.entry.0.needs_others() == late) {
+                // A fault is recorded, and what is faulty is not there.
+                let _ = self.instances(section, named, &mut |entry, element: &Boxed| assembly.build(entry, &*element.0));
+            }
+        }
     }
 
     fn settings(&self, description: &Description, assembly: &Assembly<'_>) -> (Settings, Output) {

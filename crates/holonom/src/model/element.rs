@@ -14,8 +14,8 @@ pub trait Element: Described + Debug + Send + Sync + 'static {
     /// How it sits between two bodies, of a joint.
     const LAYOUT: Option<Layout> = None;
 
-    /// Whether it names coordinates of joints and is built when all of them are there.
-    const NEEDS_JOINTS: bool = false;
+    /// Whether it looks at other entries of its section, as couplers at joints, and is built when all of these are there.
+    const NEEDS_OTHERS: bool = false;
 
     /// Itself as a joint between two bodies, if it is one.
     fn as_joint(&self) -> Option<&dyn AnyJoint> {
@@ -48,8 +48,8 @@ impl<T: Joint> Element for T {
 
 /// An element of any kind.
 pub trait AnyElement: Written + Debug + Send + Sync {
-    /// Whether it names coordinates of joints and is built when all of them are there.
-    fn needs_joints(&self) -> bool;
+    /// Whether it looks at other entries of its section, as couplers at joints, and is built when all of these are there.
+    fn needs_others(&self) -> bool;
 
     /// Itself as a joint between two bodies, if it is one.
     fn as_joint(&self) -> Option<&dyn AnyJoint>;
@@ -68,8 +68,8 @@ pub trait AnyElement: Written + Debug + Send + Sync {
 }
 
 impl<T: Element> AnyElement for T {
-    fn needs_joints(&self) -> bool {
-        T::NEEDS_JOINTS
+    fn needs_others(&self) -> bool {
+        T::NEEDS_OTHERS
     }
 
     fn as_joint(&self) -> Option<&dyn AnyJoint> {

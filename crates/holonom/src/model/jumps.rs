@@ -13,6 +13,9 @@ const ROUNDED: f64 = 1e-9;
 const STEEP: f64 = 1e-10;
 const JUMPED: f64 = 0.5;
 
+/// Share of the way by which the place of a jump may be off, as the numbers that it comes of are rounded.
+const BESIDE: f64 = 16.0 * f64::EPSILON;
+
 /// Values that the largest is found of.
 const LOOKS: u32 = 200;
 
@@ -55,9 +58,11 @@ impl Way {
         let largest = (0..=LOOKS).map(|look| self.at(end * f64::from(look) / f64::from(LOOKS))[k].abs()).fold(0.0, f64::max);
         let across = |t: f64, after: f64| self.at(after)[k] - self.at(t)[k];
         let jump = |&t: &f64| {
-            // Across the zero, which is some roundings after it. What rises steeply there, as a root does, has risen by more a little farther on.
-            let by = across(t, (0..4).fold(t, |t, _| t.next_up()));
-            let is_jump = by.abs() > ROUNDED * largest && by.abs() > JUMPED * across(t, t + STEEP * t.abs().max(end)).abs();
+            // Across the zero, which is some roundings beside the place. What rises steeply there, as a root does, has risen by more a little farther on.
+            let beside = BESIDE * t.abs().max(end);
+            let before = (t - beside).max(0.0);
+            let by = across(before, t + beside);
+            let is_jump = by.abs() > ROUNDED * largest && by.abs() > JUMPED * across(before, t + STEEP * t.abs().max(end)).abs();
             is_jump.then_some((t, by))
         };
         places.iter().find_map(jump)
@@ -84,6 +89,10 @@ mod tests {
             ("min(t, 0.3)", 2.0, Some("its rate jumps by -1 per s at 0.3 s")),
             ("abs(t - 0.5) + step(t - 1.5)", 2.0, Some("it jumps by 1 at 1.5 s")),
             ("0.5*step(t - 1)", 0.9, None),
+            ("step(t + 0.75 - 1)", 0.5, Some("it jumps by 1 at 0.25 s")),
+            ("floor(2*t + 0.5)", 0.5, Some("it jumps by 1 at 0.25 s")),
+            ("max(0, t + 0.75 - 1)", 0.5, Some("its rate jumps by 1 per s at 0.25 s")),
+            ("step(t)", 1.0, None),
             ("step(t - 1)*(t - 1)^2", 2.0, None),
             ("step(t - 1)*(1 - cos(t - 1)) + 1e9", 2.0, None),
             ("max(t, -1)", 2.0, None),

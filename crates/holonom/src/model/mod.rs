@@ -41,6 +41,7 @@ mod signals;
 mod spinless;
 mod spline;
 mod start;
+mod straight;
 mod stroke;
 mod sum;
 mod synonyms;

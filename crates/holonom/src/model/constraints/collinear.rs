@@ -1,4 +1,3 @@
-use super::straight;
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::ends::{End, difference, from_to};
@@ -7,6 +6,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Place};
 use crate::model::geometry::{cross, norm};
 use crate::model::key::Shape;
+use crate::model::straight;
 use crate::record::LineKind;
 
 /// keeps three or more points on a straight line by the cross products of the paper (§7), in space three with one redundant, or two where points slide
@@ -36,6 +36,8 @@ pub struct Collinear {
 }
 
 impl Element for Collinear {
+    const NEEDS_OTHERS: bool = true;
+
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let points = assembly.ends(entry, "points", &self.points, 3, usize::MAX)?;
         assembly.require_free(entry, "points", &points)?;

@@ -7,7 +7,6 @@ mod fixed;
 mod perpendicular;
 mod point_on_line;
 mod point_on_plane;
-mod straight;
 
 pub use collinear::Collinear;
 pub use distance::Distance;

@@ -1,4 +1,3 @@
-use super::straight;
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::ends::{End, difference, fixed, from_to};
@@ -7,6 +6,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number, Place};
 use crate::model::geometry::{across, cross, dot, norm};
 use crate::model::key::Shape;
+use crate::model::straight;
 use crate::record::LineKind;
 
 /// keeps a point on a line of fixed direction, or on the line through two points
@@ -42,6 +42,8 @@ pub struct PointOnLine {
 }
 
 impl Element for PointOnLine {
+    const NEEDS_OTHERS: bool = true;
+
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         match &self.line {
             Some(line) => self.between_points(assembly, entry, line),

@@ -62,6 +62,10 @@ pub(super) struct LinearSpring {
 
 impl Law for LinearSpring {
     fn energy(&self, value: &[f64]) -> f64 {
+        // That of a spring without a length is k π, also where r has no direction.
+        if self.rest_length == 0.0 {
+            return self.stiffness * value[0];
+        }
         0.5 * self.stiffness * (length(value[0]).0 - self.rest_length).powi(2)
     }
 

@@ -61,7 +61,7 @@ pub struct Cam {
 const SIZES: f64 = 10.0;
 
 impl Element for Cam {
-    const NEEDS_JOINTS: bool = true;
+    const NEEDS_OTHERS: bool = true;
 
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let (joints, lift) = (two(assembly, entry, &self.joints, None), self.lift.formula(entry, "lift", &["q"]));

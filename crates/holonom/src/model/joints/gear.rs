@@ -57,7 +57,7 @@ pub struct Gear {
 }
 
 impl Element for Gear {
-    const NEEDS_JOINTS: bool = true;
+    const NEEDS_OTHERS: bool = true;
 
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let (joints, ratio) = (two(assembly, entry, &self.joints, None), self.ratio.number(entry, "ratio"));

@@ -57,7 +57,7 @@ pub struct Term {
 }
 
 impl Element for Linear {
-    const NEEDS_JOINTS: bool = true;
+    const NEEDS_OTHERS: bool = true;
 
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         if self.terms.len() < 2 {

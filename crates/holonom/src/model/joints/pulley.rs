@@ -60,7 +60,7 @@ pub struct Pulley {
 }
 
 impl Element for Pulley {
-    const NEEDS_JOINTS: bool = true;
+    const NEEDS_OTHERS: bool = true;
 
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let joints = two(assembly, entry, &self.joints, Some([true, true]));

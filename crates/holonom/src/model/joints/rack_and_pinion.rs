@@ -56,7 +56,7 @@ pub struct RackAndPinion {
 }
 
 impl Element for RackAndPinion {
-    const NEEDS_JOINTS: bool = true;
+    const NEEDS_OTHERS: bool = true;
 
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let joints = two(assembly, entry, &self.joints, Some([true, false]));
