@@ -106,3 +106,16 @@ fn a_spring_of_no_length_begins_to_pull() {
         }
     }
 }
+
+/// A vector of any length is a direction, also where its square is no number.
+#[test]
+fn directions_have_any_length() {
+    for length in [1e160, 1e300, 1e-160, 1e-200] {
+        let text = format!(
+            "[point.bead]\nmass = 1\nposition = [1, 0, 0]\n\
+             [constraint.table]\ntype = \"point-on-plane\"\npoint = \"bead\"\nthrough = [0, 0, 0]\nnormal = [0, 0, {length:e}]\n"
+        );
+        let (_, recording) = common::run_every(&model(&text), "conserving-ggl", 0.1, 1.0, 1);
+        assert!(common::last(&recording, "bead.z").abs() < 1e-12, "{length:e}: {} m", common::last(&recording, "bead.z"));
+    }
+}

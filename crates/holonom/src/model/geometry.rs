@@ -23,9 +23,20 @@ pub fn dot(u: Vec3, w: Vec3) -> f64 {
     u[0] * w[0] + u[1] * w[1] + u[2] * w[2]
 }
 
-/// Length of a vector.
+/// Squares whose sum is beyond these have lost digits, or are infinite.
+const SQUARES: std::ops::Range<f64> = 1e-280..f64::MAX;
+
+/// Length of a vector, also where squares of its components are no numbers.
 pub fn norm(u: Vec3) -> f64 {
-    dot(u, u).sqrt()
+    let square = dot(u, u);
+    let largest = u.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
+    if SQUARES.contains(&square) || largest == 0.0 || !largest.is_finite() {
+        return square.sqrt();
+    }
+    // By a power of two nothing is rounded.
+    let size = 2.0_f64.powi(largest.log2() as i32);
+    let part = u.map(|c| c / size);
+    size * dot(part, part).sqrt()
 }
 
 /// u × w

@@ -69,7 +69,8 @@ impl Element for Stop {
                 return Err(entry.refuse_all(format!("the stop `{}` has no limit", entry.name), "add lower, upper, or both"));
             }
             (Some(lower), Some(upper)) if lower >= upper => {
-                return Err(entry.refuse("lower", format!("the lower limit {lower} is not below the upper one {upper}"), "exchange them"));
+                let cure = if lower > upper { "exchange them" } else { "take them apart, or a `torsion` spring about that place" };
+                return Err(entry.refuse("lower", format!("the lower limit {lower} is not below the upper one {upper}"), cure));
             }
             _ => (),
         }
