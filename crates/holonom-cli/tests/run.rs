@@ -326,6 +326,38 @@ fn work_that_steps_get_wrong_is_told() {
     }
 }
 
+/// Two wheels on one axle hold it sideways twice, at positions and at velocities, which within a step ask for different motions: a method that takes it
+/// in many small parts says so, one that stops names those that do not.
+#[test]
+fn steps_in_many_parts_are_told() {
+    let folder = folder();
+    let wheel = |name: &str, y: f64| {
+        format!(
+            "[body.{name}]\nmass = 1\nshape = {{ cylinder = [0.2, 0.02] }}\norientation = {{ axis = [1, 0, 0], angle = \"pi/2\" }}\n\
+             position = [0, {y}, 0.2]\nvelocity = [{}, 0, 0]\nangular_velocity = [0, {}, 2]\n\
+             [joint.axle-{name}]\ntype = \"revolute\"\nbetween = [\"cart\", \"{name}\"]\nat = \"{name}\"\naxis = [0, 1, 0]\n\
+             [joint.tread-{name}]\ntype = \"rolling\"\nbetween = [\"ground\", \"{name}\"]\nat = \"{name}\"\naxis = [0, 1, 0]\n\
+             normal = [0, 0, 1]\nradius = 0.2\n",
+            2.0 - 2.0 * y,
+            10.0 - 10.0 * y
+        )
+    };
+    let cart = "[body.cart]\nmass = 20\ninertia = [2, 3, 4]\nposition = [0.3, 0, 0.3]\nvelocity = [2, 0.6, 0]\nangular_velocity = [0, 0, 2]\n\
+                [joint.foot]\ntype = \"point-on-plane\"\nbetween = [\"ground\", \"cart\"]\nat = [0.8, 0, 0]\naxis = [0, 0, 1]\n";
+    fs::write(folder.path().join("cart.toml"), format!("{cart}{}{}", wheel("left", 0.4), wheel("right", -0.4))).unwrap();
+    let said = |words: &str| {
+        let out = holonom(&folder, &format!("run cart.toml --no-report --force --out a {words}"));
+        text(&out.stdout) + &text(&out.stderr)
+    };
+    let in_parts = "nominal steps failed as a whole and were taken in ";
+    let slow = said("--method generalized-alpha --step 0.01 --end 0.05");
+    assert!(slow.contains("completed") && slow.contains(in_parts), "{slow}");
+    let stopped = said("--method trapezoidal-projected --step 0.02 --end 0.3");
+    assert!(stopped.contains("may ask for different motions within a step of this method"), "{stopped}");
+    let well = said("--method conserving-ggl --step 0.01 --end 0.3");
+    assert!(well.contains("completed") && !well.contains(in_parts), "{well}");
+}
+
 /// Steps that are long for what spins, and a method that loses much of the energy, are told beside figures that are all round-off.
 #[test]
 fn long_steps_are_told() {

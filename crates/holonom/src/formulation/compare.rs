@@ -31,15 +31,6 @@ impl Workspace {
         largest
     }
 
-    /// Forces of a load at both ends of a step, at these times (s).
-    pub(crate) fn load_at_ends(&self, system: &System, load: &LoadEntry, t: [f64; 2]) -> [Local; 2] {
-        [(&self.start, t[0]), (&self.end, t[1])].map(|(end, t)| {
-            let mut force = Local::from_elem(0.0, load.nodes.len() * system.dim);
-            system.load_forces(load, Look { x: &end.x, v: &end.v, t, at: &end.at, inputs: &self.inputs, span: None }, &mut force);
-            force
-        })
-    }
-
     /// The same of a law that may have peaks.
     fn off_laws(&self, system: &System, stage: &Stage, t: f64) -> f64 {
         let dim = system.dim;
@@ -61,5 +52,14 @@ impl Workspace {
             }
         }
         most
+    }
+
+    /// Forces of a load at both ends of a step, at these times (s).
+    pub(crate) fn load_at_ends(&self, system: &System, load: &LoadEntry, t: [f64; 2]) -> [Local; 2] {
+        [(&self.start, t[0]), (&self.end, t[1])].map(|(end, t)| {
+            let mut force = Local::from_elem(0.0, load.nodes.len() * system.dim);
+            system.load_forces(load, Look { x: &end.x, v: &end.v, t, at: &end.at, inputs: &self.inputs, span: None }, &mut force);
+            force
+        })
     }
 }

@@ -8,7 +8,7 @@ use super::entry::Entry;
 use super::fault::{Read, nearest};
 use super::fields::{Keys, Number};
 use super::joints::{Coordinate, coordinate};
-use super::way::Way;
+use super::way::{Way, along};
 use crate::simulation::{Choice, Method, Simulation};
 use crate::system::{Constant, HalfSquare, Shifted, Signal, SystemBuilder};
 
@@ -210,19 +210,17 @@ fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize])
     let mut here = builder.position().to_vec();
     // Angles there: joints may turn further than half a turn on the way.
     let mut turned = [Vec::new(), Vec::new()];
-    // How far all nodes went, over the share.
+    // How far all nodes went, over the share, and how fast they go on: at a dead centre no velocity leads there.
     let mut way = vec![0.0; here.len()];
+    let mut rate = None;
     for tries in 1.. {
         let next = f64::min(share + step, 1.0);
         let angles = turned.each_ref().map(|angles| &angles[..]);
         let ways = Way { builder, targets, released, turned: angles, is_driven };
+        let rate_here = rate.get_or_insert_with(|| ways.rate(&here, share));
         let ahead = match rolls {
-            true => ways.follow(&here, share, next),
-            false => {
-                // At a dead centre no velocity leads on.
-                let rate = ways.rate(&here, share).unwrap_or_else(|| way.clone());
-                Some(here.iter().zip(&rate).map(|(x, rate)| x + (next - share) * rate).collect())
-            }
+            true => rate_here.as_ref().and_then(|rate| ways.follow(&here, rate, [share, next])),
+            false => Some(along(&here, next - share, rate_here.as_ref().unwrap_or(&way))),
         };
         match ahead.and_then(|ahead| ways.at(&ahead, next, 0.0)) {
             Some(simulation) => {
@@ -231,7 +229,7 @@ fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize])
                 way = there.iter().zip(&here).map(|(there, here)| (there - here) / (next - share)).collect();
                 here = there.to_vec();
                 turned = [state.angle, state.measured];
-                (share, step) = (next, 2.0 * step);
+                (share, step, rate) = (next, 2.0 * step, None);
                 if share == 1.0 {
                     builder.move_to(&here, turned.each_ref().map(|angles| &angles[..]));
                     break;

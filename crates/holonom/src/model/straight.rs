@@ -3,33 +3,30 @@
 use std::sync::Arc;
 
 use crate::model::assembly::Assembly;
+use crate::model::entry::Entry;
 use crate::model::geometry::unit;
-use crate::system::{Differentiated, FollowedFunction, InvariantId, Number, Part, Term};
+use crate::system::{Differentiated, FollowedFunction, InvariantId, Number, Part, Quantity, Term};
 
-/// The rows of u × w = 0: one in the plane. In space the three of the paper where u and w keep their lengths, as one of these follows from the
-/// others, also within a step of a conserving scheme. Where points slide along the line it does not there, and would push: two rows are taken.
-pub fn rows(assembly: &mut Assembly<'_>, names: &mut impl FnMut() -> String, u: &[Term], w: &[Term], keep_lengths: bool) {
-    let builder = &mut assembly.builder;
-    let in_space = assembly.axes.dimension() == 3;
+/// What is zero where u × w is: one quantity in the plane. In space the three of the paper where u and w keep their lengths, as one of these follows
+/// from the others, also within a step of a conserving scheme. Where points slide along the line it does not there, and would push: two are taken.
+pub fn parallel(assembly: &mut Assembly<'_>, [u, w]: [&[Term]; 2], keep_lengths: bool) -> Vec<Quantity> {
+    let (in_space, builder) = (assembly.axes.dimension() == 3, &mut assembly.builder);
     let products: Vec<InvariantId> = (0..if in_space { 3 } else { 1 }).map(|k| builder.cross(unit(k), u, w)).collect();
     if !in_space || keep_lengths {
-        products.into_iter().for_each(|product| builder.constant_row(names(), product, 0.0));
-        return;
+        return products.into_iter().map(Quantity::from).collect();
     }
     let of: Vec<InvariantId> = products.into_iter().chain((0..3).map(|k| builder.linear(unit(k), u))).collect();
-    for which in 1..3 {
+    let across = |which| {
         let part = Part::Followed { of: of.clone(), function: Arc::new(Differentiated(Across { which })) };
-        let sum = builder.sum(&[(part, 1.0)]);
-        builder.constant_row(names(), sum, 0.0);
-    }
+        builder.sum(&[(part, 1.0)]).into()
+    };
+    (1..3).map(across).collect()
 }
 
-/// How many rows these are.
-pub fn count(dimension: usize, keep_lengths: bool) -> usize {
-    match (dimension, keep_lengths) {
-        (3, true) => 3,
-        (3, false) => 2,
-        _ => 1,
+/// Adds the rows that these quantities are zero.
+pub fn hold(assembly: &mut Assembly<'_>, entry: &Entry<'_>, quantities: &[Quantity]) {
+    for (row, &quantity) in quantities.iter().enumerate() {
+        assembly.builder.constant_row(Assembly::row_name(entry, row, quantities.len()), quantity, 0.0);
     }
 }
 

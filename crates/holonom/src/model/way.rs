@@ -22,6 +22,11 @@ pub(super) struct Way<'a> {
     pub is_driven: bool,
 }
 
+/// Places `by` farther on at a rate.
+pub(super) fn along(x: &[f64], by: f64, rate: &[f64]) -> Vec<f64> {
+    x.iter().zip(rate).map(|(x, rate)| x + by * rate).collect()
+}
+
 impl Way<'_> {
     /// The mechanism with its nodes near `x` and its coordinates at a share of the way, going on by so much of it in a second.
     pub fn at(&self, x: &[f64], share: f64, going: f64) -> Option<Simulation> {
@@ -33,14 +38,14 @@ impl Way<'_> {
         start(builder)
     }
 
-    /// Where the nodes at `here` are at the end of a part of the way between two shares of it: the motion with the least kinetic energy at each
-    /// place is followed by extrapolation (Bulirsch and Stoer). `None` where that leads nowhere, or the part is too long for it.
-    pub fn follow(&self, here: &[f64], from: f64, to: f64) -> Option<Vec<f64>> {
+    /// Where the nodes at `here`, with the velocities `first` there, are at the end of a part of the way between two shares of it: the motion with the
+    /// least kinetic energy at each place is followed by extrapolation (Bulirsch and Stoer). `None` where that leads nowhere, or the part is too long
+    /// for it.
+    pub fn follow(&self, here: &[f64], first: &[f64], shares: [f64; 2]) -> Option<Vec<f64>> {
         let size = here.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
-        let first = self.rate(here, from)?;
         let mut table: Vec<Vec<f64>> = Vec::new();
         for k in 0..MOST_WAYS {
-            let mut next = self.midpoint(here, &first, [from, to], 2 * (k + 1))?;
+            let mut next = self.midpoint(here, first, shares, 2 * (k + 1))?;
             let mut off = f64::INFINITY;
             for (j, before) in table.iter_mut().enumerate() {
                 let ratio = ((k + 1) as f64 / (k - j) as f64).powi(2);
@@ -59,14 +64,13 @@ impl Way<'_> {
     /// Places at the end of so many steps of the modified midpoint rule.
     fn midpoint(&self, here: &[f64], first: &[f64], [from, to]: [f64; 2], steps: usize) -> Option<Vec<f64>> {
         let h = (to - from) / steps as f64;
-        let add = |x: &[f64], by: f64, rate: &[f64]| -> Vec<f64> { x.iter().zip(rate).map(|(x, rate)| x + by * rate).collect() };
-        let [mut before, mut x] = [here.to_vec(), add(here, h, first)];
+        let [mut before, mut x] = [here.to_vec(), along(here, h, first)];
         for k in 1..steps {
             let rate = self.rate(&x, from + k as f64 * h)?;
-            let next = add(&before, 2.0 * h, &rate);
+            let next = along(&before, 2.0 * h, &rate);
             (before, x) = (x, next);
         }
-        let last = add(&before, h, &self.rate(&x, to)?);
+        let last = along(&before, h, &self.rate(&x, to)?);
         Some(x.iter().zip(&last).map(|(x, last)| 0.5 * (x + last)).collect())
     }
 

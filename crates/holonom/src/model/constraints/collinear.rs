@@ -41,15 +41,14 @@ impl Element for Collinear {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let points = assembly.ends(entry, "points", &self.points, 3, usize::MAX)?;
         assembly.require_free(entry, "points", &points)?;
-        let keep_lengths = |triple: &[End]| triple.windows(2).all(|pair| assembly.keeps_apart(&pair[0], &pair[1]));
-        let kept: Vec<bool> = points.windows(3).map(keep_lengths).collect();
-        let rows = kept.iter().map(|kept| straight::count(assembly.dimension(), *kept)).sum();
-        let mut names = (0..rows).map(|row| Assembly::row_name(entry, row, rows));
-        for (triple, kept) in points.windows(3).zip(kept) {
+        let mut quantities = Vec::new();
+        for triple in points.windows(3) {
             check(assembly, entry, triple)?;
+            let keep_lengths = triple.windows(2).all(|pair| assembly.keeps_apart(&pair[0], &pair[1]));
             let [u, w] = [0, 1].map(|k| from_to(&triple[k], &triple[k + 1]));
-            straight::rows(assembly, &mut || names.next().expect("a name for each row"), &u, &w, kept);
+            quantities.extend(straight::parallel(assembly, [&u, &w], keep_lengths));
         }
+        straight::hold(assembly, entry, &quantities);
         assembly.draw(entry, LineKind::Guide, &points[0], &points[points.len() - 1]);
         Ok(())
     }

@@ -97,10 +97,8 @@ impl PointOnLine {
         let (u, w) = (difference(&a, &b), difference(&a, &point));
         check(assembly, entry, [&point, &a, &b], norm(u), norm(cross(u, w)))?;
         let keep_lengths = [&b, &point].into_iter().all(|end| assembly.keeps_apart(&a, end));
-        let rows = straight::count(assembly.dimension(), keep_lengths);
-        let mut names = (0..rows).map(|row| Assembly::row_name(entry, row, rows));
-        let [u, w] = [&b, &point].map(|end| from_to(&a, end));
-        straight::rows(assembly, &mut || names.next().expect("a name for each row"), &u, &w, keep_lengths);
+        let quantities = straight::parallel(assembly, [&from_to(&a, &b), &from_to(&a, &point)], keep_lengths);
+        straight::hold(assembly, entry, &quantities);
         assembly.draw(entry, LineKind::Guide, &a, &b);
         Ok(())
     }
