@@ -67,6 +67,13 @@ pub enum Failure {
         /// Which of the system's laws.
         law: usize,
     },
+    /// A row has a corner that the step goes across, where no motion goes on smoothly.
+    Corner {
+        /// The row.
+        row: usize,
+        /// What happens there, in words.
+        what: &'static str,
+    },
     /// A recorded angle turns so far in a step that its turns are not counted for sure.
     Turned {
         /// Which of the system's gauges.
@@ -134,6 +141,7 @@ impl Failure {
                 "the method goes back in time in parts of its step, and `{}` is too strong a damper for that (shorter steps help, or conserving-ggl and radau, which only go ahead)",
                 system.laws[law].name
             ),
+            Self::Corner { row, what } => format!("at `{}` {what}", system.row_names()[row]),
             Self::Turned { gauge, by } => {
                 format!("`{}` turns by {by:.2} rad in a step, too far for turns to be counted: give a shorter step", system.gauges()[gauge])
             }

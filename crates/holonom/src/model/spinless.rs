@@ -1,12 +1,12 @@
 //! Bodies that may turn about an axis about which they have no inertia and no joint holds them: no acceleration follows there.
 
-use nalgebra::SymmetricEigen;
+use nalgebra::{DMatrix, Matrix3xX, SymmetricEigen};
 
 use super::assembly::Assembly;
 use super::bodies::RigidBody;
 use super::bodies::frame::Frame;
 use super::fault::Fault;
-use super::geometry::{Vec3, across, cross, dot, norm, subtract};
+use super::geometry::{Vec3, across, add, cross, norm, scale, subtract};
 use crate::system::{Evaluation, Place, System, Term, place_of};
 
 /// Share of the largest moment of inertia of a body, or of what its mass has where its nodes are, that is nothing.
@@ -34,28 +34,41 @@ impl Held {
         Self { system, at, rows }
     }
 
-    /// Whether no mass moves, beside `most` (kg·m²) of it, and no row is missed where some nodes move alone.
-    fn is_nothing(&self, moves: &[(usize, Vec3)], most: f64) -> bool {
+    /// What resists that a body turns about its centre of mass at the rate `axis`: the angular momentum of its nodes, speeds of those that the
+    /// ground holds, and rates of rows, each over what is nothing. All of them are linear in the rate. `most` is the moment (kg·m²) beside which one is nothing.
+    fn resistance(&self, axis: Vec3, arms: &[(Place, Vec3)], most: f64) -> Vec<f64> {
         let Self { system, at, rows } = self;
-        let rate = |node: usize| moves.iter().find(|(moved, _)| *moved == node).map(|(_, v)| *v);
-        let along = |&(node, v): &(usize, Vec3)| -> f64 {
-            let of_mass = system.mass.row(node).filter_map(|(other, block)| Some(block.m * dot(v, rate(other)?)));
-            of_mass.sum()
+        let rate = |node: usize| {
+            let arm = arms.iter().find_map(|&(place, arm)| matches!(place, Place::Node(id) if id.index() == node).then_some(arm));
+            arm.map(|arm| (cross(axis, arm), norm(arm)))
         };
-        if moves.iter().map(along).sum::<f64>() > NOTHING * most {
-            return false;
-        }
-        let fastest = moves.iter().fold(0.0, |m: f64, (_, v)| m.max(norm(*v)));
-        moves.iter().flat_map(|(node, _)| &rows[*node]).all(|&row| {
-            let (mut sum, mut sizes) = (0.0, 0.0);
-            for slot in system.slots.rows[row as usize].clone() {
-                let Some(v) = rate(system.slots.nodes[slot] as usize) else { continue };
-                for (g, v) in at.gradient[3 * slot..3 * slot + 3].iter().zip(v) {
-                    (sum, sizes) = (sum + g * v, sizes + g.abs() * fastest);
+        let (mut momentum, mut all) = ([0.0; 3], Vec::new());
+        for &(place, arm) in arms {
+            let node = match place {
+                Place::Fixed(_) if norm(arm) == 0.0 => continue,
+                Place::Fixed(_) => {
+                    all.extend(scale(cross(axis, arm), 1.0 / (ROUND_OFF * norm(arm))));
+                    continue;
+                }
+                Place::Node(id) => id.index(),
+            };
+            let moved = system.mass.row(node).filter_map(|(other, block)| Some(scale(rate(other)?.0, block.m)));
+            momentum = add(momentum, cross(arm, moved.fold([0.0; 3], add)));
+            for &row in &rows[node] {
+                let (mut sum, mut sizes) = (0.0, 0.0);
+                for slot in system.slots.rows[row as usize].clone() {
+                    let Some((v, arm)) = rate(system.slots.nodes[slot] as usize) else { continue };
+                    for (g, v) in at.gradient[3 * slot..3 * slot + 3].iter().zip(v) {
+                        (sum, sizes) = (sum + g * v, sizes + g.abs() * arm);
+                    }
+                }
+                if sizes > 0.0 {
+                    all.push(sum / (ROUND_OFF * sizes));
                 }
             }
-            f64::abs(sum) <= ROUND_OFF * sizes
-        })
+        }
+        all.extend(scale(momentum, 1.0 / (NOTHING * most)));
+        all
     }
 }
 
@@ -69,29 +82,22 @@ pub(super) fn refuse(assembly: &Assembly<'_>) -> Option<Fault> {
     let mut all = assembly.bodies.iter().zip(&assembly.frames);
     all.find_map(|(body, frame)| {
         let Frame::Body { basis, .. } = frame else { return None };
-        let freely = |axis: Vec3| {
+        let axes = axes_without_inertia(body);
+        if axes.is_empty() {
+            return None;
+        }
+        let centre = at(frame.point(body.position));
+        let arm = |place: Vec3, is_point: bool| if is_point { subtract(place, centre) } else { place };
+        let arms: Vec<_> = basis.iter().map(|node| (node.place, arm(at(vec![(node.place, 1.0).into()]), node.is_point))).collect();
+        let farthest = arms.iter().map(|(_, arm)| norm(*arm)).fold(0.0, f64::max);
+        let most = body.inertia.symmetric_eigenvalues().amax().max(body.mass * farthest * farthest);
+        let held = held.get_or_insert_with(|| Held::new(assembly));
+        let freely = |axis: &Vec3| {
             // A frame that has nothing beside the axis does not turn about it.
-            if norm(at(frame.vector(across(axis, 3)[0]))) < 0.5 {
-                return false;
-            }
-            let (axis, centre) = (at(frame.vector(axis)), at(frame.point(body.position)));
-            let (mut moves, mut farthest) = (Vec::new(), 0.0_f64);
-            for node in basis {
-                let place = at(vec![(node.place, 1.0).into()]);
-                let arm = if node.is_point { subtract(place, centre) } else { place };
-                let v = cross(axis, arm);
-                farthest = farthest.max(norm(arm));
-                match node.place {
-                    Place::Node(id) => moves.push((id.index(), v)),
-                    // What the ground holds beside the axis does not let it turn.
-                    Place::Fixed(_) if norm(v) > ROUND_OFF * norm(arm) => return false,
-                    Place::Fixed(_) => (),
-                }
-            }
-            let most = body.inertia.symmetric_eigenvalues().amax().max(body.mass * farthest * farthest);
-            held.get_or_insert_with(|| Held::new(assembly)).is_nothing(&moves, most)
+            let turns = norm(at(frame.vector(across(*axis, 3)[0]))) > 0.5;
+            turns && held.resistance(at(frame.vector(*axis)), &arms, most).iter().all(|resisting| resisting.abs() <= 1.0)
         };
-        axes_without_inertia(body).into_iter().any(freely).then(|| {
+        least_held(&axes, |axis| held.resistance(at(frame.vector(axis)), &arms, most)).iter().any(freely).then(|| {
             let message = format!(
                 "the body `{}` has no moment of inertia about an axis about which no joint holds it: no acceleration follows there",
                 body.name
@@ -107,4 +113,13 @@ fn axes_without_inertia(body: &RigidBody) -> Vec<Vec3> {
     let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(body.inertia);
     let largest = eigenvalues.amax();
     (0..3).filter(|&k| eigenvalues[k] <= NOTHING * largest).map(|k| eigenvectors.column(k).into_owned().into()).collect()
+}
+
+/// Unit vectors among all sums of these: what resists them is smallest for one, largest for another.
+fn least_held(axes: &[Vec3], resistance: impl Fn(Vec3) -> Vec<f64>) -> Vec<Vec3> {
+    let resistances: Vec<_> = axes.iter().map(|axis| resistance(*axis)).collect();
+    let product = |i: usize, j: usize| resistances[i].iter().zip(&resistances[j]).map(|(a, b)| a * b).sum();
+    let SymmetricEigen { eigenvectors, .. } = SymmetricEigen::new(DMatrix::from_fn(axes.len(), axes.len(), product));
+    let all = Matrix3xX::from_iterator(axes.len(), axes.iter().flatten().copied());
+    (all * eigenvectors).column_iter().map(|axis| [axis[0], axis[1], axis[2]]).collect()
 }

@@ -122,6 +122,7 @@ impl Simulation {
         }
         let mut audit = self.audit.clone();
         let accounts = audit.integrated(system, &taken, target, work);
+        self.judge.corners(system, work)?;
         self.judge.positions(system, target, work)?;
         audit.violate_acceleration(system, method, &taken, target, work);
         self.found_v.copy_from_slice(&work.end.v);

@@ -282,6 +282,14 @@ impl Judge {
         ROUND_OFF * sizes + self.most_momentum(kinetic) * scales.length * 2.0 / h.abs() * (ROUNDED + self.tolerance)
     }
 
+    /// Looks for corners of rows that a step goes across.
+    pub(super) fn corners(&self, system: &System, work: &Workspace) -> Result<(), Failure> {
+        match system.corner([&work.start.at, &work.end.at]) {
+            Some((row, what)) => Err(Failure::Corner { row, what }),
+            None => Ok(()),
+        }
+    }
+
     /// Looks at Φ at the end of a step at the time `t` (s), in `phi`.
     pub(super) fn positions(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
         let length = work.scales.length * (ROUND_OFF + self.tolerance);

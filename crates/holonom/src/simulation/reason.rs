@@ -41,6 +41,9 @@ impl Simulation {
         if !is_of_rows && failure != Failure::TooSmall {
             return what;
         }
+        if let Some(corner) = self.corner_ahead() {
+            return format!("{} at t = {t:.6} s", corner.describe(&self.system));
+        }
         if let Some(conflict) = self.conflict() {
             return format!("{conflict}; {what}");
         }
@@ -51,6 +54,17 @@ impl Simulation {
             return what;
         }
         self.blocked().map_or_else(|| what.clone() + &self.disagreement(), |conflict| format!("{conflict}; {what}"))
+    }
+
+    /// The corner of a row that the motion comes to within a nominal step.
+    fn corner_ahead(&mut self) -> Option<Failure> {
+        let step = self.nominal_step();
+        let (system, work, state) = (&*self.system, &mut self.work, &self.state);
+        state.load(work);
+        work.end.x.iter_mut().zip(&state.x).zip(&state.v).for_each(|((end, x), v)| *end = x + step * v);
+        system.evaluate(&work.end.x, state.t + step, &work.start.at, &mut work.end.at);
+        let (row, what) = system.corner([&work.start.at, &work.end.at])?;
+        Some(Failure::Corner { row, what })
     }
 
     /// That redundant rows may not agree, where there are any.

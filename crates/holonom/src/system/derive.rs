@@ -8,6 +8,12 @@ use super::{Differentiated, MAX_ARGUMENTS, Number, Signal};
 pub trait SmoothFunction: Send + Sync {
     /// Its value.
     fn evaluate<N: Number>(&self, value: &[N]) -> N;
+
+    /// What happens, in words, where a step from the first invariants to the second goes across a corner of the function, where it is
+    /// not smooth. No such step is taken.
+    fn corner(&self, _from: &[f64], _to: &[f64]) -> Option<&'static str> {
+        None
+    }
 }
 
 /// Value, gradient and Hessian of a function of m numbers.
@@ -115,11 +121,18 @@ impl<F: PfaffianForm> Pfaffian for Differentiated<F> {
 pub trait Smooth: Send + Sync {
     /// Value and derivatives.
     fn derivatives(&self, value: &[f64]) -> Derivatives;
+
+    /// [`SmoothFunction::corner`]
+    fn corner(&self, from: &[f64], to: &[f64]) -> Option<&'static str>;
 }
 
 impl<F: SmoothFunction> Smooth for Differentiated<F> {
     fn derivatives(&self, value: &[f64]) -> Derivatives {
         derive(value, self.0.evaluate(value), |point| self.0.evaluate(point))
+    }
+
+    fn corner(&self, from: &[f64], to: &[f64]) -> Option<&'static str> {
+        self.0.corner(from, to)
     }
 }
 

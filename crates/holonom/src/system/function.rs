@@ -99,6 +99,11 @@ impl Functions {
         self.items[id.0 as usize].summands.iter().any(|summand| matches!(summand.part, Part::Pfaffian { .. }))
     }
 
+    /// What happens where a step between these invariants goes across a corner of a function.
+    pub fn corner(&self, id: FunctionId, pi: [&[f64]; 2]) -> Option<&'static str> {
+        self.items[id.0 as usize].summands.iter().find_map(|summand| summand.part.corner(pi))
+    }
+
     pub fn is_empty(&self) -> bool {
         self.items.is_empty()
     }

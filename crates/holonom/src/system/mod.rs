@@ -197,6 +197,14 @@ impl System {
         !self.velocity_rows.is_empty()
     }
 
+    /// The first row with a corner that a step between these evaluations goes across, and what happens there, in words.
+    pub(crate) fn corner(&self, [from, to]: [&Evaluation; 2]) -> Option<(usize, &'static str)> {
+        self.function_rows.iter().map(|&row| row as usize).find_map(|row| match self.rows[row].quantity {
+            Quantity::Function(id) => Some((row, self.functions.corner(id, [&from.value, &to.value])?)),
+            Quantity::Invariant(_) => None,
+        })
+    }
+
     /// Whether there is nothing but masses, weight and rows that are quadratic.
     pub fn has_only_quadratic_rows(&self) -> bool {
         self.laws.is_empty() && self.loads.is_empty() && self.custom.is_empty() && self.function_rows.is_empty()

@@ -101,6 +101,13 @@ impl Part {
         }
     }
 
+    /// What happens where a step between these invariants goes across a corner.
+    pub(super) fn corner(&self, pi: [&[f64]; 2]) -> Option<&'static str> {
+        let Self::Smooth { of, function } = self else { return None };
+        let [from, to] = pi.map(|pi| pick(of, pi));
+        function.corner(&from[..of.len()], &to[..of.len()])
+    }
+
     /// The discrete derivative between two positions; what is followed is the first of `followed` at each.
     pub(super) fn between(&self, pi: [&[f64]; 2], followed: [&[f64]; 2]) -> Derivatives {
         match self {

@@ -88,6 +88,11 @@ impl Joint for Rolling {
 /// Sine of the smallest angle between the disc and the plane at the start.
 const FLAT: f64 = 1e-3;
 
+/// A disc that turns round by more than this cosine in a step, about its axle as the plane sees it, has fallen over to its other side, where
+/// the sine of its angle with the plane is less than this.
+const TURNED: f64 = -0.5;
+const LOW: f64 = 0.25;
+
 /// s − s(0) of (N·v, N·w): d·N − R (s − s(0)) is where the lowest point of the disc is, which stays on the plane. Lengths and
 /// numbers are not arguments of one function, as its discrete derivative would depend on the unit of length.
 struct Touching {
@@ -97,6 +102,12 @@ struct Touching {
 impl SmoothFunction for Touching {
     fn evaluate<N: Number>(&self, value: &[N]) -> N {
         (value[0] * value[0] + value[1] * value[1]).sqrt() - self.start
+    }
+
+    fn corner(&self, from: &[f64], to: &[f64]) -> Option<&'static str> {
+        let [s, s_to] = [from, to].map(|value| value[0].hypot(value[1]));
+        let turns = from[0] * to[0] + from[1] * to[1] < TURNED * s * s_to;
+        (turns && s.min(s_to) < LOW).then_some("the disc lies down flat on the plane and does not roll on")
     }
 }
 
