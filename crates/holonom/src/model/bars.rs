@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::assembly::Assembly;
+use super::bodies::frame::Frame;
 use super::ends::{End, difference, from_to};
 use super::entry::Entry;
 use super::fault::{Read, Refused};
@@ -70,16 +71,16 @@ fn zero_length(entry: &Entry<'_>, [a, b]: &[End; 2]) -> Refused {
 
 /// Adds the mass of a bar. Where ends are sums of nodes, x = Σ (f + g J) x_i, each product of two ends is one of all their nodes.
 fn add_mass(assembly: &mut Assembly<'_>, ends: &[End; 2], mass: f64) {
+    let moving = ends.each_ref().map(|end| velocities(assembly, end));
     for (k, l, share) in [(0, 0, mass / 3.0), (1, 1, mass / 3.0), (0, 1, mass / 6.0)] {
         for (i, a) in ends[k].terms.iter().enumerate() {
             // Of an end with itself each pair of nodes once, as a block comes with its transpose.
-            for b in &ends[l].terms[if k == l { i } else { 0 }..] {
+            for (j, b) in ends[l].terms.iter().enumerate().skip(if k == l { i } else { 0 }) {
                 let m = share * (a.factor * b.factor + a.turn * b.turn);
                 let s = share * (a.factor * b.turn - a.turn * b.factor);
                 let twice = k != l && a.place == b.place;
                 let (m, s) = if twice { (2.0 * m, 0.0) } else { (m, s) };
-                let velocities = [velocity(assembly, &ends[k], a.place), velocity(assembly, &ends[l], b.place)];
-                assembly.builder.couple([a.place, b.place], m, s, velocities);
+                assembly.builder.couple([a.place, b.place], m, s, [moving[k][i], moving[l][j]]);
             }
         }
         let weighed = if k == l { &ends[k..=k] } else { &ends[..] };
@@ -87,14 +88,19 @@ fn add_mass(assembly: &mut Assembly<'_>, ends: &[End; 2], mass: f64) {
     }
 }
 
-/// Velocity at the start of a node that an end is made of, m/s: that which the body of the end is written with there. Others that share the node may
-/// be written with another one.
-fn velocity(assembly: &Assembly<'_>, end: &End, place: system::Place) -> [f64; 3] {
-    match (end.body, place) {
-        (Some(body), system::Place::Node(node)) => {
-            let (body, at) = (&assembly.bodies[body], assembly.builder.position_of(node));
-            if assembly.builder.is_direction(node) { body.rate_of(at) } else { body.velocity_at(at) }
-        }
-        _ => assembly.builder.velocity_of(place),
-    }
+/// Velocities at the start of the nodes and fixed places that an end is made of, m/s: those which the body of the end is written with there. Others that
+/// share a node may be written with another one, and what the ground holds is written as moving where its body is.
+fn velocities(assembly: &Assembly<'_>, end: &End) -> Vec<[f64; 3]> {
+    let of_body = end.body.map(|body| (&assembly.bodies[body], &assembly.frames[body]));
+    let Some((body, Frame::Body { basis, .. })) = of_body else {
+        return end.terms.iter().map(|term| assembly.builder.velocity_of(term.place)).collect();
+    };
+    // Terms come in the order of the basis.
+    let mut basis = basis.iter();
+    let mut of = |place| match basis.find(|node| node.place == place) {
+        Some(node) if node.is_point => body.velocity_at(node.at),
+        Some(node) => body.rate_of(node.at),
+        None => assembly.builder.velocity_of(place),
+    };
+    end.terms.iter().map(|term| of(term.place)).collect()
 }
