@@ -112,6 +112,25 @@ fn a_bar_is_as_fast_as_what_carries_it() {
     }
 }
 
+/// Wheels in mesh whose drives both begin at rest start, though one of the rates is no zero but round-off.
+#[test]
+fn rates_that_are_round_off_contradict_nothing() {
+    let wheel = |name: &str, x: f64, share: f64| {
+        let points = [(0.0, 0.0), (0.3, 0.3), (0.7, -0.3), (1.2, 0.6), (2.5, 0.0)].map(|(t, angle)| format!("[{t}, {}]", angle / share));
+        format!(
+            "[body.{name}]\nmass = 1\ninertia = 0.1\nposition = [{x}, 0]\n\
+             [joint.j{name}]\ntype = \"revolute\"\nbetween = [\"ground\", \"{name}\"]\nat = [{x}, 0]\n\
+             [drive.d{name}]\ntype = \"angle\"\njoint = \"j{name}\"\nprofile = {{ table = [{}], ends = \"rest\" }}\n",
+            points.join(", ")
+        )
+    };
+    for ratio in [2.0, 3.0, 7.0] {
+        let mesh = format!("[joint.mesh]\ntype = \"gear\"\njoints = [\"ja\", \"jb\"]\nratio = {ratio}\n");
+        let simulation = start(&model(&format!("plane = \"xy\"\n{}{}{mesh}", wheel("a", 0.0, 1.0), wheel("b", 1.0, ratio))));
+        assert!(simulation.velocities().iter().all(|v| v.abs() < 1e-14), "{ratio}");
+    }
+}
+
 /// A light ball on the ground that a heavy point drags by a rod: its own motion is not lost beside what moves the point.
 #[test]
 fn light_parts_start_as_exactly_as_heavy_ones() {

@@ -79,6 +79,34 @@ fn a_driven_joint_begins_elsewhere() {
     }
 }
 
+/// The second arm of a double pendulum turns as it does where it has no angular momentum of its own, dθ₂ = −3/2 cos(θ₁ − θ₂) dθ₁, on all of the way,
+/// wherever the pendulum stands.
+#[test]
+fn what_is_left_free_moves_as_little_as_it_can_on_all_of_the_way() {
+    for (end, steps) in [(1.0_f64, 1e4), (2.0, 1e4), (-3.0, 1e4)] {
+        let h = end / steps;
+        let slope = |first: f64, second: f64| -1.5 * (first - second).cos();
+        // The midpoint rule, whose error is some h².
+        let expected = (0..steps as u32).fold(0.0, |second, k| {
+            let first = h * f64::from(k);
+            second + h * slope(first + 0.5 * h, second + 0.5 * h * slope(first, second))
+        });
+        let mut found = Vec::new();
+        for away in [0.0, 5.0, -3000.0] {
+            let arm = |name: &str, x: f64| format!("[body.{name}]\nmass = 1\ninertia = {}\nposition = [{}, 1]\n", 1.0 / 12.0, away + x);
+            let hinge = |name: &str, between: &str, x: f64| {
+                format!("[joint.{name}]\ntype = \"revolute\"\nbetween = [{between}]\nat = [{}, 1]\n", away + x)
+            };
+            let hinges = hinge("j1", "\"ground\", \"a\"", 0.0) + &hinge("j2", "\"a\", \"b\"", 1.0);
+            let text = format!("plane = \"xy\"\n{}{}{hinges}[start.j1]\nangle = {end}\n", arm("a", 0.5), arm("b", 1.5));
+            let (_, recording) = common::run_every(&model_with_forces(&text), "radau", 1e-3, 1e-3, 1);
+            found.push(recording.column("b.angle").unwrap()[0]);
+        }
+        assert!((found[0] - expected).abs() < 1e-6, "{end} rad: {} for {expected} rad", found[0]);
+        assert!(found.iter().all(|angle| (angle - found[0]).abs() < 1e-10), "{end} rad: {found:?}");
+    }
+}
+
 /// What is not named moves as little as it can: a wheel on the moved arm of a tree keeps its place in the joint.
 #[test]
 fn coordinates_of_a_tree_in_space_are_all_reached() {

@@ -206,21 +206,28 @@ fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize])
     }
     let written = builder.clone().build();
     let (rolls, is_driven) = (written.is_nonholonomic(), written.is_driven());
-    let (mut share, mut step) = (0.0, FIRST_SHARE);
     let mut here = builder.position().to_vec();
     // Angles there: joints may turn further than half a turn on the way.
     let mut turned = [Vec::new(), Vec::new()];
     // How far all nodes went, over the share, and how fast they go on: at a dead centre no velocity leads there.
     let mut way = vec![0.0; here.len()];
     let mut rate = None;
+    // Where coordinates leave something free the place at the end follows from all of the way, and equal parts of it find the same one wherever the
+    // model stands.
+    let led = Way { builder, targets, released, turned: [&[], &[]], is_driven }.at(&here, 0.0, 0.0);
+    let is_free = led.is_some_and(|led| led.system().coordinates() + led.redundant_rows() > led.system().constraints());
+    let longest = if is_free && !rolls { FIRST_SHARE } else { 1.0 };
+    let (mut share, mut step) = (0.0, FIRST_SHARE);
     for tries in 1.. {
         let next = f64::min(share + step, 1.0);
         let angles = turned.each_ref().map(|angles| &angles[..]);
         let ways = Way { builder, targets, released, turned: angles, is_driven };
-        let rate_here = rate.get_or_insert_with(|| ways.rate(&here, share));
-        let ahead = match rolls {
-            true => rate_here.as_ref().and_then(|rate| ways.follow(&here, rate, [share, next])),
-            false => Some(along(&here, next - share, rate_here.as_ref().unwrap_or(&way))),
+        let rate_here = &*rate.get_or_insert_with(|| ways.rate(&here, share));
+        let ahead = match rate_here {
+            Some(rate) if rolls => ways.follow(&here, rate, [share, next]),
+            None if rolls => None,
+            Some(rate) if is_free => ways.step(&here, rate, [share, next]),
+            _ => Some(along(&here, next - share, rate_here.as_ref().unwrap_or(&way))),
         };
         match ahead.and_then(|ahead| ways.at(&ahead, next, 0.0)) {
             Some(simulation) => {
@@ -229,7 +236,7 @@ fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize])
                 way = there.iter().zip(&here).map(|(there, here)| (there - here) / (next - share)).collect();
                 here = there.to_vec();
                 turned = [state.angle, state.measured];
-                (share, step, rate) = (next, 2.0 * step, None);
+                (share, step, rate) = (next, f64::min(2.0 * step, longest), None);
                 if share == 1.0 {
                     builder.move_to(&here, turned.each_ref().map(|angles| &angles[..]));
                     break;
@@ -238,7 +245,12 @@ fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize])
             None if step > LEAST_SHARE && tries < MOST_TRIES => step *= 0.5,
             None => {
                 let message = format!("the mechanism cannot be moved there: it gets {} % of the way", short(100.0 * share));
-                let cure = "take values that the joints can have together; away from a dead centre a coordinate leads that moves there";
+                let cure = match is_driven && share == 0.0 {
+                    true => {
+                        "take values that the joints can have together, and of coordinates that go together, as those of a screw or of wheels in mesh, the one that is driven"
+                    }
+                    false => "take values that the joints can have together; away from a dead centre a coordinate leads that moves there",
+                };
                 return Err((message, cure));
             }
         }

@@ -163,7 +163,7 @@ impl Simulation {
         if !(step > 0.0 && step.is_finite()) {
             return Err(StartError::Step { step });
         }
-        Self::begin(Arc::clone(&system), method, step, &Asked::of(&system))
+        Self::begin(Arc::clone(&system), method, step, &Asked::of(&system, step))
     }
 
     /// Puts the mechanism at the time, the positions and the velocities of a state, as at a start: what misses the constraints a little
@@ -177,7 +177,14 @@ impl Simulation {
             return Err(StartError::Other);
         }
         let impulse = vec![0.0; self.system.coordinates()];
-        let asked = Asked { t: state.t, x: &state.x, v: &state.v, impulse: &impulse, angles: Some([&state.angle, &state.measured]) };
+        let asked = Asked {
+            t: state.t,
+            x: &state.x,
+            v: &state.v,
+            impulse: &impulse,
+            angles: Some([&state.angle, &state.measured]),
+            step: self.step,
+        };
         let found = Self::begin(Arc::clone(&self.system), self.method.clone(), self.step, &asked)?;
         let before = std::mem::replace(self, found);
         match before.apart {

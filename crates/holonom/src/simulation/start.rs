@@ -28,12 +28,14 @@ pub(super) struct Asked<'a> {
     pub impulse: &'a [f64],
     /// Angles of the equations and of what is measured, from which turns are counted, rad.
     pub angles: Option<[&'a [f64]; 2]>,
+    /// Length of the steps to come, s.
+    pub step: f64,
 }
 
 impl<'a> Asked<'a> {
     /// The start of the model.
-    pub fn of(system: &'a System) -> Self {
-        Self { t: 0.0, x: &system.start_position, v: &system.start_velocity, impulse: &system.start_impulse, angles: None }
+    pub fn of(system: &'a System, step: f64) -> Self {
+        Self { t: 0.0, x: &system.start_position, v: &system.start_velocity, impulse: &system.start_impulse, angles: None, step }
     }
 }
 
@@ -231,7 +233,9 @@ fn correct_velocities(
     }
     work.lambda.fill(0.0);
     start.turned = work.end.v.iter().zip(asked.v).fold(0.0, |m, (v, v0)| f64::max(m, (v - v0).abs()));
-    match violation <= MET * size {
+    // What moves nothing by more than its rounding in a step is no velocity.
+    let nothing = f64::EPSILON * work.scales.length / asked.step;
+    match violation <= (MET * size).max(nothing) {
         true => Ok(()),
         false => {
             let rows = worst(system, &work.rows);
