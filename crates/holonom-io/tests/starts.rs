@@ -192,3 +192,15 @@ fn a_point_that_is_driven_may_stand_beside_a_start() {
     let [centre, _] = crank.recorded.velocity(&simulation.state().x, simulation.velocities(), 2);
     assert!(centre.norm() < 1e-15 && (simulation.gauges().value[0] - PI / 6.0).abs() < 1e-12, "{centre}, {:?}", simulation.gauges().value);
 }
+
+/// What begins to move at t = 0 has its speed there, and what stops has none, whichever argument of `min` and `max` is written first.
+#[test]
+fn motions_with_a_corner_at_the_start_begin_with_the_speed_behind_it() {
+    for (profile, speed) in [("max(0, t)", 1.0), ("max(t, 0)", 1.0), ("min(t, 0)", 0.0), ("min(0, t)", 0.0), ("abs(-t)", 1.0)] {
+        let slider = "plane = \"xy\"\n[point.a]\nmass = 1\nposition = [0, 0]\n";
+        let axis = "[constraint.rail]\ntype = \"expression\"\nvalue = \"a.y\"\n";
+        let lead = format!("[constraint.lead]\ntype = \"expression\"\nvalue = \"a.x - {profile}\"\n");
+        let found = start(&model(&format!("{slider}{axis}{lead}"))).velocities()[0];
+        assert!((found - speed).abs() < 1e-12, "{profile}: {found} m/s");
+    }
+}

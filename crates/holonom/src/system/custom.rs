@@ -8,6 +8,12 @@ use super::{Bend, Load};
 pub trait Number: DualNum<Primitive = f64> + Copy {
     /// Whether all derivatives are zero.
     fn is_constant(&self) -> bool;
+
+    /// Whether it is less than another number of the same value right after this moment. Known of numbers that follow time only: partial derivatives
+    /// by one coordinate must all belong to the same side of a corner.
+    fn is_less_ahead(&self, _other: &Self) -> bool {
+        false
+    }
 }
 
 impl Number for f64 {
@@ -28,6 +34,10 @@ where
 impl Number for Dual2_64 {
     fn is_constant(&self) -> bool {
         self.v1 == 0.0 && self.v2 == 0.0
+    }
+
+    fn is_less_ahead(&self, other: &Self) -> bool {
+        (self.v1, self.v2) < (other.v1, other.v2)
     }
 }
 
@@ -142,21 +152,19 @@ impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
         let (k, rows) = (x.len(), self.0.rows());
         with_room(Dual64::from(0.0), k + rows, |room| {
             let (point, phi) = room.split_at_mut(k);
-            for direction in 0..=k {
+            for direction in 0..k {
                 point.iter_mut().zip(x).for_each(|(point, &x)| *point = Dual64::from(x));
-                let mut time = Dual64::from(t);
-                match point.get_mut(direction) {
-                    Some(point) => point.eps = 1.0,
-                    None => time.eps = 1.0,
-                }
-                self.0.evaluate(point, time, phi);
-                for row in 0..rows {
-                    match direction < k {
-                        true => by_position[row * k + direction] = phi[row].eps,
-                        false => by_time[row] = phi[row].eps,
-                    }
-                }
+                point[direction].eps = 1.0;
+                self.0.evaluate(point, Dual64::from(t), phi);
+                (0..rows).for_each(|row| by_position[row * k + direction] = phi[row].eps);
             }
+        });
+        // Numbers that follow time have the slope right after a corner.
+        with_room(Dual2_64::from(0.0), k + rows, |room| {
+            let (point, phi) = room.split_at_mut(k);
+            point.iter_mut().zip(x).for_each(|(point, &x)| *point = Dual2_64::from(x));
+            self.0.evaluate(point, Dual2_64::new(t, 1.0, 0.0), phi);
+            by_time.iter_mut().zip(phi).for_each(|(by_time, phi)| *by_time = phi.v1);
         });
     }
 

@@ -82,7 +82,7 @@ impl Function {
             Self::Log10 => x.log10(),
             Self::Sqrt => real_power(x, 0.5),
             Self::Abs => {
-                if real < 0.0 {
+                if is_less(&x, &N::from(0.0)) {
                     -x
                 } else {
                     x
@@ -101,14 +101,14 @@ impl Function {
         match self {
             Self::Atan2 => atan2(x, y),
             Self::Min => {
-                if y.re() < x.re() {
+                if is_less(&y, &x) {
                     y
                 } else {
                     x
                 }
             }
             Self::Max => {
-                if y.re() > x.re() {
+                if is_less(&x, &y) {
                     y
                 } else {
                     x
@@ -119,6 +119,11 @@ impl Function {
             _ => unreachable!("a function of one number"),
         }
     }
+}
+
+/// Whether a number is less than another one, or becomes so where both are equal: derivatives do not depend on which is written first.
+fn is_less<N: Number>(x: &N, y: &N) -> bool {
+    x.re() < y.re() || (x.re() == y.re() && x.is_less_ahead(y))
 }
 
 /// tanh x of x ≥ 0 by powers that vanish for large x, where those of sinh and cosh overflow in the derivatives.

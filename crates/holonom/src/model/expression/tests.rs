@@ -184,6 +184,27 @@ fn signals_have_two_derivatives() {
     assert!((value - 0.1 * 3f64.sin()).abs() < 1e-16 && (rate - 3f64.cos()).abs() < 1e-15 && (second + 10.0 * 3f64.sin()).abs() < 1e-14);
 }
 
+/// Where a function of time has a corner its derivatives are those right after it, whatever is written first.
+#[test]
+fn derivatives_at_a_corner_are_those_after_it() {
+    for (text, expected) in [
+        ("min(t, 0)", [0.0, 0.0]),
+        ("min(0, t)", [0.0, 0.0]),
+        ("max(t, 0)", [1.0, 0.0]),
+        ("max(0, t)", [1.0, 0.0]),
+        ("min(-t, 2*t)", [-1.0, 0.0]),
+        ("min(2*t, -t)", [-1.0, 0.0]),
+        ("max(t^2, 3*t^2)", [0.0, 6.0]),
+        ("max(3*t^2, t^2)", [0.0, 6.0]),
+        ("abs(t)", [1.0, 0.0]),
+        ("abs(-t)", [1.0, 0.0]),
+        ("abs(-t^2)", [0.0, 2.0]),
+    ] {
+        let [_, rate, second] = TimeProgram(Program::parse(text, &["t"], &Scope::default()).unwrap()).at(0.0);
+        assert_eq!([rate, second], expected, "{text}");
+    }
+}
+
 /// Every period of a periodic table has its kinks, at the times at which its formula has them.
 #[test]
 fn kinks_of_periodic_tables_come_again_in_every_period() {
