@@ -55,7 +55,10 @@ impl Way {
 
     /// Where its k-th derivative first jumps, and by how much.
     fn first_jump(&self, places: &[f64], k: usize, end: f64) -> Option<(f64, f64)> {
-        let largest = (0..=LOOKS).map(|look| self.at(end * f64::from(look) / f64::from(LOOKS))[k].abs()).fold(0.0, f64::max);
+        // Also between two places: a motion may be shorter than what is looked at evenly, and is round-off where it comes to rest.
+        let between = places.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+        let looks = (0..=LOOKS).map(|look| end * f64::from(look) / f64::from(LOOKS)).chain(between);
+        let largest = looks.map(|t| self.at(t)[k].abs()).fold(0.0, f64::max);
         let across = |t: f64, after: f64| self.at(after)[k] - self.at(t)[k];
         let jump = |&t: &f64| {
             // Across the zero, which is some roundings beside the place. What rises steeply there, as a root does, has risen by more a little farther on.
@@ -81,6 +84,10 @@ mod tests {
     use super::*;
     use crate::model::expression::Scope;
 
+    /// A smooth motion that is over between two of the times that are looked at evenly.
+    const SHORT_RAMP: &str =
+        "0.01*max(0, min(1, (t-0.1)/0.004))^3*(10 - 15*max(0, min(1, (t-0.1)/0.004)) + 6*max(0, min(1, (t-0.1)/0.004))^2)";
+
     #[test]
     fn jumps_of_motions_and_rates_are_found_and_smooth_switches_are_none() {
         for (text, end, words) in [
@@ -99,6 +106,7 @@ mod tests {
             ("0.1*max(0, t - 1)^1.5", 2.0, None),
             ("0.1*max(0, t - 1)^1.01 + 1e-3*max(0, t - 0.5)", 2.0, Some("its rate jumps by 0.001 per s at 0.5 s")),
             ("sin(t)", 2.0, None),
+            (SHORT_RAMP, 1.0, None),
             ("atan2(sin(5*t), cos(5*t))", 1.0, Some("it jumps by -6.28")),
             ("atan2(t - 0.5, 1)", 1.0, None),
             ("atan(tan(5*t))", 0.5, Some("it jumps by -3.14")),
