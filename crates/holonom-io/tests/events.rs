@@ -329,6 +329,31 @@ fn two_events_at_one_time_of_a_formula_end() {
     }
 }
 
+/// An input that is set where a force jumps by itself, whatever its formula of time is rounded to there: steps by accuracy end before both and go on.
+#[test]
+fn events_where_formulas_of_time_jump_are_no_obstacle() {
+    for (force, time, speed) in [
+        ("floor(t + 0.75)", "0.25", 1.5),
+        ("step(t + 0.75 - 1)", "0.25", 1.5),
+        ("sign(t + 0.75 - 1)", "0.25", 1.25),
+        ("-floor(0.3 - 7*t)", "2.3/7", 30.6 / 7.0),
+        ("mod(4*t + 0.3, 1)", "0.175", 0.5 + 0.825),
+    ] {
+        let text = format!(
+            "plane = \"xy\"\ngravity = [0, 0]\n[point.m]\nmass = 1\nposition = [0, 0]\n[input.u]\n\
+             [event.e]\nwhen = \"t - {time}\"\nset = {{ u = 1 }}\n\
+             [force.f]\ntype = \"expression\"\npoint = \"m\"\nforce = [\"u + {force}\", 0]\n"
+        );
+        let model = model(&text);
+        for method in ["radau", "dopri5", "dop853", "ggl/bdf", "conserving-ggl"] {
+            let choice = Choice { accuracy: Some(1e-6), ..Choice::default().named(method) };
+            let (simulation, recording) = common::run(&model, choice, 0.01, 1.0);
+            let v = last(&recording, "m.vx");
+            assert!((v - speed).abs() < 1e-6 && simulation.events().len() == 1, "{force} by {method}: {v} m/s in place of {speed}");
+        }
+    }
+}
+
 /// Pulses of 1 N at 100 Hz whose width follows a sine: the widths are found here by halving. Steps by accuracy end where `mod` jumps, and what it did before
 /// that counts.
 #[test]

@@ -297,7 +297,7 @@ fn measures_of_measures_are_worked_out_once() {
         assert!((simulation.state().x[0] - 1.0 - 3.0_f64.cos()).abs() < 1e-8);
     }
     let jumps =
-        ["step(late)*late + step(late)*(1 + late)", "step(t - 0.4321)*(t - 0.4321) + step(t - 0.4321)*(1 + t - 0.4321)"].map(|push| {
+        ["step(late)*late + step(late)*(1 + late)", "step(t - 0.4321)*(t - 0.4321) + step(t - 0.4321)*(1 + (t - 0.4321))"].map(|push| {
             let text = format!(
                 "{OSCILLATOR}[measure.late]\nvalue = \"t - 0.4321\"\n[measure.push]\nvalue = \"{push}\"\n\
              [force.f]\ntype = \"expression\"\npoint = \"bob\"\nforce = [\"push + 0*push\", 0, 0]\n"

@@ -120,7 +120,7 @@ impl Simulation {
         let front = self.state.t;
         let parts = if everywhere { (INSIDE * (high - low) / length - 1e-9).ceil() } else { 1.0 };
         let inside = (1..parts as u32).map(|k| low + f64::from(k) * (high - low) / parts);
-        let has_switch = pilot.switches.contains(&front.next_down().next_down());
+        let has_switch = pilot.is_behind_switch(&self.system, front);
         let last = [(has_switch, (begin + length).next_down().next_down()), (true, front)];
         let last = last.into_iter().filter_map(|(is_there, t)| (is_there && t > from && t < target).then_some(t));
         for t in inside.chain(last) {
@@ -246,7 +246,7 @@ impl Simulation {
 
     /// Goes to just behind the present time, and begins anew there.
     fn go_behind(&mut self) {
-        self.state.t = self.state.t.next_up().next_up();
+        self.state.t = self.system.behind_switch(self.state.t);
         self.begin_anew();
     }
 

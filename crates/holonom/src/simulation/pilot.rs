@@ -174,6 +174,12 @@ impl Pilot {
         }
     }
 
+    /// Whether `t` is the first time behind one at which something changes abruptly.
+    pub fn is_behind_switch(&self, system: &System, t: f64) -> bool {
+        let last = self.switches.partition_point(|switch| *switch < t).checked_sub(1);
+        last.is_some_and(|last| system.behind_switch(self.switches[last]) == t)
+    }
+
     /// The error of the last step over what is allowed. Where it is too large it is looked at once more: rows that hardly differ
     /// from others, but for those that are redundant anyway, make more of round-off, and shorter steps all the more.
     pub fn ratio(&mut self, simulation: &mut Simulation, taken: &Step, step: f64) -> f64 {

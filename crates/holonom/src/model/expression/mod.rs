@@ -330,9 +330,10 @@ fn tell_of_two(op: &Op, [x, y]: [f64; 2], is_scaled: bool, note: &mut impl FnMut
     }
 }
 
-/// What is zero where a number is an integer, and goes through zero there.
+/// What goes through zero where a number is an integer, and has its other sign as soon as `floor` has jumped.
 fn at_integers(x: f64) -> f64 {
-    (std::f64::consts::PI * x).sin()
+    let sign = 0.5 - x.floor().rem_euclid(2.0);
+    (std::f64::consts::PI * x).sin().abs().max(f64::MIN_POSITIVE).copysign(sign)
 }
 
 impl Formula for Program {

@@ -1,19 +1,19 @@
 //! Parts of a formula that follow from time alone.
 
-use std::f64::consts::PI;
 use std::ops::Range;
 
 use super::cells::begins;
 use super::functions::Function;
 use super::{Op, Program};
 
-/// What is zero where a number is an integer, and goes through zero there, as operations.
-const AT_INTEGERS: [Op; 3] = [Op::Constant(PI), Op::Mul, Op::OfOne(Function::Sin)];
+/// What changes its sign where a number comes to the next integer, as operations: with the same rounding as `floor` itself, which a function that
+/// is zero at integers has not.
+const AT_INTEGERS: [Op; 5] = [Op::OfOne(Function::Floor), Op::Constant(2.0), Op::OfTwo(Function::Mod), Op::Constant(0.5), Op::Sub];
 
 impl Program {
-    /// The expressions of the variable `t` alone, and of nothing else, at whose zeros this one jumps or has a kink, as programs of
+    /// The expressions of the variable `t` alone, and of nothing else, at whose changes of sign this one jumps or has a kink, as programs of
     /// one variable: the arguments of `step`, `sign` and `abs`, the difference of those of `min` and `max`, the first of `atan2`, the cosine of
-    /// that of `tan`, and what is zero where `floor` and `mod` jump.
+    /// that of `tan`, and what has another sign where `floor` and `mod` have jumped.
     pub fn switches(&self, t: usize) -> Vec<Self> {
         let begins = begins(&self.ops);
         let mut found = Vec::new();

@@ -247,6 +247,29 @@ fn floor_and_mod_jump_where_they_are_seen_to() {
     assert!(corners[0] * corners[2] < 0.0 && corners[1] * corners[3] < 0.0, "{corners:?}");
 }
 
+/// A step of the run ends right before a jump and the next begins right behind it, as the formula itself is rounded there.
+#[test]
+fn jumps_are_found_as_formulas_are_rounded() {
+    for text in [
+        "floor(t + 0.75)",
+        "floor(3*t + 0.1)",
+        "-floor(0.3 - 7*t)",
+        "mod(t + 0.4, 0.7)",
+        "step(t + 0.75 - 1)",
+        "sign(t + 0.75 - 1)",
+        "sign(0.7 - 3*t + 0.1)",
+    ] {
+        let program = Program::parse(text, &["t"], &Scope::default()).unwrap();
+        let times: Vec<f64> = program.switches(0).into_iter().flat_map(|switch| zeros(&TimeProgram(switch), 1.0)).collect();
+        let jump = |t: f64| program.evaluate(&[t]);
+        for t in times.iter().copied() {
+            let [far_before, far_behind] = [t - 1e-9, t + 1e-9].map(jump);
+            assert!((jump(t) - far_before).abs() < 1e-6 && (far_behind - far_before).abs() > 0.5, "{text} at {t}");
+        }
+        assert!(!times.is_empty(), "{text}");
+    }
+}
+
 #[test]
 fn parts_of_time_are_the_largest_that_read_nothing_else() {
     for (text, expected) in [
