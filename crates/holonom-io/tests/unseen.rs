@@ -125,3 +125,15 @@ fn knocks_of_drives_are_noted() {
     let by_accuracy = Method::resolve(&Choice { accuracy: Some(1e-6), ..choice("conserving-ggl") }).unwrap();
     assert!(pushed("shock(t)").unseen(&by_accuracy, STEP, END).is_empty());
 }
+
+/// What a force sets off at the end of a step has its energy of the force, though explicit methods see no work of it there.
+#[test]
+fn what_jumps_at_the_end_of_a_step_sets_off() {
+    for time in [0.5, 0.4985, 0.49, 0.499_999_999_999_9] {
+        let model = pushed(&format!("step(t - {time})"));
+        for method in ["rk4", "dopri5", "dop853"] {
+            let found = speed(&model, method, STEP);
+            assert!((found - (END - time)).abs() < STEP, "{method}, {time} s: {found} m/s");
+        }
+    }
+}
