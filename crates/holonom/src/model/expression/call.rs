@@ -166,8 +166,26 @@ impl Parser<'_> {
         for (place, begin) in places.iter().filter(|(place, _)| place != GROUND) {
             self.is_place(place, &axes[..1]).map_err(|mistake| Mistake { character: *begin, ..mistake })?;
         }
+        self.have_directions(name, &places)?;
         let places: Vec<String> = places.into_iter().map(|(place, _)| place).collect();
         self.written_out(start, &names::of_places(name, &places, axes))
+    }
+
+    /// Refuses an angle or a speed along a line from a place to itself, which has no direction.
+    fn have_directions(&self, name: &str, places: &[(String, usize)]) -> Result<(), Mistake> {
+        let wanted = match name {
+            "angle" => "angle(A, B, C) is at B, between the lines from there to A and to C",
+            "speed" => "speed(A, B) is along the line from A to B",
+            _ => return Ok(()),
+        };
+        for pair in places.windows(2) {
+            let [one, other] = [0, 1].map(|k| super::indexed(&pair[k].0, self.scope));
+            if one? == other? {
+                let message = format!("`{}` stands twice, and the line from it to itself has no direction", pair[1].0);
+                return Err(Mistake::new(pair[1].1, message, format!("name different places: {wanted}")));
+            }
+        }
+        Ok(())
     }
 
     /// The component of a vector along an axis of a body, such as `local(hub, pin.fx)`, written out as a formula of columns.
