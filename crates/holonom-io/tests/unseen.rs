@@ -93,6 +93,17 @@ fn what_steps_see_is_not_noted() {
     }
 }
 
+/// Methods that look at the end of a step alone are as late by half a step all the time, and still miss what is over within one.
+#[test]
+fn what_is_looked_at_late_is_not_noted() {
+    for method in ["ggl/bdf-2", "lagrange-2/bdf-2", "ggl/radau-1"] {
+        for force in ["sin(0.1*t)", "t", "5 - sin(t)"] {
+            assert_eq!(notes(&pushed(force), method, STEP), Vec::<String>::new(), "{force} by {method}");
+        }
+        assert_eq!(notes(&pushed("shock(t) + sin(t)"), method, STEP).len(), 1, "{method}");
+    }
+}
+
 /// Larger numbers, shorter times and a constant beside it change nothing.
 #[test]
 fn units_do_not_matter() {

@@ -170,9 +170,11 @@ fn first_missed(course: &Course, bends: &[f64], looks: &[[f64; 2]], most: usize,
     if reach <= ROUNDED * largest {
         return None;
     }
+    // A method that looks at one end alone takes the line itself for that of another time.
+    let late = looks.iter().map(|[share, weight]| weight * (share - 0.5)).sum::<f64>() * step;
     let is_missed = |seen: &Seen, length: f64| {
         let jump = seen.ends[1] - seen.ends[0] - slope * length;
-        (seen.taken - seen.mean).abs() - jump.abs() > MISSED * reach
+        (seen.taken - seen.mean - slope * late).abs() - jump.abs() > MISSED * reach
     };
     let alone = steps.iter().copied().find(|seen| is_missed(seen, step)).map(|seen| (seen, step));
     // What happens beside the end of a step is seen by both or by none.
