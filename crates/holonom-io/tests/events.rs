@@ -242,6 +242,41 @@ fn a_relay_that_chatters_ends_the_run() {
     }
 }
 
+/// The same relay on a speed that comes to zero within the rounding of a step's end, or right behind it: wherever rounding puts it, the run does not go on.
+#[test]
+fn a_relay_chatters_wherever_rounding_puts_it() {
+    for speed in [-0.5, -0.503, -0.52, -0.7] {
+        let model = model(&format!(
+            "gravity = [0, 0, 0]\n[point.p]\nmass = 1\nposition = [0, 0, 0]\nvelocity = [{speed}, 0, 0]\n[input.u]\ndefault = 1\n\
+             [event.up]\nwhen = \"p.vx\"\ndirection = \"rising\"\nset = {{ u = -1 }}\n\
+             [event.down]\nwhen = \"p.vx\"\ndirection = \"falling\"\nset = {{ u = 1 }}\n\
+             [force.f]\ntype = \"expression\"\npoint = \"p\"\nforce = [\"u\", 0, 0]\n"
+        ));
+        for (method, accuracy) in [
+            ("conserving-ggl", None),
+            ("conserving", None),
+            ("radau", None),
+            ("radau", Some(1e-6)),
+            ("generalized-alpha", None),
+            ("trapezoidal-projected", None),
+            ("ode/rk4", None),
+            ("ode/dopri5", Some(1e-6)),
+            ("ode/dop853", Some(1e-8)),
+            ("ggl/bdf-3", Some(1e-5)),
+        ] {
+            let choice = Choice { accuracy, ..Choice::default().named(method) };
+            let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&choice).unwrap(), 0.01).unwrap();
+            let Status::Stopped { at, reason } = simulation.run(2.0, &mut |_: &Simulation| Verdict::GoOn) else {
+                panic!("{speed} m/s, {method} {accuracy:?}: it went on")
+            };
+            assert!(
+                (at + speed).abs() < 1e-9 && reason.contains("happens again and again"),
+                "{speed} m/s, {method} {accuracy:?}: {at} s: {reason}"
+            );
+        }
+    }
+}
+
 /// Two events that are closer together than a millionth of a step, right behind a nominal time, happen one after the other as they do in time,
 /// whatever their order in the file.
 #[test]

@@ -116,6 +116,25 @@ fn motions_that_jump_and_long_steps_are_noted() {
     assert_eq!(driven("step(t - 1)", "1", "step = 3"), [""; 0], "the end is not known");
 }
 
+/// A spline through points at uneven distances, of a table as of a drive's own profile; other interpolations stay within what is written.
+#[test]
+fn splines_that_swing_are_noted() {
+    let points = "[[0, 0], [0.02, 1], [0.04, 0], [1, 0], [2, 0]]";
+    let noted = |table: &str, profile: &str| {
+        let text = format!(
+            "plane = \"xy\"\n{table}[body.a]\nmass = 1\ninertia = 1\nposition = [0, 0]\n\
+             [joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"a\"]\naxis = [1, 0]\n\
+             [drive.push]\ntype = \"displacement\"\njoint = \"rail\"\nprofile = {profile}\n"
+        );
+        model(&text).notes.into_iter().filter(|note| note.contains("between its points this goes from -12.1344 to 4.10643")).count()
+    };
+    assert_eq!(noted("", &format!("{{ table = {points} }}")), 1);
+    for (interpolation, notes) in [("cubic", 1), ("monotone", 0), ("linear", 0)] {
+        let table = format!("[table.way]\npoints = {points}\ninterpolation = \"{interpolation}\"\n");
+        assert_eq!(noted(&table, "\"0*t + 1e-9*way(t)\""), notes, "{interpolation}");
+    }
+}
+
 /// A stop that is in contact from the start is noted, also where a start has moved its joint.
 #[test]
 fn a_stop_that_pushes_from_the_start_is_noted() {

@@ -1,6 +1,11 @@
 //! Cubic splines through given points: profiles of drives and curves.
 
+use super::bodies::short;
 use crate::system::{Number, Signal};
+
+/// Places between two points that are looked at, and share of the range of their values beyond which a spline swings.
+const LOOKS: u32 = 16;
+const SWINGS: f64 = 0.1;
 
 /// A cubic spline with two continuous derivatives: natural, at rest at its ends, or periodic. Beyond an end that is not
 /// periodic it goes on straight, with a jump of the second derivative unless it is natural.
@@ -65,6 +70,26 @@ impl Spline {
         }
         bends[0] = bends[last];
         Self { knots, values, bends, periodic: true }
+    }
+
+    /// From where to where it goes, in words, if that is far beyond the values of its points.
+    pub fn swings(&self) -> Option<String> {
+        let range = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold([f64::MAX, f64::MIN], |[least, most], value| [least.min(value), most.max(value)])
+        };
+        let inside = |pair: &[f64]| {
+            let [low, high] = [pair[0], pair[1]];
+            (1..LOOKS).map(move |k| self.evaluate(low + (high - low) * f64::from(k) / f64::from(LOOKS)))
+        };
+        let [least, most] = range(&mut self.values.iter().copied());
+        let [lowest, highest] = range(&mut self.knots.windows(2).flat_map(inside));
+        let swings = (least - lowest).max(highest - most) > SWINGS * (most - least);
+        swings.then(|| {
+            let [lowest, highest] = [lowest.min(least), highest.max(most)].map(short);
+            format!(
+                "between its points this goes from {lowest} to {highest}, beyond what is written, as a spline swings where steps differ"
+            )
+        })
     }
 
     /// Where its points are.

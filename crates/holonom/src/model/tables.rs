@@ -71,11 +71,15 @@ impl Curve {
             };
             return Err(entry.refuse("outside", message, "add the first value again, one period later"));
         }
-        Ok(match interpolation {
+        let curve = match interpolation {
             Some("cubic") => expression::Curve::cubic(knots, values, beyond),
             Some("monotone") => expression::Curve::monotone(knots, values, beyond),
             _ => expression::Curve::linear(knots, values, beyond),
-        })
+        };
+        if let Some(words) = curve.swings() {
+            entry.note(key, format!("{words} (interpolation = \"monotone\" does not)"));
+        }
+        Ok(curve)
     }
 
     /// Arguments and values, and the key that they come from.

@@ -104,7 +104,9 @@ impl Control {
     /// Begins anew at a state with velocities `v`, where something changes abruptly: of what came before nothing tells what comes,
     /// and a step of a tenth asks.
     pub(super) fn begin_anew(&mut self, state: &State, v: &[f64]) {
+        let count = self.count;
         self.remember(state.t, v);
+        self.count = count;
         self.forget(state);
     }
 
@@ -112,8 +114,11 @@ impl Control {
     pub(super) fn forget(&mut self, state: &State) {
         let n = self.start.len();
         self.start.copy_from_slice(&state.a[..n]);
+        // Where no step was taken since the last time the next is one that asks already.
+        if self.count > 1 {
+            self.step *= 0.1;
+        }
         self.count = 1;
-        self.step *= 0.1;
         self.last_ratio = 1.0;
     }
 

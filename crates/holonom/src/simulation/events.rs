@@ -186,8 +186,11 @@ impl Simulation {
             if self.state.t > begin {
                 pass(&mut from, now);
             } else {
-                // What went through zero here, and turned round when inputs were set, may go through it again.
-                turned.extend((0..).zip(beside).filter(|&(at, beside)| from[at] == 0.0 && beside != 0.0));
+                // What went through zero here, and turned round when inputs were set, may go through it again; so may what does without its event,
+                // which happens the other way.
+                let against = |at: usize, beside: f64| from[at] * beside < 0.0 && !system.events[at].trigger.is_between(from[at], beside);
+                let turns = |&(at, beside): &(usize, f64)| (from[at] == 0.0 && beside != 0.0) || against(at, beside);
+                turned.extend((0..).zip(beside).filter(turns));
             }
             self.require_no_chatter(k, t, shortest)?;
             last = behind;

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::model::bodies::short;
 use crate::model::entry::{Entry, Spot, all};
 use crate::model::expression::{Program, TimeProgram};
 use crate::model::fault::Read;
@@ -158,36 +157,10 @@ impl ProfileTable {
         }
         entry.sink.switches.borrow_mut().extend(knots.iter().map(|&knot| Program::since(knot)));
         let make = if ends? == Some("rest") { Spline::resting } else { Spline::natural };
-        let spline = make(knots.clone(), values.clone());
-        if let Some([lowest, highest]) = swings(&knots, &values, &spline) {
-            let [lowest, highest] = [lowest, highest].map(short);
-            entry.note(
-                "table",
-                format!(
-                    "between its points this goes from {lowest} to {highest}, beyond what is written, as a spline swings where steps differ (a \
-                     [table.NAME] with interpolation = \"monotone\" does not: profile = \"NAME(t)\")"
-                ),
-            );
+        let spline = make(knots, values);
+        if let Some(words) = spline.swings() {
+            entry.note("table", format!("{words} (a [table.NAME] with interpolation = \"monotone\" does not: profile = \"NAME(t)\")"));
         }
         Ok(spline)
     }
-}
-
-/// Places between two points of a table that are looked at, and share of the range of its values beyond which a spline swings.
-const LOOKS: u32 = 16;
-const SWINGS: f64 = 0.1;
-
-/// From where to where a spline goes, if that is far beyond the values of its points.
-fn swings(knots: &[f64], values: &[f64], spline: &Spline) -> Option<[f64; 2]> {
-    let range = |values: &mut dyn Iterator<Item = f64>| {
-        values.fold([f64::MAX, f64::MIN], |[least, most], value| [least.min(value), most.max(value)])
-    };
-    let inside = |pair: &[f64]| {
-        let [low, high] = [pair[0], pair[1]];
-        (1..LOOKS).map(move |k| spline.evaluate(low + (high - low) * f64::from(k) / f64::from(LOOKS)))
-    };
-    let [least, most] = range(&mut values.iter().copied());
-    let [lowest, highest] = range(&mut knots.windows(2).flat_map(inside));
-    let swings = (least - lowest).max(highest - most) > SWINGS * (most - least);
-    swings.then(|| [lowest.min(least), highest.max(most)])
 }

@@ -81,6 +81,11 @@ impl Curve {
         Self { tops: tops(&knots, &values), knots, values, slopes: None, spline: Some(spline), beyond }
     }
 
+    /// [`Spline::swings`]
+    pub fn swings(&self) -> Option<String> {
+        self.spline.as_ref()?.swings()
+    }
+
     /// Cubics with one continuous derivative that rise where the points rise and fall where they fall: slopes by Fritsch and Butland
     /// (SIAM J. Sci. Stat. Comput. 5, 1984), the weighted harmonic mean of those of both sides, and zero where these differ in sign.
     pub fn monotone(knots: Vec<f64>, values: Vec<f64>, beyond: Beyond) -> Self {
