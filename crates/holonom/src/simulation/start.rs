@@ -234,8 +234,8 @@ fn correct_velocities(
     work.lambda.fill(0.0);
     start.turned = work.end.v.iter().zip(asked.v).fold(0.0, |m, (v, v0)| f64::max(m, (v - v0).abs()));
     // What moves nothing by more than its rounding in a step is no velocity.
-    let nothing = f64::EPSILON * work.scales.length / asked.step;
-    match violation <= (MET * size).max(nothing) {
+    let is_still = size <= f64::EPSILON * work.scales.length / asked.step;
+    match is_still || violation <= MET * size {
         true => Ok(()),
         false => {
             let rows = worst(system, &work.rows);
