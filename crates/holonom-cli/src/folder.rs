@@ -124,7 +124,12 @@ impl Folder {
         let names = RESULTS.iter().map(|name| name.to_string()).chain(self.tables());
         // Of both what a kill has left of writing them.
         let names = names.flat_map(|name| [format!("{name}.new"), name]);
-        for name in names.filter(|name| !but.contains(&name.as_str())) {
+        self.remove(names.filter(|name| !but.contains(&name.as_str())))
+    }
+
+    /// Removes files, where they are there.
+    pub fn remove(&self, names: impl IntoIterator<Item = String>) -> Result<(), Failure> {
+        for name in names {
             let path = self.path.join(name);
             match std::fs::remove_file(&path) {
                 Err(source) if source.kind() != std::io::ErrorKind::NotFound => {

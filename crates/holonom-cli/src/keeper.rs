@@ -78,9 +78,19 @@ impl<'a> Keeper<'a> {
 
     /// Saves rows and checkpoint.
     pub fn save(&mut self, recording: &Recording, last: Point, before_end: Option<Point>) -> Result<(), Failure> {
-        self.append(recording)?;
+        if self.is_stale && self.rows > 0 {
+            // A table that a kill leaves with more rows than the earlier run had is not to be taken for its.
+            self.folder.remove(["summary.json", "report.html"].map(String::from))?;
+        }
+        let (rows, bytes) = (self.rows, self.bytes);
         let kept = Kept { last, before_end, table: self.table.into(), provenance: self.provenance.clone() };
-        self.folder.write(FILE, |out| Ok(serde_json::to_writer(out, &kept)?))?;
+        let saved = self.append(recording).and_then(|()| self.folder.write(FILE, |out| Ok(serde_json::to_writer(out, &kept)?)));
+        if saved.is_err() && rows > 0 {
+            (self.rows, self.bytes) = (rows, bytes);
+            // On a full disk rows may have been written in part. Where they cannot be cut off either, whoever goes on does it.
+            let _ = OpenOptions::new().write(true).open(self.folder.path.join(self.table)).and_then(|file| file.set_len(bytes));
+        }
+        saved?;
         if std::mem::take(&mut self.is_stale) {
             self.folder.remove_results(&[self.table, FILE])?;
             self.folder.write("columns.json", |out| holonom_io::write_json(&holonom_io::headings(recording.columns()), out))?;

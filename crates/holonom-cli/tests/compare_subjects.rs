@@ -214,6 +214,15 @@ fn what_cannot_be_compared_is_refused_before_anything_runs() {
         let message = fails(&folder, &format!("compare {words}"), 2);
         assert!(message.contains(told) && message.contains("cure"), "{words}\n{message}");
     }
+    // What a kill leaves of a run's table: the last row has not all of its digits.
+    prints(&folder, "run a.toml --quiet --no-report --out torn", 0);
+    let table = folder.path().join("torn/trajectory.csv");
+    let whole = fs::read(&table).unwrap();
+    fs::write(&table, &whole[..whole.len() - 3]).unwrap();
+    for torn in ["torn", "torn/trajectory.csv"] {
+        let message = fails(&folder, &format!("compare a.toml {torn}"), 2);
+        assert!(message.contains("cut off within its last row") && message.contains("cure"), "{message}");
+    }
     fails(&folder, "compare a.toml missing.csv", 4);
     fails(&folder, "compare missing.toml b.toml", 4);
     assert!(!folder.path().join("results").exists());

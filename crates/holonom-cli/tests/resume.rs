@@ -340,6 +340,31 @@ fn a_run_that_was_killed_before_its_results_were_written_writes_them() {
     }
 }
 
+/// Files that may not grow beyond a size stand for a full disk.
+#[cfg(unix)]
+#[test]
+fn a_resumed_run_that_cannot_be_written_leaves_the_rows_up_to_its_checkpoint() {
+    let folder = folder();
+    let run = |more: &str| prints(&folder, &format!("run {PAPER} --quiet {more}"), 0);
+    run("--end 1 --out a");
+    let out = folder.path().join("a");
+    let (table, checkpoint) = (fs::read(out.join("trajectory.csv")).unwrap(), fs::read(out.join("checkpoint.json")).unwrap());
+    // The limit is in blocks of 512 bytes, and ends within the rows to come.
+    let command = format!(
+        "trap '' XFSZ; ulimit -f {}; exec {} run {PAPER} --quiet --end 3 --resume a",
+        table.len() / 512 + 8,
+        env!("CARGO_BIN_EXE_holonom")
+    );
+    let output = Process::new("sh").current_dir(&folder).args(["-c", &command]).output().unwrap();
+    let message = text(&output.stderr);
+    assert!(output.status.code().is_some_and(|code| code != 0) && message.contains("cannot write"), "{message}");
+    assert_eq!(files(&out), names(&["checkpoint.json", "columns.json", "trajectory.csv"]));
+    assert!(fs::read(out.join("trajectory.csv")).unwrap() == table && fs::read(out.join("checkpoint.json")).unwrap() == checkpoint);
+    run("--end 3 --resume a");
+    run("--end 3 --out whole");
+    assert_same(&out, &folder.path().join("whole"), "after a full disk");
+}
+
 #[test]
 fn a_shorter_part_of_a_run_does_not_replace_a_longer_one() {
     let folder = folder();

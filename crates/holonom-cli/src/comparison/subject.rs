@@ -7,6 +7,7 @@ use holonom::record::{Heading, Recording};
 use holonom_io::{read_recording, sha256};
 use serde_json::{Value, json};
 
+use crate::checkpoint;
 use crate::failure::Failure;
 
 /// Something to compare, as it was named on the command line.
@@ -98,6 +99,12 @@ impl Subject {
 /// A table, and the SHA-256 of its file.
 fn read_table(path: &Path, known: &Headings) -> Result<(Recording, String), Failure> {
     let bytes = std::fs::read(path).map_err(|source| Failure::File { doing: "read", path: path.into(), source })?;
+    // Runs end each row with a line feed; measured tables may leave out the last.
+    let is_of_run = || path.with_file_name(checkpoint::FILE).exists();
+    if bytes.last().is_some_and(|last| *last != b'\n') && is_of_run() {
+        let message = format!("{} is cut off within its last row, as by a kill or a full disk", path.display());
+        return Err(Failure::usage(message, "go on with the run by --resume, or run it again"));
+    }
     let heading = |name: &str| known.get(name).cloned().unwrap_or_else(|| name.to_string().into());
     match read_recording(&bytes, heading) {
         Ok(recording) => Ok((recording, sha256(&bytes))),
