@@ -165,6 +165,36 @@ fn output_says_which_points_and_rows() {
 }
 
 #[test]
+fn output_takes_bodies_and_their_places_as_points() {
+    let folder = folder();
+    let text = r#"
+plane = "xy"
+[point.p]
+mass = 1
+position = [0, 1]
+[body.b]
+mass = 1
+inertia = 1
+position = [0, 0]
+points = { q = [1, 0] }
+[simulation]
+end = 0.1
+step = 0.1
+"#;
+    fs::write(folder.path().join("model.toml"), text).unwrap();
+    for (points, kept) in [("\"b\"", ["b."].as_slice()), ("\"b.q\",\"p\"", &["b.q.", "p."])] {
+        prints(&folder, &format!("run model.toml --set output.points=[{points}] --quiet --no-report --out a --force"), 0);
+        let header = csv(folder.path().join("a/trajectory.csv")).0;
+        let of = |name: &str| name.rsplit_once('.').map(|(owner, _)| format!("{owner}."));
+        let mut owners: Vec<String> = header.split(',').filter_map(of).collect();
+        owners.dedup();
+        assert_eq!(owners, kept, "{header}");
+    }
+    let message = fails(&folder, "run model.toml --set output.points=[\"b.r\"]", 2);
+    assert!(message.contains("there is no point `b.r`") && message.contains("b.q"), "{message}");
+}
+
+#[test]
 fn any_key_of_the_model_can_be_set() {
     let folder = folder();
     let summary = json(&folder, "run example:four-bar --end 0.1 --json --no-report --set parameters.N=3");

@@ -118,7 +118,7 @@ pub struct OutputKeys {
     /// record every so many steps
     #[key(unit = "steps", default = "1", shape = Shape::Whole)]
     pub every: Option<Number>,
-    /// points to record, in this order
+    /// points, bodies and named places of bodies to record, in this order
     #[key(default = "all")]
     pub points: Option<List<String>>,
     /// columns of the tables by their names, in which `*` stands for any letters and `?` for one; the time is always there
@@ -146,7 +146,7 @@ pub struct Settings {
 pub struct Output {
     /// Record every so many steps.
     pub every: Option<u32>,
-    /// Points to record, in this order; all where nothing is said.
+    /// Points, bodies and places of bodies to record, in this order; all where nothing is said.
     pub points: Option<Vec<String>>,
     /// Patterns of the names of columns in tables; all where nothing is said.
     pub columns: Option<Vec<String>>,
@@ -239,10 +239,15 @@ fn node_weights(weights: &Map<Number>, entry: &Entry<'_>, key: &str, assembly: &
 impl OutputKeys {
     /// What the keys come to. What is wrong with one is recorded, and it counts as not given.
     pub(super) fn output(&self, entry: &Entry<'_>, assembly: &Assembly<'_>) -> Output {
-        let point = |(k, name): (usize, &String)| match assembly.by_name.contains_key(name) || assembly.faulty.contains(name) {
+        let places = || assembly.bodies.iter().flat_map(|body| body.points.iter().map(|(place, _)| format!("{}.{place}", body.name)));
+        let is_faulty = |name: &str| assembly.faulty.contains(name.split(['[', '.']).next().unwrap_or(name));
+        let is_there = |name: &String| assembly.by_name.contains_key(name) || assembly.body_by_name(name).is_some();
+        let point = |(k, name): (usize, &String)| match is_there(name) || is_faulty(name) || places().any(|place| place == *name) {
             true => Ok(name.clone()),
             false => {
-                let cure = suggest(name, assembly.points.iter().map(|point| point.name.as_str()));
+                let owners = assembly.points.iter().map(|point| &point.name).chain(assembly.bodies.iter().map(|body| &body.name));
+                let known: Vec<String> = owners.cloned().chain(places()).collect();
+                let cure = suggest(name, known.iter().map(String::as_str));
                 Err(entry.refuse(Spot { key: "points", item: Some(k) }, format!("there is no point `{name}`"), cure))
             }
         };
