@@ -210,6 +210,8 @@ fn what_cannot_be_compared_is_refused_before_anything_runs() {
         ("a.toml --variant point.n.mass=1", "`n`"),
         ("measured.csv --step 0.1", "nothing is run"),
         ("measured.csv measured.csv --variant parameters.k=1", "nothing is run"),
+        ("measured.csv measured.csv --every 4", "--every is for runs"),
+        ("measured.csv measured.csv --format npz", "--format is for runs"),
     ] {
         let message = fails(&folder, &format!("compare {words}"), 2);
         assert!(message.contains(told) && message.contains("cure"), "{words}\n{message}");

@@ -160,6 +160,9 @@ fn refuse_idle(arguments: &CompareArguments, subjects: &[Subject]) -> Result<(),
         ("--method", !arguments.methods.is_empty()),
         ("--step", !arguments.steps.is_empty()),
         ("--end", arguments.end.is_some()),
+        ("--every", arguments.output.every.is_some()),
+        // That is what it is where nobody asks for one.
+        ("--format", arguments.output.formats != ["csv"]),
     ];
     match given.iter().find(|(_, is_given)| *is_given) {
         Some((option, _)) => {
