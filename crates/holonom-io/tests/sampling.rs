@@ -87,6 +87,25 @@ fn what_is_sampled_at_a_nominal_time_is_there_at_that_time() {
     assert!(pushes[2] != pushes[1] && pushes[4] != pushes[3]);
 }
 
+/// A sample and a condition at 0.375 s, a number that binary fractions have, in either order.
+#[test]
+fn samples_and_conditions_at_one_time_happen_in_the_order_of_the_file() {
+    let sample = "[event.sample]\nevery = 0.125\nset = { n = \"2*n + 1\" }\n";
+    let of = |condition: &str| format!("[event.once]\nwhen = \"{condition}\"\nset = {{ n = \"n + 100\" }}\n");
+    let mass = "gravity = [0, 0, 0]\n[point.p]\nmass = 1\nposition = [0, 0, 0]\nvelocity = [1, 0, 0]\n[input.n]\n";
+    for condition in ["t - 0.375", "2*t - 0.75"] {
+        let once = of(condition);
+        for (events, n) in [(format!("{sample}{once}"), 115.0), (format!("{once}{sample}"), 215.0)] {
+            for (method, step) in [("conserving-ggl", 0.0625), ("radau", 0.0625), ("trapezoidal", 0.25), ("ode/rk4", 0.03125)] {
+                let mut simulation = begin(&format!("{mass}{events}"), method, step);
+                assert_eq!(simulation.step_to(0.4375), Status::Completed, "{method}");
+                assert_eq!(simulation.input("n"), Some(n), "{method} with steps of {step} s\n{events}");
+                assert_eq!(simulation.events().len(), 1);
+            }
+        }
+    }
+}
+
 fn steps(simulation: &mut Simulation, count: usize) {
     (0..count).for_each(|_| assert_eq!(simulation.step(), Status::Completed));
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::advance::Inside;
 use super::{Audit, Divisions, Observer, Simulation};
 use crate::formulation::Failure;
-use crate::system::Look;
+use crate::system::{Look, Trigger};
 
 /// An event that happened.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -181,7 +181,8 @@ impl Simulation {
             let now = self.indicate()?;
             let now = if self.state.t == until { self.indicate_about(now)? } else { now };
             let happens = |at: usize| at == k || system.events[at].trigger.is_between(from[at], now[at]);
-            let happening: Vec<usize> = (0..now.len()).filter(|&at| happens(at)).collect();
+            let due = self.due(shortest);
+            let happening: Vec<usize> = (0..now.len()).filter(|at| happens(*at) || due.contains(at)).collect();
             at_last.copy_from_slice(&now);
             if self.state.t > begin {
                 pass(&mut from, now);
@@ -195,7 +196,10 @@ impl Simulation {
             self.require_no_chatter(k, t, shortest)?;
             last = behind;
             self.show_inside(divisions, observer);
-            let stops = self.happen(&happening, t, &mut from)?;
+            if !due.is_empty() {
+                observer.at_division(self);
+            }
+            let stops = self.happen(&happening, t, shortest, &mut from)?;
             self.show_division(observer);
             if stops {
                 self.join_parts(&first);
@@ -204,11 +208,15 @@ impl Simulation {
         }
     }
 
-    /// Lets events happen at a time, and says whether one ends the run.
-    fn happen(&mut self, events: &[usize], t: f64, from: &mut [f64]) -> Result<bool, Failure> {
+    /// Lets events happen at a time, those with a period as samples that are due within so much of it, and says whether one ends the run.
+    fn happen(&mut self, events: &[usize], t: f64, within: f64, from: &mut [f64]) -> Result<bool, Failure> {
         let mut stops = false;
         let before = self.indicate()?;
         for &k in events {
+            if let Trigger::Every(_) = self.system.events[k].trigger {
+                self.sample(&[k], within)?;
+                continue;
+            }
             self.set_by(k)?;
             let event = &self.system.events[k];
             stops |= event.stops;
@@ -262,7 +270,7 @@ impl Simulation {
             if jumped.is_empty() {
                 break;
             }
-            jumps = Some(self.happen(&jumped, self.state.t, from)?);
+            jumps = Some(self.happen(&jumped, self.state.t, 0.0, from)?);
             if jumps == Some(true) {
                 break;
             }
