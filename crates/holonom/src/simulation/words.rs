@@ -167,8 +167,13 @@ pub(super) fn accuracy(choice: &Choice, integrator: &Entry, order: u8, is_unstab
     }
     if !estimates(integrator, order) {
         let with = |entry: &&Entry| estimates(entry, entry.orders[0]);
-        let partners = names(INTEGRATORS.iter().filter(with).map(|entry| entry.name.into()));
         let name = integrator.name;
+        // Of the same one another order.
+        let partner = |entry: &Entry| match entry.name == name {
+            true => format!("{name} of order {}", entry.orders[0]),
+            false => entry.name.into(),
+        };
+        let partners = names(INTEGRATORS.iter().filter(with).map(partner));
         let name = if integrator.orders.len() > 1 { format!("{name} of order {order}") } else { name.into() };
         return Err(MethodError::NoEstimate { integrator: name, partners });
     }

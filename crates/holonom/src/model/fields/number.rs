@@ -104,11 +104,11 @@ impl Number {
         if number.fract() == 0.0 && number >= f64::from(least) && number <= f64::from(u32::MAX) {
             return Ok(number as u32);
         }
-        Err(entry.refuse(
-            at,
-            format!("`{}` wants a whole number of at least {least}, and this is {number}", at.key),
-            format!("write {} = {}, or more", at.key, least.max(1)),
-        ))
+        let (wanted, cure) = match number > f64::from(u32::MAX) {
+            true => (format!("up to {}", u32::MAX), format!("write {} = {}, or less", at.key, u32::MAX)),
+            false => (format!("of at least {least}"), format!("write {} = {}, or more", at.key, least.max(1))),
+        };
+        Err(entry.refuse(at, format!("`{}` wants a whole number {wanted}, and this is {number}", at.key), cure))
     }
 
     /// A formula of some variables.
