@@ -313,8 +313,11 @@ impl Draft {
         source.put(path, value).map_err(|_| refuse(py, path, format!("`{path}` cannot be set"), "name a key, such as body.door.mass"))?;
         // Of what is wrong with the shape of the model, what this key brings is said here; what others lack may come later.
         if let Value::Table(table) = source.value() {
-            let is_below = |of: &str| of.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
-            let is_here = |of: &str| is_below(of) || path.split('.').next() == Some(of);
+            // Faults have parts in quotes that are no bare keys, as `position[0]` and what is empty.
+            let quoted = path.split('.').map(|key| key_path("", key)).collect::<Vec<_>>();
+            let (whole, first) = (quoted.join("."), &quoted[0]);
+            let is_below = |of: &str| of.strip_prefix(&*whole).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
+            let is_here = |of: &str| is_below(of) || of == first;
             let faults: Vec<Placed> = Self::faults(table.clone()).into_iter().filter(|placed| is_here(&placed.fault.path)).collect();
             if !faults.is_empty() {
                 return Err(model_error(py, faults.into_iter().map(|fault| Placed { place: line.clone(), ..fault }).collect(), None));

@@ -145,6 +145,12 @@ def test_what_is_refused_is_not_set():
         with pytest.raises(hm.ModelError):
             m.set(path, value)
         assert m.get(path) in (None, 1)
+    # Keys that are none of a file.
+    before = m.to_toml()
+    for path in ["", ".", ".title", "point.p.", "point..mass", "point.p.position[0]", " title", "simulation. end", "simulation .end"]:
+        with pytest.raises(ValueError):
+            m.set(path, 1)
+        assert m.to_toml() == before
     # What changes in two steps may be wrong between them.
     m.set("force.s.type", "torsion")
     m.set("force.s.type", "spring")

@@ -220,12 +220,12 @@ pub fn read_value(text: &str) -> Value {
 
 /// Puts a value at a key of a description, with the tables around it; or says which part of the key is no table.
 fn put<'a>(description: &mut Value, key: &'a str, value: Value) -> Result<(), &'a str> {
-    let (tables, last) = key.rsplit_once('.').map_or(("", key), |(tables, last)| (tables, last));
+    let (tables, last) = key.rsplit_once('.').map_or((None, key), |(tables, last)| (Some(tables), last));
     let mut table = match description {
         Value::Table(table) => table,
         _ => unreachable!("a file is a table"),
     };
-    for part in tables.split('.').filter(|_| !tables.is_empty()) {
+    for part in tables.into_iter().flat_map(|tables| tables.split('.')) {
         if table.get(part).is_none() {
             table.push(part, Value::Table(Table::default()));
         }
