@@ -166,7 +166,7 @@ pub(super) fn one_of(joint: &str) -> Option<String> {
     Some(format!("for `{joint}` alone write [start.{base}] with repeat = \"{}\", and a longer range for several", ranges.join(", ")))
 }
 
-/// First share of the way that is tried at once, and the least.
+/// First share of the way that is tried at once, and the longest where something is left free; and the least.
 const FIRST_SHARE: f64 = 0.02;
 const LEAST_SHARE: f64 = 1e-4;
 
