@@ -75,12 +75,13 @@ fn add_mass(assembly: &mut Assembly<'_>, ends: &[End; 2], mass: f64) {
     for (k, l, share) in [(0, 0, mass / 3.0), (1, 1, mass / 3.0), (0, 1, mass / 6.0)] {
         for (i, a) in ends[k].terms.iter().enumerate() {
             // Of an end with itself each pair of nodes once, as a block comes with its transpose.
-            for (j, b) in ends[l].terms.iter().enumerate().skip(if k == l { i } else { 0 }) {
+            let first = if k == l { i } else { 0 };
+            for (b, velocity) in ends[l].terms.iter().zip(&moving[l]).skip(first) {
                 let m = share * (a.factor * b.factor + a.turn * b.turn);
                 let s = share * (a.factor * b.turn - a.turn * b.factor);
                 let twice = k != l && a.place == b.place;
                 let (m, s) = if twice { (2.0 * m, 0.0) } else { (m, s) };
-                assembly.builder.couple([a.place, b.place], m, s, [moving[k][i], moving[l][j]]);
+                assembly.builder.couple([a.place, b.place], m, s, [moving[k][i], *velocity]);
             }
         }
         let weighed = if k == l { &ends[k..=k] } else { &ends[..] };
@@ -97,10 +98,7 @@ fn velocities(assembly: &Assembly<'_>, end: &End) -> Vec<[f64; 3]> {
     };
     // Terms come in the order of the basis.
     let mut basis = basis.iter();
-    let mut of = |place| match basis.find(|node| node.place == place) {
-        Some(node) if node.is_point => body.velocity_at(node.at),
-        Some(node) => body.rate_of(node.at),
-        None => assembly.builder.velocity_of(place),
-    };
+    let mut of =
+        |place| basis.find(|node| node.place == place).map_or_else(|| assembly.builder.velocity_of(place), |node| node.velocity(body));
     end.terms.iter().map(|term| of(term.place)).collect()
 }

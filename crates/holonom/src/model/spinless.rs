@@ -92,12 +92,13 @@ pub(super) fn refuse(assembly: &Assembly<'_>) -> Option<Fault> {
         let farthest = arms.iter().map(|(_, arm)| norm(*arm)).fold(0.0, f64::max);
         let most = body.inertia.symmetric_eigenvalues().amax().max(body.mass * farthest * farthest);
         let held = held.get_or_insert_with(|| Held::new(assembly));
-        let freely = |axis: &Vec3| {
+        let resistance = |axis: Vec3| held.resistance(at(frame.vector(axis)), &arms, most);
+        let freely = |axis: Vec3| {
             // A frame that has nothing beside the axis does not turn about it.
-            let turns = norm(at(frame.vector(across(*axis, 3)[0]))) > 0.5;
-            turns && held.resistance(at(frame.vector(*axis)), &arms, most).iter().all(|resisting| resisting.abs() <= 1.0)
+            let turns = norm(at(frame.vector(across(axis, 3)[0]))) > 0.5;
+            turns && resistance(axis).iter().all(|resisting| resisting.abs() <= 1.0)
         };
-        least_held(&axes, |axis| held.resistance(at(frame.vector(axis)), &arms, most)).iter().any(freely).then(|| {
+        least_held(&axes, resistance).into_iter().any(freely).then(|| {
             let message = format!(
                 "the body `{}` has no moment of inertia about an axis about which no joint holds it: no acceleration follows there",
                 body.name

@@ -214,9 +214,10 @@ fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize])
     let mut rate = None;
     // Where coordinates leave something free the place at the end follows from all of the way, and equal parts of it find the same one wherever the
     // model stands.
-    let led = Way { builder, targets, released, turned: [&[], &[]], is_driven }.at(&here, 0.0, 0.0);
-    let is_free = led.is_some_and(|led| led.system().coordinates() + led.redundant_rows() > led.system().constraints());
-    let longest = if is_free && !rolls { FIRST_SHARE } else { 1.0 };
+    let led = || Way { builder, targets, released, turned: [&[], &[]], is_driven }.at(&here, 0.0, 0.0);
+    let leaves = |led: Simulation| led.system().coordinates() + led.redundant_rows() > led.system().constraints();
+    let is_free = !rolls && led().is_some_and(leaves);
+    let longest = if is_free { FIRST_SHARE } else { 1.0 };
     let (mut share, mut step) = (0.0, FIRST_SHARE);
     for tries in 1.. {
         let next = f64::min(share + step, 1.0);

@@ -6,6 +6,7 @@
 
 use nalgebra::{DMatrix, Vector4};
 
+use super::rigid::RigidBody;
 use crate::model::geometry::{self, Vec3};
 use crate::system::{NodeId, Place, Term};
 
@@ -15,6 +16,13 @@ pub struct Basis {
     pub place: Place,
     pub at: Vec3,
     pub is_point: bool,
+}
+
+impl Basis {
+    /// Its velocity at the start as a body is written that it is of, m/s.
+    pub fn velocity(&self, body: &RigidBody) -> Vec3 {
+        if self.is_point { body.velocity_at(self.at) } else { body.rate_of(self.at) }
+    }
 }
 
 /// What the points and directions of a body, of a particle or of the ground are made of.

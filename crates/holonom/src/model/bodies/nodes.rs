@@ -311,8 +311,7 @@ impl Group<'_> {
         for body in self.members.iter().map(|&k| &self.wanted.bodies[k]) {
             let inertia = pseudo_inertia(dim, body.mass, body.position, inertia_about(body, origin), origin);
             for (k, (a, b, m, s)) in mass_blocks(frame, &inertia).into_iter().enumerate() {
-                let node = &basis[k % basis.len()];
-                builder.moves(a, b, m, s, if node.is_point { body.velocity_at(node.at) } else { body.rate_of(node.at) });
+                builder.moves(a, b, m, s, basis[k % basis.len()].velocity(body));
             }
         }
     }
