@@ -277,6 +277,16 @@ fn bushings_exert_the_moments_that_they_show() {
     };
     let planar = run_with(&model(&text("plane = \"xy\"\n", "0.5", "3", "[0, 0, 10]")), 0.001, 0.3, Constraints::Joints).1;
     each(&planar, ["b.alpha", "k.t"], |[alpha, moment]| close("planar moment", moment, 0.5 * alpha));
+    // Between two pins far from the origin, the one of the ground, its axes run from the one to the other.
+    let pinned = "plane = \"xy\"\ngravity = [0, 0]\n[body.b]\nmass = 1\ninertia = 0.5\nposition = [1000, 0]\nangular_velocity = 3\n\
+                  [body.c]\nmass = 1\ninertia = 0.1\nposition = [1001, 0]\n\
+                  [joint.pin]\ntype = \"revolute\"\nbetween = [\"ground\", \"b\"]\nat = [1000, 0]\n\
+                  [joint.knee]\ntype = \"revolute\"\nbetween = [\"b\", \"c\"]\nat = [1001, 0]\n\
+                  [force.k]\ntype = \"bushing\"\nbetween = [\"ground\", \"b\"]\nat = [1000, 0]\nstiffness = [0, 0, 10]\n";
+    let far = run_with(&model(pinned), 0.001, 0.3, Constraints::Joints).1;
+    each(&far, ["b.alpha", "k.t", "b.angle", "c.ax", "c.ay"], |[alpha, moment, angle, ax, ay]| {
+        close("moment far away", moment, 0.5 * alpha + angle.cos() * ay - angle.sin() * ax);
+    });
     let inertia = [0.5, 0.6, 0.7];
     let spatial = run_with(
         &model(&text("gravity = [0, 0, 0]\n", "[0.5, 0.6, 0.7]", "[1.5, 1, 0.5]", "[0, 0, 0, 10, 20, 40]")),

@@ -1,6 +1,7 @@
 //! The machines of the book's chapter: what they answer against calculations made by hand.
 
 mod machines {
+    pub mod bicycle;
     pub mod crane;
     pub mod excavator;
     pub mod gimbal;

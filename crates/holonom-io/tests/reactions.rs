@@ -245,3 +245,44 @@ fn where_nothing_pushes_forces_are_zero() {
         }
     }
 }
+
+/// A belt pulls at the shaft of a hinge on the ground, where the arm that hangs there has no node that moves: the bearing bears it, and the arm's weight.
+#[test]
+fn a_bearing_bears_what_acts_on_its_body_there() {
+    for output in ["", "[output]\nreactions = true\n"] {
+        let text = format!(
+            "plane = \"xz\"\ngravity = [0, -10]\n[body.arm]\nmass = 1\ninertia = 0.1\nposition = [0, -0.5]\npoints = {{ hub = [0, 0.5] }}\n\
+             [joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"arm\"]\nat = \"arm.hub\"\n\
+             [force.belt]\ntype = \"constant\"\npoint = \"arm.hub\"\nforce = [-100, 0]\n{output}"
+        );
+        let (_, recording) = common::run_every(&common::model_with_forces(&text), "conserving-ggl", 0.01, 0.1, 1);
+        for (name, expected) in [("hinge.fx", 100.0), ("hinge.fz", 10.0), ("belt.fx", -100.0), ("arm.ax", 0.0)] {
+            let found = recording.column(name).unwrap();
+            assert!(found.iter().all(|value| (value - expected).abs() < AGREES), "{name}: {found:?}");
+        }
+    }
+}
+
+/// A slider that a strut holds and a drive asks to start from rest: no forces do both, and the row of the start has none.
+#[test]
+fn a_drive_that_is_held_at_rest_has_no_forces() {
+    for heavy in [1.0, 1e6] {
+        let text = format!(
+            "plane = \"xy\"\n[body.slider]\nmass = {heavy}\ninertia = {heavy}\nposition = [0, 0]\npoints = {{ lug = [0.1, 0.2] }}\n\
+             [joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"slider\"]\nat = [0, 0]\naxis = [1, 2]\n\
+             [bar.strut]\nbetween = [\"slider.lug\", [2, 0.3]]\nmass = {heavy}\n\
+             [drive.push]\ntype = \"displacement\"\njoint = \"rail\"\n\
+             profile = {{ table = [[0, 0], [0.05, 0.02], [0.1, 0.05], [0.2, 0.01]], ends = \"rest\" }}\n[output]\nreactions = true\n"
+        );
+        let model = common::model(&text);
+        let mut simulation = common::simulation(&model, "radau", 0.002);
+        model.find_reactions(&mut simulation);
+        let mut recorder = Recorder::new(&model.channels, &model.system, 1, Constraints::Rows);
+        let Status::Stopped { at: 0.0, reason } = simulation.run(0.1, &mut recorder) else { panic!("it moved") };
+        assert!(reason.contains("`push` asks for a motion that the other constraints do not allow"), "{reason}");
+        let recording = recorder.finish();
+        for name in ["push.effort", "rail.fx", "slider.ax"] {
+            assert!(recording.column(name).unwrap()[0].is_nan(), "{heavy}: {name}");
+        }
+    }
+}

@@ -34,8 +34,8 @@ const NOISE: f64 = 1e-5;
 const GROWS: f64 = 0.01;
 const MISSED: f64 = 1e-6;
 
-/// How many times more the accelerations may be off than the velocities are off the rows, each over its size: what round-off makes of what stands
-/// still is no motion, and no accelerations keep it on all rows.
+/// How many times more the accelerations may be off than the velocities are off the rows, over what velocities make of either: what round-off makes of
+/// what stands still is no motion, and no accelerations keep it on all rows.
 const FOLLOWS: f64 = 100.0;
 
 /// Passes end where the next would change less than this share of accelerations and multipliers: of those that a step goes on with, whose errors add
@@ -128,7 +128,8 @@ fn is_met(end: End, system: &System, t: f64, work: &mut Workspace) -> bool {
         return true;
     }
     let strays = work.strays(system, t);
-    (end == End::Grows || strays > NOISE) && work.misses(system) <= MISSED.max(FOLLOWS * strays)
+    let [missed, of_all, of_velocities] = work.misses(system, t);
+    (end == End::Grows || strays > NOISE) && missed <= (MISSED * of_all).max(FOLLOWS * strays * of_velocities)
 }
 
 /// Moves the velocities at the end onto the rows, with the factors at hand.
@@ -241,13 +242,18 @@ impl Workspace {
         largest(&self.end.v).powi(2) / self.scales.length
     }
 
-    /// By how much the accelerations miss the rows, over the size of both.
-    fn misses(&mut self, system: &System) -> f64 {
+    /// By how much the accelerations miss the rows, the size of both, and of what velocities have part in it.
+    fn misses(&mut self, system: &System, t: f64) -> [f64; 3] {
         let of_motion = self.of_motion();
         let Self { phi, rows, a, sampled, .. } = self;
         rows.copy_from_slice(phi);
         system.slots.add_along(system.dim, 1.0, &sampled.at.gradient, a, rows);
-        self.scaled(&self.rows) / (self.scaled(&self.phi) + largest(&self.a[..system.coordinates()]) + of_motion)
+        let missed = self.scaled(&self.rows);
+        let of_all = self.scaled(&self.phi) + largest(&self.a[..system.coordinates()]) + of_motion;
+        let Self { phi, rows, sampled, turned, .. } = self;
+        system.constraint_curvatures(&sampled.at, &sampled.x, &vec![0.0; sampled.v.len()], t, &mut turned.half, rows);
+        rows.iter_mut().zip(phi).for_each(|(at_rest, phi)| *at_rest = *phi - *at_rest);
+        [missed, of_all, self.scaled(&self.rows) + of_motion]
     }
 
     /// By how much the velocities at the end are off the rows, over their size; nothing where there are none.

@@ -79,9 +79,12 @@ fn add_mass(assembly: &mut Assembly<'_>, ends: &[End; 2], mass: f64) {
             for (b, velocity) in ends[l].terms.iter().zip(&moving[l]).skip(first) {
                 let m = share * (a.factor * b.factor + a.turn * b.turn);
                 let s = share * (a.factor * b.turn - a.turn * b.factor);
-                let twice = k != l && a.place == b.place;
-                let (m, s) = if twice { (2.0 * m, 0.0) } else { (m, s) };
-                assembly.builder.couple([a.place, b.place], m, s, [moving[k][i], *velocity]);
+                let moving = [moving[k][i], *velocity];
+                assembly.builder.couple([a.place, b.place], m, s, moving);
+                // Of a node that both ends have the block is its own transpose, which moves as the other end.
+                if k != l && a.place == b.place {
+                    assembly.builder.couple([b.place, a.place], m, -s, [moving[1], moving[0]]);
+                }
             }
         }
         let weighed = if k == l { &ends[k..=k] } else { &ends[..] };

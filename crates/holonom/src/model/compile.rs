@@ -101,8 +101,8 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
         }
         let title = description.model.title.clone().unwrap_or_default();
         let mut model = finish::finish(assembly, title, settings, output, bars, over_time);
-        compiler.measures(description, &mut model);
-        compiler.columns(description, &model);
+        let measures = compiler.measures(description, &mut model);
+        compiler.columns(description, &model, measures);
         if sink.count() == 0 {
             return Ok(model);
         }
@@ -184,19 +184,20 @@ impl Compiler<'_> {
         signals
     }
 
-    /// Measures as formulas of the columns of a model.
-    fn measures(&self, description: &Description, model: &mut Model) {
+    /// Measures as formulas of the columns of a model. Hands back their names, and those of measures with a fault.
+    fn measures(&self, description: &Description, model: &mut Model) -> Vec<String> {
+        let mut names = Vec::new();
         if description.measures.is_empty() {
-            return;
+            return names;
         }
         let reactions = model.output.reactions;
         let of = |constraints| model.channels.headings(&model.system, constraints).into_iter().map(|heading| heading.name);
         let all: HashSet<String> = of(Constraints::Rows).collect();
-        let mut known: HashSet<String> = of(model.output.constraints()).collect();
         let _ = self.each("measure", &description.measures, |entry, _| {
-            known.insert(entry.name.to_string());
+            names.push(entry.name.to_string());
             Ok(())
         });
+        let known: HashSet<String> = of(model.output.constraints()).chain(names.iter().cloned()).collect();
         let missing = |name: &str| {
             let is_there = all.contains(name);
             let mistake = |cure: &str| Mistake::new(0, format!("`{name}` is not recorded"), cure);
@@ -213,14 +214,15 @@ impl Compiler<'_> {
             Ok(())
         });
         model.channels.measures = measure::sorted(measures, self.sink);
+        names
     }
 
     /// Looks whether there are the columns that `[output]` names.
-    fn columns(&self, description: &Description, model: &Model) {
+    fn columns(&self, description: &Description, model: &Model, measures: Vec<String>) {
         let Some(keys) = description.output.as_ref().filter(|keys| keys.columns.is_some()) else { return };
         let constraints = model.output.constraints();
         let headings = model.channels.headings(&model.system, constraints).into_iter().map(|heading| heading.name);
-        let names: Vec<String> = headings.chain(model.channels.measures.iter().map(|measure| measure.name.clone())).collect();
+        let names: Vec<String> = headings.chain(measures).collect();
         keys.require_columns(&self.entry("", "output", keys), &names);
     }
 

@@ -27,8 +27,10 @@ const DIVISIONS: [f64; 6] = [0.0, 0.137, 0.382, 0.55, 0.791, 1.0];
 /// Share of how far a function goes in the run that the mean over a step may be missed by.
 const MISSED: f64 = 0.1;
 
-/// How far a function goes over its largest value that is round-off.
+/// How far a function goes over its largest value that is round-off, and what is missed over the same that nobody sees: a run of a step or two goes
+/// not far.
 const ROUNDED: f64 = 1e-9;
+const NOTHING: f64 = 1e-5;
 
 /// How far a function goes in the run times this is told as zero.
 const SMALL: f64 = 1e-3;
@@ -174,7 +176,7 @@ fn first_missed(course: &Course, bends: &[f64], looks: &[[f64; 2]], most: usize,
     let late = looks.iter().map(|[share, weight]| weight * (share - 0.5)).sum::<f64>() * step;
     let is_missed = |seen: &Seen, length: f64| {
         let jump = seen.ends[1] - seen.ends[0] - slope * length;
-        (seen.taken - seen.mean - slope * late).abs() - jump.abs() > MISSED * reach
+        (seen.taken - seen.mean - slope * late).abs() - jump.abs() > (MISSED * reach).max(NOTHING * largest)
     };
     let alone = steps.iter().copied().find(|seen| is_missed(seen, step)).map(|seen| (seen, step));
     // What happens beside the end of a step is seen by both or by none.

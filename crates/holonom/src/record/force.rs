@@ -236,7 +236,7 @@ impl RecordedForce {
                     0.0 + efforts.sum::<f64>() + of_loads.sum::<f64>()
                 }));
                 if let Shows::Bushing { axes, .. } = &self.shows {
-                    moments(axes, at.look.x, &mut row[first + dim..]);
+                    moments(axes, &at.system.in_world(at.look.x), &mut row[first + dim..]);
                 }
             }
             Shows::Load { is_moment, exerts } => {

@@ -5,6 +5,7 @@ use num_dual::Dual;
 use smallvec::SmallVec;
 
 use super::laws::SHORTEST;
+use super::rope_laws::is_taut;
 use crate::model::assembly::Assembly;
 use crate::model::entry::Entry;
 use crate::model::expression::Program;
@@ -206,7 +207,8 @@ impl ForceFunction for RopeLoad {
     fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
         force.fill(N::from(0.0));
         let [stretch, speed] = self.stretch(x, v, t);
-        if stretch.re() <= 0.0 {
+        let lengths = self.factors.iter().enumerate().map(|(k, factor)| factor * length(x[self.own + k], v[self.own + k])[0].re());
+        if !is_taut(stretch.re(), speed.re(), lengths.sum()) {
             return;
         }
         let tension = self.tension([stretch, speed], &read(&self.readings, x, v, t));

@@ -24,7 +24,8 @@ struct PointLoad {
 
 /// Adds a force on a point, of formulas that have these readings.
 pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, point: &End, mut readings: Readings, formulas: Vec<Program>) -> Read<()> {
-    if point.never_moves() {
+    // What acts on a body where the ground holds it moves nothing either, but the bearing bears it.
+    if point.body.is_none() && point.never_moves() {
         return Err(entry.refuse("point", "a force on a fixed point does nothing", "name a point that can move"));
     }
     let sum = Sum::new(&point.terms, &mut readings.reading.nodes);

@@ -7,6 +7,15 @@
 use super::laws::{length, lengths};
 use crate::system::{Bend, Law, MAX_ARGUMENTS, Reach, Response};
 
+/// By this share of its length rounding may have a rope shorter than its free length.
+const ROUNDED: f64 = 1e-12;
+
+/// Whether a rope of some length (m) that is stretched by `beyond` (m), and gets longer with `speed` (m/s), is taut: also where both lengths are the same,
+/// as they are at the start of one whose free length is not written.
+pub(super) fn is_taut(beyond: f64, speed: f64, length: f64) -> bool {
+    beyond > 0.0 || (speed > 0.0 && beyond >= -ROUNDED * length)
+}
+
 /// How the lengths of a rope add up.
 #[derive(Clone, Copy)]
 pub(super) struct Strands {
@@ -27,11 +36,14 @@ impl Strands {
         Self { factors: all, lengths: factors.len(), radius, free }
     }
 
+    /// Its whole length, m.
+    fn whole(&self, value: &[f64]) -> f64 {
+        value[..self.lengths].iter().zip(self.factors).map(|(&value, factor)| factor * length(value).0).sum()
+    }
+
     /// By how much a rope is longer than its free length, m, below zero where it is slack.
     fn beyond(&self, value: &[f64]) -> f64 {
-        let (lengths, drum) = value.split_at(self.lengths);
-        let whole: f64 = lengths.iter().zip(self.factors).map(|(&value, factor)| factor * length(value).0).sum();
-        whole - self.free - drum.first().map_or(0.0, |q| self.radius * q)
+        self.whole(value) - self.free - value[self.lengths..].first().map_or(0.0, |q| self.radius * q)
     }
 
     /// The rate of that, m/s.
@@ -175,10 +187,11 @@ impl<P: Pull> Law for Taut<P> {
     }
 
     fn at(&self, value: &[f64], rate: &[f64], _t: f64, out: &mut Response) {
-        let stretch = self.strands.beyond(value);
-        if stretch <= 0.0 {
+        let beyond = self.strands.beyond(value);
+        if !is_taut(beyond, self.strands.speed(value, rate), self.strands.whole(value)) {
             return;
         }
+        let stretch = beyond.max(0.0);
         // Of each stretch the derivatives of ℓ and of dℓ/dt by its π, and that of ℓ̇ by its π̇.
         let (mut by_value, mut by_rate, mut speed) = ([[0.0; 2]; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS], 0.0);
         for (i, (&value, &rate)) in value.iter().zip(rate).enumerate() {
