@@ -364,3 +364,16 @@ fn starts_are_as_far_as_they_are_written() {
         assert!((first("bead.x") - way.cos()).abs() < 0.03 && (first("bead.y") - way.sin()).abs() < 0.03, "{way} m");
     }
 }
+
+/// Forces are none of the way's business: one that has no value in the pose that is written, nor on most of the way, acts where the run begins.
+#[test]
+fn forces_without_values_on_the_way_do_not_keep_a_mechanism_from_its_start() {
+    let text = "plane = \"xy\"\n[body.a]\nmass = 1\ninertia = 0.1\nposition = [0.5, 0]\n[joint.j]\ntype = \"revolute\"\n\
+                between = [\"ground\", \"a\"]\nat = [0, 0]\n[force.m]\ntype = \"effort\"\njoint = \"j\"\neffort = \"sqrt(j.angle - 1.5)\"\n\
+                [start.j]\nangle = 2\nangle_rate = 0.5\n";
+    let recording = run(&model_with_forces(text), 1e-3, 0.01);
+    let first = |name: &str| recording.column(name).unwrap()[0];
+    assert!((first("j.angle") - 2.0).abs() < 1e-14 && (first("j.angle_rate") - 0.5).abs() < 1e-14);
+    // The arm's inertia about the hinge is 0.1 + 0.5² kg·m².
+    assert!((first("a.alpha") - 0.5_f64.sqrt() / 0.35).abs() < 1e-12, "{}", first("a.alpha"));
+}

@@ -46,6 +46,7 @@ pub use kkt::{ALL, Block, Kkt, LawFactors};
 pub use level::Level;
 pub use newton::Newton;
 pub use rank::{RHO, Rank};
+pub use scales::Scales;
 pub use stabilized::Stabilized;
 pub use stage::{RowsAt, Sampling, Stage};
 pub use table::{FORMULATIONS, Formulation};

@@ -40,8 +40,9 @@ pub struct Scales {
     pub massless: Vec<f64>,
     /// 1 over the mass of each free node or, where it is light, of the heaviest of its mechanism, 1/kg.
     pub held: Vec<f64>,
-    /// Whether a row has a light node (r), and whether any has.
+    /// Whether a row has a light node (r).
     pub has_light: Vec<bool>,
+    /// Whether any has.
     pub are_light: bool,
     /// Size of each row of G M⁻¹ Gᵀ with the masses of `held` (r), 1/kg in the row's units.
     pub softness: Vec<f64>,

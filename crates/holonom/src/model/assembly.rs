@@ -12,8 +12,9 @@ use super::entry::Entry;
 use super::fault::{Read, Sink};
 use super::geometry::Vec3;
 use super::joints::{Geometry, JointInfo};
+use super::lengths::DrivenLength;
 use super::signals::Signals;
-use super::start::{DrivenLength, Target};
+use super::start::Target;
 use crate::record::{
     Anchor, Line, LineKind, RecordedCoupling, RecordedForce, RecordedRod, RecordedTransmission, SceneAxis, SceneJoint, SceneLoad, Shows,
 };

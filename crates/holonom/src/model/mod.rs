@@ -29,6 +29,7 @@ mod input;
 mod jumps;
 mod key;
 mod knocks;
+mod lengths;
 mod measure;
 mod parameters;
 mod points;

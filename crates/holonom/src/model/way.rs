@@ -1,9 +1,19 @@
 //! The way of a mechanism to the coordinates at which it starts. With constraints of velocities the places at its end follow from all of it, as
 //! wheels roll along it.
 
-use super::start::{Target, lead, start};
-use crate::simulation::Simulation;
+use std::sync::Arc;
+
+use super::bodies::short;
+use super::start::{Rising, Target};
+use crate::simulation::Places;
 use crate::system::SystemBuilder;
+
+/// First share of the way that is tried at once, and the longest where something is left free; and the least.
+const FIRST_SHARE: f64 = 0.02;
+const LEAST_SHARE: f64 = 1e-4;
+
+/// Parts of the way that are tried.
+const MOST_TRIES: usize = 1000;
 
 /// Ways of the modified midpoint rule that are extrapolated, of 2, 4, … steps.
 const MOST_WAYS: usize = 10;
@@ -11,37 +21,128 @@ const MOST_WAYS: usize = 10;
 /// Share of the size of all coordinates to which the places are found.
 const FOUND: f64 = 1e-13;
 
+/// Moves all nodes on a way along which every constraint is met, with as little as possible of all else, in the metric of the mass.
+///
+/// # Errors
+/// Why that cannot be, and the cure.
+pub(super) fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize]) -> Result<(), (String, &'static str)> {
+    if builder.is_moving() {
+        let message = "a velocity is written for the pose in the file, and the mechanism is moved from there".to_string();
+        return Err((message, "remove the velocities, or write the bodies where they are at the start"));
+    }
+    let is_driven = builder.clone().build().is_driven();
+    let mut led = Way::new(builder, targets, released, is_driven).ok_or_else(|| stuck(0.0, is_driven))?;
+    let rolls = led.places.system().is_nonholonomic();
+    let mut here = led.places.system().start_position().to_vec();
+    // How far all nodes went, over the share, and how fast they go on: at a dead centre no velocity leads there.
+    let mut way = vec![0.0; here.len()];
+    let mut rate = None;
+    // Where coordinates leave something free the place at the end follows from all of the way, and equal parts of it find the same one wherever the
+    // model stands.
+    let is_free = !rolls && led.at(&here, 0.0).is_some() && led.leaves_free();
+    let longest = if is_free { FIRST_SHARE } else { 1.0 };
+    let (mut share, mut step) = (0.0, FIRST_SHARE);
+    for tries in 1.. {
+        let next = f64::min(share + step, 1.0);
+        let rate_here = &*rate.get_or_insert_with(|| led.rate(&here, share));
+        let ahead = match rate_here {
+            Some(rate) if rolls => led.follow(&here, rate, [share, next]),
+            None if rolls => None,
+            Some(rate) if is_free => led.step(&here, rate, [share, next]),
+            _ => Some(along(&here, next - share, rate_here.as_ref().unwrap_or(&way))),
+        };
+        match ahead.and_then(|ahead| led.at(&ahead, next)) {
+            Some(there) => {
+                way = there.iter().zip(&here).map(|(there, here)| (there - here) / (next - share)).collect();
+                here = there;
+                (share, step, rate) = (next, f64::min(2.0 * step, longest), None);
+                if share == 1.0 {
+                    builder.move_to(&led.places.system().in_world(&here), led.places.angles());
+                    break;
+                }
+            }
+            None if step > LEAST_SHARE && tries < MOST_TRIES => step *= 0.5,
+            None => return Err(stuck(share, is_driven)),
+        }
+    }
+    Ok(())
+}
+
+/// Says that the way ends at a share of it, and the cure.
+fn stuck(share: f64, is_driven: bool) -> (String, &'static str) {
+    let message = format!("the mechanism cannot be moved there: it gets {} % of the way", short(100.0 * share));
+    let cure = match is_driven && share == 0.0 {
+        true => {
+            "take values that the joints can have together, and of coordinates that go together, as those of a screw or of wheels in mesh, the one that is driven"
+        }
+        false => "take values that the joints can have together; away from a dead centre a coordinate leads that moves there",
+    };
+    (message, cure)
+}
+
 /// A mechanism whose coordinates lead it, without the rows that are released.
-pub(super) struct Way<'a> {
-    pub builder: &'a SystemBuilder,
-    pub targets: &'a [Target],
-    pub released: &'a [usize],
-    /// Angles of the equations and of what is measured at the start of the way, rad.
-    pub turned: [&'a [f64]; 2],
+pub(super) struct Way {
+    places: Places,
+    /// The rows that lead, and what they lead to.
+    leads: Vec<(usize, f64)>,
     /// Whether something moves as time has it.
-    pub is_driven: bool,
+    is_driven: bool,
 }
 
 /// Places `by` farther on at a rate.
-pub(super) fn along(x: &[f64], by: f64, rate: &[f64]) -> Vec<f64> {
+fn along(x: &[f64], by: f64, rate: &[f64]) -> Vec<f64> {
     x.iter().zip(rate).map(|(x, rate)| x + by * rate).collect()
 }
 
-impl Way<'_> {
-    /// The mechanism with its nodes near `x` and its coordinates at a share of the way, going on by so much of it in a second.
-    pub fn at(&self, x: &[f64], share: f64, going: f64) -> Option<Simulation> {
-        let mut builder = self.builder.clone();
-        lead(&mut builder, self.targets, share, going);
-        // Also those that lead are counted from where they were.
-        builder.move_to(x, self.turned);
-        self.released.iter().rev().for_each(|&row| builder.remove_row(row));
-        start(builder)
+impl Way {
+    /// From where a builder has its nodes. `None` where no matrix holds the rows.
+    pub fn new(builder: &SystemBuilder, targets: &[Target], released: &[usize], is_driven: bool) -> Option<Self> {
+        let mut builder = builder.clone();
+        let placed = targets.iter().filter_map(|target| Some((target, target.value?)));
+        let mut leads: Vec<(usize, f64)> =
+            placed.map(|(target, value)| (target.row.unwrap_or_else(|| target.add_row(&mut builder)), value)).collect();
+        leads.iter_mut().for_each(|(row, _)| *row -= released.iter().filter(|released| **released < *row).count());
+        released.iter().rev().for_each(|&row| builder.remove_row(row));
+        let mut way = Self { places: Places::new(builder.build()).ok()?, leads, is_driven };
+        way.lead(0.0, 0.0);
+        Some(way)
+    }
+
+    /// Has coordinates lead to a share of the way, where they go on by `going` of it in a second.
+    fn lead(&mut self, share: f64, going: f64) {
+        for &(row, value) in &self.leads {
+            self.places.retarget(row, Arc::new(Rising([share * value, going * value])));
+        }
+    }
+
+    /// How many rows follow from others where coordinates are at their values as written. `None` where these cannot be met.
+    pub fn redundant_rows(&mut self) -> Option<usize> {
+        let x = self.places.system().start_position().to_vec();
+        self.at(&x, 0.0)?;
+        Some(self.places.redundant_rows())
+    }
+
+    /// Whether nodes may move where the coordinates that lead stand still.
+    fn leaves_free(&self) -> bool {
+        let system = self.places.system();
+        system.coordinates() + self.places.redundant_rows() > system.constraints()
+    }
+
+    /// Puts the nodes near `x` and the coordinates at a share of the way, and hands back where they are then.
+    fn at(&mut self, x: &[f64], share: f64) -> Option<Vec<f64>> {
+        self.lead(share, 0.0);
+        self.places.put(x).ok()?;
+        // Drives must go on from there.
+        if self.is_driven {
+            self.places.velocities().ok()?;
+        }
+        Some(self.places.keep().to_vec())
     }
 
     /// Where the nodes at `here`, with the velocities `first` there, are at the end of a part of the way between two shares of it: the motion with the
     /// least kinetic energy at each place is followed by extrapolation (Bulirsch and Stoer). `None` where that leads nowhere, or the part is too long
     /// for it.
-    pub fn follow(&self, here: &[f64], first: &[f64], shares: [f64; 2]) -> Option<Vec<f64>> {
+    fn follow(&mut self, here: &[f64], first: &[f64], shares: [f64; 2]) -> Option<Vec<f64>> {
         let size = here.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
         let mut table: Vec<Vec<f64>> = Vec::new();
         for k in 0..MOST_WAYS {
@@ -62,7 +163,7 @@ impl Way<'_> {
     }
 
     /// The same by one step of the classical Runge-Kutta method, for ways whose places meet all constraints by themselves.
-    pub fn step(&self, here: &[f64], first: &[f64], [from, to]: [f64; 2]) -> Option<Vec<f64>> {
+    fn step(&mut self, here: &[f64], first: &[f64], [from, to]: [f64; 2]) -> Option<Vec<f64>> {
         let (h, middle) = (to - from, 0.5 * (from + to));
         let second = self.rate(&along(here, 0.5 * h, first), middle)?;
         let third = self.rate(&along(here, 0.5 * h, &second), middle)?;
@@ -72,7 +173,7 @@ impl Way<'_> {
     }
 
     /// Places at the end of so many steps of the modified midpoint rule.
-    fn midpoint(&self, here: &[f64], first: &[f64], [from, to]: [f64; 2], steps: usize) -> Option<Vec<f64>> {
+    fn midpoint(&mut self, here: &[f64], first: &[f64], [from, to]: [f64; 2], steps: usize) -> Option<Vec<f64>> {
         let h = (to - from) / steps as f64;
         let [mut before, mut x] = [here.to_vec(), along(here, h, first)];
         for k in 1..steps {
@@ -85,11 +186,13 @@ impl Way<'_> {
     }
 
     /// Velocities of all nodes over the share, with which constraints are met while the coordinates that lead go on and drives stand still.
-    pub fn rate(&self, x: &[f64], share: f64) -> Option<Vec<f64>> {
-        let velocity = |going: f64| Some(self.at(x, share, going)?.state().v.clone());
-        let mut rate = velocity(1.0)?;
+    fn rate(&mut self, x: &[f64], share: f64) -> Option<Vec<f64>> {
+        self.lead(share, 1.0);
+        self.places.put(x).ok()?;
+        let mut rate = self.places.velocities().ok()?.to_vec();
         if self.is_driven {
-            rate.iter_mut().zip(velocity(0.0)?).for_each(|(rate, of_drives)| *rate -= of_drives);
+            self.lead(share, 0.0);
+            rate.iter_mut().zip(self.places.velocities().ok()?).for_each(|(rate, of_drives)| *rate -= of_drives);
         }
         Some(rate)
     }

@@ -19,6 +19,7 @@ mod no_value;
 mod passage;
 mod periods;
 mod pilot;
+mod places;
 mod promise;
 mod reactions;
 mod reason;
@@ -36,6 +37,7 @@ pub use events::Happening;
 pub use method::{
     Choice, LEVELS, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, OMEGA, PENALTY, ProjectionChoice, TOLERANCE, XI, combinations,
 };
+pub(crate) use places::Places;
 pub use promise::Promise;
 pub(crate) use reactions::wrench;
 pub use reactions::{Apart, Reactions};
@@ -374,7 +376,7 @@ impl Simulation {
     }
 
     /// How many rows follow from others at the present state.
-    pub(crate) fn redundant_rows(&self) -> usize {
+    fn redundant_rows(&self) -> usize {
         let least = independent(self.system.coordinates());
         self.independence().into_iter().filter(|share| *share < least).count()
     }

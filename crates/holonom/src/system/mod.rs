@@ -215,6 +215,11 @@ impl System {
         self.row_names.len()
     }
 
+    /// Gives the k-th row another target c(t).
+    pub(crate) fn retarget(&mut self, row: usize, target: Arc<dyn Signal>) {
+        self.rows[row] = Row::new(self.rows[row].quantity, target);
+    }
+
     /// Names of the constraint rows (r), as `constraint` or `constraint[component]`.
     pub fn row_names(&self) -> &[String] {
         &self.row_names
