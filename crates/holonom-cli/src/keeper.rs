@@ -60,6 +60,11 @@ impl<'a> Keeper<'a> {
         }
     }
 
+    /// Has all rows written once more, as the last of them is another now than it may be on disk.
+    pub fn begin_anew(&mut self) {
+        self.rows = 0;
+    }
+
     /// Saves the run if it is time to.
     pub fn look(&mut self, simulation: &Simulation, recorder: &Recorder<'_>, corrections: &[String]) {
         let begun = Instant::now();

@@ -57,7 +57,14 @@ impl<'a, 'f> Watched<'a, 'f> {
 
 impl Observer for Watched<'_, '_> {
     fn after_step(&mut self, simulation: &Simulation) -> Verdict {
+        let rows = self.recorder.recording().rows();
         self.recorder.after_step(simulation);
+        if let Some(keeper) = &mut self.keeper
+            && simulation.ended_by().is_some()
+            && self.recorder.recording().rows() == rows
+        {
+            keeper.begin_anew();
+        }
         self.seen += 1;
         if (self.end - 1.5 * self.step..self.end).contains(&simulation.state().t) {
             // An event before the end may end the run within a step.

@@ -274,6 +274,41 @@ fn an_event_that_ended_a_run_is_not_passed() {
     }
 }
 
+/// An event and the one that it causes, which ends the run, a hair before, at and behind the nominal time from which the run goes on: the last row is
+/// what both left, also where the first part has written a row of that time.
+#[test]
+fn an_event_where_a_run_goes_on_ends_it_with_the_row_that_it_leaves() {
+    let formats = if cfg!(feature = "parquet") { "--format csv --format npz --format parquet" } else { "--format csv --format npz" };
+    for at in ["0.9999999999", "1", "1.0000000001", "1.005"] {
+        for every in [1, 7] {
+            let text = format!(
+                "gravity = [0, 0, 0]\n[point.p]\nmass = 1\nposition = [0, 0, 0]\nvelocity = [1, 0, 0]\n[input.n]\n\
+                 [event.a]\nwhen = \"p.x - {at}\"\nset = {{ n = 1 }}\n[event.b]\nwhen = \"n - 0.5\"\nstop = true\n\
+                 [measure.most]\nvalue = \"max(n)\"\n[simulation]\nstep = 0.01\nend = 2\n[output]\nevery = {every}\n"
+            );
+            let folder = folder();
+            fs::write(folder.path().join("m.toml"), text).unwrap();
+            let run = |words: &str| prints(&folder, &format!("run m.toml {formats} --quiet {words}"), 0);
+            run("--end 0.99 --out parts");
+            // Where the event is before the end of the second part, that is the last.
+            run("--end 1 --resume parts");
+            if at.parse::<f64>().unwrap() > 1.0 {
+                run("--end 2 --resume parts");
+            }
+            run("--end 2 --out whole");
+            let of = format!("{at}, every {every}");
+            let whole = fs::read_to_string(folder.path().join("whole/trajectory.csv")).unwrap();
+            let last: Vec<&str> = whole.lines().last().unwrap().split(',').collect();
+            assert_eq!(&last[last.len() - 2..], ["1", "1"], "{of}");
+            let [one, other] = ["parts", "whole"].map(|name| fs::read_to_string(folder.path().join(name).join("trajectory.csv")).unwrap());
+            assert_eq!(one, other, "{of}");
+            if at.parse::<f64>().unwrap() > 1.0 {
+                assert_same(&folder.path().join("parts"), &folder.path().join("whole"), &of);
+            }
+        }
+    }
+}
+
 #[test]
 fn a_table_that_was_changed_is_refused_and_is_another_run() {
     let folder = folder();

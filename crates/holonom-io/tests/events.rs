@@ -169,6 +169,31 @@ fn events_beside_nominal_times_leave_rows_there() {
     }
 }
 
+/// An event and the one that it causes, which ends the run: a hair before a nominal time, at it, a hair behind it, and within a step.
+#[test]
+fn the_last_row_is_what_the_events_that_ended_the_run_left() {
+    for at in ["0.9999999999", "1", "1.0000000001", "1.005"] {
+        let text = format!(
+            "gravity = [0, 0, 0]\n[point.p]\nmass = 1\nposition = [0, 0, 0]\nvelocity = [1, 0, 0]\n[input.n]\n\
+             [event.a]\nwhen = \"p.x - {at}\"\nset = {{ n = 1 }}\n[event.b]\nwhen = \"n - 0.5\"\nstop = true\n\
+             [measure.most]\nvalue = \"max(n)\"\n"
+        );
+        for method in ["conserving-ggl", "radau", "ode/rk4", "dopri5"] {
+            for every in [1, 7] {
+                let (simulation, recording) = run(&model(&text), method, 0.01, 2.0, every);
+                let of = format!("{at}, {method}, every {every}");
+                assert_eq!(simulation.ended_by().map(|event| event.event.as_str()), Some("b"), "{of}");
+                assert_eq!(["n", "most"].map(|column| last(&recording, column)), [1.0; 2], "{of}");
+                let times = recording.column("t").unwrap();
+                assert_eq!(times.last(), Some(&simulation.state().t), "{of}");
+                assert!(times.windows(2).all(|pair| pair[1] > pair[0]), "{of}: {times:?}");
+                // The row before is the one that it is without events.
+                assert_eq!(recording.column("n").unwrap()[times.len() - 2], 0.0, "{of}");
+            }
+        }
+    }
+}
+
 /// A condition that has no value at some time is nothing that "does not happen": the run stops and names it.
 #[test]
 fn a_condition_without_a_value_stops_the_run() {

@@ -74,6 +74,11 @@ impl Recording {
         }
     }
 
+    /// Takes the last row away; nothing where there is none.
+    pub(crate) fn pop(&mut self) -> Option<Vec<f64>> {
+        self.columns.iter_mut().map(|column| column.values.pop()).collect()
+    }
+
     /// All columns, in the order of the file.
     pub fn columns(&self) -> &[Column] {
         &self.columns

@@ -73,6 +73,8 @@ pub struct Recorder<'a> {
     since: [f64; 2],
     last: [f64; 2],
     resumed: bool,
+    /// Time of the step that was seen last, s.
+    seen_at: f64,
     constraints: Constraints,
     measures: Measures,
     /// Where they are looked at beside the rows.
@@ -117,6 +119,7 @@ impl<'a> Recorder<'a> {
             since: [0.0; 2],
             last: [0.0; 2],
             resumed: false,
+            seen_at: f64::NAN,
             constraints,
             measures,
             divisions,
@@ -239,6 +242,17 @@ impl<'a> Recorder<'a> {
         }
         self.measures.append(&mut self.row);
     }
+
+    /// Records the end of a run at the time of the step that was seen last, in place of its row where there is one.
+    fn replace_last(&mut self, simulation: &Simulation) {
+        let is_there = self.recording.columns()[0].values.last() == Some(&self.seen_at);
+        match is_there.then(|| self.recording.pop()).flatten() {
+            Some(row) => self.between.see(&row[self.coordinates.end..], self.seen_at),
+            None => self.last = std::mem::take(&mut self.since),
+        }
+        self.fill(simulation);
+        self.recording.push(&self.row);
+    }
 }
 
 impl Observer for Recorder<'_> {
@@ -260,6 +274,11 @@ impl Observer for Recorder<'_> {
     }
 
     fn after_step(&mut self, simulation: &Simulation) -> Verdict {
+        let before = std::mem::replace(&mut self.seen_at, simulation.state().t);
+        if before == self.seen_at && simulation.ended_by().is_some() {
+            self.replace_last(simulation);
+            return Verdict::GoOn;
+        }
         if std::mem::take(&mut self.resumed) {
             // Where the run was left, that row is the first once more, unless it is there.
             if self.recording.rows() == 0 && (self.seen.max(1) - 1).is_multiple_of(self.every) {

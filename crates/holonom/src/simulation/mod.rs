@@ -91,7 +91,7 @@ pub enum Divisions {
     Inside,
 }
 
-/// Is shown the start and every nominal step.
+/// Is shown the start and every nominal step, and the last of these once more where an event ended the run that belongs to the same time.
 pub trait Observer {
     /// Looks at the simulation after a step.
     fn after_step(&mut self, simulation: &Simulation) -> Verdict;
@@ -307,8 +307,12 @@ impl Simulation {
                 }
             };
             if self.state.t == before {
-                // An event stopped the run as it began the step: what is there was shown.
+                // An event stopped the run as it began the step: what is there was shown as it was before that.
                 self.grid.back();
+                if self.has_ended {
+                    self.update_reactions();
+                    let _ = observer.after_step(self);
+                }
                 break;
             }
             if self.has_ended && !wants_forces {
