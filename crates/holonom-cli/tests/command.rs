@@ -143,6 +143,30 @@ fn a_drive_of_what_cannot_move_is_named() {
     assert!(!prints(&folder, "check free.toml", 0).contains("conflict"));
 }
 
+/// Rows that keep bodies in shape are left of a contradiction as much as others, and ask for nothing.
+#[test]
+fn a_drive_is_named_and_not_the_shape_of_the_body_that_it_leads() {
+    let folder = folder();
+    let model = "[body.b0]\nmass = 0.08\ninertia = [0.0026, 0.0038, 0.0064]\nposition = [0.0447, -0.0748, 0.388]\n\
+                 [joint.j0]\ntype = \"revolute\"\nbetween = [\"ground\", \"b0\"]\nat = [0.1046, 0.1413, 0.4047]\naxis = [0, 1, 0]\n\
+                 [body.b1]\nmass = 0.143\ninertia = [0.0051, 0.0144, 0.0108]\nposition = [0.6966, 0.4952, 0.4138]\n\
+                 points = { p1 = [0.335, 0.369, -0.266] }\n\
+                 [joint.j1]\ntype = \"revolute\"\nbetween = [\"b0\", \"b1\"]\nat = [0.4677, 0.1634, 0.3025]\naxis = [-0.4448, 0.3019, -0.8432]\n\
+                 [body.b2]\nmass = 7.75\ninertia = [0.575, 0.902, 0.582]\nposition = [0.563, 0.467, 0.149]\n\
+                 [joint.j2]\ntype = \"spherical\"\nbetween = [\"b1\", \"b2\"]\nat = [0.536, 0.419, 0.211]\n\
+                 [drive.dr]\ntype = \"angle\"\njoint = \"j0\"\nprofile = \"0.34*(1-cos(3*t))\"\n\
+                 [constraint.c0]\ntype = \"point-on-line\"\npoint = \"b1.p1\"\ndirection = [0.1434, 0.7195, -0.6796]\n\
+                 [simulation]\nend = 1\nstep = 0.01\n";
+    fs::write(folder.path().join("m.toml"), model).unwrap();
+    for masses in ["", "--set body.b0.mass=8e-6 --set body.b2.mass=7e6"] {
+        assert_eq!(json(&folder, &format!("check m.toml --json {masses}"))["conflict"], "dr", "{masses}");
+        for method in ["conserving-ggl", "radau", "dop853 --accuracy 1e-9"] {
+            let stopped = prints(&folder, &format!("run m.toml --method {method} --out out --force {masses}"), 3);
+            assert!(stopped.contains("`dr` asks for a motion"), "{method} {masses}: {stopped}");
+        }
+    }
+}
+
 #[test]
 fn parameters_that_nothing_uses_are_named() {
     let folder = folder();

@@ -221,3 +221,33 @@ fn joints_run_with_every_named_method() {
         }
     }
 }
+
+/// A slender rod along an axis of the model that joints hold completely has nothing left that moves but directions without mass: it hangs there as it
+/// does turned, with the weight on its ball and the moment of that on what keeps it upright.
+#[test]
+fn a_rod_that_is_held_completely_is_held_in_any_direction() {
+    for (mass, output) in [(1.0, ""), (1.0, "[output]\nreactions = true\n"), (1e-6, ""), (1e6, "")] {
+        for along in [[1.0, 0.0, 0.0], [0.6, 0.8, 0.0]] {
+            let at = |s: f64| format!("[{}, {}, 0]", s * along[0], s * along[1]);
+            let angle = f64::atan2(along[1], along[0]);
+            let text = format!(
+                "[body.rod]\nmass = {mass}\ninertia = [0, {mass}, {mass}]\nposition = {}\norientation = {{ axis = [0, 0, 1], angle = {angle} }}\n\
+                 [joint.ball]\ntype = \"spherical\"\nbetween = [\"ground\", \"rod\"]\nat = {}\n\
+                 [joint.upright]\ntype = \"orientation\"\nbetween = [\"ground\", \"rod\"]\n{output}",
+                at(1.0),
+                at(0.5)
+            );
+            let model = Source::read("rod", text.as_bytes()).unwrap().model_with_forces().unwrap();
+            let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&Choice::default()).unwrap(), 1e-2).unwrap();
+            model.find_reactions(&mut simulation);
+            let mut recorder = Recorder::new(&model.channels, &model.system, 1, model.output.constraints());
+            assert_eq!(simulation.run(0.1, &mut recorder), Status::Completed);
+            let recording = recorder.finish();
+            let of = |column: &str| recording.column(column).unwrap().last().unwrap() / (9.81 * mass);
+            let label = format!("{mass} kg along {along:?}, {output}");
+            assert!((of("ball.fz").abs() - 1.0).abs() < 1e-9, "{label}: {}", of("ball.fz"));
+            let moment = of("upright.tx").hypot(of("upright.ty")).hypot(of("upright.tz"));
+            assert!((moment - 0.5).abs() < 1e-9, "{label}: {moment}");
+        }
+    }
+}

@@ -58,7 +58,7 @@ impl Scales {
     pub fn new(system: &System) -> Self {
         let (free, rows) = (system.free, system.constraints());
         let own: Vec<f64> = (0..free).map(|node| system.mass.diagonal(node)).collect();
-        let heaviest = own.iter().copied().fold(0.0, f64::max);
+        let heaviest = heaviest(&own);
         let around = around(system, &own);
         let yielding: Vec<f64> = (0..free).map(|node| yielding(system, node)).collect();
         let is_light = |node: usize| yielding[node] < LIGHT * around[node];
@@ -134,10 +134,17 @@ fn around(system: &System, own: &[f64]) -> Vec<f64> {
         let root = find(&mut root, node);
         heaviest[root] = heaviest[root].max(mass);
     }
-    let any = own.iter().copied().fold(0.0, f64::max);
+    let any = self::heaviest(own);
     let around = |node: usize| Some(heaviest[node]).filter(|mass| *mass > 0.0).unwrap_or(any);
     let most = |own: f64| if own > 0.0 { own / LEAST_SHARE } else { f64::INFINITY };
     (0..own.len()).map(|node| around(find(&mut root, node)).min(most(own[node]))).collect()
+}
+
+/// The heaviest of these masses, kg. Where there are none any other does as well: what is left to move of a slender rod that joints hold are
+/// directions without mass, and rows alone say where they are.
+fn heaviest(own: &[f64]) -> f64 {
+    let heaviest = own.iter().copied().fold(0.0, f64::max);
+    if heaviest > 0.0 { heaviest } else { 1.0 }
 }
 
 /// The mass of a free node where all others that it has mass in common with yield, kg: of a body that is small beside its distance from its

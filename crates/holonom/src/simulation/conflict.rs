@@ -184,11 +184,15 @@ impl Simulation {
         }
         let left = unmet(system, newton, work, &asked);
         let share = |row: usize| left[row].abs() / (work.scales.gradient[row] * work.scales.length);
-        let contradicting = || (0..left.len()).filter(|&row| share(row) > CONTRADICTS * most);
-        let worst = |rows: &mut dyn Iterator<Item = usize>| rows.max_by(|&a, &b| share(a).total_cmp(&share(b)));
-        // What moves is meant, not what holds.
-        let moves = |row: &usize| asked[*row].abs() > NOTHING * work.scales.gradient[*row] * work.scales.length;
-        let row = worst(&mut contradicting().filter(moves)).or_else(|| worst(&mut contradicting()))?;
+        if !(0..left.len()).any(|row| share(row) > CONTRADICTS * most) {
+            return None;
+        }
+        // The softer a row the more is left of it. What is left over that, as a force, times what the row asks for is its part in the contradiction, in
+        // one unit for all rows: of what moves, not of what holds.
+        let part = |row: usize| (left[row] * asked[row] / work.scales.softness[row]).abs();
+        let worst = |rows: &mut dyn Iterator<Item = usize>| rows.max_by(|&a, &b| part(a).total_cmp(&part(b)));
+        let is_written = |row: &usize| !system.rows.get(*row).is_some_and(|row| row.is_implied);
+        let row = worst(&mut (0..left.len()).filter(is_written)).or_else(|| worst(&mut (0..left.len())))?;
         Some(Conflict::new(row, system, newton, work))
     }
 }

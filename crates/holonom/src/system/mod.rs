@@ -62,6 +62,8 @@ use crate::linalg::Plans;
 pub(crate) struct Row {
     pub quantity: Quantity,
     target: Target,
+    /// Whether nobody has written it as a constraint: it keeps the nodes of one thing where they are in that.
+    pub is_implied: bool,
 }
 
 /// c of a row.
@@ -74,7 +76,7 @@ enum Target {
 impl Row {
     pub fn new(quantity: Quantity, target: Arc<dyn Signal>) -> Self {
         let target = if target.is_constant() { Target::Constant(target.at(0.0)[0]) } else { Target::Signal(target) };
-        Self { quantity, target }
+        Self { quantity, target, is_implied: false }
     }
 
     /// c, ċ and c̈ at a time.

@@ -379,7 +379,7 @@ fn keep_rigid(builder: &mut SystemBuilder, name: &str, basis: &[Basis], kept: &m
                 true => (builder.square(&a.terms), 0.5 * product),
                 false => (builder.dot(&a.terms, &b.terms), product),
             };
-            builder.constant_row(format!("{name}[{}{}]", i + 1, j + 1), invariant, target);
+            builder.implied_row(format!("{name}[{}{}]", i + 1, j + 1), invariant, target);
         }
     }
 }

@@ -319,6 +319,12 @@ impl SystemBuilder {
         self.row_names.remove(row);
     }
 
+    /// Adds such a row with a constant c that no constraint has asked for: it keeps the nodes of one thing where they are in that.
+    pub(crate) fn implied_row(&mut self, name: String, invariant: InvariantId, target: f64) {
+        self.constant_row(name, invariant, target);
+        self.rows.last_mut().expect("a row was added").is_implied = true;
+    }
+
     /// Adds the row Φ = π − c with a constant c.
     pub fn constant_row(&mut self, name: impl Into<String>, quantity: impl Into<Quantity>, target: f64) {
         self.row(name, quantity, Arc::new(Constant(target)));
