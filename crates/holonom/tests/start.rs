@@ -3,7 +3,7 @@
 mod common;
 
 use common::*;
-use holonom::simulation::{Method, Simulation, StartError, Status};
+use holonom::simulation::{Method, Simulation, StartError, Status, Verdict};
 use holonom::system::{Place, System, SystemBuilder};
 
 /// The paper's pendulum, its velocities pushed along the rod and apart, its outer mass moved by `off` along x.
@@ -81,4 +81,15 @@ fn times_that_lead_nowhere_are_refused() {
     let mut simulation = with(0.01).unwrap();
     assert!(matches!(simulation.step_to(f64::NAN), Status::Stopped { at: 0.0, .. }));
     assert_eq!(simulation.step_to(0.1), Status::Completed);
+    let reason = |step: f64, end: f64| match with(step).unwrap().run(end, &mut |_: &Simulation| Verdict::Stop) {
+        Status::Stopped { at: 0.0, reason } => reason,
+        other => panic!("{other:?}"),
+    };
+    // 2⁵² of them can be counted.
+    for (step, end) in [(1e-30, 1.0), (1e-20, 1e-3), (1e-3, 1e17), (0.9_f64.powi(2) / 2.0_f64.powi(52), 1.0)] {
+        assert!(reason(step, end).contains("more than can be counted"), "{step} s to {end} s");
+    }
+    for (step, end) in [(1e-9, 1.0), (1.1 / 2.0_f64.powi(52), 1.0), (1e-30, 1e-20), (1e-3, f64::INFINITY)] {
+        assert_eq!(reason(step, end), "interrupted", "{step} s to {end} s");
+    }
 }

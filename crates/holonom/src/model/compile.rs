@@ -62,12 +62,12 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
     compiler.build("force", &description.forces, &mut assembly);
     let forces = sink.over_time.take().into_iter().map(|force| OverTime { is_motion: false, ..force });
     let over_time = motions.into_iter().chain(forces).collect();
-    compiler.each("event", &description.events, |entry, event| event.build(&mut assembly, entry));
+    let (settings, output) = compiler.settings(description, &assembly);
+    compiler.each("event", &description.events, |entry, event| event.build(&mut assembly, entry, settings.end));
     // Points of a bar with a fault may have their mass from it.
     if faulty_bars.is_empty() && unread.bars.is_empty() {
         points::check_mass(&assembly);
     }
-    let (settings, output) = compiler.settings(description, &assembly);
     if sink.count() == 0 {
         for (path, motion) in sink.motions.take() {
             if let Some(message) = settings.end.and_then(|end| jumps::jump(motion, end)) {

@@ -10,6 +10,7 @@ use super::expression::{Program, indexed};
 use super::fault::{Read, suggest};
 use super::fields::{Keys, Map, Number};
 use super::key::Shape;
+use super::settings::require_countable;
 use super::signals::{Reader, Readings};
 use crate::system::{self, Crossing, Indicator, Reading, Trigger};
 
@@ -37,9 +38,10 @@ pub struct Event {
 const DIRECTIONS: &[&str] = &["rising", "falling", "both"];
 
 impl Event {
-    pub(super) fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+    /// Adds the event to a run that ends at `end` (s), where that is known.
+    pub(super) fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>, end: Option<f64>) -> Read<()> {
         let mut readings = Readings::new(assembly.dimension(), Reading::default());
-        let moment = self.moment(assembly, entry, &mut readings);
+        let moment = self.moment(assembly, entry, end, &mut readings);
         let set = entry.optional("set", &self.set, |set, entry, key| {
             let inputs: Vec<String> = assembly.signals.inputs.iter().map(|input| input.name.clone()).collect();
             let mut one = |(name, value): &(String, Number), entry: &Entry<'_>| {
@@ -78,7 +80,7 @@ impl Event {
         Ok(())
     }
 
-    fn moment(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>, readings: &mut Readings) -> Read<Moment> {
+    fn moment(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>, end: Option<f64>, readings: &mut Readings) -> Read<Moment> {
         match (&self.when, &self.every) {
             (Some(when), None) => {
                 let direction = entry.optional("direction", &self.direction, |word, entry, key| entry.choice(key, word, DIRECTIONS));
@@ -101,7 +103,9 @@ impl Event {
                     let message = format!("`{key}` is of a condition, and this happens all the time");
                     return Err(entry.refuse(key, message, "remove it, or write when = \"formula\" in place of `every`"));
                 }
-                period.positive(entry, "every").map(Moment::Every)
+                let period = period.positive(entry, "every")?;
+                end.map_or(Ok(()), |end| require_countable(entry, "every", "periods", [end, period]))?;
+                Ok(Moment::Every(period))
             }
             (Some(_), Some(_)) => {
                 Err(entry.refuse("every", "an event happens on a condition or with a period, and this has both", "make two events of it"))

@@ -9,7 +9,7 @@ use super::fault::{Read, suggest};
 use super::fields::{Keys, List, Map, Number};
 use super::key::Shape;
 use crate::record::Constraints;
-use crate::simulation::{Choice, ProjectionChoice};
+use crate::simulation::{Choice, ProjectionChoice, uncountable};
 use crate::system::Place;
 
 /// `[simulation]`
@@ -168,6 +168,9 @@ impl SimulationKeys {
         {
             entry.note("step", format!("the step of {} s is longer than the run of {} s", short(step), short(end)));
         }
+        if let (Some(end), Some(step)) = (end, step) {
+            let _: Read<()> = require_countable(entry, "step", "steps", [end, step]);
+        }
         let choice = Choice {
             method: self.method.clone(),
             formulation: self.formulation.clone(),
@@ -211,6 +214,14 @@ impl ProjectionKeys {
                 .unwrap_or(None),
         }
     }
+}
+
+/// Refuses steps or periods so short that time does not move by one, or that nobody can count them up to the end of the run (s).
+pub(super) fn require_countable(entry: &Entry<'_>, key: &'static str, them: &str, [end, period]: [f64; 2]) -> Read<()> {
+    uncountable(end, period).map_or(Ok(()), |count| {
+        let message = format!("a run of {} s has {count:.0e} {them} of {period:e} s, more than can be counted", short(end));
+        Err(entry.refuse(key, message, "write a longer time, in s"))
+    })
 }
 
 /// A weight for each free node, from weights by the names of points.

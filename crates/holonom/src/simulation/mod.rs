@@ -37,6 +37,7 @@ pub use events::Happening;
 pub use method::{
     Choice, LEVELS, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, OMEGA, PENALTY, ProjectionChoice, TOLERANCE, XI, combinations,
 };
+pub(crate) use periods::uncountable;
 pub(crate) use places::Places;
 pub use promise::Promise;
 pub(crate) use reactions::wrench;
@@ -283,6 +284,9 @@ impl Simulation {
         self.has_ended = false;
         if end.is_nan() {
             return Status::Stopped { at: self.state.t, reason: "the time that the run is to end at is not a number".into() };
+        }
+        if let Some(reason) = self.is_endless(end) {
+            return Status::Stopped { at: self.state.t, reason };
         }
         match self.begin_sampling() {
             Ok(true) => self.show_division(observer),

@@ -5,7 +5,28 @@ use super::events::SHORTEST;
 use crate::formulation::Failure;
 use crate::system::Trigger;
 
+/// Periods of a span that can be counted one by one in floating point: of more, time does not move by one at the span's end.
+const COUNTABLE: f64 = 1.0 / f64::EPSILON;
+
+/// How many steps or periods, of so many seconds each, a span has where these are too many to be counted. A span without an end has none to count to.
+pub(crate) fn uncountable(span: f64, period: f64) -> Option<f64> {
+    Some(span / period).filter(|count| *count > COUNTABLE && span.is_finite())
+}
+
 impl Simulation {
+    /// Why a run to a time would never get there, in words, if it would not.
+    pub(super) fn is_endless(&self, end: f64) -> Option<String> {
+        let span = end - self.state.t;
+        let of_steps = uncountable(span, self.step).map(|count| format!("{count:e} nominal steps of {} s", self.step));
+        // Periods are counted from t = 0.
+        let of_event = |(k, period, _): (usize, f64, u64)| {
+            let count = uncountable(end, period)?;
+            Some(format!("{count:e} periods of the event `{}`", self.system.events[k].name))
+        };
+        let many = of_steps.or_else(|| self.periods().find_map(of_event))?;
+        Some(format!("the run to {end} s has {many}, more than can be counted"))
+    }
+
     /// Periods of events, with how often they have happened.
     fn periods(&self) -> impl Iterator<Item = (usize, f64, u64)> {
         let period = |(k, taken): (usize, &u64)| match self.system.events[k].trigger {
