@@ -11,7 +11,6 @@ use crate::draft::{Draft, run_error};
 use crate::fault::failure;
 use crate::function::Trouble;
 use crate::run::{Recorded, read_changes, watched};
-use crate::study::told;
 
 /// JSON, and the text of the command.
 type Answer = (String, String);
@@ -71,7 +70,7 @@ fn parts<'a>(runs: &'a Runs<'_>) -> Vec<(String, &'a Loaded, &'a Finished)> {
 /// Summaries of runs with the differences of some columns to the first.
 #[pyfunction]
 pub fn compare(py: Python<'_>, runs: Runs<'_>, columns: Vec<String>) -> PyResult<Answer> {
-    side_by_side(&parts(&runs), &columns).map(answer).map_err(|fault| told(py, fault))
+    side_by_side(&parts(&runs), &columns).map(answer).map_err(|fault| failure(py, fault))
 }
 
 /// The report of runs with the summaries that they have side by side.

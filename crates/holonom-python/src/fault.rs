@@ -36,11 +36,24 @@ pub fn refuse(py: Python<'_>, path: &str, message: impl Into<String>, cure: impl
     model_error(py, vec![Fault::new(path, "", message, cure).into()], None)
 }
 
-/// What the command would have said.
+/// Options of the command in messages, and the arguments of Python that stand for them.
+const WORDS: [(&str, &str); 8] = [
+    ("give another --out, or --force to overwrite", "give another `out`, or force=True to overwrite"),
+    ("give another --out", "give another `out`"),
+    ("and --columns tells differences", "and `columns` tells differences"),
+    ("give --set output.reactions=true", "give reactions=True"),
+    ("or give a later --end", "or give a later `end`"),
+    ("leave out --method", "leave out `method`"),
+    ("and --method replaces it", "and `method` replaces it"),
+    ("--columns has an empty place in its list", "`columns` has an empty text"),
+];
+
+/// What the command would have said, with the arguments of Python.
 pub fn failure(py: Python<'_>, failure: Failure) -> PyErr {
+    let of_python = |text: String| WORDS.iter().fold(text, |text, (words, ours)| text.replace(words, ours));
     match failure {
         Failure::Model(text) => model_error(py, vec![Fault::new("", "", text.clone(), "").into()], Some(text)),
-        Failure::Usage { message, cure } => refuse(py, "", message, cure),
+        Failure::Usage { message, cure } => refuse(py, "", of_python(message), of_python(cure)),
         Failure::NotThere { path, source, cure } => {
             system_error(format!("cannot read {}: {source} ({cure})", path.display()), &source, path)
         }

@@ -107,6 +107,7 @@ impl Running {
             // A recorder wants no run to stop.
             let _ = self.recorder.after_step(&self.simulation);
         }
+        self.recorder.follow(&self.simulation);
     }
 
     /// Whether the run goes on after a step. What a function has raised is why it does not, whatever came of that.

@@ -70,15 +70,15 @@ impl Sweep {
             }
         }
         let plan = if is_grid { Plan::grid(varied) } else { Plan::rows(varied) };
-        let plan = plan.map_err(|fault| told(py, fault))?;
+        let plan = plan.map_err(|fault| failure(py, fault))?;
         let made = py.detach(|| Study::new(source, &draft.stem(), plan, method, &columns));
         if let Some(raised) = trouble.take() {
             return Err(raised);
         }
         let mut study = made.map_err(|fault| match &fault {
             // What is wrong with the model is told in the lines of the program.
-            Failure::Model(_) => draft.load_with(py, &first, &trouble).err().unwrap_or_else(|| told(py, fault)),
-            _ => told(py, fault),
+            Failure::Model(_) => draft.load_with(py, &first, &trouble).err().unwrap_or_else(|| failure(py, fault)),
+            _ => failure(py, fault),
         })?;
         let functions = draft.functions(py)?;
         if functions.1 {
@@ -111,7 +111,7 @@ impl Sweep {
                 "`out` was given, and the model calls functions: a journal cannot tell whether they are the same when it is gone on with";
             return Err(refuse(py, "out", message, "leave out `out`, and write the table at the end"));
         }
-        let store = Store::open(&folder, force, &self.study, &self.identified()).map_err(|fault| told(py, fault))?;
+        let store = Store::open(&folder, force, &self.study, &self.identified()).map_err(|fault| failure(py, fault))?;
         *self.held() = store;
         Ok(())
     }
@@ -163,7 +163,7 @@ impl Sweep {
             raised = seen.err();
             goes_on
         });
-        outcome.map_err(|fault| told(py, fault))?;
+        outcome.map_err(|fault| failure(py, fault))?;
         match raised.or(self.trouble.take()) {
             Some(raised) => Err(raised),
             None => look().map(|_| self.held().is_whole()),
@@ -181,7 +181,7 @@ impl Sweep {
             Ok(())
         };
         let ended = py.detach(|| self.study.run(&runs, 1, &interrupted, &keep));
-        ended.map_err(|fault| told(py, fault))?;
+        ended.map_err(|fault| failure(py, fault))?;
         self.trouble.take().map_or(Ok(()), Err)?;
         Ok(lines.into_inner().expect("no line panics"))
     }
@@ -191,7 +191,7 @@ impl Sweep {
         let mut store = self.held();
         let mut count = 0;
         for line in lines.split_inclusive('\n') {
-            count += u64::from(store.add_text(line, &self.study).map_err(|fault| told(py, fault))?);
+            count += u64::from(store.add_text(line, &self.study).map_err(|fault| failure(py, fault))?);
         }
         Ok(count)
     }
@@ -207,7 +207,7 @@ impl Sweep {
             let store = self.held();
             store.finish(&self.study, &store.table(&self.study), &table_writers(&formats)?, report.then_some(&self.set))
         });
-        written.map_err(|fault| told(py, fault))
+        written.map_err(|fault| failure(py, fault))
     }
 
     /// Lets go of the folder, for others that write there.
@@ -230,7 +230,7 @@ impl Sweep {
             write(&self.held().table(&self.study), &mut bytes).expect("memory takes everything");
             Ok(bytes)
         });
-        written.map_err(|fault| told(py, fault))
+        written.map_err(|fault| failure(py, fault))
     }
 
     /// The report as text of HTML.
@@ -295,24 +295,4 @@ fn column(py: Python<'_>, cells: Cells) -> PyResult<Bound<'_, PyAny>> {
         Cells::Numbers(cells) => PyArray1::from_vec(py, cells.into_iter().map(|cell| cell.unwrap_or(f64::NAN)).collect()).into_any(),
         Cells::Words(cells) => PyList::new(py, cells)?.into_any(),
     })
-}
-
-/// Options of the command in messages, and the arguments of Python that stand for them.
-const WORDS: [(&str, &str); 7] = [
-    ("give another --out, or --force to overwrite", "give another `out`, or force=True to overwrite"),
-    ("give another --out", "give another `out`"),
-    ("give --set output.reactions=true", "give reactions=True"),
-    ("or give a later --end", "or give a later `end`"),
-    ("leave out --method", "leave out `method`"),
-    ("and --method replaces it", "and `method` replaces it"),
-    ("--columns has an empty place in its list", "`columns` has an empty text"),
-];
-
-/// What the command would have said, with the arguments of Python.
-pub fn told(py: Python<'_>, fault: Failure) -> PyErr {
-    let of_python = |text: String| WORDS.iter().fold(text, |text, (words, ours)| text.replace(words, ours));
-    match fault {
-        Failure::Usage { message, cure } => failure(py, Failure::Usage { message: of_python(message), cure: of_python(cure) }),
-        fault => failure(py, fault),
-    }
 }

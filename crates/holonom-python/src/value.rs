@@ -40,11 +40,18 @@ impl Reading<'_> {
             });
             return items.collect::<Result<_, _>>().map(Value::List);
         }
-        // Arrays and scalars of NumPy and of those that do as it does.
-        if let Ok(plain) = value.call_method0("tolist") {
+        // Arrays and scalars of NumPy and of those that do as it does. A number for which Python has no type, as a long double, stays what it is.
+        if let Ok(plain) = value.call_method0("tolist")
+            && !plain.get_type().is(value.get_type())
+        {
             return self.value(path, &plain, depth + 1);
         }
+        // NumPy would leave out the imaginary part.
+        let kind = value.getattr("dtype").and_then(|dtype| dtype.getattr("kind")?.extract::<String>());
         match value.extract::<f64>() {
+            Ok(_) if kind.is_ok_and(|kind| kind == "c") => {
+                Err(refuse(format!("`{path}` is a complex number"), "give a real one, such as its .real"))
+            }
             Ok(number) if number.is_finite() => Ok(Value::Number(number)),
             Ok(number) => Err(refuse(format!("`{path}` is {number}, and a finite number is wanted"), "see where it was computed")),
             Err(_) => {

@@ -229,3 +229,12 @@ def test_files_beside_a_model_are_found_wherever_the_program_goes(tmp_path, monk
     for other in (m, m.copy(), pickle.loads(pickle.dumps(m))):
         assert (other.simulate(end=1, step=0.1)["p.vx"] == run["p.vx"]).all()
     assert (pickle.loads(pickle.dumps(run))["p.vx"] == run["p.vx"]).all()
+
+
+def test_long_doubles_are_numbers():
+    m = hm.Model(gravity=[np.longdouble(0), 0, 0])
+    m.point("p", mass=np.longdouble(2), position=np.array([0.25, 0.5, 1], dtype=np.longdouble))
+    run = m.simulate(end=0.01, step=0.01)
+    assert [run[f"p.{axis}"][0] for axis in "xyz"] == [0.25, 0.5, 1]
+    with pytest.raises(Exception, match="clongdouble|complex"):
+        m.point("q", mass=np.clongdouble(2), position=[0, 0, 0])

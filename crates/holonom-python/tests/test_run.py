@@ -315,3 +315,13 @@ def test_forces_at_a_sample_are_those_of_the_inputs_there():
     m.event("controller", every=0.1, set={"push": "1 + t"})
     run = m.simulate(end=1, step=0.05)
     assert run["rail.fy"] == pytest.approx(-run["push"], abs=1e-12)
+
+
+def test_a_folder_that_is_there_is_told_in_words_of_python(tmp_path):
+    run = hm.load("example:four-bar").simulate(end=0.02, step=0.01)
+    run.write(tmp_path / "out", report=False)
+    other = hm.load("example:double-pendulum").simulate(end=0.02, step=0.01)
+    with pytest.raises(Exception, match="force=True") as refused:
+        other.write(tmp_path / "out", report=False)
+    assert "--" not in str(refused.value)
+    other.write(tmp_path / "out", report=False, force=True)

@@ -306,3 +306,16 @@ def test_a_state_is_of_its_own_mechanism():
     pendulum(1, "the same").set_state(state)
     with pytest.raises(hm.ModelError, match="another model"):
         pendulum(5).set_state(state)
+
+
+@pytest.mark.parametrize("read", ["nothing", "a velocity", "the quaternion"])
+def test_quaternions_do_not_depend_on_what_was_read(read):
+    m = hm.Model(gravity=[0, 0, 0])
+    m.body("top", mass=1, inertia=[1, 1, 1], position=[0, 0, 0], angular_velocity=[0, 0, 1.5 * np.pi])
+    sim = hm.Simulation(m, step=0.01)
+    for _ in range(100):
+        sim.step()
+        if read != "nothing":
+            sim["top.vx" if read == "a velocity" else "top.qw"]
+    # Three quarters of a turn: half of that is the angle of the quaternion.
+    assert sim["top.qw"] == pytest.approx(-np.sqrt(0.5), abs=1e-3) and sim["top.qz"] == pytest.approx(np.sqrt(0.5), abs=1e-3)

@@ -268,6 +268,15 @@ impl Channels {
         headings
     }
 
+    /// Goes on with the orientations of bodies in space from the last ones to the present state.
+    pub(super) fn follow(&self, simulation: &Simulation, last: &mut [UnitQuaternion<f64>]) {
+        if self.axes.len() == 3 {
+            let x = simulation.system().in_world(&simulation.state().x);
+            let turned = |body: &RecordedBody| body.turned(&x, simulation.velocities()).0;
+            self.bodies.iter().zip(last).for_each(|(body, last)| *last = near(turned(body), last));
+        }
+    }
+
     /// Appends the columns of motion.
     pub fn motion(&self, simulation: &Simulation, last: &mut [UnitQuaternion<f64>], row: &mut Vec<f64>) {
         let x = simulation.system().in_world(&simulation.state().x);
@@ -281,12 +290,7 @@ impl Channels {
             row.extend_from_slice(&rate_of(&body.centre, v, dim)[..dim]);
             if dim == 3 {
                 let (orientation, omega) = body.turned(x, v);
-                // Of the two quaternions of an orientation the one near the last.
-                *last = if orientation.coords.dot(&last.coords) < 0.0 {
-                    UnitQuaternion::new_unchecked(-orientation.into_inner())
-                } else {
-                    orientation
-                };
+                *last = near(orientation, last);
                 row.extend([last.w, last.i, last.j, last.k, omega[0], omega[1], omega[2]]);
             }
         }
@@ -359,4 +363,9 @@ fn node(point: &RecordedPoint) -> Option<NodeId> {
         [Term { place: Place::Node(node), factor: 1.0, turn: 0.0 }] => Some(node),
         _ => None,
     }
+}
+
+/// Of the two quaternions of an orientation the one near the last.
+fn near(orientation: UnitQuaternion<f64>, last: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
+    if orientation.coords.dot(&last.coords) < 0.0 { UnitQuaternion::new_unchecked(-orientation.into_inner()) } else { orientation }
 }

@@ -178,6 +178,11 @@ impl<'a> Recorder<'a> {
         self.recording
     }
 
+    /// Looks at how bodies are turned and at nothing else, so that the sign of their quaternions does not depend on when somebody looks at the rest.
+    pub fn follow(&mut self, simulation: &Simulation) {
+        self.channels.follow(simulation, &mut self.orientations);
+    }
+
     /// The row of the present state, which is not kept. It counts as the row after the step before it; running values of measures follow from
     /// the rows that were looked at.
     pub fn look(&mut self, simulation: &Simulation) -> &[f64] {
