@@ -72,7 +72,7 @@ impl Element for Cam {
             let message = format!("at q = 0, the start, this is {value}, its slope {slope} and its second derivative {bend}");
             return Err(entry.refuse("lift", message, "all three must be finite"));
         }
-        let reach = if first.is_angle { TAU } else { SIZES * assembly.builder.size() };
+        let reach = if first.is_angle { TAU } else { SIZES * assembly.builder.extent() };
         if let Some(at) = corner(&lift, reach) {
             let message = format!("this has a corner or a jump at q = {}, where the speed of what follows would jump", short(at));
             let cure = "round it off; in a table write interpolation = \"cubic\" or \"monotone\", and outside = \"line\" or \"periodic\" for its ends";

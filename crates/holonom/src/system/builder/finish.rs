@@ -52,10 +52,21 @@ impl SystemBuilder {
         (if is_far && !is_tied { middle } else { [0.0; 3] }, extent)
     }
 
+    /// Whether each node is a point and not a direction.
+    fn are_points(&self) -> Vec<bool> {
+        let mut are_points = vec![true; self.free + self.motions.len()];
+        self.directions.iter().for_each(|&node| are_points[node as usize] = false);
+        are_points
+    }
+
+    /// How large the mechanism is, as far as it is built, m: the size that was set, or how far its points are apart where that is more.
+    pub(crate) fn extent(&self) -> f64 {
+        self.origin(&self.are_points()).1
+    }
+
     /// The finished system.
     pub fn build(mut self) -> System {
-        let mut is_point = vec![true; self.free + self.motions.len()];
-        self.directions.iter().for_each(|&node| is_point[node as usize] = false);
+        let is_point = self.are_points();
         let (origin, extent) = self.origin(&is_point);
         if origin != [0.0; 3] {
             // A single point is at its own middle, and what holds it is not seen from there.
