@@ -250,9 +250,10 @@ impl Workspace {
         system.slots.add_along(system.dim, 1.0, &sampled.at.gradient, a, rows);
         let missed = self.scaled(&self.rows);
         let of_all = self.scaled(&self.phi) + largest(&self.a[..system.coordinates()]) + of_motion;
-        let Self { phi, rows, sampled, turned, .. } = self;
-        system.constraint_curvatures(&sampled.at, &sampled.x, &vec![0.0; sampled.v.len()], t, &mut turned.half, rows);
-        rows.iter_mut().zip(phi).for_each(|(at_rest, phi)| *at_rest = *phi - *at_rest);
+        let Self { phi, rows, sampled, turned, kept_v: at_rest, .. } = self;
+        at_rest.fill(0.0);
+        system.constraint_curvatures(&sampled.at, &sampled.x, at_rest, t, &mut turned.half, rows);
+        rows.iter_mut().zip(phi).for_each(|(row, phi)| *row = *phi - *row);
         [missed, of_all, self.scaled(&self.rows) + of_motion]
     }
 

@@ -129,7 +129,7 @@ pub struct Workspace {
     pub memory: Vec<f64>,
     /// Scratch of all coordinates (full).
     pub full: Vec<f64>,
-    /// Velocities (full), m/s, that are put back after others were tried.
+    /// Velocities (full), m/s, that are put back after others were tried; zeros where what stands still is looked at.
     pub(super) kept_v: Vec<f64>,
     /// Scratch of the free coordinates (n).
     pub inertial: Vec<f64>,
