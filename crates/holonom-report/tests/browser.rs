@@ -202,6 +202,21 @@ fn bodies_of_two_runs() {
     bodies_move(&seen, "rocker", 6);
 }
 
+/// The picture goes with what goes far beyond its own size: it stays where it is on the screen, and large.
+#[test]
+fn a_cart_is_followed() {
+    let seen = open("cart", &[sample::bodies::cart()]);
+    bodies_move(&seen, "cart", 2);
+    let screen = |moment: &str| -> Vec<f64> {
+        let places = seen[moment]["screen"].as_array().unwrap().iter().flat_map(|place| place.as_array().unwrap());
+        places.map(|x| x.as_f64().unwrap()).collect()
+    };
+    let [start, middle] = ["start", "middle"].map(screen);
+    assert!(start.iter().zip(&middle).all(|(before, after)| (before - after).abs() < 1.0), "{seen:#}");
+    // Both are 0.2 m of 1 m apart.
+    assert!(start[1] - start[3] < -30.0, "{seen:#}");
+}
+
 #[test]
 fn numbers_out_of_all_bounds() {
     loads(&open("blown-up", &[sample::blown_up()]), 3);

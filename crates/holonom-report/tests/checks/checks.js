@@ -18,6 +18,11 @@
     }
     return { different, hash };
   };
+  const moment = () => {
+    const bodies = holonom.bodiesAt();
+    const screen = Object.values(bodies).map((place) => holonom.onScreen(place));
+    return { time: holonom.time(), points: holonom.pointsAt(), bodies, screen, picture: picture() };
+  };
   const plots = () => [...document.querySelectorAll(".plot canvas")].map((canvas) => canvas.toDataURL());
   const changed = (before, after) => before.filter((image, i) => image !== after[i]).length;
   try {
@@ -25,13 +30,13 @@
     seen.ready = window.holonom.ready;
     seen.plots = document.querySelectorAll(".plot").length;
     seen.emptyPlots = plots().filter((image) => image.length < 2000).length;
-    seen.start = { time: holonom.time(), points: holonom.pointsAt(), bodies: holonom.bodiesAt(), picture: picture() };
+    seen.start = moment();
 
     const slider = document.querySelector("input#time");
     slider.value = String(Number(slider.max) / 2);
     slider.dispatchEvent(new Event("input", { bubbles: true }));
     await frames(3);
-    seen.middle = { time: holonom.time(), points: holonom.pointsAt(), bodies: holonom.bodiesAt(), picture: picture() };
+    seen.middle = moment();
 
     holonom.setTime(1e9);
     await frames(3);

@@ -48,6 +48,24 @@ pub fn shapes() -> Sample {
     sample("Solids on springs", scene, &poses)
 }
 
+/// A cart on one wheel that goes straight on, 20 m.
+pub fn cart() -> Sample {
+    let scene = Scene {
+        axes: "xyz".to_owned(),
+        gravity: [0.0, 0.0, -9.81],
+        bodies: vec![
+            body("cart", Some(SceneShape::Box { size: [0.8, 0.3, 0.2] }), &[]),
+            body("wheel", Some(SceneShape::Cylinder { radius: 0.2, length: 0.05 }), &[]),
+        ],
+        ..Scene::default()
+    };
+    let poses = |t: f64| -> Vec<Pose> {
+        let at = |z: f64| [5.0 * t, 0.0, z];
+        vec![(at(0.4), turned([0.0, 0.0, 1.0], 0.0)), (at(0.2), turned([0.0, 1.0, 0.0], 25.0 * t))]
+    };
+    sample("Cart", scene, &poses)
+}
+
 /// Crank, connecting rod and slider without shapes, a wheel on a universal joint, and a symbol of every other kind.
 pub fn crank_in_space() -> Sample {
     let (crank, rod) = (0.3, 0.9);

@@ -29,7 +29,8 @@ const MOST_MEASURES = 12;
 const MOST_COMPARED = 4;
 /** Units of what is selected: what acts comes before motion. */
 const ORDER = ["N", "N·m", "W", "rad", "m", "rad/s", "m/s", "rad/s²", "m/s²"];
-/** Less is rounding of what is zero, and drawn as zero. */
+/** Less is rounding of what is zero, and drawn as zero: of the largest channel with the same unit, and of angles. */
+const ROUNDING = 1e-12;
 const LEAST_SPAN = 1e-15;
 /** Measures share a plot where none is so many times as large as another: the small one would be a flat line. */
 const COMPARABLE = 20;
@@ -223,10 +224,21 @@ function first(channels: Channel[]): Group[] {
   return places.length > 0 ? [{ title: "Positions", channels: places }] : [];
 }
 
+/** The largest magnitude of a channel. */
+function size({ extremes }: Channel): number {
+  return Math.max(Math.abs(extremes?.[0] ?? 0), Math.abs(extremes?.[2] ?? 0));
+}
+
+/** What a curve of a unit spans at least where it is no rounding. */
+function leastSpan(runs: Run[], unit: string): number {
+  const alike = runs.flatMap((run) => [...run.channelOf.values()].filter((channel) => channel.unit === unit));
+  const largest = alike.map(size).filter(Number.isFinite).reduce((most, one) => Math.max(most, one), unit === "rad" ? 1 : 0);
+  return Math.max(LEAST_SPAN, ROUNDING * largest);
+}
+
 /** Measures of one unit and of like size share a plot. */
 function measures(channels: Channel[]): Group[] {
   const groups: Group[] = [];
-  const size = ({ extremes }: Channel): number => Math.max(Math.abs(extremes?.[0] ?? 0), Math.abs(extremes?.[2] ?? 0));
   for (const channel of channels.filter((channel) => channel.is_measure)) {
     const fits = (other: Channel): boolean => {
       const [small, large] = [size(channel), size(other)].sort((a, b) => a - b);
@@ -255,6 +267,6 @@ function chartOf({ title, channels }: Group, runs: Run[], over: Channel | undefi
     }),
   );
   const unit = channels[0].unit === "1" ? "" : channels[0].unit;
-  const chart: Chart = { title, unit, scale: "linear", curves, leastSpan: LEAST_SPAN, allowed: Infinity };
+  const chart: Chart = { title, unit, scale: "linear", curves, leastSpan: leastSpan(runs, channels[0].unit), allowed: Infinity };
   return over ? { ...chart, over: { column: over.name, unit: over.unit === "1" ? "" : over.unit } } : chart;
 }

@@ -23,6 +23,9 @@ export function viewpoint(axes: string): Viewpoint {
   }
 }
 
+/** Distance over that at which corners of the box touch the edge of the picture. */
+const MARGIN = 1.03;
+
 export type Camera = PerspectiveCamera | OrthographicCamera;
 
 export function buildCamera(view: Viewpoint): Camera {
@@ -74,6 +77,5 @@ function distanceToFit(box: Box3, view: Viewpoint, sphere: Sphere, tanAcross: nu
     const needed = Math.max(Math.abs(place.dot(right)) / tanAcross, Math.abs(place.dot(up)) / tanUp);
     distance = Math.max(distance, needed + place.dot(view.towards));
   }
-  // The corners of the box are rarely visited.
-  return 0.98 * Math.max(distance, 1.2 * sphere.radius);
+  return MARGIN * Math.max(distance, 1.2 * sphere.radius);
 }

@@ -18,13 +18,23 @@ const HOLDS_PLACE = new Set(["revolute", "spherical", "universal", "fixed", "gen
 
 export function boundingBox(motions: Motion[]): Box3 {
   const fixed = motions.flatMap(fixedPlaces);
-  const start = boxOf([...fixed, ...motions.flatMap((motion) => placesInRow(motion, 0))]);
+  const start = boxAt(motions, 0);
   const places = motions.flatMap(allPlaces);
   let box = boxOf([...fixed, ...places]);
   if (diagonal(box) > FAR * Math.max(diagonal(start), 1e-9)) box = boxOf([...fixed, ...innermost(places, 0.9)]);
   // A single row does not say where it will go.
   if (motions.every((motion) => motion.run.times.length === 1)) box.expandByScalar(ROOM * diagonal(box));
   return withSize(box);
+}
+
+/** The room that mechanisms take in a row. */
+export function boxAt(motions: Motion[], row: number): Box3 {
+  return boxOf(motions.flatMap((motion) => [...fixedPlaces(motion), ...placesInRow(motion, row)]));
+}
+
+/** Whether something of a mechanism is drawn on the ground. */
+export function isTied(motion: Motion): boolean {
+  return fixedPlaces(motion).length > 0;
 }
 
 export function diagonal(box: Box3): number {

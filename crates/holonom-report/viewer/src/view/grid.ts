@@ -8,6 +8,8 @@ export interface Grid {
   object: LineSegments<BufferGeometry, LineBasicMaterial>;
   /** Edge of a cell, m. */
   cell: number;
+  /** Goes with what has come so far, by whole cells: lines stay where they are. */
+  follow(way: Vector3): void;
 }
 
 export function buildGrid(view: Viewpoint, box: Box3): Grid {
@@ -34,7 +36,11 @@ export function buildGrid(view: Viewpoint, box: Box3): Grid {
   const geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(points, 3));
   const object = new LineSegments(geometry, new LineBasicMaterial({ depthWrite: false }));
   object.renderOrder = -2; // under everything
-  return { object, cell };
+  const follow = (way: Vector3): void => {
+    object.position.set(0, 0, 0);
+    for (const axis of [across, along]) object.position.addScaledVector(axis, Math.round(way.dot(axis) / cell) * cell);
+  };
+  return { object, cell, follow };
 }
 
 /** The nearest of 1, 2, 5 · 10ᵏ. */

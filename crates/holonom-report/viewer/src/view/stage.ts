@@ -13,6 +13,7 @@ import type { Visibility } from "../visibility";
 import { actingOn } from "./acting";
 import { Arrows } from "./arrows";
 import { buildCamera, fitLens, frame, viewpoint } from "./camera";
+import { Chase } from "./chase";
 import { RunChoice } from "./choice";
 import { boundingBox, diagonal } from "./frame";
 import { buildGrid } from "./grid";
@@ -38,7 +39,8 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
   const renderer = new WebGLRenderer({ canvas, context: gl, antialias: true, preserveDrawingBuffer: true });
   const scene = new Scene();
   const view = viewpoint(motions[0].run.scene.axes);
-  let box = boundingBox(measured(motions));
+  const chase = Chase.of(measured(motions), view.up);
+  let box = chase?.box ?? boundingBox(measured(motions));
   const camera = buildCamera(view);
   const mechanisms = motions.map((motion, i) => new Mechanism(motion, diagonal(box), i, motions.length));
   const grid = buildGrid(view, box);
@@ -54,12 +56,23 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
     renderer.render(scene, camera);
     arrows.place(camera, container.clientWidth, container.clientHeight);
   });
+  // How far the camera has gone with the mechanism.
+  const gone = new Vector3();
+  const follow = (t: number): void => {
+    if (!chase) return;
+    const way = chase.at(t);
+    for (const place of [camera.position, controls.target]) place.add(way).sub(gone);
+    gone.copy(way);
+    grid.follow(way);
+  };
   const home = (): void => {
     // A run that goes on has been elsewhere since.
-    box = boundingBox(measured(motions));
+    if (!chase) box = boundingBox(measured(motions));
     frame(camera, view, box, shape(container));
     fitLens(camera, view, box, shape(container));
     box.getCenter(controls.target);
+    gone.set(0, 0, 0);
+    follow(clock.time);
     controls.update();
     render();
   };
@@ -78,6 +91,7 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
     render();
   };
   const show = (t: number): void => {
+    follow(t);
     for (const mechanism of mechanisms) mechanism.update(t);
     arrows.update(t);
     render();
