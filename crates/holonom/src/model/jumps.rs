@@ -47,7 +47,7 @@ struct Way {
 impl Way {
     /// Where it may jump or have a corner, in order.
     fn switches(&self, end: f64) -> Vec<f64> {
-        let ways = self.program.switches(0).into_iter().map(|program| Self { program, ..*self });
+        let ways = self.program.corners(0).into_iter().map(|program| Self { program, ..*self });
         let mut found: Vec<f64> = ways.flat_map(|switch| zeros(&switch, end)).collect();
         found.sort_by(f64::total_cmp);
         found
@@ -76,6 +76,11 @@ impl Signal for Way {
     fn at(&self, t: f64) -> [f64; 3] {
         let value = self.program.evaluate(&[Dual2_64::new(self.sense * t, 1.0, 0.0)]);
         [value.re, self.sense * value.v1, value.v2]
+    }
+
+    fn only_zero(&self) -> Option<f64> {
+        // Along the other side it falls there.
+        self.program.as_since().filter(|_| self.sense > 0.0)
     }
 }
 

@@ -76,10 +76,9 @@ impl Course {
             Self::Formula(program) => {
                 let switches = program.switches(0);
                 let are_many = switches.iter().filter(|switch| switch.as_since().is_none()).count() > MANY_SWITCHES;
-                let zeros = |switch: Program| match switch.as_since() {
-                    Some(time) => vec![time],
-                    None if are_many => Vec::new(),
-                    None => zeros(&TimeProgram(switch), end),
+                let zeros = |switch: Program| {
+                    let is_left_out = are_many && switch.as_since().is_none();
+                    if is_left_out { Vec::new() } else { zeros(&TimeProgram(switch), end) }
                 };
                 let peaks = if knocks::may_have(program) { knocks::times(program, end) } else { Vec::new() };
                 switches.into_iter().flat_map(zeros).chain(peaks).collect()

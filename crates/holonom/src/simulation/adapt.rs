@@ -192,6 +192,9 @@ impl Simulation {
                 // How long the step to a bend was, or what was left to a time, says nothing of the next one.
                 pilot.control.step = planned;
             }
+            if has_bend {
+                pilot.bend();
+            }
             if !self.pass_switch(pilot) && has_bend {
                 self.pass_bend(pilot, step);
                 self.turn(pilot);
@@ -202,6 +205,7 @@ impl Simulation {
         self.audit.reject(&self.newton);
         match landing {
             Landing::AtOnce { again } => {
+                pilot.bend();
                 self.pass_bend(pilot, step);
                 self.begin_anew();
                 // Several bends at one place ask once.

@@ -80,8 +80,15 @@ pub(super) struct Patience {
     /// Attempts since `since` (s).
     pub attempts: u32,
     since: f64,
-    /// Looks one after the other at which they had hardly come on.
+    /// Looks one after the other at which they had hardly come on, and those of them at which most had ended at bends of forces.
     slow: u32,
+    #[serde(default)]
+    chatters: u32,
+    /// Attempts since then that ended at a bend, and the last of these.
+    #[serde(default)]
+    bent: u32,
+    #[serde(default)]
+    bend: usize,
     /// What steps that showed nothing but round-off near a singular position have made of the energy, J.
     #[serde(default)]
     hidden: f64,
@@ -109,6 +116,11 @@ const DOUBT: u32 = 2;
 const LOOK: u32 = 2000;
 const SLOW: f64 = 1e-8;
 const SLOW_LOOKS: u32 = 1000;
+
+/// Share of the attempts between two looks that end at bends where a force jumps to and fro with what it moves, and so many looks at which that and
+/// nothing else goes on.
+const CHATTERS: f64 = 0.1;
+const CHATTER_LOOKS: u32 = 3;
 
 /// Steps between two times at which something changes abruptly: a pulse that is nothing at both is seen.
 pub(super) const BETWEEN: f64 = 4.0;
@@ -274,15 +286,28 @@ impl Pilot {
             let jumps = self.sight.reached.iter().position(|reached| *reached);
             return Err(jumps.map_or(Failure::TooSmall, |corner| Failure::JumpsBack { corner }));
         }
-        let Patience { attempts, since, slow, .. } = &mut self.patience;
+        let Patience { attempts, since, slow, chatters, bent, bend, .. } = &mut self.patience;
         *attempts += 1;
         if *attempts % LOOK != 0 {
             return Ok(());
         }
         let pace = (t - *since) / f64::from(LOOK);
         *since = t;
-        *slow = if pace < SLOW * self.control.span { *slow + 1 } else { 0 };
+        let is_slow = pace < SLOW * self.control.span;
+        *slow = if is_slow { *slow + 1 } else { 0 };
+        *chatters = if is_slow && f64::from(*bent) > CHATTERS * f64::from(LOOK) { *chatters + 1 } else { 0 };
+        *bent = 0;
+        if *chatters >= CHATTER_LOOKS {
+            return Err(Failure::JumpsBack { corner: *bend });
+        }
         if *slow >= SLOW_LOOKS { Err(Failure::Crawling { pace, left: (self.end - t) / pace }) } else { Ok(()) }
+    }
+
+    /// Takes note of an attempt that ended at a bend of a force.
+    pub fn bend(&mut self) {
+        if let Some(bend) = self.sight.reached.iter().position(|reached| *reached) {
+            (self.patience.bent, self.patience.bend) = (self.patience.bent + 1, bend);
+        }
     }
 
     pub fn flight(&self) -> Flight {

@@ -11,6 +11,11 @@ pub trait Signal: Send + Sync {
     fn is_constant(&self) -> bool {
         false
     }
+
+    /// The only time at which the value is zero, s, below it before and above it after, where that is known.
+    fn only_zero(&self) -> Option<f64> {
+        None
+    }
 }
 
 /// A value that stays.

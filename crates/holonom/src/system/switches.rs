@@ -47,6 +47,9 @@ fn behind(t: f64) -> f64 {
 
 /// Times of a run at which a function of time changes its sign, each a rounding before.
 pub(crate) fn zeros(switch: &dyn Signal, end: f64) -> Vec<f64> {
+    if let Some(only) = switch.only_zero() {
+        return Some(only.next_down().next_down()).filter(|t| *t > 0.0 && only <= end).into_iter().collect();
+    }
     let at = |k: usize| end * k as f64 / LOOKS as f64;
     let changes = (0..LOOKS).filter(|&k| sign(switch, at(k)) != sign(switch, at(k + 1)));
     let bisected = changes.map(|k| {

@@ -111,10 +111,24 @@ impl Curve {
 
     /// What to do to an argument, for each place where derivatives jump, to have a number that passes zero there: in every period of a
     /// curve that has some.
-    pub(super) fn kinks(&self) -> impl Iterator<Item = Vec<Op>> {
+    pub(super) fn kinks(&self) -> Vec<Vec<Op>> {
+        self.passes(&self.knots)
+    }
+
+    /// The same where the value or the slope may jump: at the corners of a polygon, and at the ends of what is smooth between.
+    pub(super) fn corners(&self) -> Vec<Vec<Op>> {
+        match (&self.knots[..], self.is_polygon()) {
+            ([first, .., last], false) => self.passes(&[*first, *last]),
+            (knots, _) => self.passes(knots),
+        }
+    }
+
+    /// What passes zero at these knots.
+    fn passes(&self, knots: &[f64]) -> Vec<Vec<Op>> {
         let period = (self.beyond == Beyond::Periodic).then(|| self.knots[self.knots.len() - 1] - self.knots[0]);
         let turns = period.map(|period| [Op::Constant(PI / period), Op::Mul, Op::OfOne(Function::Sin)]);
-        self.knots.iter().map(move |&knot| [Op::Constant(knot), Op::Sub].into_iter().chain(turns.clone().into_iter().flatten()).collect())
+        let pass = |&knot: &f64| [Op::Constant(knot), Op::Sub].into_iter().chain(turns.clone().into_iter().flatten()).collect();
+        knots.iter().map(pass).collect()
     }
 
     /// Tells where the curve bends at `s`: at the corners of a polygon, one by one where they are few, and where it is highest or lowest within

@@ -362,4 +362,8 @@ impl Signal for TimeProgram {
     fn is_constant(&self) -> bool {
         self.0.as_constant().is_some()
     }
+
+    fn only_zero(&self) -> Option<f64> {
+        self.0.as_since()
+    }
 }

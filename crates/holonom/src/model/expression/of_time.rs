@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::cells::begins;
+use super::curve::Curve;
 use super::functions::Function;
 use super::{Op, Program};
 
@@ -15,6 +16,16 @@ impl Program {
     /// one variable: the arguments of `step`, `sign` and `abs`, the difference of those of `min` and `max`, the first of `atan2`, the cosine of
     /// that of `tan`, and what has another sign where `floor` and `mod` have jumped.
     pub fn switches(&self, t: usize) -> Vec<Self> {
+        self.changes(t, Curve::kinks)
+    }
+
+    /// The same without the knots of smooth curves, at which neither its value nor its slope jumps.
+    pub fn corners(&self, t: usize) -> Vec<Self> {
+        self.changes(t, Curve::corners)
+    }
+
+    /// What changes sign there, of tables by these places of theirs.
+    fn changes(&self, t: usize, of_table: fn(&Curve) -> Vec<Vec<Op>>) -> Vec<Self> {
         let begins = begins(&self.ops);
         let mut found = Vec::new();
         for (k, op) in self.ops.iter().enumerate() {
@@ -23,7 +34,7 @@ impl Program {
                 Op::OfOne(Function::Step | Function::Sign | Function::Abs) => note(k, &[]),
                 Op::OfOne(Function::Floor) => note(k, &AT_INTEGERS),
                 Op::OfOne(Function::Tan) => note(k, &[Op::OfOne(Function::Cos)]),
-                Op::OfTable(curve) => curve.kinks().for_each(|kink| note(k, &kink)),
+                Op::OfTable(curve) => of_table(curve).iter().for_each(|place| note(k, place)),
                 Op::OfTwo(Function::Min | Function::Max) => note(k, &[Op::Sub]),
                 Op::OfTwo(Function::Mod) => note(k, &[&[Op::Div], &AT_INTEGERS[..]].concat()),
                 // What it has first ends where the second begins.

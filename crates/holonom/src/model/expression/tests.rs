@@ -219,6 +219,25 @@ fn kinks_of_periodic_tables_come_again_in_every_period() {
     assert!(times.len() == 5 && times.iter().zip(expected).all(|(t, known)| (t - known).abs() < 1e-12), "{times:?}");
 }
 
+/// Steps end at all knots of a table, and only its ends may be corners where it is smooth between.
+#[test]
+fn smooth_tables_have_corners_at_their_ends_alone() {
+    let knots: Vec<f64> = (0..50).map(f64::from).collect();
+    let values: Vec<f64> = knots.iter().map(|s| (0.2 * s).sin()).collect();
+    for (curve, corners) in [
+        (Curve::linear(knots.clone(), values.clone(), Beyond::Hold), 50),
+        (Curve::cubic(knots.clone(), values.clone(), Beyond::Hold), 2),
+        (Curve::monotone(knots.clone(), values.clone(), Beyond::Hold), 2),
+    ] {
+        let tables = HashMap::from([("curve".to_string(), Some(Arc::new(curve)))]);
+        let program = Program::parse("curve(t)", &["t"], &Scope { tables: Some(&tables), ..Scope::default() }).unwrap();
+        assert_eq!([program.switches(0).len(), program.corners(0).len()], [50, corners]);
+        // Each is at the knot, without a search.
+        let last = program.switches(0).into_iter().flat_map(|switch| zeros(&TimeProgram(switch), 60.0)).last().unwrap();
+        assert!(last < 49.0 && last > 49.0 - 1e-13, "{last}");
+    }
+}
+
 /// Where `floor` and `mod` jump steps end, in time and with what moves.
 #[test]
 fn floor_and_mod_jump_where_they_are_seen_to() {
