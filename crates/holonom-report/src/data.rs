@@ -129,14 +129,11 @@ fn channels<'a>(run: &Run<'a>, thinning: &Thinning) -> Vec<ChannelData<'a>> {
     let most = MAX_NUMBERS / thinning.kept().max(1);
     let channel = |column: &'a Column| {
         let heading = &column.heading;
-        // What acts and what is measured is asked for its peaks, to either side of the middle.
-        let keep = if is_measure(&column) || ["N", "N·m", "W"].contains(&&*heading.unit) { Keep::Extreme } else { Keep::Last };
         let extremes = extremes(times, &column.values);
         let (centre, span) = extremes.map_or((0.0, 0.0), |[least, _, most, _]| (0.5 * least + 0.5 * most, most - least));
         let middle = if centre.abs() > FLAT * span { centre } else { 0.0 };
         let values = if is_measured(run.summary) { bridged(times, &column.values) } else { column.values.clone() };
-        let around: Vec<f64> = values.iter().map(|value| value - centre).collect();
-        let values: Vec<f32> = thinning.apply(&around, keep).into_iter().map(|value| (value + (centre - middle)) as f32).collect();
+        let values: Vec<f32> = thinning.apply(&values, Keep::Range).into_iter().map(|value| (value - middle) as f32).collect();
         ChannelData {
             name: &heading.name,
             unit: &heading.unit,

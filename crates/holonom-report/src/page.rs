@@ -105,7 +105,7 @@ fn stage(runs: &[RunData], out: &mut dyn Write) -> io::Result<()> {
         writeln!(
             out,
             "<p class=\"note\">{label}picture and plots show one in {stride} of {recorded} recorded rows; violations, iterations and \
-             energy errors are the largest since the row before.</p>"
+             energy errors are the largest since the row before, and curves come to the least and the largest value of every two.</p>"
         )?;
     }
     Ok(())

@@ -1,7 +1,8 @@
 //! Long recordings are shortened for the page: groups of k rows become one, and nothing that a reader looks for gets lost.
 //!
 //! Row 0 stands for itself. After it, every group is the k rows that end with the row which is kept, so that a peak is shown at
-//! most k − 1 rows late and never before it happened. The last row of the recording always ends the last group.
+//! most k − 1 rows late and never before it happened. The last row of the recording always ends the last group. Only where both
+//! ends of a range are kept two groups share their rows, and a peak may be up to k rows early or 2k − 1 rows late.
 
 /// Rows a page holds per run; a screen has no room for more.
 pub const MAX_ROWS: usize = 4000;
@@ -21,6 +22,9 @@ pub enum Keep {
     Max,
     /// The value farthest from zero, with its sign: errors and what is exchanged per step.
     Extreme,
+    /// The least and the largest value of two groups in the order in which they were reached, where a curve through the last rows
+    /// would not come to them: what has peaks to either side of any middle. What rises or falls stays exact.
+    Range,
 }
 
 /// Which rows of a recording the page shows.
@@ -48,18 +52,50 @@ impl Thinning {
         let Some((first, rest)) = values.split_first() else {
             return Vec::new();
         };
+        if keep == Keep::Range {
+            return self.ranges(*first, rest);
+        }
         let groups = rest.chunks(self.stride).map(|group| represent(group, keep));
         std::iter::once(*first).chain(groups).collect()
+    }
+
+    /// Two groups at a time have room for their least and their largest value. A group left over at the end has room for one of them.
+    fn ranges(&self, first: f64, rest: &[f64]) -> Vec<f64> {
+        let mut kept = vec![first];
+        let mut before = first;
+        for pair in rest.chunks(2 * self.stride) {
+            let ends: Vec<f64> = pair.chunks(self.stride).map(|group| represent(group, Keep::Last)).collect();
+            let [least, most] = [f64::lt, f64::gt].map(|is_beyond| farthest(pair, is_beyond));
+            let [low, high] = [f64::min, f64::max].map(|bound| ends.iter().copied().fold(before, bound));
+            let is_met = |row: usize| (low..=high).contains(&pair[row]);
+            if pair.iter().any(|value| value.is_nan()) {
+                kept.extend(pair.chunks(self.stride).map(|group| represent(group, Keep::Extreme)));
+            } else if is_met(least) && is_met(most) {
+                kept.extend(&ends);
+            } else if ends.len() == 1 {
+                let off = |row: usize| (low - pair[row]).max(pair[row] - high);
+                kept.push(pair[if off(least) > off(most) { least } else { most }]);
+            } else {
+                kept.extend([pair[least.min(most)], pair[least.max(most)]]);
+            }
+            before = pair[pair.len() - 1];
+        }
+        kept
     }
 }
 
 fn represent(group: &[f64], keep: Keep) -> f64 {
     let last = group[group.len() - 1];
     match keep {
-        Keep::Last => last,
+        Keep::Last | Keep::Range => last,
         Keep::Max => largest(group, last, |v| v),
         Keep::Extreme => largest(group, last, f64::abs),
     }
+}
+
+/// The first row whose value is beyond all others.
+fn farthest(values: &[f64], is_beyond: fn(&f64, &f64) -> bool) -> usize {
+    (1..values.len()).fold(0, |best, row| if is_beyond(&values[row], &values[best]) { row } else { best })
 }
 
 /// NaN counts as larger than everything: it is what one wants to see.
@@ -110,6 +146,20 @@ mod tests {
             assert!(thinning.apply(&values, Keep::Extreme).contains(&-1e-3), "row {peak}");
             values[peak] = f64::NAN;
             assert_eq!(thinning.apply(&values, Keep::Max).iter().filter(|v| v.is_nan()).count(), 1);
+        }
+    }
+
+    #[test]
+    fn both_ends_of_a_range_survive_and_what_rises_stays_exact() {
+        let thinning = Thinning::new(20_001, 6);
+        let ramp: Vec<f64> = (0..20_001).map(f64::from).collect();
+        assert!(thinning.apply(&ramp, Keep::Range) == thinning.apply(&ramp, Keep::Last));
+        for peak in [1, 4_999, 5_000, 5_001, 10_001, 19_990, 19_999] {
+            let mut values = vec![3.0; 20_001];
+            (values[peak], values[peak + 1]) = (400.0, 2.0);
+            let kept = thinning.apply(&values, Keep::Range);
+            assert!(kept.contains(&400.0) && kept.contains(&2.0), "row {peak}");
+            assert_eq!(kept.len(), thinning.kept());
         }
     }
 
