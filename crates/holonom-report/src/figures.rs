@@ -27,6 +27,7 @@ pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
 
 fn one(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
     writeln!(out, r#"<p class="method">{} {}{}</p>"#, badge(run.summary), method(run.summary), reason(run.summary))?;
+    notes(run.summary, out)?;
     let mut tables = Vec::new();
     measures(run.summary, &mut tables)?;
     events(run.summary, &mut tables)?;
@@ -37,6 +38,16 @@ fn one(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
     writeln!(out, r#"<div class="peaks">"#)?;
     out.write_all(&tables)?;
     writeln!(out, "</div>")
+}
+
+/// What the run was told to look out for. It stands beside how the run ended, as a run that completed may still be wrong.
+fn notes(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
+    let notes = list(summary, "/notes");
+    if notes.is_empty() {
+        return Ok(());
+    }
+    let items: String = notes.iter().map(|note| format!("<li><strong>note:</strong> {}</li>", html(&format::value(note)))).collect();
+    writeln!(out, r#"<ul class="notes">{items}</ul>"#)
 }
 
 /// Key figures of the solver for one run, which a table has for several.

@@ -35,6 +35,8 @@ pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
     let mut keys = union_of_keys(&columns);
     keys.retain(|key| !ELSEWHERE.iter().any(|begin| key.starts_with(begin)));
     if runs.len() < 2 {
+        // The notes of a single run are at the top of the page.
+        keys.retain(|key| *key != "notes");
         return halves(&columns, &keys, out);
     }
     keys.retain(|key| !HEADINGS.contains(key));

@@ -117,6 +117,13 @@ fn a_measure_that_is_zero_but_for_rounding_shows_zero() {
 }
 
 #[test]
+fn notes_stand_right_below_how_the_run_ended() {
+    let page = page("t", "m", &recording(3, 0.0), &json!({"status": "completed", "notes": ["a < b"]}));
+    let (header, rest) = page.split_once("</header>").unwrap();
+    assert!(header.contains("<strong>note:</strong> a &lt; b") && !rest.contains("a &lt; b"));
+}
+
+#[test]
 fn an_event_that_happens_often_takes_one_row() {
     let event = |name: &str, t: f64, stopped: bool| json!({"event": name, "t": t, "stopped": stopped});
     let mut events: Vec<Value> = (1..=60).map(|k| event("bounce", f64::from(k), false)).collect();
