@@ -195,12 +195,17 @@ pub fn figure(summary: &Value, pointer: &str) -> String {
     }
 }
 
-/// Method name, step and number of steps as HTML.
+/// Method name, step and number of steps as HTML. Where an accuracy chooses the steps it is told in place of the nominal one.
 fn method(summary: &Value) -> String {
-    let text = |key: &str| summary.pointer(key).map(|v| html(&format::value(v)));
-    let parts =
-        [text("/method/name"), text("/step").map(|step| format!("step {step} s")), text("/steps").map(|steps| format!("{steps} steps"))];
-    parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
+    let told = |pointer: &str, say: fn(String) -> String| {
+        summary.pointer(pointer).filter(|value| !value.is_null()).map(|value| say(html(&format::value(value))))
+    };
+    let steps = match told("/method/accuracy", |accuracy| format!("accuracy {accuracy}")) {
+        Some(accuracy) => [Some(accuracy), told("/work/steps_taken", |steps| format!("{steps} steps taken"))],
+        None => [told("/step", |step| format!("step {step} s")), told("/steps", |steps| format!("{steps} steps"))],
+    };
+    let parts = std::iter::once(told("/method/name", |name| name)).chain(steps);
+    parts.flatten().collect::<Vec<_>>().join(" · ")
 }
 
 /// How a run ended, as a mark.

@@ -117,6 +117,14 @@ fn a_measure_that_is_zero_but_for_rounding_shows_zero() {
 }
 
 #[test]
+fn an_accuracy_stands_in_place_of_the_nominal_step() {
+    let mut summary = json!({"step": 1e-5, "steps": 5000, "method": {"name": "radau", "accuracy": 1e-8}, "work": {"steps_taken": 93}});
+    assert!(page("t", "m", &recording(3, 0.0), &summary).contains(" radau · accuracy 1e-8 · 93 steps taken<"));
+    summary["method"]["accuracy"] = Value::Null;
+    assert!(page("t", "m", &recording(3, 0.0), &summary).contains(" radau · step 1e-5 s · 5000 steps<"));
+}
+
+#[test]
 fn notes_stand_right_below_how_the_run_ended() {
     let page = page("t", "m", &recording(3, 0.0), &json!({"status": "completed", "notes": ["a < b"]}));
     let (header, rest) = page.split_once("</header>").unwrap();

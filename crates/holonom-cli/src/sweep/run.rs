@@ -130,7 +130,7 @@ impl Runner<'_> {
 
 fn figures(simulation: &Simulation, columns: Vec<Option<f64>>) -> Figures {
     let audit = simulation.audit();
-    let (violation, work) = (audit.violation_summary(), audit.work_summary(simulation.steps()));
+    let (violation, work) = (audit.violation_summary(), simulation.work());
     Figures {
         steps: simulation.steps(),
         drift: audit.energy_summary().max_drift,

@@ -420,7 +420,17 @@ impl Simulation {
             energy: self.audit.energy_summary(),
             momentum: self.audit.momentum_summary(),
             violation: self.audit.violation_summary(),
-            work: self.audit.work_summary(self.steps),
+            work: self.work(),
+        }
+    }
+
+    /// What the run has taken so far. Iterations count over nominal steps, and over those taken where an accuracy chooses them:
+    /// it has nothing to do with the nominal ones.
+    pub fn work(&self) -> WorkSummary {
+        let nominal = self.audit.work_summary(self.steps);
+        match self.method.accuracy {
+            None => nominal,
+            Some(_) => self.audit.work_summary(nominal.steps_taken),
         }
     }
 

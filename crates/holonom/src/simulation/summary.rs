@@ -137,7 +137,7 @@ pub struct WorkSummary {
     pub steps_taken: u64,
     /// Newton iterations, those of failed and rejected attempts included.
     pub iterations: u64,
-    /// The same over the nominal steps.
+    /// The same over the nominal steps, or over those taken where an accuracy chooses them.
     pub iterations_per_step: f64,
     /// Factorisations of the matrix of a step, those of projections, failed and rejected attempts included.
     pub factorizations: u64,
