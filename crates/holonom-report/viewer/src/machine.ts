@@ -12,7 +12,7 @@ import { ownersOf, type Selection } from "./selection";
 import { save, table } from "./take";
 import type { Visibility } from "./visibility";
 
-/** Title, unit and ending of the channels that are shown from the start, behind the measures. */
+/** Title, unit and ending of the channels that are shown from the start, behind the measures; none of them is that of a body. */
 const FIRST: [title: string, unit: string, ending: RegExp][] = [
   ["Efforts", "N·m", /\.effort$/],
   ["Efforts", "N", /\.effort$/],
@@ -86,7 +86,7 @@ class Machine {
   private first(columns: string[]): Group[] {
     const asked = columns.flatMap((name) => this.channels.filter((channel) => channel.name === name));
     if (asked.length > 0) return asked.map((channel) => alone(channel));
-    const groups = first(this.channels);
+    const groups = first(this.channels, bodiesAlone(this.runs));
     if (this.runs.length < 2) return groups;
     return apart(groups).slice(0, MOST_COMPARED);
   }
@@ -196,6 +196,18 @@ function ofAny(runs: Run[]): Channel[] {
   return [...known.values()];
 }
 
+/** As many of the channels as a plot has room for; the title says where these are not all. */
+function fitting(title: string, channels: Channel[]): Group {
+  const shown = channels.slice(0, MOST_CURVES);
+  return { title: shown.length < channels.length ? `${title}, ${shown.length} of ${channels.length}` : title, channels: shown };
+}
+
+/** Names of bodies that are no names of joints: in a plane bodies have an `angle`, too. */
+function bodiesAlone(runs: Run[]): Set<string> {
+  const joints = new Set(runs.flatMap(({ scene }) => scene.joints.map(({ name }) => name)));
+  return new Set(runs.flatMap(({ scene }) => scene.bodies.map(({ name }) => name)).filter((name) => !joints.has(name)));
+}
+
 function apart(groups: Group[]): Group[] {
   return groups.flatMap(({ channels }) => channels.map((channel) => alone(channel)));
 }
@@ -207,16 +219,16 @@ function ofOwners(channels: Channel[], owners: string[]): Group[] {
   const rank = (unit: string): number => (ORDER.indexOf(unit) + 1 || ORDER.length + 1);
   const units = [...new Set(own.map(({ unit }) => unit))].sort((a, b) => rank(a) - rank(b));
   return units.map((unit) => {
-    const group = own.filter((channel) => channel.unit === unit).slice(0, MOST_CURVES);
-    return group.length > 1 ? { title: owners[0], channels: group } : alone(group[0]);
+    const group = own.filter((channel) => channel.unit === unit);
+    return group.length > 1 ? fitting(owners[0], group) : alone(group[0]);
   });
 }
 
 /** The groups of channels that are shown from the start; of a model without any of them the first coordinates. */
-function first(channels: Channel[]): Group[] {
+function first(channels: Channel[], bodies: Set<string>): Group[] {
   const others = FIRST.map(([title, unit, ending]): Group => {
-    const group = channels.filter((channel) => !channel.is_measure && channel.unit === unit && ending.test(channel.name));
-    return { title, channels: group.slice(0, MOST_CURVES) };
+    const fits = ({ name }: Channel): boolean => ending.test(name) && !bodies.has(name.replace(ending, ""));
+    return fitting(title, channels.filter((channel) => !channel.is_measure && channel.unit === unit && fits(channel)));
   });
   const found = [...measures(channels), ...others].filter((group) => group.channels.length > 0);
   if (found.length > 0) return found.map((group) => (group.channels.length > 1 ? group : alone(group.channels[0])));
