@@ -189,5 +189,6 @@ function addLight(scene: Scene, camera: ReturnType<typeof buildCamera>): void {
   // The key light goes with the camera, so that no side is ever dark.
   const key = new DirectionalLight(0xffffff, 1.8);
   key.position.set(-0.6, 1, 0.8);
-  camera.add(key);
+  // Its target goes along as well: one that stays at the origin turns the light by where the mechanism is and how large it is.
+  camera.add(key, key.target);
 }
