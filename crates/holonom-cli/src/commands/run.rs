@@ -229,8 +229,11 @@ pub fn describe(loaded: &Loaded, summary: &Value) -> String {
             ),
         ),
         ("momentum", format!("linear drift {}, angular drift {}", number("momentum", "linear_drift"), number("momentum", "angular_drift"))),
-        ("time", format!("{} µs a step, {} times real time", time("us_per_step"), time("realtime_factor"))),
     ]);
+    // A run that stopped at its start has no time of a step.
+    if summary["steps"].as_u64() != Some(0) {
+        items.push(("time", format!("{} µs a step, {} times real time", time("us_per_step"), time("realtime_factor"))));
+    }
     if let Value::Object(step) = &summary["time"]["step_us"] {
         let time = |key: &str| measured(step[key].as_f64().unwrap_or(f64::NAN));
         let text =

@@ -59,6 +59,9 @@ export function buildComparedPlot(container: HTMLElement, chart: Chart, clock: C
   return plot;
 }
 
+/** What a time axis spans of a single row, s; else it would be 100 s. */
+const INSTANT = 1e-3;
+
 /** The curves of a chart under a heading. */
 class Drawing {
   readonly plot: uPlot;
@@ -174,7 +177,7 @@ function plotOptions(chart: Chart, width: number): uPlot.Options {
     focus: { alpha: FADED },
     cursor: { sync: { key: "holonom" }, dataIdx: nearestRow, y: false, points: { size: 7 } },
     scales: {
-      x: { time: false },
+      x: { time: false, range: (plot, min, max) => (isInstant(plot) ? [plot.data[0][0], plot.data[0][0] + INSTANT] : [min, max]) },
       y: { distr: log ? 3 : 1, range: axisRange(chart) },
     },
     axes: [
@@ -191,13 +194,19 @@ function plotOptions(chart: Chart, width: number): uPlot.Options {
           label: curve.label,
           stroke: () => curveColor(curve.colour),
           width: 1.5,
-          points: { show: false },
+          // Of a single row there is no line.
+          points: { show: isInstant },
           paths: stepped ?? straight,
           ...(dash ? { dash } : {}),
         };
       }),
     ],
   };
+}
+
+/** Whether there is one row, as of a run that stopped at its start. */
+function isInstant(plot: uPlot): boolean {
+  return plot.data[0].length === 1;
 }
 
 /** The axis for what the shown curves cover at present. */
