@@ -108,14 +108,28 @@ fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
 /// Share of the largest value that is shown as zero.
 const ROUNDING: f64 = 1e-12;
 
+/// Measures that are shown at once; more would push the picture far down.
+const MEASURES: usize = 12;
+
 /// How far measures go: what the model was asked.
 fn measures(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
     let measures = list(summary, "/peaks/measures");
     if measures.is_empty() {
         return Ok(());
     }
+    let (first, others) = measures.split_at(measures.len().min(MEASURES));
+    measure_table("<caption>Measures</caption>", first, out)?;
+    if !others.is_empty() {
+        writeln!(out, "<details><summary>{} more measures</summary>", others.len())?;
+        measure_table("", others, out)?;
+        writeln!(out, "</details>")?;
+    }
+    Ok(())
+}
+
+fn measure_table(caption: &str, measures: &[Value], out: &mut dyn io::Write) -> io::Result<()> {
     let heads = ["smallest", "largest", "last"].map(|head| format!(r#"<th scope="col" class="number">{head}</th>"#)).concat();
-    writeln!(out, r#"<table class="measures"><caption>Measures</caption><thead><tr><th></th>{heads}</tr></thead><tbody>"#)?;
+    writeln!(out, r#"<table class="measures">{caption}<thead><tr><th></th>{heads}</tr></thead><tbody>"#)?;
     for measure in measures {
         let size = |key: &str| measure[key].as_f64().map_or(0.0, f64::abs);
         let rounding = ROUNDING * size("min").max(size("max"));

@@ -117,6 +117,17 @@ fn a_measure_that_is_zero_but_for_rounding_shows_zero() {
 }
 
 #[test]
+fn measures_beyond_a_dozen_are_folded() {
+    let folded = |count: usize| {
+        let measures: Vec<Value> = (0..count).map(|k| json!({"name": format!("m{k}-"), "unit": "m", "min": 0.0, "max": 1.0})).collect();
+        let page = page("t", "m", &recording(3, 0.0), &json!({"status": "completed", "peaks": {"measures": measures}}));
+        let (before, rest) = page.split_once("<details><summary>3 more measures</summary>")?;
+        Some(before.contains("m11-") && !before.contains("m12-") && rest.split_once("</details>")?.0.contains("m14-"))
+    };
+    assert_eq!((folded(15), folded(12)), (Some(true), None));
+}
+
+#[test]
 fn an_accuracy_stands_in_place_of_the_nominal_step() {
     let mut summary = json!({"step": 1e-5, "steps": 5000, "method": {"name": "radau", "accuracy": 1e-8}, "work": {"steps_taken": 93}});
     assert!(page("t", "m", &recording(3, 0.0), &summary).contains(" radau · accuracy 1e-8 · 93 steps taken<"));
