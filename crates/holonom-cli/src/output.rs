@@ -90,6 +90,8 @@ pub struct Order {
     pub provenance: Provenance,
     /// Whether nothing is said on standard error.
     pub quiet: bool,
+    /// What notes begin with where there are several runs.
+    pub(crate) label: Option<String>,
     /// Where to go on, and the rows before.
     pub(crate) resume: Option<(Point, Recording)>,
 }
@@ -102,7 +104,7 @@ impl Order {
     pub fn new(loaded: &Loaded, method: Option<&str>, every: Option<u64>, quiet: bool) -> Result<Self, Failure> {
         let named = load::method(&loaded.model, method)?;
         let provenance = loaded.provenance(&named, method, every)?;
-        Ok(Self { method: named, provenance, quiet, resume: None })
+        Ok(Self { method: named, provenance, quiet, label: None, resume: None })
     }
 }
 
@@ -127,7 +129,11 @@ pub(crate) fn simulate_kept(
     keeper: Option<&mut Keeper<'_>>,
 ) -> Result<(Finished, Reached), Failure> {
     let model = &loaded.model;
-    let Order { method, provenance, quiet, resume } = order;
+    let Order { method, provenance, quiet, label, resume } = order;
+    let say = |text: &str| match &label {
+        None => note(text),
+        Some(label) => note(&format!("{label}: {text}")),
+    };
     let Provenance { step, end, every, .. } = provenance;
     let name = method.name.clone();
     let (resume, before) = match resume {
@@ -144,7 +150,7 @@ pub(crate) fn simulate_kept(
             corrections.extend(costly(simulation.method()));
             corrections.extend(model.unseen(simulation.method(), step, end));
             if !quiet {
-                slips(loaded).chain(corrections.clone()).for_each(|text| note(&text));
+                slips(loaded).chain(corrections.clone()).for_each(|text| say(&text));
             }
             (simulation, corrections)
         }
@@ -189,7 +195,7 @@ pub(crate) fn simulate_kept(
     let of_results: Vec<String> =
         overruled.into_iter().chain(unknown).chain(without).chain(shared_forces(model, &simulation)).chain(of_steps).collect();
     if !quiet {
-        of_results.iter().for_each(|text| note(text));
+        of_results.iter().for_each(|text| say(text));
     }
     value["provenance"] = serde_json::to_value(&provenance).expect("a provenance is plain data");
     value["notes"] = slips(loaded).chain(corrections.clone()).chain(of_results).collect();

@@ -32,6 +32,12 @@ fn compare_puts_every_method_and_step_into_one_report() {
 }
 
 #[test]
+fn notes_of_runs_say_of_which() {
+    let told = holonom(&folder(), &format!("compare {PAPER} --method conserving --method trapezoidal --no-report"));
+    assert!(text(&told.stderr).starts_with("note: trapezoidal: the method has made "), "{}", text(&told.stderr));
+}
+
+#[test]
 fn compare_shows_runs_that_stop() {
     let folder = folder();
     let words = "--method trapezoidal --method conserving --set simulation.subdivide=false --set simulation.iteration=simultaneous \

@@ -16,7 +16,7 @@ use crate::folder::{Folder, TABLE, file_stems, holds};
 use crate::found::Found;
 use crate::load::Loaded;
 use crate::options::CompareArguments;
-use crate::output::{Finished, simulate, writers};
+use crate::output::{Finished, Order, simulate, writers};
 use crate::progress::interrupt_flag;
 use crate::table::{short, table};
 
@@ -46,7 +46,8 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
         let (model, recording, mut summary) = match of {
             Of::Read(recording, summary) => (None, recording, summary),
             Of::Run(model, order) => {
-                let mut run = simulate(&plan.models[model], *order, &interrupted)?;
+                let order = Order { label: Some(label.clone()), ..*order };
+                let mut run = simulate(&plan.models[model], order, &interrupted)?;
                 run.summary[TABLE] = json!(stem);
                 (Some(model), run.recording, run.summary)
             }
