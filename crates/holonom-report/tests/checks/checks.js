@@ -90,8 +90,8 @@
       seen.machine.asked = titles()[0];
       const plain = plots()[0];
       const over = document.querySelector(".asked .meaning input");
-      over.value = "hinge.angle";
-      over.dispatchEvent(new Event("input"));
+      over.value = "inge.ang";
+      over.dispatchEvent(new KeyboardEvent("keyup", { key: "Enter" }));
       await frames(3);
       seen.machine.over = [titles()[0], plots()[0] !== plain && plots()[0].length > 2000];
       const drawing = document.querySelector(".asked .u-over");

@@ -172,6 +172,14 @@ class Machine {
   }
 }
 
+/** The first column whose name begins with some words, or has them in it. */
+function matching(channels: Channel[], words: string): Channel | undefined {
+  const part = words.toLowerCase();
+  const of = (fits: (name: string) => boolean): Channel | undefined => channels.find(({ name }) => fits(name.toLowerCase()));
+  return of((name) => name === part) ?? of((name) => name.startsWith(part)) ?? of((name) => name.includes(part));
+}
+
+/** A column is taken as soon as its name is whole, and by the Enter key from a part of it. */
 function onColumn(field: HTMLInputElement, channels: Channel[], take: (channel: Channel) => void): void {
   let last = "";
   const look = (): void => {
@@ -183,6 +191,14 @@ function onColumn(field: HTMLInputElement, channels: Channel[], take: (channel: 
   };
   field.addEventListener("input", look);
   field.addEventListener("change", look);
+  // When the key goes up a choice from the list has been taken already.
+  field.addEventListener("keyup", ({ key }) => {
+    const words = field.value.trim();
+    const channel = key === "Enter" && !["", "t", last].includes(words) ? matching(channels, words) : undefined;
+    if (!channel) return;
+    field.value = channel.name;
+    look();
+  });
 }
 
 function alone(channel: Channel): Group {
