@@ -52,6 +52,8 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
   addLight(scene, camera);
 
   const controls = new OrbitControls(camera, canvas);
+  // A part is looked at closely by pointing at it.
+  controls.zoomToCursor = true;
   const render = drawOnDemand(() => {
     renderer.render(scene, camera);
     arrows.place(camera, container.clientWidth, container.clientHeight);
@@ -174,7 +176,7 @@ function pictureButton(draw: () => HTMLCanvasElement): HTMLElement {
 }
 
 function hint(cell: number): HTMLElement {
-  const keys = element("span", { class: "keys" }, ", click to select · space bar plays, arrow keys step");
+  const keys = element("span", { class: "keys" }, ", right button to move, click to select · space bar plays, arrow keys step");
   return element("p", { class: "hint" }, `grid ${Number(cell.toPrecision(2))} m · drag to turn, scroll to zoom`, keys);
 }
 
