@@ -80,7 +80,7 @@ pub(super) struct Patience {
     /// Attempts since `since` (s).
     pub attempts: u32,
     since: f64,
-    /// Looks one after the other at which they had hardly come on, and those of them at which most had ended at bends of forces.
+    /// Looks one after the other at which they had hardly come on, and those of them at which many had ended at bends of forces.
     slow: u32,
     #[serde(default)]
     chatters: u32,
