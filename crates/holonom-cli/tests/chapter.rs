@@ -192,26 +192,33 @@ fn results(out: &str, folder: &tempfile::TempDir) -> PathBuf {
     folder.path().join(named)
 }
 
-/// Each machine of its chapter is run by the command below it, and answers with the lines below that.
+/// Runs a command of a chapter, which prints the lines of its answer.
+fn answers(folder: &tempfile::TempDir, command: &str, answer: &str) -> String {
+    let words = command.strip_prefix("holonom ").unwrap().replace('"', "");
+    let out = prints(folder, &format!("{words} --no-report"), 0);
+    assert!(!answer.is_empty(), "{command} is told to print nothing");
+    for line in answer.lines() {
+        assert!(out.lines().any(|printed| printed == line), "{command} does not print\n{line}\nbut\n{out}");
+    }
+    out
+}
+
+/// Each machine of its chapter is run by the commands below it, and answers with the lines below these.
 #[test]
 fn the_machines_of_the_chapter_answer_what_it_says() {
     let folder = folder();
     let chapter = chapter("machines.md");
     let mut count = 0;
     for rest in chapter.split("```toml\n").skip(1) {
-        let mut fences = rest.split("```");
-        let model = fences.next().unwrap();
-        let command = fences.nth(1).unwrap().trim();
-        let answer =
-            fences.nth(1).and_then(|fence| fence.strip_prefix("text\n")).expect("a model is followed by its command and its answer");
-        let words = command.strip_prefix("holonom ").unwrap();
-        let file = words.split_whitespace().find(|word| word.ends_with(".toml")).unwrap();
-        fs::write(folder.path().join(file), model).unwrap();
-        let out = prints(&folder, &format!("{words} --no-report"), 0);
-        assert!(!answer.is_empty(), "{command} is told to print nothing");
-        for line in answer.lines() {
-            assert!(out.lines().any(|printed| printed == line), "{command} does not print\n{line}\nbut\n{out}");
-        }
+        let blocks: Vec<&str> = rest.split("```").step_by(2).map(str::trim_start).collect();
+        let told = blocks.windows(2).filter_map(|pair| Some((pair[0].trim(), pair[1].strip_prefix("text\n")?)));
+        let told: Vec<(&str, &str)> = told.filter(|(command, _)| command.starts_with("holonom ")).collect();
+        let [(command, answer), others @ ..] = &told[..] else { panic!("a model is followed by its command and its answer") };
+        assert_eq!(*command, blocks[1].trim(), "a model is followed by its command");
+        let file = command.split_whitespace().find(|word| word.ends_with(".toml")).unwrap();
+        fs::write(folder.path().join(file), blocks[0]).unwrap();
+        let out = answers(&folder, command, answer);
+        others.iter().for_each(|(command, answer)| _ = answers(&folder, command, answer));
         if let Some(shown) = rest.split("```csv\n").nth(1) {
             let (head, rows) = csv(results(&out, &folder).join("trajectory.csv"));
             assert_shows(shown.split("```").next().unwrap(), &head, &rows);

@@ -79,11 +79,10 @@ fn add_mass(assembly: &mut Assembly<'_>, ends: &[End; 2], mass: f64) {
             for (b, velocity) in ends[l].terms.iter().zip(&moving[l]).skip(first) {
                 let m = share * (a.factor * b.factor + a.turn * b.turn);
                 let s = share * (a.factor * b.turn - a.turn * b.factor);
-                let moving = [moving[k][i], *velocity];
-                assembly.builder.couple([a.place, b.place], m, s, moving);
+                assembly.builder.couple([a.place, b.place], m, s, [moving[k][i], *velocity]);
                 // Of a node that both ends have the block is its own transpose, which moves as the other end.
                 if k != l && a.place == b.place {
-                    assembly.builder.couple([b.place, a.place], m, -s, [moving[1], moving[0]]);
+                    assembly.builder.couple([b.place, a.place], m, -s, [*velocity, moving[k][i]]);
                 }
             }
         }

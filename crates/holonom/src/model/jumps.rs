@@ -79,8 +79,7 @@ impl Signal for Way {
     }
 
     fn only_zero(&self) -> Option<f64> {
-        // Along the other side it falls there.
-        self.program.as_since().filter(|_| self.sense > 0.0)
+        self.program.as_since().map(|zero| self.sense * zero)
     }
 }
 

@@ -27,9 +27,10 @@ const DIVISIONS: [f64; 6] = [0.0, 0.137, 0.382, 0.55, 0.791, 1.0];
 /// Share of how far a function goes in the run that the mean over a step may be missed by.
 const MISSED: f64 = 0.1;
 
-/// How far a function goes over its largest value that is round-off, and what is missed over the same that nobody sees: a run of a step or two goes
-/// not far.
+/// How far a function goes over its largest value that is round-off.
 const ROUNDED: f64 = 1e-9;
+
+/// What is missed over the largest value that need not be told: in a run of a step or two a function does not go far, and any share of that is less.
 const NOTHING: f64 = 1e-5;
 
 /// How far a function goes in the run times this is told as zero.

@@ -283,8 +283,7 @@ impl Pilot {
     /// Refuses attempts at steps of length `step` (s) that come nowhere: at this pace the run never ends.
     pub fn require_progress(&mut self, step: f64, t: f64) -> Result<(), Failure> {
         if step < SMALLEST_SHARE * self.control.span {
-            let jumps = self.sight.reached.iter().position(|reached| *reached);
-            return Err(jumps.map_or(Failure::TooSmall, |corner| Failure::JumpsBack { corner }));
+            return Err(self.reached().map_or(Failure::TooSmall, |corner| Failure::JumpsBack { corner }));
         }
         let Patience { attempts, since, slow, chatters, bent, bend, .. } = &mut self.patience;
         *attempts += 1;
@@ -303,9 +302,14 @@ impl Pilot {
         if *slow >= SLOW_LOOKS { Err(Failure::Crawling { pace, left: (self.end - t) / pace }) } else { Ok(()) }
     }
 
+    /// The first bend of a force at which the last step ended.
+    fn reached(&self) -> Option<usize> {
+        self.sight.reached.iter().position(|reached| *reached)
+    }
+
     /// Takes note of an attempt that ended at a bend of a force.
     pub fn bend(&mut self) {
-        if let Some(bend) = self.sight.reached.iter().position(|reached| *reached) {
+        if let Some(bend) = self.reached() {
             (self.patience.bent, self.patience.bend) = (self.patience.bent + 1, bend);
         }
     }

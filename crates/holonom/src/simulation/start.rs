@@ -138,7 +138,7 @@ pub(super) fn prepare(
     Ok(start)
 }
 
-/// Puts a workspace where it is asked, with its positions on their constraints.
+/// Puts a workspace where it is asked, and its positions on their constraints by a mass-weighted Newton iteration on Φ = 0.
 pub(super) fn put(
     system: &System,
     asked: &Asked<'_>,
@@ -152,17 +152,6 @@ pub(super) fn put(
         [&mut work.start.at, &mut work.end.at].into_iter().for_each(|at| at.functions.angle.copy_from_slice(angles));
     }
     system.place_known(asked.t, &mut work.end.x, &mut work.end.v, &mut work.a);
-    correct_positions(system, asked, newton, work, start)
-}
-
-/// Mass-weighted Newton on Φ = 0.
-fn correct_positions(
-    system: &System,
-    asked: &Asked<'_>,
-    newton: &mut Newton,
-    work: &mut Workspace,
-    start: &mut Start,
-) -> Result<(), StartError> {
     let n = system.coordinates();
     let (mut before, mut is_factored) = (f64::INFINITY, false);
     for _ in 0..30 {

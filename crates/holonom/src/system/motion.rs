@@ -12,7 +12,7 @@ pub trait Signal: Send + Sync {
         false
     }
 
-    /// The only time at which the value is zero, s, below it before and above it after, where that is known.
+    /// The only time at which the value is zero, s, where that is known; it changes its sign there.
     fn only_zero(&self) -> Option<f64> {
         None
     }

@@ -207,8 +207,8 @@ impl ForceFunction for RopeLoad {
     fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
         force.fill(N::from(0.0));
         let [stretch, speed] = self.stretch(x, v, t);
-        let lengths = self.factors.iter().enumerate().map(|(k, factor)| factor * length(x[self.own + k], v[self.own + k])[0].re());
-        if !is_taut(stretch.re(), speed.re(), lengths.sum()) {
+        let whole = || self.factors.iter().enumerate().map(|(k, factor)| factor * length(x[self.own + k], v[self.own + k])[0].re()).sum();
+        if !is_taut(stretch.re(), || speed.re(), whole) {
             return;
         }
         let tension = self.tension([stretch, speed], &read(&self.readings, x, v, t));

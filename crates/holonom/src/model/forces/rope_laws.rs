@@ -10,10 +10,10 @@ use crate::system::{Bend, Law, MAX_ARGUMENTS, Reach, Response};
 /// By this share of its length rounding may have a rope shorter than its free length.
 const ROUNDED: f64 = 1e-12;
 
-/// Whether a rope of some length (m) that is stretched by `beyond` (m), and gets longer with `speed` (m/s), is taut: also where both lengths are the same,
-/// as they are at the start of one whose free length is not written.
-pub(super) fn is_taut(beyond: f64, speed: f64, length: f64) -> bool {
-    beyond > 0.0 || (speed > 0.0 && beyond >= -ROUNDED * length)
+/// Whether a rope of a length (m) that is stretched by `beyond` (m), and gets longer with a speed (m/s), is taut: also where its length is the free one,
+/// as it is at the start where the latter is not written. Only there the others are asked for.
+pub(super) fn is_taut(beyond: f64, speed: impl FnOnce() -> f64, length: impl FnOnce() -> f64) -> bool {
+    beyond > 0.0 || (beyond >= -ROUNDED * length() && speed() > 0.0)
 }
 
 /// How the lengths of a rope add up.
@@ -188,7 +188,7 @@ impl<P: Pull> Law for Taut<P> {
 
     fn at(&self, value: &[f64], rate: &[f64], _t: f64, out: &mut Response) {
         let beyond = self.strands.beyond(value);
-        if !is_taut(beyond, self.strands.speed(value, rate), self.strands.whole(value)) {
+        if !is_taut(beyond, || self.strands.speed(value, rate), || self.strands.whole(value)) {
             return;
         }
         let stretch = beyond.max(0.0);
