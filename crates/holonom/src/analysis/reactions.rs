@@ -50,11 +50,7 @@ pub fn undetermined<'s>(system: &'s System, x: &[f64], t: f64) -> Option<Undeter
         scaled.extend(line.iter().map(|g| g * factor));
         sizes.push(size);
     }
-    let product = |k: usize| -> f64 {
-        let (a, b) = (k / rows * n, k % rows * n);
-        (0..n).map(|i| scaled[a + i] * scaled[b + i]).sum()
-    };
-    let gram: Vec<f64> = (0..rows * rows).map(product).collect();
+    let gram = gram(rows, n, &scaled);
     let space = |scaled: Vec<f64>| Space {
         lambda: scaled.iter().zip(&sizes).map(|(scaled, size)| scaled / size).collect(),
         largest: largest(&scaled),
@@ -63,6 +59,18 @@ pub fn undetermined<'s>(system: &'s System, x: &[f64], t: f64) -> Option<Undeter
     let spaces = null_space(rows, &gram, NOTHING).into_iter().map(space).collect();
     system.evaluate_again(x, t, &mut at);
     Some(Undetermined { system, spaces, at, x: x.to_vec() })
+}
+
+/// Products of all pairs of rows of n numbers each (rows × rows). Most numbers are zero, so that only rows that meet in one are multiplied.
+fn gram(rows: usize, n: usize, values: &[f64]) -> Vec<f64> {
+    let mut gram = vec![0.0; rows * rows];
+    for i in 0..n {
+        let held: Vec<(usize, f64)> = (0..rows).map(|row| (row, values[row * n + i])).filter(|(_, g)| *g != 0.0).collect();
+        for &(a, g) in &held {
+            held.iter().for_each(|&(b, h)| gram[a * rows + b] += g * h);
+        }
+    }
+    gram
 }
 
 /// Finds what redundant rows leave undetermined of the forces that a simulation finds at its present state. `None` as above, and for
