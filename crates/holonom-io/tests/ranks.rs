@@ -67,6 +67,26 @@ fn healthy_mechanisms_are_not_near_singular() {
     }
 }
 
+/// Rods to places far from the middle of a body add a millionth of themselves to those before, squared, and count; those beside them, alone and many one
+/// after the other, add nothing.
+#[test]
+fn rods_at_far_places_count_and_their_repetitions_do_not() {
+    let (mut text, mut redundant) = (String::from("[body.b]\nmass = 1\ninertia = [1, 1, 1]\nposition = [0, 0, 0]\n[body.b.points]\n"), 0);
+    let (count, places) = (120, |k: usize| [400.0 + 3.0 * k as f64, 40.0 * (k % 7) as f64, 40.0 * (k % 5) as f64]);
+    (0..count).for_each(|k| text += &format!("q{k} = {:?}\n", places(k)));
+    for k in 0..count {
+        let [x, y, z] = places(k);
+        text += &format!("[point.p{k}]\nmass = 1\nposition = [{x}, {y}, {}]\n", z + 1.0);
+        // None, one, two and nineteen rods more.
+        let more = if k == 60 { 19 } else { k % 3 };
+        (0..=more).for_each(|rod| text += &format!("[constraint.rod{k}-{rod}]\ntype = \"distance\"\nbetween = [\"b.q{k}\", \"p{k}\"]\n"));
+        redundant += more;
+    }
+    // Rods to the ground hold the body, and most of them are redundant.
+    (0..count).for_each(|k| text += &format!("[constraint.stay{k}]\ntype = \"distance\"\nbetween = [\"ground\", \"b.q{k}\"]\n"));
+    assert_eq!(freedom(&model(&text)), [6 + 3 * count - count - 3, redundant + count - 3]);
+}
+
 /// Redundant rows leave round-off, which must not be divided by round-off in the rows after them.
 #[test]
 fn rows_after_redundant_ones_add_what_they_add() {

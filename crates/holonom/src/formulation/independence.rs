@@ -32,6 +32,11 @@ const MOST: usize = 100;
 /// Share of itself that a row adds to the others below which it adds nothing.
 const LEAST_SHARE: f64 = 1e-10;
 
+/// Weighted sums of rows that are measured before it is said that none of the rows adds anything, and what each must leave for that, over what a
+/// row must add to count. Of a row that counts, weights that are as good as random leave less than a thousandth in one case of a thousand.
+const SUMS: usize = 3;
+const LEFT_OF_SUM: f64 = 1e-6;
+
 /// Rows that are measured again without room being made for them.
 const FEW: usize = 4;
 
@@ -56,6 +61,8 @@ pub struct Independence {
     natural: Vec<f64>,
     /// Of each row (r), when last measured.
     shares: Vec<f64>,
+    /// The rows that were not plain.
+    dropped: Vec<usize>,
     /// What the plain rows leave of a gradient, and what all rows leave of those of the others, each of length one and one after the other.
     left: Vec<f64>,
     others: Vec<f64>,
@@ -76,7 +83,7 @@ impl Independence {
         let kkt = kkt.of_ones();
         let others = Vec::with_capacity(FEW * kkt.free * kkt.dim);
         let least = independent(kkt.free * kkt.dim);
-        Self { left: vec![0.0; kkt.size()], kkt, least, at, natural, shares: vec![0.0; rows], others }
+        Self { left: vec![0.0; kkt.size()], kkt, least, at, natural, shares: vec![0.0; rows], dropped: Vec::with_capacity(rows), others }
     }
 
     /// What [`independence`] gives at the positions `x` and the time `t`.
@@ -93,7 +100,7 @@ impl Independence {
 
     /// Measures at the positions `x` and the time `t`.
     fn measure(&mut self, system: &System, x: &[f64], t: f64) {
-        let Self { kkt, at, natural, shares, left, others, least } = self;
+        let Self { kkt, at, natural, shares, dropped, left, others, least } = self;
         system.evaluate_again(x, t, at);
         for (row, natural) in natural.iter().enumerate() {
             let free = system.slots.rows[row].clone().filter(|&slot| kkt.is_free(slot));
@@ -118,11 +125,15 @@ impl Independence {
         if shares.iter().filter(|share| (nothing..ROUND_OFF).contains(share)).count() > MOST {
             nothing = ROUND_OFF;
         }
-        for (row, share) in shares.iter_mut().enumerate() {
-            if kkt.solver.is_dropped(kkt.multiplier(row, 0)) {
-                *share = if *share < nothing { 0.0 } else { beside_others(kkt, &at.gradient, row, *least, left, others) };
+        dropped.clear();
+        for (row, share) in shares.iter_mut().enumerate().filter(|(row, _)| kkt.solver.is_dropped(kkt.multiplier(*row, 0))) {
+            if *share < nothing {
+                *share = 0.0;
+            } else {
+                dropped.push(row);
             }
         }
+        Beside { kkt, gradient: &at.gradient, least: *least, left, others }.measure(dropped, shares);
     }
 
     /// How many times larger than elsewhere round-off is where rows were last measured: one over the root of the least share, without those of as
@@ -154,29 +165,82 @@ impl Independence {
     }
 }
 
-/// What a row adds to the plain ones and to the `others` that were measured before, squared. Becomes one of them where it counts.
-fn beside_others(kkt: &mut Kkt, gradient: &[f64], row: usize, least: f64, left: &mut [f64], others: &mut Vec<f64>) -> f64 {
-    let coordinates = kkt.free * kkt.dim;
-    left.fill(0.0);
-    for slot in kkt.slots.rows[row].clone().filter(|&slot| kkt.is_free(slot)) {
-        let node = kkt.slots.nodes[slot] as usize;
-        (0..kkt.dim).for_each(|c| left[kkt.coordinate(node, 0, c)] += gradient[slot * kkt.dim + c]);
-    }
-    // Twice, as the round-off of the first pass is large where little is left.
-    for _ in 0..2 {
-        left[coordinates..].fill(0.0);
-        kkt.solver.solve(left);
-        for other in others.chunks_exact(coordinates) {
-            let along: f64 = other.iter().zip(&*left).map(|(other, left)| other * left).sum();
-            left.iter_mut().zip(other).for_each(|(left, other)| *left -= along * other);
+/// How rows are measured beside the plain ones, and beside the `others` that were measured before and count.
+struct Beside<'a> {
+    kkt: &'a mut Kkt,
+    gradient: &'a [f64],
+    least: f64,
+    left: &'a mut [f64],
+    others: &'a mut Vec<f64>,
+}
+
+impl Beside<'_> {
+    /// Finds what each of some rows adds, squared, which takes solutions of the whole system. After a redundant row it is first asked whether any of the
+    /// next ones adds anything, and of ever more of them as long as none does.
+    fn measure(&mut self, mut rows: &[usize], shares: &mut [f64]) {
+        let mut group = 1;
+        while let Some((&row, rest)) = rows.split_first() {
+            let (next, behind) = rows.split_at(group.min(rows.len()));
+            if next.len() > 1 && self.add_nothing(next) {
+                next.iter().for_each(|&row| shares[row] = 0.0);
+                (rows, group) = (behind, 2 * group);
+                continue;
+            }
+            shares[row] = self.leave(&[row], |_| 1.0);
+            self.count(shares[row]);
+            (rows, group) = (rest, if shares[row] > self.least { 1 } else { 2 });
         }
     }
-    let left = &left[..coordinates];
-    let share: f64 = left.iter().map(|left| left * left).sum();
-    if share > least {
-        others.extend(left.iter().map(|left| left / share.sqrt()));
+
+    /// Whether none of some rows adds anything, by weighted sums of them.
+    fn add_nothing(&mut self, rows: &[usize]) -> bool {
+        let bound = LEFT_OF_SUM * self.least;
+        (1..=SUMS).all(|sum| self.leave(rows, |k| (12.9898 * sum as f64 * (k as f64 + 1.0).powi(2)).sin()) < bound)
     }
-    share
+
+    /// What is left of a sum of rows with these weights, squared.
+    fn leave(&mut self, rows: &[usize], weight: impl Fn(usize) -> f64) -> f64 {
+        let Self { kkt, gradient, left, others, .. } = self;
+        let coordinates = kkt.free * kkt.dim;
+        left.fill(0.0);
+        for (k, &row) in rows.iter().enumerate() {
+            let weight = weight(k);
+            for slot in kkt.slots.rows[row].clone().filter(|&slot| kkt.is_free(slot)) {
+                let node = kkt.slots.nodes[slot] as usize;
+                (0..kkt.dim).for_each(|c| left[kkt.coordinate(node, 0, c)] += weight * gradient[slot * kkt.dim + c]);
+            }
+        }
+        // Twice, as the round-off of the first pass is large where little is left. The others are as little themselves, and are taken off once.
+        for _ in 0..2 {
+            left[coordinates..].fill(0.0);
+            kkt.solver.solve(left);
+        }
+        let left = &mut left[..coordinates];
+        for other in others.chunks_exact(coordinates) {
+            let along = product(other, left);
+            left.iter_mut().zip(other).for_each(|(left, other)| *left -= along * other);
+        }
+        product(left, left)
+    }
+
+    /// Has what is left of a row that adds this much be one of the others where it counts.
+    fn count(&mut self, share: f64) {
+        if share > self.least {
+            let coordinates = self.kkt.free * self.kkt.dim;
+            self.others.extend(self.left[..coordinates].iter().map(|left| left / share.sqrt()));
+        }
+    }
+}
+
+/// Product of two vectors, in sums side by side: each addition of one sum waits for the last.
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    let (blocks, rest) = (a.chunks_exact(8).zip(b.chunks_exact(8)), a.len() / 8 * 8);
+    let add = |mut sums: [f64; 8], (a, b): (&[f64], &[f64])| {
+        (0..8).for_each(|k| sums[k] += a[k] * b[k]);
+        sums
+    };
+    let tail: f64 = a[rest..].iter().zip(&b[rest..]).map(|(a, b)| a * b).sum();
+    tail + blocks.fold([0.0; 8], add).iter().sum::<f64>()
 }
 
 /// By how much the gradient of each row (r) changes when all nodes move by the size of the mechanism, here and there: the
