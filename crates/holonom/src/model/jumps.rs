@@ -4,7 +4,7 @@ use num_dual::Dual2_64;
 
 use super::bodies::short;
 use super::expression::Program;
-use crate::system::{Signal, zeros};
+use crate::system::{EvenZeros, Signal, zeros};
 
 /// Change over the largest value of a run that is taken for round-off.
 const ROUNDED: f64 = 1e-9;
@@ -78,8 +78,8 @@ impl Signal for Way {
         [value.re, self.sense * value.v1, value.v2]
     }
 
-    fn only_zero(&self) -> Option<f64> {
-        self.program.as_since().map(|zero| self.sense * zero)
+    fn even_zeros(&self) -> Option<EvenZeros> {
+        self.program.even_zeros().map(|zeros| EvenZeros { one: self.sense * zeros.one, ..zeros })
     }
 }
 

@@ -76,10 +76,10 @@ impl Course {
             Self::Table(spline) => spline.knots().to_vec(),
             Self::Formula(program) => {
                 let switches = program.switches(0);
-                let are_many = switches.iter().filter(|switch| switch.as_since().is_none()).count() > MANY_SWITCHES;
+                let has_many = |switch: &Program| switch.even_zeros().is_none_or(|zeros| zeros.apart.is_finite());
+                let are_many = switches.iter().filter(|switch| has_many(switch)).count() > MANY_SWITCHES;
                 let zeros = |switch: Program| {
-                    let is_left_out = are_many && switch.as_since().is_none();
-                    if is_left_out { Vec::new() } else { zeros(&TimeProgram(switch), end) }
+                    if are_many && has_many(&switch) { Vec::new() } else { zeros(&TimeProgram(switch), end) }
                 };
                 let peaks = if knocks::may_have(program) { knocks::times(program, end) } else { Vec::new() };
                 switches.into_iter().flat_map(zeros).chain(peaks).collect()

@@ -42,7 +42,7 @@ pub(crate) use invariant::{HessianBlock, cross, skew};
 pub use invariant::{InvariantId, Invariants};
 pub use law::{Bend, Law, Load, MAX_ARGUMENTS, Reach, Response};
 pub use mass::{Mass, MassBlock};
-pub use motion::{Constant, Signal};
+pub use motion::{Constant, EvenZeros, Signal};
 pub(crate) use motion::{HalfSquare, Shifted};
 pub use part::Part;
 pub(crate) use reading::{Look, Slopes};

@@ -2,6 +2,17 @@
 
 use std::sync::Arc;
 
+/// The only times at which a function of time is zero, as far as its numbers are rounded, where they are known; it changes its sign there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EvenZeros {
+    /// One of them, s.
+    pub one: f64,
+    /// How far each is from the next, s; infinite where there is only one.
+    pub apart: f64,
+    /// The largest number that is taken from the time or added to it, s, by which these times are rounded.
+    pub size: f64,
+}
+
 /// A known function of time with its first two derivatives.
 pub trait Signal: Send + Sync {
     /// Value, rate and second derivative at `t`.
@@ -12,8 +23,8 @@ pub trait Signal: Send + Sync {
         false
     }
 
-    /// The only time at which the value is zero, s, where that is known; it changes its sign there.
-    fn only_zero(&self) -> Option<f64> {
+    /// The times at which the value is zero, where they are evenly apart and known.
+    fn even_zeros(&self) -> Option<EvenZeros> {
         None
     }
 }

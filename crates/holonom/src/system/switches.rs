@@ -1,6 +1,6 @@
 //! When something changes abruptly, as far as it is known in advance.
 
-use super::{Signal, System};
+use super::{EvenZeros, Signal, System};
 
 /// Times between which no more than one zero of a switch is looked for.
 const LOOKS: usize = 10_000;
@@ -47,24 +47,40 @@ fn behind(t: f64) -> f64 {
 
 /// Times of a run at which a function of time changes its sign, each a rounding before.
 pub(crate) fn zeros(switch: &dyn Signal, end: f64) -> Vec<f64> {
-    if let Some(only) = switch.only_zero() {
-        return Some(only.next_down().next_down()).filter(|t| *t > 0.0 && only <= end).into_iter().collect();
+    if let Some(even) = switch.even_zeros().filter(|even| end / even.apart < LOOKS as f64) {
+        return zeros_near(switch, even, end);
     }
     let at = |k: usize| end * k as f64 / LOOKS as f64;
-    let changes = (0..LOOKS).filter(|&k| sign(switch, at(k)) != sign(switch, at(k + 1)));
-    let bisected = changes.map(|k| {
-        let (mut before, mut after) = (at(k), at(k + 1));
-        loop {
-            let middle = 0.5 * (before + after);
-            if middle <= before || middle >= after {
-                // At zero itself a formula may have changed already.
-                return before.next_down();
-            }
-            *(if sign(switch, middle) == sign(switch, before) { &mut before } else { &mut after }) = middle;
-        }
-    });
-    let mut found: Vec<f64> = bisected.filter(|t| *t > 0.0).collect();
+    let changes = (0..LOOKS).filter_map(|k| bisect(switch, at(k), at(k + 1)));
+    let mut found: Vec<f64> = changes.filter(|t| *t > 0.0).collect();
     // What is at zero where it is looked at comes there and leaves.
     found.dedup_by(|later, earlier| *later - *earlier <= ROUNDINGS as f64 * f64::EPSILON * *earlier);
     found
+}
+
+/// The same where zeros are known but for rounding.
+fn zeros_near(switch: &dyn Signal, even: EvenZeros, end: f64) -> Vec<f64> {
+    let EvenZeros { one, apart, size } = even;
+    let [first, last] = if apart.is_finite() { [(-one / apart).ceil(), ((end - one) / apart).floor()] } else { [0.0; 2] };
+    let times = (0..=(last - first).max(-1.0) as i64).map(|k| if k == 0 && first == 0.0 { one } else { one + (first + k as f64) * apart });
+    let change = |t: f64| {
+        let beside = ROUNDINGS as f64 * f64::EPSILON * t.abs().max(one.abs()).max(size);
+        bisect(switch, t - beside, (t + beside).min(end))
+    };
+    times.filter_map(change).filter(|t| *t > 0.0).collect()
+}
+
+/// A rounding before the time at which a function of time changes its sign, if it has another one `after` than `before`.
+fn bisect(switch: &dyn Signal, mut before: f64, mut after: f64) -> Option<f64> {
+    if sign(switch, before) == sign(switch, after) {
+        return None;
+    }
+    loop {
+        let middle = 0.5 * (before + after);
+        if middle <= before || middle >= after {
+            // At zero itself a formula may have changed already.
+            return Some(before.next_down());
+        }
+        *(if sign(switch, middle) == sign(switch, before) { &mut before } else { &mut after }) = middle;
+    }
 }

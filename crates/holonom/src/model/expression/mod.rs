@@ -23,7 +23,7 @@ use num_dual::Dual2_64;
 use smallvec::SmallVec;
 
 use crate::record::Formula;
-use crate::system::{Bend, Number, Signal};
+use crate::system::{Bend, EvenZeros, Number, Signal};
 pub use curve::{Beyond, Curve, refusal};
 pub use external::{External, ExternalFunction, Functions, differences};
 use functions::{Function, quotient};
@@ -363,7 +363,7 @@ impl Signal for TimeProgram {
         self.0.as_constant().is_some()
     }
 
-    fn only_zero(&self) -> Option<f64> {
-        self.0.as_since()
+    fn even_zeros(&self) -> Option<EvenZeros> {
+        self.0.even_zeros()
     }
 }

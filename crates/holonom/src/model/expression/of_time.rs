@@ -1,11 +1,62 @@
 //! Parts of a formula that follow from time alone.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
 use super::cells::begins;
 use super::curve::Curve;
 use super::functions::Function;
 use super::{Op, Program};
+use crate::system::EvenZeros;
+
+/// A number that is linear in a variable, with the largest one that was added on the way.
+#[derive(Clone, Copy)]
+struct Line {
+    slope: f64,
+    offset: f64,
+    size: f64,
+}
+
+impl Line {
+    fn times(self, factor: f64) -> Self {
+        Self { slope: self.slope * factor, offset: self.offset * factor, size: self.size * factor.abs() }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self { slope: self.slope + other.slope, offset: self.offset + other.offset, size: self.size.max(other.size) }
+    }
+
+    /// The number, where it is constant.
+    fn constant(self) -> Option<f64> {
+        (self.slope == 0.0).then_some(self.offset)
+    }
+}
+
+/// What the operations leave, where that is linear in the one variable.
+fn line(ops: &[Op]) -> Option<Line> {
+    let mut waiting: Vec<Line> = Vec::new();
+    for op in ops {
+        let line = match op {
+            Op::Constant(value) => Line { slope: 0.0, offset: *value, size: value.abs() },
+            Op::Variable(_) => Line { slope: 1.0, offset: 0.0, size: 0.0 },
+            Op::Neg => waiting.pop()?.times(-1.0),
+            Op::Add | Op::Sub | Op::Mul | Op::Div => {
+                let (last, first) = (waiting.pop()?, waiting.pop()?);
+                match op {
+                    Op::Add => first.plus(last),
+                    Op::Sub => first.plus(last.times(-1.0)),
+                    Op::Mul => {
+                        first.constant().map(|factor| last.times(factor)).or_else(|| last.constant().map(|factor| first.times(factor)))?
+                    }
+                    _ => first.times(1.0 / last.constant()?),
+                }
+            }
+            _ => return None,
+        };
+        waiting.push(line);
+    }
+    waiting.pop()
+}
 
 /// What changes its sign where a number comes to the next integer, as operations: with the same rounding as `floor` itself, which a function that
 /// is zero at integers has not.
@@ -80,12 +131,14 @@ impl Program {
         Self::new(vec![Op::Variable(0), Op::Constant(time), Op::Sub], Vec::new())
     }
 
-    /// The time at which it is zero, where it is t − that time.
-    pub fn as_since(&self) -> Option<f64> {
-        match self.ops[..] {
-            [Op::Variable(0), Op::Constant(time), Op::Sub] => Some(time),
-            _ => None,
-        }
+    /// The times at which it is zero, where it is linear in its one variable, or the sine of what is.
+    pub fn even_zeros(&self) -> Option<EvenZeros> {
+        let (ops, half_turn) = match &self.ops[..] {
+            [ops @ .., Op::OfOne(Function::Sin)] => (ops, PI),
+            ops => (ops, f64::INFINITY),
+        };
+        let Line { slope, offset, size } = line(ops).filter(|line| line.slope != 0.0)?;
+        Some(EvenZeros { one: -offset / slope, apart: half_turn / slope.abs(), size: size / slope.abs() })
     }
 
     /// A program of these operations and of `last` ones, where they depend on the variable `t` alone.

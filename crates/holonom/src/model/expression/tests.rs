@@ -1,12 +1,13 @@
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use num_dual::{Dual2_64, Dual64, HyperDual64};
 
 use super::functions::FUNCTIONS;
 use super::{Beyond, Curve, Program, Scope, TimeProgram, Value};
-use crate::system::{Bend, Signal, zeros};
+use crate::system::{Bend, EvenZeros, Signal, zeros};
 
 fn value(text: &str) -> f64 {
     let program = Program::parse(text, &[], &Scope::default()).unwrap_or_else(|mistake| panic!("{text}: {mistake:?}"));
@@ -217,6 +218,51 @@ fn kinks_of_periodic_tables_come_again_in_every_period() {
     times.dedup_by(|b, a| *b - *a < 1e-12);
     let expected = [0.05, 0.2, 0.45, 0.6, 0.85];
     assert!(times.len() == 5 && times.iter().zip(expected).all(|(t, known)| (t - known).abs() < 1e-12), "{times:?}");
+}
+
+/// A function of time that counts how often it is asked, and may keep to itself what is known of its zeros.
+struct Asked(TimeProgram, AtomicUsize, bool);
+
+impl Signal for Asked {
+    fn at(&self, t: f64) -> [f64; 3] {
+        self.1.fetch_add(1, Ordering::Relaxed);
+        self.0.at(t)
+    }
+
+    fn even_zeros(&self) -> Option<EvenZeros> {
+        self.0.even_zeros().filter(|_| self.2)
+    }
+}
+
+/// Zeros of what is linear in time and of its sine are known, and are those that a search of the whole run finds, as they are rounded.
+#[test]
+fn known_zeros_are_those_that_a_search_finds() {
+    let curve = Curve::linear(vec![0.1, 0.4, 0.9], vec![0.0, 1.0, 0.0], Beyond::Periodic);
+    let tables = HashMap::from([("wave".to_string(), Some(Arc::new(curve)))]);
+    let scope = Scope { tables: Some(&tables), ..Scope::default() };
+    for (text, count) in [
+        ("step(t - 0.3)", 1),
+        ("step(0.5 - 3*t/2)", 1),
+        ("abs((t + 1000) - 1000.3)", 1),
+        ("step(t - 7)", 0),
+        ("step(t + 0.1)", 0),
+        ("sign(sin(40*t + 0.2))", 26),
+        ("wave(t)", 3 * 3),
+        ("wave(3.3 - 2*(t + 0.01))", 3 * 5),
+    ] {
+        let program = Program::parse(text, &["t"], &scope).unwrap();
+        let found = [true, false].map(|is_told| {
+            let switches = program.switches(0).into_iter();
+            let switches: Vec<Asked> = switches.map(|switch| Asked(TimeProgram(switch), AtomicUsize::new(0), is_told)).collect();
+            let mut times: Vec<f64> = switches.iter().flat_map(|switch| zeros(switch, 2.05)).collect();
+            times.sort_by(f64::total_cmp);
+            (times, switches.iter().map(|switch| switch.1.load(Ordering::Relaxed)).sum::<usize>())
+        });
+        let [(known, few), (searched, _)] = &found;
+        assert_eq!([known.len(), searched.len()], [count; 2], "{text}: {known:?} {searched:?}");
+        assert!(known.iter().zip(searched).all(|(one, other)| (one - other).abs() < 1e-12), "{text}: {known:?} {searched:?}");
+        assert!(*few <= 100 * (count + 3), "{text}: asked {few} times");
+    }
 }
 
 /// Steps end at all knots of a table, and only its ends may be corners where it is smooth between.
