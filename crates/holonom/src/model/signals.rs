@@ -110,6 +110,29 @@ impl Readings {
     }
 }
 
+impl Readings {
+    /// Adds to `by_x` and `by_v` what a function changes by with the coordinates `x` and the velocities `v`, whose slopes by what it reads these are.
+    pub fn spread<N: AnyNumber>(&self, slopes: &[N], [x, v]: [&[N]; 2], [by_x, by_v]: [&mut [N]; 2]) {
+        let own = self.dim * self.reading.nodes.len();
+        for (leaf, &slope) in self.leaves.iter().zip(slopes) {
+            let along = |axis: usize| std::array::from_fn(|c| if c == axis { slope } else { N::from(0.0) });
+            match *leaf {
+                Leaf::Place(k, axis, false) => self.places[k].spread(along(axis), self.dim, by_x),
+                Leaf::Place(k, axis, true) => self.places[k].spread(along(axis), self.dim, by_v),
+                Leaf::Sense(k, false) => by_x[own + k] += slope,
+                Leaf::Sense(k, true) => by_v[own + k] += slope,
+                Leaf::Turn(k, axis) => {
+                    for sum in &self.turns[k] {
+                        let part = along(axis).map(|slope: N| slope * if self.dim == 2 { 1.0 } else { 0.5 });
+                        sum.spread(cross(sum.at(v, self.dim, 0.0), part), self.dim, by_x);
+                        sum.spread(cross(part, sum.at(x, self.dim, 1.0)), self.dim, by_v);
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// Variables of a formula that are not put on the heap.
 pub(super) const ROOM: usize = 16;
 

@@ -1,5 +1,6 @@
 use std::sync::Arc;
 
+use num_dual::{Dual2_64, Dual64};
 use smallvec::SmallVec;
 
 use crate::model::assembly::Assembly;
@@ -9,8 +10,8 @@ use crate::model::expression::{Program, names_in};
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, Number};
 use crate::model::key::Shape;
-use crate::model::signals::{Reader, Readings};
-use crate::system::{ConstraintFunction, CustomRows, Differentiated, Number as AnyNumber, Reading};
+use crate::model::signals::{ROOM, Reader, Readings};
+use crate::system::{CustomRows, Number as AnyNumber, Reading, SIZE};
 
 /// keeps a formula of positions and of time at zero
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -47,7 +48,7 @@ impl Element for Expression {
         if nodes.is_empty() {
             return Err(entry.refuse("value", "nothing that moves is in this formula", "name positions, such as NAME.x"));
         }
-        let rows = Arc::new(Differentiated(Held { readings, value }));
+        let rows = Arc::new(Held { readings, value });
         let position = assembly.builder.position();
         let start: Vec<f64> = nodes.iter().flat_map(|node| &position[node.index() * dim..(node.index() + 1) * dim]).copied().collect();
         let (mut off, mut slope, mut by_time) = ([0.0], vec![0.0; start.len()], [0.0]);
@@ -101,15 +102,74 @@ struct Held {
     value: Program,
 }
 
-impl ConstraintFunction for Held {
+impl Held {
+    /// What the formula is of.
+    fn variables<N: AnyNumber>(&self, x: &[N], t: N) -> SmallVec<[N; ROOM]> {
+        let mut variables = SmallVec::from_slice(&[t]);
+        // Velocities are not read.
+        self.readings.append(x, x, &mut variables);
+        variables
+    }
+
+    /// By how much it changes with all coordinates, with whatever derivatives these carry, by one run of the formula back and forth: to vary each pair
+    /// of coordinates costs the cube of their number in a sum over many points.
+    fn slopes<N: AnyNumber>(&self, x: &[N], t: N, by_position: &mut [N]) {
+        let variables = self.variables(x, t);
+        let mut slopes: SmallVec<[N; ROOM]> = SmallVec::from_elem(N::from(0.0), variables.len());
+        self.value.slopes(&variables, &mut slopes);
+        by_position.fill(N::from(0.0));
+        self.readings.spread(&slopes[1..], [x, x], [by_position, &mut []]);
+    }
+
+    /// It with what it changes by along a line, up to the second derivative.
+    fn along(&self, x: impl Iterator<Item = Dual2_64>, t: f64) -> Dual2_64 {
+        let x: Moving<Dual2_64> = x.collect();
+        self.value.evaluate(&self.variables(&x, Dual2_64::new(t, 1.0, 0.0)))
+    }
+}
+
+/// Coordinates of the nodes.
+type Moving<N> = SmallVec<[N; SIZE]>;
+
+impl CustomRows for Held {
     fn rows(&self) -> usize {
         1
     }
 
-    fn evaluate<N: AnyNumber>(&self, x: &[N], t: N, phi: &mut [N]) {
-        let mut variables = SmallVec::from_slice(&[t]);
-        // Velocities are not read.
-        self.readings.append(x, x, &mut variables);
-        phi[0] = self.value.evaluate(&variables);
+    fn value(&self, x: &[f64], t: f64, phi: &mut [f64]) {
+        phi[0] = self.value.evaluate(&self.variables(x, t));
+    }
+
+    fn gradient(&self, x: &[f64], t: f64, by_position: &mut [f64], by_time: &mut [f64]) {
+        self.slopes(x, t, by_position);
+        // Numbers that follow time have the slope right after a corner.
+        by_time[0] = self.along(x.iter().map(|&x| Dual2_64::from(x)), t).v1;
+    }
+
+    fn hessian(&self, x: &[f64], t: f64, lambda: &[f64], out: &mut [f64]) {
+        let k = x.len();
+        let mut point: Moving<Dual64> = x.iter().map(|&x| Dual64::from(x)).collect();
+        let mut line: Moving<Dual64> = point.clone();
+        for i in 0..k {
+            point[i].eps = 1.0;
+            self.slopes(&point, Dual64::from(t), &mut line);
+            point[i].eps = 0.0;
+            for (j, slope) in line[..=i].iter().enumerate() {
+                let second = lambda[0] * slope.eps;
+                out[i * k + j] = second;
+                out[j * k + i] = second;
+            }
+        }
+    }
+
+    fn mixed(&self, x: &[f64], t: f64, out: &mut [f64]) {
+        let point: Moving<Dual64> = x.iter().map(|&x| Dual64::from(x)).collect();
+        let mut line = point.clone();
+        self.slopes(&point, Dual64::new(t, 1.0), &mut line);
+        out.iter_mut().zip(&line).for_each(|(out, slope)| *out = slope.eps);
+    }
+
+    fn curvature(&self, x: &[f64], v: &[f64], t: f64, out: &mut [f64]) {
+        out[0] = self.along(x.iter().zip(v).map(|(&x, &v)| Dual2_64::new(x, v, 0.0)), t).v2;
     }
 }

@@ -13,6 +13,7 @@ mod lex;
 mod names;
 mod of_time;
 mod parse;
+mod slopes;
 #[cfg(test)]
 mod tests;
 
@@ -26,7 +27,7 @@ use crate::record::Formula;
 use crate::system::{Bend, EvenZeros, Number, Signal};
 pub use curve::{Beyond, Curve, refusal};
 pub use external::{External, ExternalFunction, Functions, differences};
-use functions::{Function, quotient};
+use functions::Function;
 pub use names::{Names, Nothing};
 
 /// Numbers at once, while an expression is evaluated, that are not put on the heap.
@@ -266,39 +267,13 @@ impl Program {
                 }
                 _ => {}
             }
-            let last = stack[top - 1];
-            if let Op::Neg | Op::IntegerPower(_) | Op::RealPower(_) | Op::OfOne(_) | Op::OfTable(_) = op {
-                if TELLS {
-                    show(op, [last.re(), 0.0], false);
-                }
-                stack[top - 1] = match op {
-                    Op::Neg => -last,
-                    Op::OfOne(function) => function.of_one(last),
-                    Op::OfTable(curve) => curve.evaluate(last),
-                    power => power.power(last),
-                };
-                continue;
-            }
-            if let Op::OfMany(function, k) = op {
-                let begin = top - function.arguments();
-                stack[begin] = function.evaluate(*k, &stack[begin..top]);
-                top = begin + 1;
-                continue;
-            }
-            top -= 1;
-            let first = stack[top - 1];
-            if TELLS {
+            let begin = top - op.takes();
+            if TELLS && !matches!(op, Op::OfMany(..)) {
                 let is_scaled = matches!(self.ops[k - 1], Op::Constant(_));
-                show(op, [first.re(), last.re()], is_scaled);
+                show(op, [stack[begin].re(), if top - begin > 1 { stack[begin + 1].re() } else { 0.0 }], is_scaled);
             }
-            stack[top - 1] = match op {
-                Op::Add => first + last,
-                Op::Sub => first - last,
-                Op::Mul => first * last,
-                Op::Div => quotient(first, last),
-                Op::OfTwo(function) => function.of_two(first, last),
-                _ => unreachable!("operations of one and of many numbers came before"),
-            };
+            stack[begin] = op.of(&stack[begin..top]);
+            top = begin + 1;
         }
         stack[0]
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::functions::{CONSTANTS, FUNCTIONS, Function, UNITS, integer_power, real_power};
+use super::functions::{CONSTANTS, FUNCTIONS, Function, UNITS};
 use super::lex::{Token, lex};
 use super::names::Names;
 use super::{Mistake, Op, Program, Scope, Value};
@@ -266,18 +266,6 @@ impl Parser<'_> {
         if constant {
             let folded = Program::new(self.ops.drain(first..).collect(), Vec::new()).evaluate::<f64>(&[]);
             self.ops.push(Op::Constant(folded));
-        }
-    }
-}
-
-impl Op {
-    /// x^p of the two kinds with a constant exponent.
-    #[inline]
-    pub(super) fn power<N: crate::system::Number>(&self, x: N) -> N {
-        match *self {
-            Self::IntegerPower(n) => integer_power(x, n),
-            Self::RealPower(p) => real_power(x, p),
-            _ => unreachable!("no power"),
         }
     }
 }

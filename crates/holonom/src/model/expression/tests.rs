@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use num_dual::{Dual2_64, Dual64, HyperDual64};
 
 use super::functions::FUNCTIONS;
-use super::{Beyond, Curve, Program, Scope, TimeProgram, Value};
+use super::{Beyond, Curve, Mistake, Names, Program, Scope, TimeProgram, Value};
 use crate::system::{Bend, EvenZeros, Signal, zeros};
 
 fn value(text: &str) -> f64 {
@@ -158,6 +158,55 @@ fn powers_of_zero_and_of_negative_numbers_are_right() {
         assert_eq!(at(clipped, -1.0), Dual64::new(0.0, 0.0), "{clipped}");
     }
     assert!(!at("sqrt(x)", 0.0).eps.is_finite());
+}
+
+/// Measures of the variable t, by their names.
+struct Measured(HashMap<&'static str, Program>);
+
+impl Names for Measured {
+    fn variable(&mut self, _name: &str) -> Result<Option<usize>, Mistake> {
+        Ok(None)
+    }
+
+    fn formula(&mut self, name: &str) -> Result<Option<Program>, Mistake> {
+        Ok(self.0.get(name).cloned())
+    }
+}
+
+/// Derivatives by all variables at once, and what these change by, are those by one and by two after the other.
+#[test]
+fn slopes_are_the_derivatives_by_each_variable() {
+    let curve = Curve::cubic(vec![0.0, 1.0, 2.5, 3.0], vec![1.0, -1.0, 0.5, 1.0], Beyond::Periodic);
+    let tables = HashMap::from([("curve".to_string(), Some(Arc::new(curve)))]);
+    let scope = Scope { tables: Some(&tables), ..Scope::default() };
+    let m = Program::parse("3*t + sin(t)", &["t"], &Scope::default()).unwrap();
+    let n = Program::parse_with("m*m - t", &["t"], &mut Measured([("m", m.clone())].into()), &Scope::default()).unwrap();
+    for text in [
+        "4",
+        "y",
+        "x*y - y*t/x + (-y)^3",
+        "n*y + m/n - n^2 + x*m",
+        "atan2(x, y)*min(x, y) + max(t, y)*mod(y, 0.3)",
+        "sqrt(x^2 + y^2 + t^2)*tanh(y) - x^-2*y^1.7",
+        "pow(x, y) + curve(2*x*y) - abs(t - y)",
+        "max(-x, 0)^0.1 + sqrt(max(-y, 0))*x",
+        "exp(-((x - y)/0.1)^2) + 1/cosh(2e3*y) + y*step(x)*floor(y)",
+    ] {
+        let mut measures = Measured([("m", m.clone()), ("n", n.clone())].into());
+        let program = Program::parse_with(text, &["t", "x", "y"], &mut measures, &scope).unwrap();
+        let (at, along) = ([0.3, 0.8, 1.7], [0.5, -1.0, 2.0]);
+        let (mut slopes, mut turned) = ([0.0; 3], [Dual64::from(0.0); 3]);
+        let value = program.slopes(&at, &mut slopes);
+        program.slopes(&std::array::from_fn::<_, 3, _>(|k| Dual64::new(at[k], along[k])), &mut turned);
+        assert_eq!(value, program.evaluate(&at), "{text}");
+        for k in 0..3 {
+            let varied: [_; 3] = std::array::from_fn(|i| HyperDual64::new(at[i], f64::from(i == k), along[i], 0.0));
+            let HyperDual64 { eps1, eps1eps2, .. } = program.evaluate(&varied);
+            for (found, expected) in [(slopes[k], eps1), (turned[k].re, eps1), (turned[k].eps, eps1eps2)] {
+                assert!((found - expected).abs() < 1e-13 * (1.0 + expected.abs()), "{text} by {k}: {found}, and {expected}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -15,7 +15,7 @@ use crate::model::key::Shape;
 use crate::model::parameters::require_name;
 use crate::model::signals::{ROOM, Reader, Readings};
 use crate::model::tables::require_inside;
-use crate::system::{Bend, Differentiated, ForceFunction, MAX_ARGUMENTS, Number as AnyNumber, Reading, Sense};
+use crate::system::{Bend, Load, MAX_ARGUMENTS, Reading, Sense};
 
 /// a motor or any other effort along the coordinate of a joint, as a formula of time, of that coordinate and its rate, and of
 /// whatever else moves: control laws, nonlinear springs, engines
@@ -109,7 +109,7 @@ impl Element for Effort {
         readings.reading.senses.extend(quantities.iter().map(|&quantity| Sense::Quantity(quantity.into())));
         let reading = readings.reading.clone();
         let load = EffortLoad { own: assembly.dimension() * reading.nodes.len() + first, coordinates: quantities.len(), readings, effort };
-        assembly.builder.load_reading(entry.name, reading, Arc::new(Differentiated(load)));
+        assembly.builder.load_reading(entry.name, reading, Arc::new(load));
         Ok(())
     }
 }
@@ -125,7 +125,7 @@ struct EffortLoad {
 
 impl EffortLoad {
     /// What the formula is of.
-    fn variables<N: AnyNumber>(&self, x: &[N], v: &[N], t: N) -> SmallVec<[N; ROOM]> {
+    fn variables(&self, x: &[f64], v: &[f64], t: f64) -> SmallVec<[f64; ROOM]> {
         let mut variables = SmallVec::from_slice(&[t]);
         for k in self.own..self.own + self.coordinates {
             variables.extend([x[k], v[k]]);
@@ -135,13 +135,28 @@ impl EffortLoad {
     }
 }
 
-impl ForceFunction for EffortLoad {
-    fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
-        force.fill(N::from(0.0));
+impl Load for EffortLoad {
+    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(Bend)) {
+        self.effort.bends(&self.variables(x, v, t), note);
+    }
+
+    fn force(&self, x: &[f64], v: &[f64], t: f64, force: &mut [f64]) {
+        force.fill(0.0);
         force[self.own] = self.effort.evaluate(&self.variables(x, v, t));
     }
 
-    fn bends(&self, x: &[f64], v: &[f64], t: f64, note: &mut dyn FnMut(Bend)) {
-        self.effort.bends(&self.variables(x, v, t), note);
+    fn tangent(&self, x: &[f64], v: &[f64], t: f64, by_position: &mut [f64], by_velocity: &mut [f64]) {
+        by_position.fill(0.0);
+        by_velocity.fill(0.0);
+        let own = self.own * x.len()..(self.own + 1) * x.len();
+        let (by_x, by_v) = (&mut by_position[own.clone()], &mut by_velocity[own]);
+        let variables = self.variables(x, v, t);
+        let mut slopes: SmallVec<[f64; ROOM]> = SmallVec::from_elem(0.0, variables.len());
+        self.effort.slopes(&variables, &mut slopes);
+        let (of_coordinates, of_readings) = slopes[1..].split_at(2 * self.coordinates);
+        for (k, pair) in of_coordinates.chunks_exact(2).enumerate() {
+            (by_x[self.own + k], by_v[self.own + k]) = (pair[0], pair[1]);
+        }
+        self.readings.spread(of_readings, [x, v], [by_x, by_v]);
     }
 }
