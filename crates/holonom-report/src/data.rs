@@ -39,10 +39,10 @@ pub struct RunData<'a> {
     /// Name → values, base64 of 64-bit floats. Besides those of the recording: `drift` = E − E(0) − W, and the running sums
     /// `sum_dE_integrator`, `sum_dE_projection`; they are formed here because thinning would falsify them.
     columns: BTreeMap<&'static str, String>,
-    /// Name of a point → its coordinates along `scene.axes`, row after row, base64 of 32-bit floats.
+    /// Name of a point → its coordinates along `scene.axes` from the origin of the page, row after row, base64 of 32-bit floats.
     points: BTreeMap<&'a str, String>,
-    /// Name of a body → coordinates of its centre of mass along `scene.axes` and its orientation (`qw`, `qx`, `qy`, `qz`; in a plane
-    /// `angle`), row after row, base64 of 32-bit floats.
+    /// Name of a body → coordinates of its centre of mass along `scene.axes` from the origin of the page and its orientation (`qw`, `qx`,
+    /// `qy`, `qz`; in a plane `angle`), row after row, base64 of 32-bit floats.
     bodies: BTreeMap<&'a str, String>,
     /// What else was recorded: measures, then what acts and joint coordinates, then motion.
     channels: Vec<ChannelData<'a>>,
@@ -70,8 +70,8 @@ const FLAT: f64 = 100.0;
 const MAX_NUMBERS: usize = 600_000;
 
 impl<'a> RunData<'a> {
-    /// `first` is the first run of the report.
-    pub fn new(run: &Run<'a>, first: &Run<'a>, outcome: Outcome) -> Self {
+    /// `first` is the first run of the report, `origin` what the places of its picture are counted from.
+    pub fn new(run: &Run<'a>, first: &Run<'a>, outcome: Outcome, origin: [f64; 3]) -> Self {
         let (recording, scene) = (run.recording, run.scene);
         let [place, pose] = coordinates(scene);
         let thinning = Thinning::new(recording.rows(), scene.points.len() * place.len() + scene.bodies.len() * pose.len());
@@ -83,11 +83,32 @@ impl<'a> RunData<'a> {
             recorded: recording.rows(),
             stride: thinning.stride,
             columns: columns(recording, &thinning),
-            points: paths(recording, scene.points.iter().map(|point| point.name.as_str()), &place, &thinning),
-            bodies: paths(recording, scene.bodies.iter().map(|body| body.name.as_str()), &pose, &thinning),
+            points: paths(recording, scene.points.iter().map(|point| point.name.as_str()), &place, origin, &thinning),
+            bodies: paths(recording, scene.bodies.iter().map(|body| body.name.as_str()), &pose, origin, &thinning),
             channels: channels(run, &thinning),
         }
     }
+}
+
+/// World axes, whose letters end the columns of places.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The middle of what moves in the first run that records places, at its start, in world axes, m. The places of a picture are counted from there, as single
+/// precision would leave too few digits of a small mechanism far from the origin of its model.
+pub fn origin(runs: &[Run]) -> [f64; 3] {
+    let middle = |run: &Run| -> Option<[f64; 3]> {
+        let points = run.scene.points.iter().map(|point| &point.name);
+        let names: Vec<&String> = points.chain(run.scene.bodies.iter().map(|body| &body.name)).collect();
+        let along = |axis: &str| -> Option<f64> {
+            let starts = names.iter().filter_map(|name| run.recording.column(&format!("{name}.{axis}"))?.first().copied());
+            let starts: Vec<f64> = starts.filter(|x| x.is_finite()).collect();
+            (!starts.is_empty()).then(|| starts.iter().sum::<f64>() / starts.len() as f64)
+        };
+        // A plane has two coordinates, and the third is 0.
+        let along = AXES.map(along);
+        along.iter().any(Option::is_some).then(|| along.map(Option::unwrap_or_default))
+    };
+    runs.iter().find_map(middle).unwrap_or_default()
 }
 
 /// Endings of the columns of a point, and of the centre of mass and the orientation of a body.
@@ -194,11 +215,16 @@ fn paths<'a>(
     recording: &Recording,
     names: impl Iterator<Item = &'a str>,
     coordinates: &[&str],
+    origin: [f64; 3],
     thinning: &Thinning,
 ) -> BTreeMap<&'a str, String> {
+    let from = |coordinate: &str| AXES.iter().position(|axis| *axis == coordinate).map_or(0.0, |k| origin[k]);
     let path = |name: &str| -> Option<String> {
-        let values = coordinates.iter().map(|coordinate| recording.column(&format!("{name}.{coordinate}")));
-        let values: Vec<Vec<f64>> = values.map(|values| Some(thinning.apply(values?, Keep::Last))).collect::<Option<_>>()?;
+        let values = coordinates.iter().map(|coordinate| {
+            let values = thinning.apply(recording.column(&format!("{name}.{coordinate}"))?, Keep::Last);
+            Some(values.into_iter().map(|value| value - from(coordinate)).collect())
+        });
+        let values: Vec<Vec<f64>> = values.collect::<Option<_>>()?;
         let rows = 0..thinning.kept();
         let numbers: Vec<f32> = rows.flat_map(|row| values.iter().map(move |values| values[row] as f32)).collect();
         Some(base64::singles(&numbers))

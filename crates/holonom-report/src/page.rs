@@ -1,6 +1,6 @@
 //! Puts the page together.
 
-use crate::data::RunData;
+use crate::data::{RunData, origin};
 use crate::escape::{html, json_in_script};
 use crate::outcome::outcomes;
 use crate::{Report, Run, figures, provenance, summary};
@@ -31,7 +31,8 @@ pub fn write(report: &Report, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "<header>\n<h1>{}</h1>", html(report.title))?;
     figures::write(report.runs, out)?;
     writeln!(out, "</header>\n<main>")?;
-    let data = prepared(report.runs);
+    let origin = origin(report.runs);
+    let data = prepared(report.runs, origin);
     match VIEWER {
         Some(_) => stage(&data, out)?,
         None => writeln!(out, "{WITHOUT_VIEWER}")?,
@@ -47,7 +48,7 @@ pub fn write(report: &Report, out: &mut dyn Write) -> io::Result<()> {
     }
     writeln!(out, "</main>")?;
     if let Some((_, script)) = VIEWER {
-        scripts(&Data { runs: &data, columns: report.columns }, script, out)?;
+        scripts(&Data { origin, runs: &data, columns: report.columns }, script, out)?;
     }
     end(out)
 }
@@ -62,8 +63,8 @@ pub fn end(out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "</body>\n</html>")
 }
 
-fn prepared<'a>(runs: &[Run<'a>]) -> Vec<RunData<'a>> {
-    runs.iter().zip(outcomes(runs)).map(|(run, outcome)| RunData::new(run, &runs[0], outcome)).collect()
+fn prepared<'a>(runs: &[Run<'a>], origin: [f64; 3]) -> Vec<RunData<'a>> {
+    runs.iter().zip(outcomes(runs)).map(|(run, outcome)| RunData::new(run, &runs[0], outcome, origin)).collect()
 }
 
 /// What every page begins with; `style` comes before the style sheet of all pages.
@@ -124,6 +125,8 @@ fn health(runs: &[Run], data: &[RunData], out: &mut dyn Write) -> io::Result<()>
 /// What the viewer reads.
 #[derive(Serialize)]
 struct Data<'a> {
+    /// What the places of the picture are counted from, in world axes, m.
+    origin: [f64; 3],
     runs: &'a [RunData<'a>],
     /// Columns that are plotted first, in place of those that are shown otherwise.
     columns: &'a [String],

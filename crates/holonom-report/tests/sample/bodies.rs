@@ -48,6 +48,28 @@ pub fn shapes() -> Sample {
     sample("Solids on springs", scene, &poses)
 }
 
+/// A sample with everything in it moved.
+pub fn moved(mut sample: Sample, by: Vec3) -> Sample {
+    let add = |place: &mut Vec3| place.iter_mut().zip(by).for_each(|(x, by)| *x += by);
+    for line in &mut sample.scene.lines {
+        for end in [&mut line.from, &mut line.to] {
+            if let Anchor::Fixed(place) = end {
+                add(place);
+            }
+        }
+    }
+    sample.scene.joints.iter_mut().filter(|joint| joint.body.is_none()).for_each(|joint| add(&mut joint.at));
+    let columns = sample.recording.columns();
+    let axis = |name: &str| ["x", "y", "z"].iter().position(|axis| name.rsplit_once('.').is_some_and(|(_, ending)| ending == *axis));
+    let shifts: Vec<f64> = columns.iter().map(|column| axis(&column.heading.name).map_or(0.0, |k| by[k])).collect();
+    let mut recording = Recording::new(columns.iter().map(|column| column.heading.clone()));
+    for row in 0..sample.recording.rows() {
+        recording.push(&columns.iter().zip(&shifts).map(|(column, shift)| column.values[row] + shift).collect::<Vec<_>>());
+    }
+    sample.recording = recording;
+    sample
+}
+
 /// A cart on one wheel that goes straight on, 20 m.
 pub fn cart() -> Sample {
     let scene = Scene {

@@ -42,8 +42,7 @@ function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
   root.append(element("style", {}, viewerStyle, model.get("_style") as string, ownStyle), page);
 
   const layout = JSON.parse(model.get("_layout") as string) as Layout;
-  const film = new Film(layout);
-  film.take(model.get("_frame") as DataView);
+  const film = new Film(layout, model.get("_frame") as DataView);
   const clock = new Clock(film.run.times[0], Infinity);
   const stage = element("div", { class: "stage" });
   const listening: [event: string, act: () => void][] = [];

@@ -14,7 +14,7 @@ import { buildComparedPlot, buildPlot } from "./plots/plot";
 import { WINDOWS } from "./plots/smooth";
 import { Selection } from "./selection";
 import { buildTransport } from "./transport";
-import { buildStage, type OnScreen } from "./view/stage";
+import { buildStage } from "./view/stage";
 import { buildLegend, Visibility } from "./visibility";
 
 /** What a page offers to scripts and tests. */
@@ -27,7 +27,7 @@ interface Handle {
   /** The same of the centres of mass of its bodies. */
   bodiesAt(): Record<string, Vec3>;
   /** Where a place in the world is seen in the window, px. */
-  onScreen: OnScreen;
+  onScreen(place: Vec3): [number, number] | undefined;
 }
 
 const HOW_TO_READ = `Axes fit the runs that completed with their energy in bounds; a run that leaves one is named above it and drawn up \
@@ -43,6 +43,8 @@ declare global {
 
 function main(): void {
   const payload = readPayload();
+  const origin = payload.runs[0]?.origin ?? [0, 0, 0];
+  const world = (place: Vec3 | undefined): Vec3 | undefined => place && (place.map((x, i) => x + origin[i]) as Vec3);
   const motions = payload.runs.map((run) => new Motion(run));
   const start = Math.min(...motions.map((motion) => motion.run.times[0] ?? 0));
   const clock = new Clock(start, Math.max(start, ...motions.map((motion) => motion.end)));
@@ -51,8 +53,8 @@ function main(): void {
     ready: false,
     time: () => clock.time,
     setTime: (t) => clock.setTime(t),
-    pointsAt: () => placesOf(motions[0]?.run.scene.points, (name) => motions[0]?.at(name, clock.time)),
-    bodiesAt: () => placesOf(motions[0]?.run.scene.bodies, (name) => motions[0]?.poseAt(name, clock.time)?.place.toArray()),
+    pointsAt: () => placesOf(motions[0]?.run.scene.points, (name) => world(motions[0]?.at(name, clock.time))),
+    bodiesAt: () => placesOf(motions[0]?.run.scene.bodies, (name) => world(motions[0]?.poseAt(name, clock.time)?.place.toArray())),
     onScreen: () => undefined,
   };
   if (motions.length > 0) build(motions, payload.columns, clock, visibility);
@@ -66,7 +68,9 @@ function build(motions: Motion[], columns: string[], clock: Clock, visibility: V
   const stage = element("div", { class: "stage" });
   place("motion").append(stage, buildTransport(clock));
   const selection = new Selection();
-  window.holonom.onScreen = buildStage(stage, motions, clock, visibility, selection);
+  const onScreen = buildStage(stage, motions, clock, visibility, selection);
+  const { origin } = runs[0];
+  window.holonom.onScreen = (place) => onScreen(place.map((x, i) => x - origin[i]) as Vec3);
 
   listenToKeys(clock, runs[0].times);
   buildMachine(place("machine"), runs, columns, clock, visibility, selection);

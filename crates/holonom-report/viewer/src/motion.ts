@@ -1,4 +1,4 @@
-// Where the points and bodies of a run are at any time, interpolated between rows.
+// Where the points and bodies of a run are at any time, interpolated between rows. Places in the world are counted from `Run.origin`.
 
 import { Matrix4, Quaternion, Vector3 } from "three";
 import type { Anchor, Run, Vec3 } from "./payload";

@@ -61,6 +61,8 @@ export interface Run {
   label: string;
   /** Completed with its energy in bounds: axes are scaled to such runs. */
   sound: boolean;
+  /** Place in the world from which the places of points, bodies and the scene are counted, m: single precision has too few digits far away from it. */
+  origin: Vec3;
   scene: Scene;
   /** Name → one value per row. */
   columns: Map<string, Float64Array>;
@@ -105,15 +107,28 @@ export interface Payload {
 }
 
 export function readPayload(): Payload {
-  const text = document.getElementById("holonom-data")?.textContent ?? '{"runs":[],"columns":[]}';
-  const { runs, columns } = JSON.parse(text) as { runs: RawRun[]; columns: string[] };
-  return { runs: decodeRuns(runs), columns };
+  const text = document.getElementById("holonom-data")?.textContent ?? '{"origin":[0,0,0],"runs":[],"columns":[]}';
+  const { origin, runs, columns } = JSON.parse(text) as { origin: Vec3; runs: RawRun[]; columns: string[] };
+  return { runs: decodeRuns(runs, origin), columns };
 }
 
-function decodeRuns(runs: RawRun[]): Run[] {
+/** A scene whose places in the world are counted from there. */
+export function seenFromOrigin(scene: Scene, origin: Vec3): Scene {
+  const from = (place: Vec3): Vec3 => place.map((x, i) => x - origin[i]) as Vec3;
+  const end = (anchor: Anchor): Anchor => ("fixed" in anchor ? { fixed: from(anchor.fixed) } : anchor);
+  return {
+    ...scene,
+    lines: scene.lines.map((line) => ({ ...line, from: end(line.from), to: end(line.to) })),
+    joints: scene.joints.map((joint) => (joint.body === null ? { ...joint, at: from(joint.at) } : joint)),
+    loads: scene.loads.map((load) => ({ ...load, at: end(load.at) })),
+  };
+}
+
+function decodeRuns(runs: RawRun[], origin: Vec3): Run[] {
   return runs.flatMap((raw) => {
-    const scene = raw.scene ?? runs[0].scene;
-    if (!scene) return [];
+    const own = raw.scene ?? runs[0].scene;
+    if (!own) return [];
+    const scene = seenFromOrigin(own, origin);
     const columns = decodeAll(raw.columns, (bytes) => new Float64Array(bytes));
     const points = decodeAll(raw.points, (bytes) => new Float32Array(bytes));
     const bodies = decodeAll(raw.bodies, (bytes) => new Float32Array(bytes));
@@ -122,7 +137,7 @@ function decodeRuns(runs: RawRun[]): Run[] {
       return { ...channel, values };
     });
     const channelOf = new Map(channels.map((channel) => [channel.name, channel]));
-    return [{ label: raw.label, sound: raw.sound, scene, columns, points, bodies, times: columns.get("t") ?? new Float64Array(), channels, channelOf }];
+    return [{ label: raw.label, sound: raw.sound, origin, scene, columns, points, bodies, times: columns.get("t") ?? new Float64Array(), channels, channelOf }];
   });
 }
 

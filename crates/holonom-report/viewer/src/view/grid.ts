@@ -12,14 +12,15 @@ export interface Grid {
   follow(way: Vector3): void;
 }
 
-export function buildGrid(view: Viewpoint, box: Box3): Grid {
+/** `origin`: see `Run.origin`. */
+export function buildGrid(view: Viewpoint, box: Box3, origin: Vector3): Grid {
   const size = diagonal(box);
   const cell = roundNumber(size / 9);
   const normal = view.planar ? view.towards : view.up;
   const [across, along] = [new Vector3(1, 0, 0), new Vector3(0, 1, 0), new Vector3(0, 0, 1)].filter((axis) => Math.abs(axis.dot(normal)) < 0.5);
   const center = box.getCenter(new Vector3());
-  // Lines lie at whole multiples of the cell.
-  const snap = (axis: Vector3): number => Math.round(center.dot(axis) / cell) * cell;
+  // Lines lie at whole multiples of the cell in the world.
+  const snap = (axis: Vector3): number => Math.round((center.dot(axis) + origin.dot(axis)) / cell) * cell - origin.dot(axis);
   const level = view.planar ? center.dot(normal) - 0.05 * size : box.min.dot(normal) - 0.04 * size;
   const cells = view.planar ? Math.ceil((1.6 * size) / cell) : Math.ceil((0.75 * size) / cell);
   const points: number[] = [];

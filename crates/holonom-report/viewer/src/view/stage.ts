@@ -24,8 +24,8 @@ import { listenToPointer } from "./pick";
 
 const WITHOUT_WEBGL = "The picture in 3D needs WebGL, which this browser does not offer here. The plots below do not.";
 
-/** From the world to the window, px; nothing without a picture. */
-export type OnScreen = (place: Vec3) => [number, number] | undefined;
+/** From the world, counted from `Run.origin`, to the window, px; nothing without a picture. */
+type OnScreen = (place: Vec3) => [number, number] | undefined;
 
 export function buildStage(container: HTMLElement, motions: Motion[], clock: Clock, visibility: Visibility, selection: Selection): OnScreen {
   const canvas = element("canvas", { "aria-label": "The mechanism in 3D" });
@@ -43,7 +43,7 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
   let box = chase?.box ?? boundingBox(measured(motions));
   const camera = buildCamera(view);
   const mechanisms = motions.map((motion, i) => new Mechanism(motion, diagonal(box), i, motions.length));
-  const grid = buildGrid(view, box);
+  const grid = buildGrid(view, box, new Vector3(...motions[0].run.origin));
   const arrows = new Arrows(diagonal(box));
   const groups = mechanisms.map((mechanism) => mechanism.group);
   const highlight = new Highlight(groups);
