@@ -12,8 +12,8 @@ export interface Grid {
   follow(way: Vector3): void;
 }
 
-/** `origin`: see `Run.origin`. */
-export function buildGrid(view: Viewpoint, box: Box3, origin: Vector3): Grid {
+/** `level`: of the ground in space, along `view.up`; `origin`: see `Run.origin`. */
+export function buildGrid(view: Viewpoint, box: Box3, level: number, origin: Vector3): Grid {
   const size = diagonal(box);
   const cell = roundNumber(size / 9);
   const normal = view.planar ? view.towards : view.up;
@@ -21,12 +21,12 @@ export function buildGrid(view: Viewpoint, box: Box3, origin: Vector3): Grid {
   const center = box.getCenter(new Vector3());
   // Lines lie at whole multiples of the cell in the world.
   const snap = (axis: Vector3): number => Math.round((center.dot(axis) + origin.dot(axis)) / cell) * cell - origin.dot(axis);
-  const level = view.planar ? center.dot(normal) - 0.05 * size : box.min.dot(normal) - 0.04 * size;
+  const height = view.planar ? center.dot(normal) - 0.05 * size : level;
   const cells = view.planar ? Math.ceil((1.6 * size) / cell) : Math.ceil((0.75 * size) / cell);
   const points: number[] = [];
   const add = (u: number, v: number): void => {
     const point = new Vector3().addScaledVector(across, snap(across) + u * cell).addScaledVector(along, snap(along) + v * cell);
-    points.push(...point.addScaledVector(normal, level).toArray());
+    points.push(...point.addScaledVector(normal, height).toArray());
   };
   for (let i = -cells; i <= cells; i++) {
     add(i, -cells);

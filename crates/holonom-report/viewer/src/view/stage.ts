@@ -17,6 +17,7 @@ import { Chase } from "./chase";
 import { RunChoice } from "./choice";
 import { boundingBox, diagonal } from "./frame";
 import { buildGrid } from "./grid";
+import { groundLevel } from "./ground";
 import { Highlight } from "./highlight";
 import { buildLooks } from "./looks";
 import { Mechanism } from "./mechanism";
@@ -43,7 +44,7 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
   let box = chase?.box ?? boundingBox(measured(motions));
   const camera = buildCamera(view);
   const mechanisms = motions.map((motion, i) => new Mechanism(motion, diagonal(box), i, motions.length));
-  const grid = buildGrid(view, box, new Vector3(...motions[0].run.origin));
+  const grid = buildGrid(view, box, groundLevel(measured(motions), view.up), new Vector3(...motions[0].run.origin));
   const arrows = new Arrows(diagonal(box));
   const groups = mechanisms.map((mechanism) => mechanism.group);
   const highlight = new Highlight(groups);
