@@ -3,7 +3,7 @@
 mod common;
 
 use common::model;
-use holonom::record::Recording;
+use holonom::record::{Anchor, Recording, WheelsKind};
 
 /// A run of the model's own with the forces of all joints, also where bodies share nodes.
 fn run(text: &str, end: f64) -> Recording {
@@ -182,4 +182,48 @@ fn a_planet_moves_by_its_bearing_and_its_teeth() {
         }
         assert!(teeth.iter().any(|f| f.abs() > 0.1), "teeth push along {axis}");
     }
+}
+
+/// What the picture has of wheels: pitch radii whose sum, or difference for a wheel inside another, is the distance of the axes, and the ratio theirs.
+#[test]
+fn wheels_are_drawn_with_their_radii() {
+    let drawn = |signs: [f64; 2], turned: [bool; 2], coupler: &str| {
+        let model = model(&pair(0.3, signs, turned, coupler, 0.0));
+        let [wheels] = &model.scene.wheels[..] else { panic!("{:?}", model.scene.wheels) };
+        assert_eq!((&wheels.joints, &wheels.bodies), (&["axle_a", "axle_b"].map(String::from), &["a", "b"].map(|name| Some(name.into()))));
+        (wheels.kind, wheels.radii.map(|radius| radius.expect("a wheel is round")))
+    };
+    for (signs, turned) in [([1.0, 1.0], [false; 2]), ([-1.0, 1.0], [false; 2]), ([1.0, -1.0], [true, false]), ([1.0, 1.0], [true; 2])] {
+        // Outside teeth have the wheels turn against each other, however the joints are written.
+        let sense = signs[0] * signs[1] * if turned[0] == turned[1] { 1.0 } else { -1.0 };
+        let (kind, radii) = drawn(signs, turned, &format!("type = \"gear\"\nratio = {}", -2.0 * sense));
+        assert_eq!(kind, WheelsKind::Gear);
+        close("outside", &radii, &[0.1, 0.2]);
+        let (_, radii) = drawn(signs, turned, &format!("type = \"gear\"\nratio = {}", 2.0 * sense));
+        close("inside", &radii, &[0.3, 0.6]);
+    }
+    let belt = |crossed: bool| drawn([1.0; 2], [false; 2], &format!("type = \"pulley\"\nradii = [0.1, 0.15]\ncrossed = {crossed}"));
+    assert_eq!([belt(false), belt(true)], [WheelsKind::Belt, WheelsKind::CrossedBelt].map(|kind| (kind, [0.1, 0.15])));
+}
+
+/// A curve goes through its points, in the axes of the body that has it, and a bushing is on both of its bodies.
+#[test]
+fn curves_discs_and_bushings_are_drawn_where_they_are() {
+    let model = model(
+        "plane = \"xy\"\n[body.cam]\nmass = 1\ninertia = 1\nposition = [1, 2]\norientation = { angle = \"90*deg\" }\n\
+         [body.follower]\nmass = 1\ninertia = 1\nposition = [2, 2]\n\
+         [joint.groove]\ntype = \"point-on-curve\"\nbetween = [\"cam\", \"follower\"]\nat = [2, 2]\nclosed = true\n\
+         curve = [[2, 2], [1, 3], [0, 2], [1, 1]]\n\
+         [force.mount]\ntype = \"bushing\"\nbetween = [\"ground\", \"follower\"]\nat = [2, 2.5]\nstiffness = [1, 1, 1]\n",
+    );
+    let curve = &model.scene.joints[0].curve;
+    // A quarter turn back from the axes of the model.
+    for [x, y] in [[0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]] {
+        assert!(curve.iter().any(|place| (place[0] - x).hypot(place[1] - y) < 1e-12), "[{x}, {y}] is not in {curve:?}");
+    }
+    let apart = |k: usize| (curve[0][k] - curve[curve.len() - 1][k]).abs();
+    assert!(apart(0).max(apart(1)) < 1e-12, "it is closed: {curve:?}");
+    let bushing = &model.scene.bushings[0];
+    assert_eq!((bushing.name.as_str(), &bushing.at), ("mount", &Anchor::Body { body: "follower".into(), at: [0.0, 0.5, 0.0] }));
+    assert!(model.scene.bodies[1].places.contains(&[0.0, 0.5, 0.0]), "{:?}", model.scene.bodies[1].places);
 }

@@ -269,7 +269,18 @@ fn body(name: &str, shape: Option<SceneShape>, places: &[Vec3]) -> SceneBody {
 
 fn joint(name: &str, kind: &str, (body, other): (Option<&str>, Option<&str>), at: Vec3, axis: Option<Vec3>) -> SceneJoint {
     let (name, kind, drives) = (name.to_owned(), kind.to_owned(), Vec::new());
-    SceneJoint { name, kind, body: body.map(str::to_owned), other: other.map(str::to_owned), at, axis, acts_on_other: true, drives }
+    SceneJoint {
+        name,
+        kind,
+        body: body.map(str::to_owned),
+        other: other.map(str::to_owned),
+        at,
+        axis,
+        acts_on_other: true,
+        drives,
+        radius: None,
+        curve: Vec::new(),
+    }
 }
 
 fn wedge() -> SceneShape {

@@ -34,6 +34,22 @@ export interface Joint {
   acts_on_other: boolean;
   /** Drives and efforts along its coordinates. */
   drives: string[];
+  /** Of the disc that rolls, m. */
+  radius?: number;
+  /** Places along the curve that a point follows, in the axes of `body` or in the world, m. */
+  curve?: Vec3[];
+}
+
+/** Two wheels with teeth or a belt between them, or a wheel and a rack, which has no radius. */
+export interface Wheels {
+  name: string;
+  kind: "gear" | "belt" | "crossed-belt";
+  /** The joints that they turn about. */
+  joints: [string, string];
+  /** The bodies that they are on; null: the world. */
+  bodies: [string | null, string | null];
+  /** m */
+  radii: [number | null, number | null];
 }
 
 export interface Line {
@@ -55,6 +71,9 @@ export interface Scene {
   joints: Joint[];
   /** Forces and moments of which columns are recorded. */
   loads: { name: string; at: Anchor }[];
+  /** Where they sit on their second body. */
+  bushings: { name: string; at: Anchor }[];
+  wheels: Wheels[];
 }
 
 export interface Run {
@@ -119,8 +138,9 @@ export function seenFromOrigin(scene: Scene, origin: Vec3): Scene {
   return {
     ...scene,
     lines: scene.lines.map((line) => ({ ...line, from: end(line.from), to: end(line.to) })),
-    joints: scene.joints.map((joint) => (joint.body === null ? { ...joint, at: from(joint.at) } : joint)),
+    joints: scene.joints.map((joint) => (joint.body === null ? { ...joint, at: from(joint.at), curve: joint.curve?.map(from) } : joint)),
     loads: scene.loads.map((load) => ({ ...load, at: end(load.at) })),
+    bushings: scene.bushings.map((bushing) => ({ ...bushing, at: end(bushing.at) })),
   };
 }
 

@@ -16,7 +16,8 @@ use super::lengths::DrivenLength;
 use super::signals::Signals;
 use super::start::Target;
 use crate::record::{
-    Anchor, Line, LineKind, RecordedCoupling, RecordedForce, RecordedRod, RecordedTransmission, SceneAxis, SceneJoint, SceneLoad, Shows,
+    Anchor, Line, LineKind, RecordedCoupling, RecordedForce, RecordedRod, RecordedTransmission, SceneAxis, SceneJoint, SceneLoad,
+    SceneWheels, Shows,
 };
 use crate::system::{Signal, SystemBuilder};
 
@@ -108,6 +109,8 @@ pub struct Assembly<'a> {
     pub(in crate::model) faulty_joints: HashSet<String>,
     pub(in crate::model) scene_joints: Vec<SceneJoint>,
     pub(in crate::model) loads: Vec<SceneLoad>,
+    pub(in crate::model) bushings: Vec<SceneLoad>,
+    pub(in crate::model) wheels: Vec<SceneWheels>,
     /// Where joints are to be at the start.
     pub(in crate::model) starts: Vec<Target>,
     /// Distances that are driven.
@@ -169,6 +172,8 @@ impl<'a> Assembly<'a> {
             faulty_joints: HashSet::new(),
             scene_joints: Vec::new(),
             loads: Vec::new(),
+            bushings: Vec::new(),
+            wheels: Vec::new(),
             starts: Vec::new(),
             lengths: Vec::new(),
             efforts: Vec::new(),
@@ -246,6 +251,20 @@ impl Assembly<'_> {
     pub fn draw_load(&mut self, entry: &Entry<'_>, at: &End) {
         let load = SceneLoad { name: entry.name.to_string(), at: self.anchor(at) };
         self.loads.push(load);
+    }
+
+    /// Draws a bushing where it sits at the start.
+    pub(in crate::model) fn draw_bushing(&mut self, entry: &Entry<'_>, members: [Member; 2], at: Vec3) {
+        for member in members {
+            if let Member::Body(k) = member {
+                self.body_places[k].push(self.bodies[k].local(at));
+            }
+        }
+        let at = match members[1] {
+            Member::Body(k) => Anchor::Body { body: self.bodies[k].name.clone(), at: self.axes.in_world(self.bodies[k].local(at)) },
+            _ => Anchor::Fixed(self.axes.in_world(at)),
+        };
+        self.bushings.push(SceneLoad { name: entry.name.to_string(), at });
     }
 
     /// Draws a drive or an effort along a coordinate of a joint.

@@ -30,6 +30,8 @@ pub(super) fn finish(
         joints,
         scene_joints,
         loads,
+        bushings,
+        wheels,
         efforts,
         couplings,
         rods,
@@ -58,6 +60,8 @@ pub(super) fn finish(
         bodies: scene_bodies.collect(),
         joints: scene_joints,
         loads,
+        bushings,
+        wheels,
     };
     let channels = channels(axes, &points, &bodies, &frames, &joints);
     let bodies: Vec<BodyInfo> = bodies.iter().zip(&frames).map(|(body, frame)| BodyInfo::new(body, frame, axes, &mut builder)).collect();

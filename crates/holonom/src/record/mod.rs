@@ -22,7 +22,9 @@ pub use measure::{Formula, RecordedInput, RecordedMeasure, Running, RunningValue
 pub(crate) use measure::{MeasureReads, Series};
 pub use peaks::{Extremes, Peak, Peaks};
 pub use recorder::{COLUMNS, Constraints, Recorder, RecorderMark};
-pub use scene::{Anchor, Line, LineKind, PointKind, Scene, SceneAxis, SceneBody, SceneJoint, SceneLoad, ScenePoint, SceneShape};
+pub use scene::{
+    Anchor, Line, LineKind, PointKind, Scene, SceneAxis, SceneBody, SceneJoint, SceneLoad, ScenePoint, SceneShape, SceneWheels, WheelsKind,
+};
 pub use transmission::{RecordedTransmission, Transmission};
 
 /// A table of columns of equal length; row 0 is the start.

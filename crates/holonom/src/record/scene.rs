@@ -21,6 +21,10 @@ pub struct Scene {
     pub joints: Vec<SceneJoint>,
     /// Forces and moments on points and bodies.
     pub loads: Vec<SceneLoad>,
+    /// Bushings, where they sit on their second body.
+    pub bushings: Vec<SceneLoad>,
+    /// Wheels that couplers tie.
+    pub wheels: Vec<SceneWheels>,
 }
 
 /// A point of the model.
@@ -182,6 +186,39 @@ pub struct SceneJoint {
     pub acts_on_other: bool,
     /// Drives and efforts along its coordinates, by name.
     pub drives: Vec<String>,
+    /// Of the disc that rolls on a plane, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f64>,
+    /// Places along the curve that a point follows, in the axes of `body` from its centre of mass, or in the world (3 each), m.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub curve: Vec<[f64; 3]>,
+}
+
+/// Two wheels with teeth or a belt between them, or a wheel and a rack.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SceneWheels {
+    /// Of the coupler.
+    pub name: String,
+    /// What ties them.
+    pub kind: WheelsKind,
+    /// The joints that they turn about; the second may be the rail of a rack.
+    pub joints: [String; 2],
+    /// The bodies that they are on; none: fixed in the world.
+    pub bodies: [Option<String>; 2],
+    /// Radii, of gears those of the pitch circles, m; none of a rack.
+    pub radii: [Option<f64>; 2],
+}
+
+/// What ties two wheels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WheelsKind {
+    /// Teeth.
+    Gear,
+    /// A belt around both.
+    Belt,
+    /// A belt that crosses itself.
+    CrossedBelt,
 }
 
 /// A force or moment of which columns are recorded.

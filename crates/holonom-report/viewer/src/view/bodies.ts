@@ -35,6 +35,8 @@ export class Bodies {
   private readonly frames = new Map<string, Frame>();
   private readonly materials: Materials;
   private readonly pen: Pen;
+  /** The width of things on each body: small bodies have small ones. */
+  private readonly units: Map<string, number>;
   private readonly legible: boolean;
   private readonly solids = new Map<Shape | string, Solid>();
   private readonly layers: Map<string, number>;
@@ -43,13 +45,15 @@ export class Bodies {
   constructor(private readonly motion: Motion, size: number, runColour: (() => string) | undefined) {
     const { scene } = motion.run;
     this.materials = new Materials(runColour);
-    const unit = unitOf(scene.bodies.map((body) => extent(outline(body, motion.plane))), size);
+    const extents = scene.bodies.map((body) => extent(outline(body, motion.plane)));
+    const unit = unitOf(extents, size);
     this.pen = { unit, thickness: unit };
+    this.units = new Map(scene.bodies.map(({ name }, i) => [name, Math.min(unit, unitOf([extents[i]], size))]));
     this.legible = unit > LEGIBLE * size;
     this.layers = layers(scene);
     this.axes = commonAxes(motion);
     scene.bodies.forEach((body, index) => this.addBody(body, index));
-    if (scene.bodies.length > 0 && this.legible) this.symbols.push(...addJoints(motion, this.pen, this.materials, this.frames, this.group));
+    if (scene.bodies.length > 0 && this.legible) this.symbols.push(...addJoints(motion, this.pen, this.units, this.materials, this.frames, this.group));
   }
 
   update(t: number): void {
@@ -91,7 +95,7 @@ export class Bodies {
       if (body.shape) this.place(part, body.shape);
       group.add(part);
     }
-    if (!body.shape && this.legible) group.add(this.centreMark(-depth));
+    if (!body.shape && this.legible) group.add(this.centreMark(-depth, this.units.get(body.name) ?? this.pen.unit));
     mark(group, { sort: "body", kind: "body", name: body.name });
     this.group.add(group);
     this.frames.set(body.name, { group, index, depth, surface, isHidden: false });
@@ -113,10 +117,11 @@ export class Bodies {
   private sketched(body: Body, layer: number): Solid {
     const normal = this.motion.planar ? this.motion.across : this.axes.get(body.name);
     // In space neighbours lie in each other, and one shows through as the thinner.
-    const thickness = this.motion.planar ? this.pen.thickness : this.pen.thickness * (1.5 - 0.3 * layer);
-    const rounded = (place: number[]): number[] => place.map((x) => Math.round(x / (1e-3 * this.pen.unit)));
-    const key = JSON.stringify([body.places.map(rounded), normal?.toArray().map((x) => x.toFixed(5)), thickness]);
-    return this.once(key, () => sketch(body.places.map((place) => new Vector3(...place)), normal, { ...this.pen, thickness }));
+    const unit = this.units.get(body.name) ?? this.pen.unit;
+    const thickness = this.motion.planar ? this.pen.thickness : unit * (1.5 - 0.3 * layer);
+    const rounded = (place: number[]): number[] => place.map((x) => Math.round(x / (1e-3 * unit)));
+    const key = JSON.stringify([body.places.map(rounded), normal?.toArray().map((x) => x.toFixed(5)), unit, thickness]);
+    return this.once(key, () => sketch(body.places.map((place) => new Vector3(...place)), normal, { unit, thickness }));
   }
 
   /** Bodies that look the same share their geometry. */
@@ -126,9 +131,9 @@ export class Bodies {
     return solid;
   }
 
-  private centreMark(depth: number): Mesh {
+  private centreMark(depth: number, unit: number): Mesh {
     const mark = new Mesh(CENTRE_MARK, this.materials.centre);
-    mark.scale.setScalar(this.motion.planar ? 0.75 * this.pen.unit : 0.95 * this.pen.unit);
+    mark.scale.setScalar(this.motion.planar ? 0.75 * unit : 0.95 * unit);
     mark.position.copy(this.motion.across).multiplyScalar(this.motion.planar ? depth : 0);
     mark.quaternion.copy(this.motion.plane);
     this.symbols.push(mark);

@@ -4,6 +4,7 @@ import { Box3, Vector3 } from "three";
 import { carried, type Motion } from "../motion";
 import type { Vec3 } from "../payload";
 import { outline } from "./outline";
+import { poseOf, sidesOf } from "./side";
 
 /** Rows looked at per run; a box needs no more. */
 const SAMPLES = 400;
@@ -44,17 +45,26 @@ export function diagonal(box: Box3): number {
 function fixedPlaces(motion: Motion): Vec3[] {
   const { lines, joints } = motion.run.scene;
   const ends = lines.flatMap((line) => [line.from, line.to].flatMap((end) => ("fixed" in end ? [end.fixed] : [])));
-  return [...ends, ...joints.flatMap((joint) => (joint.body === null && HOLDS_PLACE.has(joint.kind) ? [joint.at] : []))];
+  const held = joints.filter(({ body }) => body === null);
+  return [...ends, ...held.flatMap((joint) => [...(HOLDS_PLACE.has(joint.kind) ? [joint.at] : []), ...(joint.curve ?? [])])];
 }
 
 function placesInRow(motion: Motion, row: number): Vec3[] {
-  const { points, bodies } = motion.run.scene;
+  const { points, bodies, joints } = motion.run.scene;
   const places = points.map((point) => motion.inRow(point.name, row)).filter((place) => place !== undefined);
   for (const body of bodies) {
     const pose = motion.poseInRow(body.name, row);
     if (!pose) continue;
     const { places: corners, round } = outline(body, motion.plane);
     for (const corner of corners) places.push(...ball(carried(pose, corner), round));
+  }
+  // Bodies without a shape have the discs that they roll on.
+  const shaped = new Set(bodies.flatMap(({ name, shape }) => (shape ? [name] : [])));
+  for (const joint of joints) {
+    if (joint.radius === undefined || shaped.has(joint.other ?? "")) continue;
+    const disc = sidesOf(motion, joint)?.[1];
+    const pose = disc && poseOf(motion, disc.body, row);
+    if (pose) places.push(...ball(carried(pose, disc.at.toArray()), joint.radius));
   }
   return places;
 }

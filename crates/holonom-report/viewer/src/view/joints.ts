@@ -1,8 +1,8 @@
 // Puts the symbols of the joints on the bodies they belong to, and what stands still into the world.
 
-import { Group, Mesh, Vector3 } from "three";
+import { CatmullRomCurve3, Group, Mesh, Quaternion, TubeGeometry, Vector3 } from "three";
 import { carried, type Motion } from "../motion";
-import type { Joint } from "../payload";
+import type { Anchor, Joint, Vec3, Wheels } from "../payload";
 import type { Frame } from "./bodies";
 import { foot } from "./foot";
 import type { Materials } from "./materials";
@@ -10,14 +10,18 @@ import { outline } from "./outline";
 import { mark } from "./pick";
 import { poseOf, sidesOf, travel, type Side } from "./side";
 import type { Pen } from "./sketch";
-import { driveOf, RAIL, RAIL_END, railOf, REVERSIBLE, sliderOf, STANDS, symbolOf, type Piece } from "./symbols";
+import { BUSHING, driveOf, RAIL, RAIL_END, railOf, REVERSIBLE, sliderOf, STANDS, symbolOf, type Piece } from "./symbols";
+import { disc, sidesOfWheels, wheel } from "./wheels";
 
 const Z = new Vector3(0, 0, 1);
 
-/** The groups that hold the symbols. */
-export function addJoints(motion: Motion, pen: Pen, materials: Materials, frames: Map<string, Frame>, world: Group): Group[] {
-  const builder = new JointBuilder(motion, pen, materials, frames, world);
-  for (const joint of motion.run.scene.joints) builder.add(joint);
+/** The groups that hold the symbols. `units`: the width of things on each body. */
+export function addJoints(motion: Motion, pen: Pen, units: Map<string, number>, materials: Materials, frames: Map<string, Frame>, world: Group): Group[] {
+  const builder = new JointBuilder(motion, pen, units, materials, frames, world);
+  const { joints, wheels, bushings } = motion.run.scene;
+  for (const joint of joints) builder.add(joint);
+  for (const pair of wheels) builder.addWheels(pair);
+  for (const { name, at } of bushings) builder.addBushing(name, at);
   return builder.groups;
 }
 
@@ -27,7 +31,9 @@ class JointBuilder {
 
   constructor(
     private readonly motion: Motion,
-    private readonly pen: Pen,
+    /** Of what is added at the moment. */
+    private pen: Pen,
+    private readonly units: Map<string, number>,
     private readonly materials: Materials,
     private readonly frames: Map<string, Frame>,
     private readonly world: Group,
@@ -36,6 +42,7 @@ class JointBuilder {
   add(joint: Joint): void {
     const sides = sidesOf(this.motion, joint);
     if (!sides) return;
+    this.sizeBy([joint.body, joint.other]);
     if (REVERSIBLE.has(joint.kind) && joint.other === null) sides.reverse();
     const [here, other] = sides;
     const before = this.groups.length;
@@ -45,9 +52,47 @@ class JointBuilder {
     if (radius !== undefined) this.addRail(sides, radius);
     // In a plane, what is held by the slider comes in front of it.
     if (!this.isSolid(other.body)) this.hang(sliderOf(joint.kind), other, undefined, this.motion.planar ? -2 * this.pen.unit : 0);
+    if (joint.curve) this.addCurve(here, joint.curve);
+    if (joint.radius !== undefined && !this.isSolid(other.body)) {
+      this.hang([{ geometry: disc(joint.radius / this.pen.unit), part: "body" }], other);
+    }
     if (STANDS.has(joint.kind) && (joint.body === null || joint.other === null)) this.addFoot(here, joint.body ?? joint.other, hub);
     for (const group of this.groups.slice(before)) mark(group, { sort: "joint", kind: `${joint.kind} joint`, name: joint.name });
     if (joint.drives.length > 0) this.addDrive(joint, here, hub ?? 2 * this.pen.unit);
+  }
+
+  /** A symbol is as large as the smallest of the bodies that it ties has room for. */
+  private sizeBy(bodies: (string | null)[]): void {
+    const units = bodies.flatMap((body) => this.units.get(body ?? "") ?? []);
+    this.pen = { ...this.pen, unit: Math.min(...(units.length > 0 ? units : [this.pen.thickness])) };
+  }
+
+  addWheels(wheels: Wheels): void {
+    const before = this.groups.length;
+    this.sizeBy(wheels.bodies);
+    sidesOfWheels(this.motion, wheels).forEach((side, k) => {
+      const radius = wheels.radii[k];
+      if (side && radius) this.hang([{ geometry: wheel(radius / this.pen.unit, wheels.kind === "gear"), part: "joint" }], side);
+    });
+    for (const group of this.groups.slice(before)) mark(group, { sort: "joint", kind: wheels.kind.replace("-", " "), name: wheels.name });
+  }
+
+  addBushing(name: string, at: Anchor): void {
+    const before = this.groups.length;
+    const axis = this.motion.across.clone();
+    this.sizeBy(["body" in at ? at.body.body : null]);
+    if ("body" in at) this.hang(BUSHING, { body: at.body.body, at: new Vector3(...at.body.at), axis });
+    if ("fixed" in at) this.hang(BUSHING, { body: null, at: new Vector3(...at.fixed), axis });
+    for (const group of this.groups.slice(before)) mark(group, { sort: "line", kind: "bushing", name });
+  }
+
+  private addCurve(here: Side, places: Vec3[]): void {
+    const { unit } = this.pen;
+    // Around the middle of the joint, in units, as all pieces are.
+    const points = places.map((place) => new Vector3(...place).sub(here.at).divideScalar(unit));
+    const geometry = new TubeGeometry(new CatmullRomCurve3(points), 2 * points.length, 0.22, 8);
+    geometry.applyQuaternion(new Quaternion().setFromUnitVectors(here.axis, Z));
+    this.hang([{ geometry, part: "joint" }], here);
   }
 
   private addDrive({ kind, name, drives }: Joint, here: Side, hub: number): void {
@@ -79,7 +124,8 @@ class JointBuilder {
     if (this.motion.planar) return 2.4 * unit;
     const reach = sides.map(({ body, at, axis }) => {
       const solid = this.motion.run.scene.bodies.find((other) => other.name === body && other.shape);
-      if (!solid) return 0;
+      // Of a link half its thickness.
+      if (!solid) return 0.75 * (this.units.get(body ?? "") ?? 0);
       const { places, round } = outline(solid, this.motion.plane);
       const along = places.map((place) => Math.abs(new Vector3(...place).sub(at).dot(axis)));
       return Math.max(...along) + round;

@@ -2,14 +2,16 @@
 
 import { BackSide, BoxGeometry, BufferGeometry, Color, CylinderGeometry, FrontSide, Group, Line, LineBasicMaterial, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3, type Side } from "three";
 import type { Motion } from "../motion";
-import type { Anchor, Line as SceneLine, Scene, Vec3 } from "../payload";
+import type { Anchor, Line as SceneLine, Scene, Vec3, Wheels } from "../payload";
 import { bodyColor, curveColor, theme, type Theme } from "../theme";
 import { Bodies } from "./bodies";
 import { Cylinder } from "./cylinder";
 import type { Look } from "./looks";
+import { extent, outline } from "./outline";
 import { mark } from "./pick";
 import { coil, stick, stretch } from "./shapes";
 import { Trail } from "./trail";
+import { sidesOfWheels, straightParts } from "./wheels";
 
 /** More would be a tangle. */
 const MOST_TRAILS = 16;
@@ -17,8 +19,11 @@ const MOST_TRAILS = 16;
 /** Rows that are looked at for the shortest length of a cylinder. */
 const SAMPLES = 400;
 
+/** What is shorter than this share of the picture, or ties a body that is, is drawn as much thinner, but for the least. */
+const [ORDINARY, LEAST] = [0.15, 0.15];
+
 /** Radii as shares of the size of the whole picture. */
-const RADIUS = { bar: 0.0095, pin: 0.0135, rod: 0.0038, spring: 0.016, wire: 0.0028, rope: 0.0025, point: 0.017, ground: 0.026 };
+const RADIUS = { bar: 0.0095, pin: 0.0135, rod: 0.0038, spring: 0.016, wire: 0.0028, rope: 0.0025, belt: 0.0032, point: 0.017, ground: 0.026 };
 
 export class Mechanism {
   readonly group = new Group();
@@ -34,6 +39,10 @@ export class Mechanism {
   private readonly scale: number;
   private readonly scene: Scene;
   private readonly bodies: Bodies;
+  /** How far bodies reach, by name, m. */
+  private readonly extents: Map<string, number>;
+  /** Of the lines that end at a place. */
+  private readonly thinnest = new Map<string, number>();
   /** Those of bodies, by name. */
   private readonly trails = new Map<string, Trail>();
 
@@ -42,7 +51,13 @@ export class Mechanism {
     this.runColour = runs > 1 ? () => curveColor(index) : undefined;
     this.scale = size * (1 + (0.8 * index) / runs);
     this.side = index === 0 ? FrontSide : BackSide;
+    this.extents = new Map(this.scene.bodies.map((body) => [body.name, extent(outline(body, motion.plane))]));
+    for (const { kind, from, to } of this.scene.lines) {
+      const thinness = kind === "guide" ? 1 : this.thinness([from, to]);
+      for (const key of [from, to].map((end) => JSON.stringify(end))) this.thinnest.set(key, Math.min(thinness, this.thinnest.get(key) ?? 1));
+    }
     for (const line of this.scene.lines) this.addLine(line);
+    for (const wheels of this.scene.wheels) this.addBelt(wheels);
     this.addPins();
     this.addPoints();
     this.addGround();
@@ -75,12 +90,25 @@ export class Mechanism {
     if (kind === "cylinder") return this.addCylinder(name, from, to);
     const start = this.ends(from, to, this.motion.run.times[0] ?? 0);
     const natural = kind === "spring" ? Math.max(start ? start[0].distanceTo(start[1]) : 0, this.scale * 0.05) : 1;
-    const geometry = kind === "spring" ? coil(RADIUS.spring * this.scale, RADIUS.wire * this.scale, natural) : stick(RADIUS[kind] * this.scale);
+    const scale = this.scale * this.thinness([from, to]);
+    const geometry = kind === "spring" ? coil(RADIUS.spring * scale, RADIUS.wire * scale, natural) : stick(RADIUS[kind] * scale);
     const mesh = this.solid(geometry, (colours) => this.runColour?.() ?? colours[kind]);
     mark(mesh, { sort: "line", kind, name });
     this.updates.push((t) => {
       const ends = this.ends(from, to, t);
       mesh.visible = ends !== undefined && stretch(mesh, ends[0], ends[1], natural);
+    });
+  }
+
+  /** The straight parts; the wheels are drawn with the joints. */
+  private addBelt(wheels: Wheels): void {
+    const sides = sidesOfWheels(this.motion, wheels).filter((side) => side !== undefined);
+    if (wheels.kind === "gear" || sides.length < 2) return;
+    const meshes = [0, 1].map(() => this.solid(stick(RADIUS.belt * this.scale), (colours) => this.runColour?.() ?? colours.rope));
+    for (const mesh of meshes) mark(mesh, { sort: "joint", kind: "belt", name: wheels.name });
+    this.updates.push((t) => {
+      const parts = straightParts(this.motion, wheels, sides, t);
+      meshes.forEach((mesh, k) => (mesh.visible = k < parts.length && stretch(mesh, ...parts[k])));
     });
   }
 
@@ -107,14 +135,17 @@ export class Mechanism {
   private addPins(): void {
     const hasRoom = ({ from, to }: SceneLine): boolean => {
       const ends = this.ends(from, to, this.motion.run.times[0] ?? 0);
-      return ends !== undefined && ends[0].distanceTo(ends[1]) > 4 * RADIUS.pin * this.scale;
+      return ends !== undefined && ends[0].distanceTo(ends[1]) > 4 * RADIUS.pin * this.scale * this.thinness([from, to]);
     };
     const balls = new Set(this.scene.points.filter(({ kind, mass }) => kind === "driven" || (kind === "free" && mass > 0)).map(({ name }) => name));
-    const ends = this.scene.lines.filter((line) => line.kind === "bar" && hasRoom(line)).flatMap(({ name, from, to }) => [from, to].map((anchor) => ({ name, anchor })));
+    const ends = this.scene.lines.filter((line) => line.kind === "bar" && hasRoom(line)).flatMap(({ name, from, to }) => {
+      const thinness = this.thinness([from, to]);
+      return [from, to].map((anchor) => ({ name, anchor, thinness }));
+    });
     const places = new Map(ends.map((end) => [JSON.stringify(end.anchor), end]));
-    for (const { name, anchor } of places.values()) {
+    for (const { name, anchor, thinness } of places.values()) {
       if ("point" in anchor && balls.has(anchor.point)) continue;
-      for (const mesh of this.pin()) {
+      for (const mesh of this.pin(thinness)) {
         mark(mesh, "point" in anchor ? { sort: "point", kind: "point", name: anchor.point } : { sort: "line", kind: "bar", name });
         this.updates.push((t) => this.put(mesh, this.motion.anchorAt(anchor, t)));
       }
@@ -122,8 +153,8 @@ export class Mechanism {
   }
 
   /** In a plane a pin in an eye, in space a ball. */
-  private pin(): Mesh[] {
-    const radius = RADIUS.pin * this.scale;
+  private pin(thinness: number): Mesh[] {
+    const radius = RADIUS.pin * this.scale * thinness;
     if (!this.motion.planar) return [this.solid(new SphereGeometry(radius, 24, 16), (colours) => colours.joint)];
     const across = new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), this.motion.across);
     const disc = (share: number, length: number): BufferGeometry => new CylinderGeometry(share * radius, share * radius, length * radius, 28).applyQuaternion(across);
@@ -150,7 +181,7 @@ export class Mechanism {
     for (const { name, kind, mass } of this.scene.points) {
       if (kind === "fixed") continue;
       const share = heaviest > 0 && mass > 0 ? Math.max(Math.cbrt(mass / heaviest), 0.6) : 0.55;
-      const ball = new SphereGeometry(RADIUS.point * this.scale * share, 28, 20);
+      const ball = new SphereGeometry(RADIUS.point * this.scale * share * this.thinnessAt({ point: name }), 28, 20);
       const colour = kind === "driven" ? "driven" : undefined;
       const mesh = this.solid(ball, (colours) => this.runColour?.() ?? (colour ? colours[colour] : curveColor(0)));
       mark(mesh, { sort: "point", kind: "point", name });
@@ -160,17 +191,32 @@ export class Mechanism {
 
   /** Cubes where something is held: fixed points and the fixed ends of what carries load. */
   private addGround(): void {
-    const edge = RADIUS.ground * this.size;
-    const cube = (): Mesh => this.solid(new BoxGeometry(edge, edge, edge), (colours) => colours.ground, FrontSide);
+    const cube = (at: Anchor): Mesh => {
+      const edge = RADIUS.ground * this.size * this.thinnessAt(at);
+      return this.solid(new BoxGeometry(edge, edge, edge), (colours) => colours.ground, FrontSide);
+    };
     for (const { name, kind } of this.scene.points) {
       if (kind !== "fixed") continue;
-      const mesh = cube();
+      const mesh = cube({ point: name });
       mark(mesh, { sort: "point", kind: "fixed point", name });
       this.updates.push((t) => this.put(mesh, this.motion.at(name, t)));
     }
     const held = this.scene.lines.filter((line) => line.kind !== "guide").flatMap((line) => [line.from, line.to]);
     const places = new Map(held.flatMap((end) => ("fixed" in end ? [[end.fixed.join(), end.fixed] as const] : [])));
-    for (const place of places.values()) this.put(cube(), place);
+    for (const place of places.values()) this.put(cube({ fixed: place }), place);
+  }
+
+  /** Of a line between places: at most 1. */
+  private thinness(ends: [Anchor, Anchor]): number {
+    const places = this.ends(...ends, this.motion.run.times[0] ?? 0);
+    const tied = ends.map((end) => ("body" in end ? (this.extents.get(end.body.body) ?? 0) : 0));
+    const lengths = [places ? places[0].distanceTo(places[1]) : 0, ...tied];
+    return Math.max(Math.min(1, ...lengths.filter((length) => length > 0).map((length) => length / (ORDINARY * this.size))), LEAST);
+  }
+
+  /** Of the thinnest line that ends at a place. */
+  private thinnessAt(place: Anchor): number {
+    return this.thinnest.get(JSON.stringify(place)) ?? 1;
   }
 
   private addBodies(): Bodies {

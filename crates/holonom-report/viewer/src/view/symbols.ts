@@ -30,6 +30,12 @@ const ROUND_SLEEVE: Piece[] = [{ geometry: rod(1.5, 5), part: "body" }];
 const PANE: Piece[] = [{ geometry: new BoxGeometry(11, 11, 0.25), part: "pane" }];
 const MARK: Piece[] = [{ geometry: new OctahedronGeometry(1.3), part: "joint" }];
 
+/** A ring of rubber around a pin. */
+export const BUSHING: Piece[] = [
+  { geometry: new TorusGeometry(1.25, 0.6, 14, 36), part: "ground" },
+  { geometry: rod(0.7, 2.4), part: "pin" },
+];
+
 /** A bent arrow around the axis. */
 const BEND = 1.55 * Math.PI;
 const TURNS: Piece[] = [

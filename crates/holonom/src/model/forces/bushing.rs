@@ -64,6 +64,7 @@ impl Element for Bushing {
         if stiffness.iter().chain(damping.iter().flatten()).all(|&number| number == 0.0) {
             return Err(entry.refuse_all(format!("the bushing `{}` does nothing", entry.name), "give it a stiffness or a damping above 0"));
         }
+        assembly.draw_bushing(entry, members, at);
         let coordinates = coordinates(assembly, members, at);
         let axes = members.map(|member| (0..assembly.dimension()).map(|k| assembly.frame(member).vector(unit(k))).collect());
         assembly.show(Shows::Bushing { coordinates: shown(&coordinates, assembly.axes.name), axes });

@@ -46,6 +46,11 @@ impl Curve {
         vector(&self.place, |spline| spline.evaluate(s))
     }
 
+    /// So many places along it, for the picture.
+    pub fn places(&self, count: u32) -> impl Iterator<Item = Vec3> {
+        (0..=count).map(move |k| self.at(self.length * f64::from(k) / f64::from(count)))
+    }
+
     /// The tangent at `s`, not of unit length.
     pub fn tangent(&self, s: f64) -> Vec3 {
         vector(&self.place, |spline| spline.slope(s))

@@ -6,7 +6,7 @@ use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
 use crate::model::key::Shape;
-use crate::record::Transmission;
+use crate::record::{Transmission, WheelsKind};
 
 /// wheels that mesh, or any two coordinates of which one is a multiple of the other
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -65,12 +65,20 @@ impl Element for Gear {
         if ratio == 0.0 {
             return Err(entry.refuse("ratio", "a ratio of zero locks the first joint and frees the second", "give the ratio of the two"));
         }
+        let seats = Seats::find(assembly, entry, [&first, &second])?;
+        // Both wheels have one velocity at the pitch point.
+        let share_of = |Seats { senses: [a, b], .. }: &Seats| b / (b - a * ratio);
+        if let Ok(seats) = &seats
+            && let (share, true) = (share_of(seats), seats.distance > 0.0 && second.is_angle)
+            && share.is_finite()
+        {
+            let radii = [share, 1.0 - share].map(|share| Some(share.abs() * seats.distance));
+            seats.draw(assembly, entry, WheelsKind::Gear, radii);
+        }
         if let Some(angle) = entry.optional("pressure_angle", &self.pressure_angle, |angle, entry, key| angle.number(entry, key))? {
             let slope = slope(entry, angle)?;
-            let seats = Seats::of(assembly, entry, "pressure_angle", [&first, &second])?;
-            let [a, b] = seats.senses;
-            // Both wheels have one velocity at the pitch point.
-            let share = b / (b - a * ratio);
+            let seats = Seats::wanted(seats, entry, "pressure_angle")?;
+            let share = share_of(&seats);
             if !share.is_finite() || seats.distance == 0.0 || !second.is_angle {
                 let message = "wheels about one axis, or that turn alike, do not mesh, and a rail is no wheel";
                 return Err(entry.refuse_key("pressure_angle", message, "leave `pressure_angle` out, or check the sign of `ratio`"));

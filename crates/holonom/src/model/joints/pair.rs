@@ -57,6 +57,8 @@ pub struct Pair<'a, 'b> {
     frames: [Frame; 2],
     names: usize,
     is_shared: bool,
+    radius: Option<f64>,
+    curve: Vec<Vec3>,
 }
 
 /// The first and the second body.
@@ -72,12 +74,16 @@ pub(in crate::model) fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>, jo
     let geometry = assembly.geometries.next().expect("every joint was surveyed");
     let frames = [0, 1].map(|side| assembly.frame(geometry.members[side]));
     let first = assembly.builder.rows();
-    let mut pair = Pair { assembly, entry, geometry, coordinates: Vec::new(), frames, names: 0, is_shared: false };
+    let mut pair =
+        Pair { assembly, entry, geometry, coordinates: Vec::new(), frames, names: 0, is_shared: false, radius: None, curve: Vec::new() };
     joint.rows(&mut pair)?;
-    let Pair { geometry, coordinates, is_shared, .. } = pair;
+    let Pair { geometry, coordinates, is_shared, radius, curve, .. } = pair;
     let rows = first..assembly.builder.rows();
     let has_axis = layout.directions[usize::from(assembly.dimension() == 2)] > 0;
     draw(assembly, entry, joint.name(), &geometry, has_axis);
+    if let Some(drawn) = assembly.scene_joints.last_mut() {
+        (drawn.radius, drawn.curve) = (radius, curve);
+    }
     if layout.shares[0] != [Feature::All] {
         for coordinate in &coordinates {
             assembly.builder.measure(format!("{}.{}", entry.name, coordinate.name), &coordinate.form);
@@ -105,7 +111,18 @@ fn draw(assembly: &mut Assembly<'_>, entry: &Entry<'_>, kind: &str, geometry: &G
     let axis = has_axis.then_some(axis);
     // Its force is recorded on the second side, whichever that is here.
     let (name, kind, acts_on_other) = (entry.name.to_string(), kind.to_string(), side == 0);
-    assembly.scene_joints.push(SceneJoint { name, kind, body, other, at, axis, acts_on_other, drives: Vec::new() });
+    assembly.scene_joints.push(SceneJoint {
+        name,
+        kind,
+        body,
+        other,
+        at,
+        axis,
+        acts_on_other,
+        drives: Vec::new(),
+        radius: None,
+        curve: Vec::new(),
+    });
     for side in 0..2 {
         if let Member::Body(k) = geometry.members[side] {
             let local = assembly.bodies[k].local(geometry.at[side]);
@@ -118,6 +135,22 @@ impl Pair<'_, '_> {
     /// Whether the model is in a plane, in which all axes of rotation are its normal.
     pub fn is_planar(&self) -> bool {
         self.assembly.dimension() == 2
+    }
+
+    /// Draws the joint with a disc of this radius on its second body.
+    pub fn draw_disc(&mut self, radius: f64) {
+        self.radius = Some(radius);
+    }
+
+    /// Draws the joint with a curve of its first body through these places, m at the start.
+    pub fn draw_curve(&mut self, places: impl Iterator<Item = Vec3>) {
+        let assembly = &*self.assembly;
+        let own = |place: Vec3| match self.geometry.members[0] {
+            Member::Body(k) => assembly.bodies[k].local(place),
+            _ => place,
+        };
+        let curve = places.map(|place| assembly.axes.in_world(own(place))).collect();
+        self.curve = curve;
     }
 
     /// The place of the joint on a side.

@@ -62,6 +62,7 @@ impl Joint for PointOnCurve {
         pair.assembly.check_start_within(pair.entry, off, length, NEAR, || {
             format!("the point starts {off:.3e} m beside the curve, whose nearest point is {:.9?}", &nearest[..dim])
         })?;
+        pair.draw_curve(curve.places(DRAWN).map(|place| add(place, origin)));
         let d = pair.d();
         let of: Vec<[Vec<Term>; 2]> = (0..dim).map(|k| [d.clone(), pair.fixed_to(Side::A, unit(k))]).collect();
         let form = |what| {
@@ -78,6 +79,9 @@ impl Joint for PointOnCurve {
 
 /// How far beside the curve a point may start, over the length of the curve: rounded coordinates are put right.
 const NEAR: f64 = 1e-3;
+
+/// Stretches of the curve in the picture.
+const DRAWN: u32 = 200;
 
 fn points(entry: &Entry<'_>, dim: usize, curve: &[List<Number>]) -> Read<Vec<Vec3>> {
     let spot = |k| Spot { key: "curve", item: Some(k) };

@@ -6,7 +6,7 @@ use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
 use crate::model::key::Shape;
-use crate::record::Transmission;
+use crate::record::{Transmission, WheelsKind};
 
 /// two wheels with a belt between them
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -70,6 +70,10 @@ impl Element for Pulley {
         // Wheels turn against each other, not the angles of joints that may be written either way; where axes are not parallel these are all there is.
         let seats = Seats::find(assembly, entry, [&first, &second])?;
         let sign = against * seats.as_ref().map_or(1.0, |Seats { senses: [a, b], .. }| a * b);
+        if let Ok(seats) = &seats {
+            let kind = if against > 0.0 { WheelsKind::CrossedBelt } else { WheelsKind::Belt };
+            seats.draw(assembly, entry, kind, [Some(r1), Some(r2)]);
+        }
         let pretension = entry.optional("pretension", &self.pretension, |tension, entry, key| tension.not_negative(entry, key))?;
         if let Some(pretension) = pretension {
             let seats = Seats::wanted(seats, entry, "pretension")?;

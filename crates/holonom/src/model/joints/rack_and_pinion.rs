@@ -6,7 +6,7 @@ use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number};
 use crate::model::key::Shape;
-use crate::record::Transmission;
+use crate::record::{Transmission, WheelsKind};
 
 /// a wheel that rolls along a toothed rail: the displacement of the one joint is the radius times the angle of the other
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -65,9 +65,13 @@ impl Element for RackAndPinion {
         if radius == 0.0 {
             return Err(entry.refuse("radius", "a radius of zero locks the rack and frees the pinion", "give the radius of the pinion"));
         }
+        let seats = Seats::find(assembly, entry, [&angle, &displacement])?;
+        if let Ok(seats) = &seats {
+            seats.draw(assembly, entry, WheelsKind::Gear, [Some(radius.abs()), None]);
+        }
         if let Some(pressure) = entry.optional("pressure_angle", &self.pressure_angle, |angle, entry, key| angle.number(entry, key))? {
             let slope = slope(entry, pressure)?;
-            let seats = Seats::of(assembly, entry, "pressure_angle", [&angle, &displacement])?;
+            let seats = Seats::wanted(seats, entry, "pressure_angle")?;
             let [a, b] = seats.senses;
             let way = seats.way(assembly);
             seats.record(assembly, entry, -radius, Transmission::Rack { way, radius: a * b * radius, slope });

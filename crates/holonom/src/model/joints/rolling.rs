@@ -66,6 +66,7 @@ impl Joint for Rolling {
         if start < FLAT {
             return Err(pair.entry.refuse("axis", "the disc lies flat on the plane and does not roll", "tilt it, or use a planar joint"));
         }
+        pair.draw_disc(radius);
         let d = pair.d();
         let product = |pair: &mut Pair<'_, '_>, moving: &[_], axis| {
             let axis = pair.fixed_to(Side::A, axis);

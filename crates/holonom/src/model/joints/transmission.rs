@@ -6,7 +6,7 @@ use crate::model::bodies::nodes::Member;
 use crate::model::entry::{Entry, Spot};
 use crate::model::fault::Read;
 use crate::model::geometry::{Vec3, cross, dot, norm, scale, subtract};
-use crate::record::{RecordedTransmission, Transmission};
+use crate::record::{RecordedTransmission, SceneWheels, Transmission, WheelsKind};
 use crate::system::Term;
 
 /// How the two joints of a coupler sit on the part that carries both.
@@ -27,17 +27,12 @@ pub(super) struct Seats {
 const SKEW: f64 = 1e-6;
 
 impl Seats {
-    /// Of joints that turn about parallel axes, or of one that turns and one that slides at right angles to that axis; `key` asks for them.
-    pub fn of(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &'static str, coordinates: [&Coordinate; 2]) -> Read<Self> {
-        Self::wanted(Self::find(assembly, entry, coordinates)?, entry, key)
-    }
-
     /// Those that were found, which `key` asks for.
     pub fn wanted(found: Result<Self, String>, entry: &Entry<'_>, key: &'static str) -> Read<Self> {
         found.map_err(|message| entry.refuse_key(key, message, format!("leave `{key}` out: then bearings do not feel the coupler")))
     }
 
-    /// Those of two joints, or why there are none.
+    /// Of joints that turn about parallel axes, or of one that turns and one that slides at right angles to that axis, or why there are none.
     pub fn find(assembly: &Assembly<'_>, entry: &Entry<'_>, coordinates: [&Coordinate; 2]) -> Read<Result<Self, String>> {
         let infos: [&JointInfo; 2] = {
             let spot = |k| Spot { key: "joints", item: Some(k) };
@@ -76,6 +71,17 @@ impl Seats {
             distance: if across > CONTRADICTION * assembly.builder.size() { across } else { 0.0 },
             senses: [sides[0], sides[1] * if slides { 1.0 } else { cosine.signum() }],
         }))
+    }
+
+    /// Draws wheels of these radii, m; none of a rack.
+    pub fn draw(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>, kind: WheelsKind, radii: [Option<f64>; 2]) {
+        let infos = self.joints.map(|k| &assembly.joints[k]);
+        let wheel = |k: usize| match infos[k].geometry.members[usize::from(self.sides[k] > 0.0)] {
+            Member::Body(body) => Some(assembly.bodies[body].name.clone()),
+            _ => None,
+        };
+        let (joints, bodies) = (infos.map(|info| info.name.clone()), [0, 1].map(wheel));
+        assembly.wheels.push(SceneWheels { name: entry.name.to_string(), kind, joints, bodies, radii });
     }
 
     /// The way of a rack, as a direction of the carrier.
