@@ -26,6 +26,11 @@ impl Assembly<'_> {
         match place {
             field::Place::Named(name) if name == GROUND => Ok(fixed([0.0; 3], GROUND.into())),
             field::Place::Named(name) => self.named_end(entry, spot, name),
+            field::Place::Fixed(numbers) if self.are_names(entry, numbers) => Err(entry.refuse(
+                spot,
+                "these are names, and the numbers of one place are wanted here",
+                "write one name without brackets, \"BODY\" or \"BODY.POINT\", or coordinates, as [x, y, z]; `at` of a joint also takes one \"BODY.POINT\" for each body",
+            )),
             field::Place::Fixed(numbers) if numbers.len() == self.dimension() => {
                 Ok(fixed(vector(entry, spot, numbers)?, place.write().quoted()))
             }
@@ -34,6 +39,20 @@ impl Assembly<'_> {
                 Err(entry.refuse(spot, message, "give one for each axis of the model"))
             }
         }
+    }
+
+    /// Whether these are names of points, bodies or places of bodies, and no formulas.
+    fn are_names(&self, entry: &Entry<'_>, items: &[Number]) -> bool {
+        let is_name = |item: &Number| match item {
+            Number::Formula(text) if text == GROUND || self.is_place_of_body(entry, text) => true,
+            // A parameter may have the name of a body.
+            Number::Formula(text) if entry.scope.value(text).is_some() => false,
+            Number::Formula(text) => {
+                indexed(text, &entry.scope).is_ok_and(|full| self.by_name.contains_key(&full) || self.body_by_name(&full).is_some())
+            }
+            Number::Given(_) => false,
+        };
+        !items.is_empty() && items.iter().all(is_name)
     }
 
     /// At least `least` and at most `most` ends, no two neighbours alike.
