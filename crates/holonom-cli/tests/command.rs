@@ -132,10 +132,10 @@ fn a_drive_of_what_cannot_move_is_named() {
     let strut = "[constraint.strut]\ntype = \"distance\"\nbetween = [[0.3, 0.8], \"link.tip\"]\n";
     fs::write(folder.path().join("held.toml"), format!("{head}{strut}")).unwrap();
     let said = "`motor` asks for a motion that the other constraints do not allow";
-    let found = prints(&folder, "check held.toml", 0);
+    let found = on_one_line(&prints(&folder, "check held.toml", 0));
     assert!(found.contains(said) && !found.contains("may stay"), "{found}");
     assert_eq!(json(&folder, "check held.toml --json")["conflict"], "motor");
-    let stopped = prints(&folder, "run held.toml", 3);
+    let stopped = on_one_line(&prints(&folder, "run held.toml", 3));
     assert!(stopped.contains(said) && stopped.contains("at t = 0.000000 s"), "{stopped}");
     assert!(json(&folder, &format!("check {PAPER} --json"))["conflict"].is_null());
     // The same motor without the strut.
@@ -210,7 +210,7 @@ fn runs_name_the_forces_that_are_not_unique() {
     let efforts = "m[0].effort, m[1].effort, mesh.a[0].angle.effort, mesh.a[1].angle.effort";
     let output = holonom(&folder, "run gears.toml");
     assert!(text(&output.stderr).contains(&format!(": of {efforts} one way of many")), "{}", text(&output.stderr));
-    assert!(prints(&folder, "check gears.toml", 0).contains(&format!("not unique: {efforts}; all others are")));
+    assert!(on_one_line(&prints(&folder, "check gears.toml", 0)).contains(&format!("not unique: {efforts}; all others are")));
     // A door on two hinges, in metres, millimetres and others.
     let door = "[parameters]\nu = 1\n[body.door]\nmass = 1\ninertia = [\"u^2\", \"u^2\", \"u^2\"]\nposition = [\"u\", 0, 0]\n\
                 [joint.hinge]\nrepeat = \"i = 0 to 1\"\ntype = \"revolute\"\nbetween = [\"ground\", \"door\"]\n\

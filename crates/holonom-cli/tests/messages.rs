@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{folder, holonom, text};
+use common::{folder, holonom, on_one_line, text};
 
 /// All that a run of a model says, and its exit status.
 fn run(model: &str) -> (String, Option<i32>) {
@@ -24,7 +24,7 @@ fn says(model: &str, words: &[&str], status: i32) {
     let (said, code) = run(model);
     assert_eq!(code, Some(status), "{said}");
     for word in words {
-        assert!(said.contains(word), "{word} is missing in\n{said}");
+        assert!(on_one_line(&said).contains(word), "{word} is missing in\n{said}");
     }
 }
 

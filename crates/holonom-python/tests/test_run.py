@@ -209,7 +209,7 @@ def test_what_was_put_right_before_the_start_is_said():
     assert run.notes[1].endswith("start velocities were changed: `P[0]` by 0.3 m/s, `P[1]` by 0.3 m/s")
     assert all(one.filename == __file__ for one in warned)
     text = str(run)
-    assert text.startswith("note: nothing uses") and "1 degrees of freedom" in text
+    assert text.startswith("note: nothing uses") and "1 degree of freedom" in text
     with pytest.warns(hm.ModelWarning):
         assert hm.Simulation(m, step=0.01).notes == run.notes
 

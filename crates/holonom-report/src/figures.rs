@@ -85,8 +85,7 @@ fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
         let are_more = (0..peaks.len()).filter(|k| !is_among_first(*k)).count() as u64 + others;
         for peak in shown.into_iter().map(|k| &peaks[k]) {
             let text = |key: &str| peak.get(key).map_or(String::new(), |value| html(&format::value(value)));
-            let number = |key: &str| format::figure(peak.get(key).and_then(Value::as_f64).unwrap_or(f64::NAN));
-            let (value, at) = (number("value"), number("at"));
+            let (value, at) = (number(peak, "value"), number(peak, "at"));
             writeln!(
                 out,
                 r#"<tr><th scope="row">{}</th><td class="number">{value} <small>{}</small></td><td class="number"><small>at {at} s</small></td></tr>"#,
@@ -104,9 +103,6 @@ fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
     }
     Ok(())
 }
-
-/// Share of the largest value that is shown as zero.
-const ROUNDING: f64 = 1e-12;
 
 /// Measures that are shown at once; more would push the picture far down.
 const MEASURES: usize = 12;
@@ -131,11 +127,10 @@ fn measure_table(caption: &str, measures: &[Value], out: &mut dyn io::Write) -> 
     let heads = ["smallest", "largest", "last"].map(|head| format!(r#"<th scope="col" class="number">{head}</th>"#)).concat();
     writeln!(out, r#"<table class="measures">{caption}<thead><tr><th></th>{heads}</tr></thead><tbody>"#)?;
     for measure in measures {
-        let size = |key: &str| measure[key].as_f64().map_or(0.0, f64::abs);
-        let rounding = ROUNDING * size("min").max(size("max"));
+        let value = |key: &str| measure[key].as_f64().unwrap_or(f64::NAN);
         let cell = |key: &str, at: &str| {
             let at = if at.is_empty() { String::new() } else { format!(" <small>at {} s</small>", number(measure, at)) };
-            let value = if size(key) < rounding { "0".to_owned() } else { number(measure, key) };
+            let value = format::answer_between(value(key), [value("min"), value("max")]);
             format!(r#"<td class="number">{value}{at}</td>"#)
         };
         let unit = match words(measure, "unit") {
@@ -188,7 +183,7 @@ fn list<'a>(summary: &'a Value, pointer: &str) -> &'a [Value] {
 }
 
 fn number(of: &Value, key: &str) -> String {
-    format::figure(of.get(key).and_then(Value::as_f64).unwrap_or(f64::NAN))
+    format::answer(of.get(key).and_then(Value::as_f64).unwrap_or(f64::NAN))
 }
 
 fn words(of: &Value, key: &str) -> String {

@@ -15,13 +15,42 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// Three significant digits, as HTML: `1.5 × 10⁻⁹` with a real exponent.
+/// Three significant digits, which errors and times have, as HTML: `1.5 × 10⁻⁹` with a real exponent.
 pub fn figure(value: f64) -> String {
-    if value == 0.0 || (1e-2..1e5).contains(&value.abs()) {
-        let decimals = if value == 0.0 { 0 } else { (2 - value.abs().log10().floor() as i32).max(0) as usize };
+    significant(value, 3)
+}
+
+/// Five significant digits, which answers have, as HTML.
+pub fn answer(value: f64) -> String {
+    significant(value, ANSWER)
+}
+
+/// Digits of answers.
+const ANSWER: usize = 5;
+
+/// Share of the largest of some answers below which one is round-off.
+pub const ROUND_OFF: f64 = 1e-12;
+
+/// An answer that is zero where it is round-off beside the largest of its like.
+pub fn answer_beside(value: f64, largest: f64) -> String {
+    answer(if value.abs() < ROUND_OFF * largest { 0.0 } else { value })
+}
+
+/// An answer between two others: of what changes by a small share of itself so many digits that this shows.
+pub fn answer_between(value: f64, [low, high]: [f64; 2]) -> String {
+    let (largest, span) = (low.abs().max(high.abs()), high - low);
+    let shares = if span > ROUND_OFF * largest { (largest / span).log10().floor() } else { 0.0 };
+    let digits = ANSWER + (shares - 1.0).max(0.0) as usize;
+    significant(if value.abs() < ROUND_OFF * largest { 0.0 } else { value }, digits)
+}
+
+fn significant(value: f64, digits: usize) -> String {
+    let last = digits as i32 - 1;
+    if value == 0.0 || (1e-2..10_f64.powi(last + 3)).contains(&value.abs()) {
+        let decimals = if value == 0.0 { 0 } else { (last - value.abs().log10().floor() as i32).max(0) as usize };
         return without_trailing_zeros(&format!("{value:.decimals$}")).replace('-', "\u{2212}");
     }
-    let text = format!("{value:.2e}").replace('-', "\u{2212}");
+    let text = format!("{value:.*e}", digits - 1).replace('-', "\u{2212}");
     match text.split_once('e') {
         Some((mantissa, exponent)) => format!("{mantissa}\u{202f}×\u{202f}10<sup>{exponent}</sup>"),
         None => text,
@@ -72,5 +101,8 @@ mod tests {
         assert_eq!(figure(-1.234e-13), "\u{2212}1.23\u{202f}×\u{202f}10<sup>\u{2212}13</sup>");
         assert_eq!(figure(2.0), "2");
         assert_eq!(figure(41.26), "41.3");
+        assert_eq!((answer(-389.0812), answer(0.0123456)), ("\u{2212}389.08".to_owned(), "0.012346".to_owned()));
+        assert_eq!([10_000.03, 1e-14].map(|value| answer_between(value, [9_999.97, 10_000.03])), ["10000.03", "0"]);
+        assert_eq!((answer_beside(1e-14, 10.0), answer_beside(2.5, 10.0)), ("0".to_owned(), "2.5".to_owned()));
     }
 }

@@ -15,7 +15,7 @@ use crate::load::{self, Loaded};
 use crate::message::{listed, unused_parameters};
 use crate::notes::{changes_in_words, nowhere, open_columns, rivals};
 use crate::options::CheckArguments;
-use crate::table::{list, short};
+use crate::table::{freedom, list, short};
 
 /// Validates a model and says what it is made of.
 pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
@@ -104,7 +104,7 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
     let corrected = format!("positions by {} m; velocities: {velocities}", short(start.moved));
     let mut items = vec![
         ("size", sizes(&size, &held.size)),
-        ("freedom", format!("{} degrees of freedom", size.dof)),
+        ("freedom", freedom(size.dof as u64)),
         ("redundant", redundant),
         ("reactions", reactions),
         ("singular", singular),

@@ -13,7 +13,7 @@ use crate::message::note;
 use crate::options::{OutputArguments, RunArguments};
 use crate::output::{Order, recorder, simulate_kept, writers};
 use crate::progress::interrupt_flag;
-use crate::table::{list, measured, short};
+use crate::table::{figures, figures_between, freedom, list, measured, short};
 
 /// Of runs whose steps are chosen.
 const CHANGED_ACCURACY: &str = "an accuracy is that of the whole run, so its steps depend on its end: the rows up to the checkpoint are those of the \
@@ -91,16 +91,6 @@ fn claim(loaded: &Loaded, order: &Order, output: &OutputArguments) -> Result<Fol
     Ok(folder)
 }
 
-/// A number with five figures.
-fn figures(value: f64) -> String {
-    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
-    match rounded.abs() {
-        size if (1e5..1e7).contains(&size) => format!("{rounded}"),
-        size if size >= 1e7 => format!("{rounded:.4e}"),
-        _ => short(rounded),
-    }
-}
-
 /// Sorts of what acts, in the order in which they are counted.
 const SORTS: [&str; 3] = ["drives", "forces", "joints"];
 
@@ -122,8 +112,9 @@ fn peaks(summary: &Value, sort: usize) -> String {
 /// How far each measure goes.
 fn measures(of: &Value) -> String {
     let line = |measure: &Value| {
-        let [min, min_at, max, max_at, last] =
-            ["min", "min_at", "max", "max_at", "last"].map(|key| figures(measure[key].as_f64().unwrap_or(f64::NAN)));
+        let number = |key: &str| measure[key].as_f64().unwrap_or(f64::NAN);
+        let [min, max, last] = ["min", "max", "last"].map(|key| figures_between(number(key), [number("min"), number("max")]));
+        let [min_at, max_at] = ["min_at", "max_at"].map(|key| figures(number(key)));
         let unit = measure["unit"].as_str().filter(|unit| *unit != "1").map_or(String::new(), |unit| format!(" {unit}"));
         format!("{}  {min} at {min_at} s … {max}{unit} at {max_at} s, {last} at the end", measure["name"].as_str().unwrap_or(""))
     };
@@ -179,15 +170,20 @@ pub fn describe(loaded: &Loaded, summary: &Value) -> String {
     let number = |group: &str, key: &str| short(summary[group][key].as_f64().unwrap_or(f64::NAN));
     let time = |key: &str| summary["time"][key].as_f64().map_or("–".into(), measured);
     let mut items = vec![("method", summary["method"]["name"].as_str().unwrap_or("").to_string()), ("status", status(summary))];
-    items.extend([0, 1, 2].map(|sort| (SORTS[sort], peaks(summary, sort))));
+    // What the model asks for comes first.
     items.extend([("measures", measures(&summary["peaks"]["measures"])), ("events", events(&summary["events"]))]);
+    items.extend([0, 1, 2].map(|sort| (SORTS[sort], peaks(summary, sort))));
     items.retain(|(_, text)| !text.is_empty());
     items.extend([
         (
             "size",
             format!(
-                "{} coordinates, {} rows of rank {} ({} redundant), {} degrees of freedom",
-                summary["coordinates"], summary["constraints"], summary["rank"], summary["redundant"], summary["dof"]
+                "{} coordinates, {} rows of rank {} ({} redundant), {}",
+                summary["coordinates"],
+                summary["constraints"],
+                summary["rank"],
+                summary["redundant"],
+                freedom(summary["dof"].as_u64().unwrap_or(0))
             ),
         ),
         (

@@ -50,6 +50,11 @@ pub fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
+/// What is said, on one line: the screen breaks its lines between words.
+pub fn on_one_line(said: &str) -> String {
+    said.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 pub fn folder() -> TempDir {
     tempfile::tempdir().unwrap()
 }

@@ -7,14 +7,20 @@ export function power(exponent: number): string {
   return `10${exponent < 0 ? "⁻" : ""}${digits}`;
 }
 
-/** A value under the cursor: four significant digits. */
-export function reading(value: number | null | undefined): string {
+/** A value under the cursor: four significant digits, or so many. */
+export function reading(value: number | null | undefined, digits = 4): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  if (size >= 1e-2 && size < 1e5) return minus(Number.isInteger(value) ? String(value) : value.toFixed(Math.max(3 - Math.floor(Math.log10(size)), 0)));
-  const [mantissa, exponent] = value.toExponential(2).split("e");
+  if (size >= 1e-2 && size < 1e5) return minus(Number.isInteger(value) ? String(value) : value.toFixed(Math.max(digits - 1 - Math.floor(Math.log10(size)), 0)));
+  const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
   return `${minus(mantissa)}·${power(Number(exponent))}`;
+}
+
+/** A value between two others: of what changes by a small share of itself so many digits that this shows. */
+export function readingBetween(value: number, low: number, high: number): string {
+  const shares = Math.floor(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / (high - low)));
+  return reading(value, 4 + Math.min(Math.max(Number.isFinite(shares) ? shares - 1 : 0, 0), 9));
 }
 
 /** A number in full: with as few digits as tell it from its neighbours, of single precision if it is one of these. */

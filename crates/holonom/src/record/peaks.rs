@@ -74,6 +74,9 @@ const ROUND_OFF: f64 = 1e-9;
 /// The same of the largest of all sorts, moments and forces together.
 const ROUND_OFF_OF_OTHERS: f64 = 1e-12;
 
+/// A few roundings of a place over itself, in shares of that.
+const ROUNDED_PLACES: f64 = 16.0 * f64::EPSILON / ROUND_OFF_OF_OTHERS;
+
 impl Peaks {
     /// Looks at all recorded rows, and at what was largest of forces between them. What was not recorded, or is not known, has no peak.
     pub fn of(channels: &Channels, recording: &Recording, system: &System) -> Self {
@@ -107,15 +110,17 @@ impl Peaks {
         });
         let rods = told.rods.iter().filter_map(|rod| peak(&rod.name, &[format!("{}.force", rod.name)]));
         let joints: Vec<Peak> = told.joints.iter().flat_map(joint).flatten().chain(couplings).chain(pushes).chain(rods).collect();
-        let span = span(&channels.axes, recording);
+        let [span, reach] = span(&channels.axes, recording);
         let all = || drives.iter().chain(&forces).chain(&joints);
         // A force that acts across the whole mechanism is compared with moments.
         let scale = |unit: &str, lever: f64| {
             let sizes = all().map(|peak| peak.value.abs() * if peak.unit == unit { 1.0 } else { lever });
             ROUND_OFF_OF_OTHERS * sizes.fold(0.0, f64::max)
         };
+        // Arms of moments are differences of places, which far from the origin are rounded more.
+        let arm = span.max(ROUNDED_PLACES * reach);
         // What only turns moves by round-off.
-        let floors = if span > ROUND_OFF * extent(system) { [scale("N", 1.0 / span), scale("N·m", span)] } else { [0.0; 2] };
+        let floors = if span > ROUND_OFF * extent(system) { [scale("N", 1.0 / span), scale("N·m", arm)] } else { [0.0; 2] };
         let is_something = |peak: &Peak| peak.value.abs() > floors[usize::from(peak.unit != "N")];
         let [(drives, d), (forces, f), (joints, j)] =
             [&drives, &forces, &joints].map(|peaks| largest(peaks.iter().filter(|peak| is_something(peak)).cloned().collect()));
@@ -134,16 +139,16 @@ impl Peaks {
     }
 }
 
-/// How far positions are apart along any axis over the whole recording, m.
-fn span(axes: &str, recording: &Recording) -> f64 {
+/// How far positions are apart along any axis over the whole recording, and from the origin, m.
+fn span(axes: &str, recording: &Recording) -> [f64; 2] {
     let along = |axis: char| {
         let ending = format!(".{axis}");
         let columns = recording.columns().iter().filter(|column| column.heading.unit == "m" && column.heading.name.ends_with(&ending));
         let values = columns.flat_map(|column| &column.values).copied();
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (value.min(low), value.max(high)));
-        high - low
+        if low > high { [0.0; 2] } else { [high - low, low.abs().max(high.abs())] }
     };
-    axes.chars().map(along).fold(0.0, f64::max)
+    axes.chars().map(along).fold([0.0; 2], |[span, reach], [apart, far]| [span.max(apart), reach.max(far)])
 }
 
 /// How far a measure goes, between the rows, too; none where it has no numbers.

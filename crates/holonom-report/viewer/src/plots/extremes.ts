@@ -2,18 +2,21 @@
 
 import type { Clock } from "../clock";
 import { element } from "../dom";
-import { reading } from "../format";
-import type { Run } from "../payload";
+import { reading, readingBetween } from "../format";
+import type { Channel, Run } from "../payload";
 import { withUnit } from "./charts";
+
+/** A value that is a smaller share of the largest of its unit is round-off. */
+const ROUND_OFF = 1e-12;
 
 export class Extremes {
   readonly node = element("details", { class: "extremes", open: "" }, element("summary", {}, "Extremes of what is plotted"));
   private readonly body = element("tbody");
 
   constructor(private readonly runs: Run[], private readonly clock: Clock) {
-    const heads = ["", "min", "at", "max", "at"].map((head) => element("th", { scope: "col", class: head ? "number" : "" }, head));
+    const heads = ["", "min", "max"].map((head) => element("th", { scope: "col", class: head ? "number" : "" }, head));
     const table = element("table", {}, element("thead", {}, element("tr", {}, ...heads)), this.body);
-    this.node.append(element("div", { class: "scroll" }, table));
+    this.node.append(table);
   }
 
   show(columns: string[]): void {
@@ -26,18 +29,26 @@ export class Extremes {
     if (!channel?.extremes) return [];
     const [least, leastAt, most, mostAt] = channel.extremes;
     const name = withUnit(column, channel.unit === "1" ? "" : channel.unit);
+    const beside = largest(run, channel);
+    const cell = (value: number, t: number): HTMLElement => {
+      const text = readingBetween(Math.abs(value) < ROUND_OFF * beside ? 0 : value, least, most);
+      return element("td", { class: "number" }, element("span", {}, text), " ", this.at(t));
+    };
     const head = element("th", { scope: "row" }, this.runs.length > 1 ? `${name}, ${run.label}` : name);
-    return [element("tr", {}, head, number(reading(least)), this.at(leastAt), number(reading(most)), this.at(mostAt))];
+    return [element("tr", {}, head, cell(least, leastAt), cell(most, mostAt))];
   }
 
   /** A time, which the page goes to when it is clicked. */
   private at(t: number): HTMLElement {
     const button = element("button", { type: "button", title: "show this moment" }, `${reading(t)} s`);
     button.addEventListener("click", () => this.clock.setTime(t));
-    return element("td", { class: "number" }, button);
+    return button;
   }
 }
 
-function number(text: string): HTMLElement {
-  return element("td", { class: "number" }, text);
+/** The largest magnitude of a column, or of all of its unit: components of one force, and forces of one mechanism, have one round-off. What a model measures is its own scale. */
+function largest(run: Run, channel: Channel): number {
+  const isLike = (other: Channel): boolean => !channel.is_measure && !other.is_measure && other.unit === channel.unit;
+  const alike = run.channels.filter((other) => other === channel || isLike(other));
+  return Math.max(...alike.flatMap(({ extremes }) => (extremes ? [Math.abs(extremes[0]), Math.abs(extremes[2])] : [])));
 }
