@@ -1,5 +1,6 @@
-//! The top of a page that compares runs: what they have in common, and a table of what they differ in.
+//! The top of a page that compares runs: what they have in common, and their answers side by side; and the table of how the solver did in each.
 
+use crate::answers::{Answer, answers};
 use crate::escape::html;
 use crate::figures::{badge, figure, known, reason};
 use crate::outcome::{Outcome, completed, outcomes};
@@ -7,7 +8,7 @@ use crate::{Run, format};
 use serde_json::Value;
 use std::io;
 
-/// One column of the table.
+/// One column of the table of the solver.
 struct Figure {
     /// Where it is in `summary.json`.
     pointer: &'static str,
@@ -48,12 +49,98 @@ const FACTS: [Fact; 6] = [
     ("/redundant", |rows| format!("{rows} redundant row{}", plural(rows))),
 ];
 
-/// A line of what all runs share, the table, and how to read it.
+/// A line of what all runs share, and a table of their answers.
 pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
     let shared: Vec<String> =
         FACTS.iter().filter(|fact| is_shared(runs, fact)).filter_map(|fact| say(runs.first()?.summary, fact)).collect();
     let count = format!("{} runs compared", runs.len());
     writeln!(out, r#"<p class="method">{}</p>"#, [vec![count], shared].concat().join(" · "))?;
+    answers_of(runs, out)
+}
+
+/// Rows of answers that are seen at once; more would push the picture far down.
+const ROWS: usize = 15;
+
+/// How each run ended, where one did not complete, then a row for each answer, with its difference to that of the first run.
+fn answers_of(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
+    let summaries: Vec<&Value> = runs.iter().map(|run| run.summary).collect();
+    let outcomes = outcomes(runs);
+    let mut rows = Vec::new();
+    if outcomes.iter().any(|outcome| *outcome != Outcome::Sound) {
+        let cells: String = runs.iter().zip(&outcomes).map(|(run, outcome)| status_cell(run.summary, *outcome)).collect();
+        rows.push(format!(r#"<tr><th scope="row">status</th>{cells}</tr>"#));
+    }
+    rows.extend(columns_asked(runs));
+    rows.extend(answers(&summaries).iter().map(answer_row));
+    if rows.is_empty() {
+        return Ok(());
+    }
+    let (first, others) = rows.split_at(rows.len().min(ROWS));
+    answer_table(runs, first, out)?;
+    if !others.is_empty() {
+        writeln!(out, "<details><summary>{} more answers</summary>", others.len())?;
+        answer_table(runs, others, out)?;
+        writeln!(out, "</details>")?;
+    }
+    Ok(())
+}
+
+fn answer_table(runs: &[Run], rows: &[String], out: &mut dyn io::Write) -> io::Result<()> {
+    let head = |(index, run): (usize, &Run)| format!(r#"<th scope="col" class="number">{}</th>"#, label(run, index));
+    let heads: String = runs.iter().enumerate().map(head).collect();
+    writeln!(out, r#"<div class="scroll"><table class="answers"><thead><tr><th></th>{heads}</tr></thead><tbody>"#)?;
+    writeln!(out, "{}</tbody></table></div>", rows.join("\n"))
+}
+
+fn answer_row(answer: &Answer) -> String {
+    let cell = |(run, value): (usize, &Option<f64>)| {
+        let value = value.map_or("–".to_owned(), |value| format::answer_beside(value, answer.size));
+        let difference = answer.difference(run).map_or(String::new(), |text| format!(" <small>{}</small>", text.replace('-', "\u{2212}")));
+        format!(r#"<td class="number">{value}{difference}</td>"#)
+    };
+    let cells: String = answer.values.iter().enumerate().map(cell).collect();
+    format!(r#"<tr><th scope="row">{} {}{}</th>{cells}</tr>"#, html(&answer.name), answer.what, in_unit(&answer.unit))
+}
+
+/// How far the columns that were asked for are from those of the first run: the largest difference with its time.
+fn columns_asked(runs: &[Run]) -> Vec<String> {
+    let differences = |run: &Run| run.summary.get("differences").and_then(Value::as_object).cloned().unwrap_or_default();
+    let mut names: Vec<String> = Vec::new();
+    for name in runs.iter().flat_map(|run| differences(run).into_iter().map(|(name, _)| name)) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let row = |name: &String| {
+        let unit = runs.iter().find_map(|run| Some(run.recording.find(name)?.heading.unit.clone())).unwrap_or_default();
+        let cell = |run: &Run| {
+            let own = differences(run);
+            let number = |key: &str| own.get(name).and_then(|difference| difference[key].as_f64()).map(format::figure);
+            match (number("largest"), number("at")) {
+                (Some(largest), Some(at)) => format!(r#"<td class="number">{largest} <small>at {at} s</small></td>"#),
+                _ => r#"<td class="number">–</td>"#.to_owned(),
+            }
+        };
+        let cells: String = runs.iter().map(cell).collect();
+        format!(r#"<tr><th scope="row">{} largest difference{}</th>{cells}</tr>"#, html(name), in_unit(&unit))
+    };
+    names.iter().map(row).collect()
+}
+
+fn in_unit(unit: &str) -> String {
+    if unit.is_empty() || unit == "1" { String::new() } else { format!(" <small>{}</small>", html(unit)) }
+}
+
+/// What a run is called, with the sample of its curve, which the viewer draws.
+fn label(run: &Run, index: usize) -> String {
+    format!(r#"<span class="swatch" data-run="{index}"></span>{}"#, html(run.label))
+}
+
+/// How the solver did in each run, and how to read that.
+pub fn solver(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
+    if runs.is_empty() {
+        return Ok(());
+    }
     table(runs, out)?;
     writeln!(out, r#"<p class="note">{EXPLANATION}</p>"#)
 }
@@ -79,14 +166,13 @@ fn table(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
     writeln!(out, "</tbody></table></div>")
 }
 
-/// Label with the sample of its curve, which the viewer draws, over what the method is made of.
+/// Label over what the method is made of.
 fn name_cell(runs: &[Run], index: usize) -> String {
     let run = &runs[index];
     // How many steps a run took follows from its step and its end.
     let own = FACTS.iter().filter(|fact| fact.0 != "/steps" && !is_shared(runs, fact)).filter_map(|fact| say(run.summary, fact));
     let parts: Vec<String> = parts_of_method(run.summary).into_iter().chain(own).collect();
-    let label = html(run.label);
-    format!(r#"<th scope="row"><span class="swatch" data-run="{index}"></span>{label}<small>{}</small></th>"#, parts.join(" · "))
+    format!(r#"<th scope="row">{}<small>{}</small></th>"#, label(run, index), parts.join(" · "))
 }
 
 /// Formulation with its index, integrator with its order, and the levels that are projected.

@@ -17,7 +17,7 @@ const FIGURES: [(&str, &str, &str); 7] = [
     ("/redundant", "redundant rows", ""),
 ];
 
-/// Method, status and what was asked: a line and tables for one run, a table with the key figures of the solver for several.
+/// Method, status and what was asked: a line and tables for one run, a table of the answers side by side for several.
 pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
     match runs {
         [run] => one(run, out),
@@ -50,8 +50,9 @@ fn notes(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
     writeln!(out, r#"<ul class="notes">{items}</ul>"#)
 }
 
-/// Key figures of the solver for one run, which a table has for several.
-pub fn solver(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
+/// Key figures of the solver: a list for one run, a table for several.
+pub fn solver(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
+    let [run] = runs else { return comparison::solver(runs, out) };
     writeln!(out, r#"<dl class="figures">"#)?;
     for (pointer, name, unit) in FIGURES.into_iter().filter(|(pointer, ..)| known(run.summary, pointer)) {
         let value = figure(run.summary, pointer);

@@ -4,6 +4,7 @@
 //! HTML here. The numbers go in as JSON. The viewer, bundled by `build.rs` from `viewer/`, turns them into the moving
 //! mechanism and the plots; without the feature `viewer` the page consists of the first part alone.
 
+mod answers;
 mod base64;
 mod comparison;
 mod data;
@@ -24,6 +25,7 @@ mod thin;
 use holonom::record::{Recording, Scene};
 use std::io;
 
+pub use answers::{Answer, answers};
 pub use live::{Frames, LIVE};
 pub use stability::{Search, StabilityReport};
 pub use sweep::{SweepColumn, SweepKey, SweepReport, SweepRun};

@@ -112,13 +112,11 @@ fn stage(runs: &[RunData], out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// How the solver did: figures of a single run, and a place for plots. Of a single run that is sound nobody asks for it first.
+/// How the solver did: its figures, and a place for plots. Of a single run that is sound nobody asks for it first.
 fn health(runs: &[Run], data: &[RunData], out: &mut dyn Write) -> io::Result<()> {
     let is_open = if data.len() == 1 && data[0].sound { "" } else { " open" };
     writeln!(out, "<details id=\"health\"{is_open}><summary>Energy, violations and iterations</summary>")?;
-    if let [run] = runs {
-        figures::solver(run, out)?;
-    }
+    figures::solver(runs, out)?;
     writeln!(out, "<section id=\"plots\" aria-label=\"Plots\"></section></details>")
 }
 

@@ -40,6 +40,8 @@ pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
         return halves(&columns, &keys, out);
     }
     keys.retain(|key| !HEADINGS.contains(key));
+    // What was asked comes before how the solver did.
+    keys.sort_by_key(|key| !key.starts_with("differences."));
     let (shared, differing): (Vec<&str>, Vec<&str>) = keys.into_iter().partition(|key| is_shared(&columns, key));
     if !shared.is_empty() {
         writeln!(out, "<h3>The same in all runs</h3>")?;
@@ -132,7 +134,7 @@ fn cell(column: &[(String, &Value)], key: &str) -> String {
 fn short_cell(column: &[(String, &Value)], key: &str) -> String {
     match value(column, key) {
         Some(Value::Number(n)) if n.is_f64() => {
-            format!(r#"<td class="number" title="{n}">{}</td>"#, format::figure(n.as_f64().unwrap_or(f64::NAN)))
+            format!(r#"<td class="number" title="{n}">{}</td>"#, format::answer(n.as_f64().unwrap_or(f64::NAN)))
         }
         Some(value) => format!("<td>{}</td>", html(&format::value(value))),
         None => "<td></td>".to_owned(),

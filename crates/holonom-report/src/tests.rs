@@ -186,13 +186,47 @@ fn runs_are_compared_in_a_table_with_the_best_marked() {
         ("blown up", 9e9, summary("completed", 1e10, 1.0)),
         ("stopped", 9.0, summary("stopped", 1e-14, 2.0)),
     ]);
-    let table = page.split_once("<tbody>").unwrap().1.split_once("</tbody>").unwrap().0;
+    let body = |class: &str| {
+        let (_, table) = page.split_once(&format!(r#"<table class="{class}">"#)).unwrap();
+        table.split_once("<tbody>").unwrap().1.split_once("</tbody>").unwrap().0
+    };
+    let table = body("figures compared");
     let best: Vec<&str> = table.split("class=\"best\">").skip(1).map(|rest| rest.split_once("</strong>").unwrap().0).collect();
     let power = "\u{202f}×\u{202f}10<sup>\u{2212}13</sup>";
     assert_eq!(best, [&format!("2.00{power}"), "40", &format!("3.00{power}"), "41"]);
-    assert_eq!(table.matches("energy blew up").count(), 1);
+    // How the runs ended is said at the top, too.
+    assert_eq!(["answers", "figures compared"].map(|class| body(class).matches("energy blew up").count()), [1, 1]);
     assert!(page.contains("4 runs compared · 2 s · step 0.01 s · 1 degree of freedom"));
     assert!(table.contains("ggl, index\u{a0}2") && !table.contains("step 0.01 s"));
+}
+
+#[test]
+fn answers_come_before_the_health_of_the_solver() {
+    let run = |lift: f64, drift: f64| {
+        let mut summary = summary("completed", drift, 1.0);
+        summary["peaks"] = json!({
+            "measures": [{"name": "<lift>", "unit": "mm", "min": -2e-15, "max": lift, "last": 1.0}],
+            "joints": [{"name": "hinge", "unit": "N", "value": 49.883_451, "at": 1.0}],
+        });
+        summary
+    };
+    let mut second = run(8.04, 0.2);
+    second["differences"] = json!({"tip.x": {"largest": 0.0123, "at": 1.5, "rms": 0.01}});
+    let page = compared(&[("a", 9.0, run(8.0, 0.1)), ("b", 9.0, second)]);
+    let table = page.split_once(r#"<table class="answers">"#).unwrap().1.split_once("</table>").unwrap().0;
+    let rows: Vec<&str> = table.split_once("<tbody>").unwrap().1.split("<tr>").skip(1).collect();
+    let begins = ["tip.x largest difference", "&lt;lift&gt; least", "&lt;lift&gt; largest", "&lt;lift&gt; last", "hinge largest <small>N"];
+    assert!(
+        rows.len() == 5 && rows.iter().zip(begins).all(|(row, begin)| row.contains(&format!(r#"<th scope="row">{begin}"#))),
+        "{rows:?}"
+    );
+    assert!(rows[0].contains(r#"<td class="number">–</td>"#) && rows[0].contains("0.0123 <small>at 1.5 s"), "{}", rows[0]);
+    assert!(rows[1].contains(r#"<td class="number">0</td>"#) && rows[2].contains("8.04 <small>+0.50 %"), "{rows:?}");
+    assert!(rows[4].matches(r#"<td class="number">49.883</td>"#).count() == 2, "{}", rows[4]);
+    assert!(page.find("class=\"answers\"") < page.find("energy drift"), "{page}");
+    // Differences lead the summary.
+    let of_each = page.split_once("Of each run").unwrap().1.split_once("<tbody>").unwrap().1;
+    assert!(of_each.starts_with("\n<tr><th scope=\"row\">differences.tip.x.largest"), "{of_each}");
 }
 
 #[test]

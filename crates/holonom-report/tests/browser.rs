@@ -78,7 +78,7 @@ fn a_run_beside_what_was_measured() {
         assert_eq!((&seen["faults"], &seen["ready"]), (&Value::Array(Vec::new()), &Value::Bool(true)), "{seen:#}");
         // What is asked for takes the place of what is shown otherwise, and has a curve for each.
         assert_eq!(seen["machine"]["first"], Value::from(vec!["crank.power (W)"]), "{seen:#}");
-        assert_eq!((&seen["emptyPlots"], &seen["samples"]), (&Value::from(0), &Value::from(2)), "{seen:#}");
+        assert_eq!((&seen["emptyPlots"], &seen["samples"]), (&Value::from(0), &Value::from(4)), "{seen:#}");
     }
     // The pointer is at a quarter of the time, when nothing was measured yet.
     let run = sample::motor();
@@ -113,7 +113,7 @@ fn ten_runs_and_one_of_them_blows_up() {
     // Ten runs and all of them; the first is shown, and another one looks different.
     assert_eq!((&seen["choice"]["options"], &seen["choice"]["first"][0]), (&Value::from(11), &Value::from("0")), "{seen:#}");
     assert_ne!(seen["choice"]["first"][1], seen["choice"]["second"][1], "the picture does not follow the choice");
-    assert_eq!(seen["samples"], 10, "a sample of every curve is in the table: {seen:#}");
+    assert_eq!(seen["samples"], 20, "a sample of every curve is in the table of how they ended and in that of the solver: {seen:#}");
     let names = seen["readout"]["names"].as_array().unwrap();
     assert_eq!(
         (names.len(), &seen["readout"]["hidden"], &seen["readout"]["left"]),

@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 
 use holonom::record::Recording;
 use holonom_io::Writer;
-use holonom_report::{Report, Run};
+use holonom_report::{Answer, Report, Run, answers};
 use serde_json::{Map, Value, json};
 
 use crate::columns::unknown;
@@ -18,7 +18,7 @@ use crate::load::Loaded;
 use crate::options::CompareArguments;
 use crate::output::{Finished, Order, simulate, writers};
 use crate::progress::interrupt_flag;
-use crate::table::{short, table};
+use crate::table::{figures_beside, figures_between, short, table};
 
 /// What is compared, after all runs.
 struct Compared {
@@ -61,8 +61,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
     if output.to.json {
         println!("{}", serde_json::to_string_pretty(&summaries).expect("a summary is plain data"));
     } else if !output.to.quiet {
-        let differences = describe_columns(&plan.columns, &compared);
-        println!("{}\n{}{differences}\n\nresults in {}", plan.title, describe(&summaries), folder.path.display());
+        println!("{}\n{}\n\nresults in {}", plan.title, describe(&plan.columns, &compared), folder.path.display());
     }
     Ok(if interrupted.load(Ordering::Relaxed) { ExitCode::from(STOPPED) } else { ExitCode::SUCCESS })
 }
@@ -85,7 +84,7 @@ pub fn side_by_side(runs: &[(String, &Loaded, &Finished)], columns: &[String]) -
     }
     tell_differences(columns, &mut compared);
     let summaries: Vec<&Value> = compared.iter().map(|one| &one.summary).collect();
-    let text = format!("{}{}", describe(&summaries), describe_columns(columns, &compared));
+    let text = describe(columns, &compared);
     Ok(Found { value: json!(summaries), text })
 }
 
@@ -157,24 +156,50 @@ fn run<'a>(one: &'a Compared, plan: &'a Plan) -> Run<'a> {
     Run { label: &one.label, recording: &one.recording, scene, summary: &one.summary }
 }
 
-/// How far the columns asked for go in each run, and how far they are from those of the first, below the table of runs.
+/// What was asked, the answers of all runs, and how the solver did.
+fn describe(columns: &[String], compared: &[Compared]) -> String {
+    let summaries: Vec<&Value> = compared.iter().map(|one| &one.summary).collect();
+    let mut parts = vec![describe_columns(columns, compared), describe_answers(&summaries), describe_runs(&summaries)];
+    parts.retain(|part| !part.is_empty());
+    parts.join("\n\n")
+}
+
+/// How far measures go and the largest of what acts, in each run, with the differences to the first.
+fn describe_answers(summaries: &[&Value]) -> String {
+    let answers = answers(summaries);
+    if answers.is_empty() {
+        return String::new();
+    }
+    let row = |answer: &Answer| {
+        let cell = |(run, value): (usize, &Option<f64>)| {
+            let value = value.map_or("–".into(), |value| figures_beside(value, answer.size));
+            answer.difference(run).map_or(value.clone(), |difference| format!("{value} ({difference})"))
+        };
+        let unit = if answer.unit == "1" { String::new() } else { format!(" ({})", answer.unit) };
+        let name = format!("{} {}{unit}", answer.name, answer.what);
+        [name].into_iter().chain(answer.values.iter().enumerate().map(cell)).collect::<Vec<_>>()
+    };
+    let header: Vec<&str> = ["answer"].into_iter().chain(summaries.iter().map(|summary| text(summary, "label"))).collect();
+    table(&header, &answers.iter().map(row).collect::<Vec<_>>())
+}
+
+/// How far the columns asked for go in each run, and how far they are from those of the first: a table for each.
 fn describe_columns(columns: &[String], compared: &[Compared]) -> String {
     let Some(first) = compared.first().filter(|_| !columns.is_empty()) else { return String::new() };
-    let rows = columns.iter().flat_map(|column| {
+    let tables = columns.iter().map(|column| {
         let unit = first.recording.find(column).map_or("1", |column| &*column.heading.unit);
         let heading = if unit == "1" { column.clone() } else { format!("{column} ({unit})") };
-        compared.iter().map(move |one| {
+        let row = |one: &Compared| {
             let values = one.recording.column(column).unwrap_or_default().iter().copied().filter(|value| value.is_finite());
             let [least, largest] = values.fold([f64::NAN; 2], |[least, largest], value| [value.min(least), value.max(largest)]);
-            let [least, largest] = [least, largest].map(|value| if value.is_finite() { short(value) } else { "–".into() });
+            let reach = |value: f64| if value.is_finite() { figures_between(value, [least, largest]) } else { "–".into() };
             let number = |key: &str| digits(one.summary["differences"][column.as_str()][key].as_f64().unwrap_or(f64::NAN));
-            vec![heading.clone(), one.label.clone(), least, largest, number("largest"), number("at"), number("rms")]
-        })
+            vec![one.label.clone(), reach(least), reach(largest), number("largest"), number("at"), number("rms")]
+        };
+        table(&[&heading, "least", "largest", "difference", "at s", "rms"], &compared.iter().map(row).collect::<Vec<_>>())
     });
-    let rows: Vec<Vec<String>> = rows.collect();
-    let header = ["column", "run", "least", "largest", &format!("difference to {}", first.label), "at s", "rms"];
     let strangers: String = compared[1..].iter().filter_map(|other| hardly_meets(other, first)).collect();
-    format!("\n\n{}{strangers}", table(&header, &rows))
+    format!("{}\ndifferences are to {}{strangers}", tables.collect::<Vec<_>>().join("\n\n"), first.label)
 }
 
 /// Share of its rows that a curve has in common with another below which it is probably told in other units of time.
@@ -190,7 +215,7 @@ fn hardly_meets(one: &Compared, first: &Compared) -> Option<String> {
 }
 
 /// A table of all runs, and why those stopped that did.
-fn describe(summaries: &[&Value]) -> String {
+fn describe_runs(summaries: &[&Value]) -> String {
     let header = ["run", "status", "reached s", "drift J", "largest rise J", "‖Φ‖", "‖dΦ/dt‖", "‖d²Φ/dt²‖", "its/step", "µs/step"];
     let rows: Vec<Vec<String>> = summaries.iter().map(|summary| row(summary)).collect();
     let reasons = summaries.iter().filter_map(|summary| {
@@ -260,13 +285,13 @@ mod tests {
         let summaries: Vec<Value> = serde_json::from_slice(&written).unwrap();
         let labels: Vec<&str> = summaries.iter().map(|summary| text(summary, "label")).collect();
         assert_eq!(labels, ["radau, 0.01 s", "ggl/bdf-2, 0.01 s", "radau, 0.02 s", "ggl/bdf-2, 0.02 s"]);
-        assert!(describe(&summaries.iter().collect::<Vec<_>>()).contains("ggl/bdf-2, 0.02 s"));
+        assert!(describe_runs(&summaries.iter().collect::<Vec<_>>()).contains("ggl/bdf-2, 0.02 s"));
     }
 
     #[test]
     fn why_a_run_stopped_is_told_below_the_table() {
         let stopped = json!({"label": "bold", "status": "stopped", "stopped_at": 1.5, "reason": "no convergence"});
-        let told = describe(&[&stopped, &json!({"label": "good", "status": "completed", "stopped_at": null, "end": 2.0})]);
+        let told = describe_runs(&[&stopped, &json!({"label": "good", "status": "completed", "stopped_at": null, "end": 2.0})]);
         assert!(told.ends_with("\n\nbold stopped at 1.5 s: no convergence"), "{told}");
     }
 }
