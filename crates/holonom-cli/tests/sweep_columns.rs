@@ -321,14 +321,14 @@ fn columns_that_were_asked_for_are_shown() {
         let line = text.lines().find(|line| line.starts_with(begins)).unwrap_or_else(|| panic!("{begins} in\n{text}"));
         line.split_whitespace().map(str::to_string).collect()
     };
-    assert_eq!(line(&few, "parameters.n"), ["parameters.n", "max(m.x)", "min(m.vx)"]);
+    assert_eq!(line(&few, "parameters.n"), ["parameters.n", "max(m.x)", "(m)", "min(m.vx)", "(m/s)"]);
     let second = line(&few, "2 ");
     assert_eq!(second[1], "1.1");
     assert!((second[2].parse::<f64>().unwrap() + 0.1 * 2.0 * TAU).abs() < 1e-2, "{few}");
 
     let many = shown("--vary parameters.n=1..3:21 --out many --no-report");
-    assert_eq!(line(&many, "min(m.vx) largest")[3], "parameters.n=1");
-    assert_eq!(line(&many, "min(m.vx) least")[3], "parameters.n=3");
+    assert_eq!(line(&many, "min(m.vx) largest (m/s)")[4], "parameters.n=1");
+    assert_eq!(line(&many, "min(m.vx) least (m/s)")[4], "parameters.n=3");
     let columns = serde_json::from_str::<serde_json::Value>(&shown("--vary parameters.n=1..3:21 --out json --no-report --json")).unwrap();
     let of_speed = &columns["columns"]["min(m.vx)"];
     assert_eq!((&of_speed["min_run"], &of_speed["max_run"]), (&21.into(), &1.into()));

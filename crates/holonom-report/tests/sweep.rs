@@ -47,6 +47,22 @@ fn one_key_has_a_curve_for_each_column() {
 }
 
 #[test]
+fn columns_that_are_the_same_in_all_runs_are_told_below() {
+    let runs: Vec<SweepRun> = (0..3).map(|k| run(k + 1, &[k.to_string()])).collect();
+    let columns = [("constant", [2.5; 3]), ("noise", [1e-15, -2e-15, 0.0]), ("other", [1.0, 2.0, 10.0])];
+    let columns: Vec<SweepColumn> = columns.into_iter().map(|(name, values)| column(name, values.map(Some).to_vec())).collect();
+    let page = page(true, &["k"], &runs, &columns);
+    assert_eq!((page.matches("<figure>").count(), page.matches("<figcaption>other").count()), (1, 1));
+    assert!(
+        page.contains("The same in all runs: <code>constant</code> = 2.5 N, <code>noise</code> = 0 N.") && page.contains("sorted by other")
+    );
+    // A single run has nothing to be compared with.
+    let alone = [column("constant", vec![Some(2.5)])];
+    let page = self::page(true, &["k"], &runs[..1], &alone);
+    assert!(page.contains("<figcaption>constant") && !page.contains("The same in all runs"));
+}
+
+#[test]
 fn runs_that_fail_break_the_curve_and_stand_last_with_their_reasons() {
     let mut runs: Vec<SweepRun> = (0..5).map(|k| run(k + 1, &[k.to_string()])).collect();
     (runs[2].status, runs[2].reason, runs[2].stopped_at) = ("stopped".into(), "no <convergence>".into(), Some(1.5));

@@ -38,7 +38,8 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
         store.finish(&study, &table, &writers, (!arguments.no_report).then_some(overrides.given()))?;
     }
     let any_completed = study.count(&table, Ending::Completed) > 0;
-    let answers = Answers::new(&table, varied, columns.len());
+    let units = if columns.is_empty() { &[] } else { study.units() };
+    let answers = Answers::new(&table, varied, units);
     let mut summary = summary(&name, &study, &table, &spent);
     if !columns.is_empty() {
         summary["columns"] = answers.values();

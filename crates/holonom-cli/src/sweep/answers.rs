@@ -3,7 +3,7 @@
 use holonom_io::{Cells, Table};
 use serde_json::{Value, json};
 
-use crate::table::{short, table as grid};
+use crate::table::{figures, figures_beside, table as grid};
 
 /// Most runs of which all are told; of more, where each column is least and where it is largest.
 const FEW: usize = 20;
@@ -15,6 +15,8 @@ pub struct Answers<'a> {
     varied: usize,
     /// The first of the columns that were asked for.
     first: usize,
+    /// The unit of each of these, `"1"` of numbers without one.
+    units: &'a [String],
 }
 
 /// Where a column is least or largest.
@@ -25,13 +27,31 @@ struct Side {
 }
 
 impl<'a> Answers<'a> {
-    /// Of a table whose last `asked` columns were asked for.
-    pub fn new(table: &'a Table, varied: usize, asked: usize) -> Self {
-        Self { table, varied, first: table.columns.len() - asked }
+    /// Of a table whose last columns were asked for and have these units.
+    pub fn new(table: &'a Table, varied: usize, units: &'a [String]) -> Self {
+        Self { table, varied, first: table.columns.len() - units.len(), units }
     }
 
     fn name(&self, column: usize) -> &str {
         &self.table.columns[column].0
+    }
+
+    /// The name of a column and what is told of it, with its unit where it was asked for.
+    fn heading(&self, column: usize, what: &str) -> String {
+        let name = format!("{}{what}", self.name(column));
+        match self.units.get(column.wrapping_sub(self.first)).filter(|unit| *unit != "1") {
+            Some(unit) => format!("{name} ({unit})"),
+            None => name,
+        }
+    }
+
+    /// A number of a column as people read it: zero where it is round-off beside the largest of its unit.
+    fn figures(&self, column: usize, value: f64) -> String {
+        let unit = |column: usize| &self.units[column - self.first];
+        let is_like = |&other: &usize| other == column || (unit(other) == unit(column) && unit(column) != "1");
+        let alike = (self.first..self.table.columns.len()).filter(is_like);
+        let sizes = alike.filter_map(|column| self.sides(column)).flatten().map(|side| side.value.abs());
+        figures_beside(value, sizes.fold(0.0, f64::max))
     }
 
     fn number(&self, column: usize, row: usize) -> Option<f64> {
@@ -65,11 +85,13 @@ impl<'a> Answers<'a> {
         }
         if self.table.rows() <= FEW {
             let shown: Vec<usize> = (1..=self.varied).chain(asked).collect();
-            let header: Vec<&str> = shown.iter().map(|&column| self.name(column)).collect();
+            let header: Vec<String> = shown.iter().map(|&column| self.heading(column, "")).collect();
+            let header: Vec<&str> = header.iter().map(String::as_str).collect();
             let cell = |column: usize, row: usize| match self.number(column, row) {
-                Some(value) => short(value),
-                None if column >= self.first => "–".into(),
-                None => self.table.columns[column].1.text(row),
+                Some(value) if column < self.first => figures(value),
+                Some(value) => self.figures(column, value),
+                None if column < self.first => self.table.columns[column].1.text(row),
+                None => "–".into(),
             };
             let rows: Vec<Vec<String>> =
                 (0..self.table.rows()).map(|row| shown.iter().map(|&column| cell(column, row)).collect()).collect();
@@ -78,10 +100,11 @@ impl<'a> Answers<'a> {
         let lines = asked.flat_map(|column| {
             let sides = self.sides(column).map_or([None; 2], |sides| sides.map(Some));
             let line = |what: &str, side: Option<Side>| {
-                let [value, place] = side.map_or(["–".into(), String::new()], |side| [short(side.value), self.settings(side.row)]);
-                vec![format!("{} {what}", self.name(column)), value, place]
+                let [value, place] =
+                    side.map_or(["–".into(), String::new()], |side| [self.figures(column, side.value), self.settings(side.row)]);
+                vec![self.heading(column, what), value, place]
             };
-            [line("least", sides[0]), line("largest", sides[1])]
+            [line(" least", sides[0]), line(" largest", sides[1])]
         });
         Some(grid(&["column", "value", "where"], &lines.collect::<Vec<_>>()))
     }

@@ -44,6 +44,11 @@ pub struct Line {
 }
 
 impl Study {
+    /// The SI unit of each column of the motion, `"1"` of numbers without one.
+    pub fn units(&self) -> &[String] {
+        &self.columns.units
+    }
+
     /// Checks a plan: its keys, the model and the columns asked for, without which there are the last values of everything.
     ///
     /// # Errors

@@ -10,7 +10,7 @@ mod runs;
 use std::io;
 
 use crate::escape::html;
-use crate::page;
+use crate::{format, page};
 
 /// A key of the model that was varied.
 pub struct SweepKey<'a> {
@@ -71,13 +71,18 @@ pub struct SweepReport<'a> {
 /// Plots of a page.
 const MOST_CHARTS: usize = 24;
 
+/// Columns of one value that are told with it.
+const CONSTANT: usize = 8;
+
 impl SweepReport<'_> {
     /// Writes the page.
     pub fn write(&self, out: &mut dyn io::Write) -> io::Result<()> {
         page::head(self.title, "", out)?;
         writeln!(out, "<header>\n<h1>{}</h1>\n<p class=\"method\">{}</p>\n</header>\n<main>", html(self.title), self.question())?;
-        self.charts(out)?;
-        runs::write(self, out)?;
+        let (differing, constant): (Vec<&SweepColumn>, Vec<&SweepColumn>) = self.columns.iter().partition(|column| self.differs(column));
+        self.charts(&differing, out)?;
+        runs::write(self, &differing, out)?;
+        self.constant_note(&constant, out)?;
         page::model(self.model_text, out)?;
         if !self.set.is_empty() {
             writeln!(out, "<p class=\"note\">Set on the command line: <code>{}</code></p>", html(&self.set.join(", ")))?;
@@ -100,9 +105,40 @@ impl SweepReport<'_> {
         std::iter::once(runs).chain(ends).chain([over]).collect::<Vec<_>>().join(" · ")
     }
 
+    /// The largest value of a column, and of all of its unit, which have one round-off.
+    fn largest(&self, column: &SweepColumn) -> f64 {
+        let alike = self.columns.iter().filter(|other| other.unit == column.unit && other.unit != "1").chain([column]);
+        alike.flat_map(|column| &column.values).flatten().filter(|v| v.is_finite()).fold(0.0, |most: f64, v| most.max(v.abs()))
+    }
+
+    /// Whether a column is not the same in all runs, but for round-off.
+    fn differs(&self, column: &SweepColumn) -> bool {
+        let least = format::ROUND_OFF * self.largest(column);
+        let is_as_first = |value: &Option<f64>| match (value, column.values[0]) {
+            (Some(value), Some(first)) => *value == first || (value - first).abs() <= least,
+            (value, first) => value.is_none() && first.is_none(),
+        };
+        column.values.len() < 2 || !column.values.iter().all(is_as_first)
+    }
+
+    /// Columns that are the same in all runs, which are no part of plots and table.
+    fn constant_note(&self, columns: &[&SweepColumn], out: &mut dyn io::Write) -> io::Result<()> {
+        let told = columns.iter().take(CONSTANT).map(|column| {
+            let value = column.values[0].map_or("–".to_owned(), |value| format::answer_beside(value, self.largest(column)));
+            let unit = if column.unit == "1" { String::new() } else { format!(" {}", html(column.unit)) };
+            format!("<code>{}</code> = {value}{unit}", html(column.name))
+        });
+        let mut told: Vec<String> = told.collect();
+        if let more @ 1.. = columns.len().saturating_sub(CONSTANT) {
+            told.push(format!("and {more} more, in sweep.csv"));
+        }
+        if told.is_empty() { Ok(()) } else { writeln!(out, "<p class=\"note\">The same in all runs: {}.</p>", told.join(", ")) }
+    }
+
     /// Of a grid over one key a curve for each column, over two a map; else points over each key.
-    fn charts(&self, out: &mut dyn io::Write) -> io::Result<()> {
-        let shown: Vec<&SweepColumn> = self.columns.iter().filter(|column| column.values.iter().flatten().any(|v| v.is_finite())).collect();
+    fn charts(&self, columns: &[&SweepColumn], out: &mut dyn io::Write) -> io::Result<()> {
+        let has_values = |column: &&&SweepColumn| column.values.iter().flatten().any(|v| v.is_finite());
+        let shown: Vec<&SweepColumn> = columns.iter().filter(has_values).copied().collect();
         if shown.is_empty() {
             return Ok(());
         }

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::io;
 
-use super::{SweepReport, SweepRun, heading};
+use super::{SweepColumn, SweepReport, SweepRun, heading};
 use crate::escape::html;
 use crate::format;
 
@@ -11,8 +11,9 @@ use crate::format;
 const MOST_ROWS: usize = 1000;
 const MOST_COLUMNS: usize = 40;
 
-pub fn write(report: &SweepReport, out: &mut dyn io::Write) -> io::Result<()> {
-    let columns = &report.columns[..report.columns.len().min(MOST_COLUMNS)];
+/// `all`: the columns that differ from run to run.
+pub fn write(report: &SweepReport, all: &[&SweepColumn], out: &mut dyn io::Write) -> io::Result<()> {
+    let columns = &all[..all.len().min(MOST_COLUMNS)];
     let sorted_by = columns.first().map_or(String::new(), |column| format!(", sorted by {}", html(column.name)));
     writeln!(out, "<section>\n<h2>Runs{sorted_by}</h2>\n<div class=\"scroll\"><table class=\"figures compared runs\"><thead><tr>")?;
     writeln!(out, r#"<th scope="col" class="number">run</th>"#)?;
@@ -23,7 +24,7 @@ pub fn write(report: &SweepReport, out: &mut dyn io::Write) -> io::Result<()> {
         writeln!(out, r#"<th scope="col" class="number">{}</th>"#, heading(column))?;
     }
     writeln!(out, r#"<th scope="col">status</th></tr></thead><tbody>"#)?;
-    let order = order(report);
+    let order = order(report, columns.first());
     for &k in order.iter().take(MOST_ROWS) {
         let run = &report.runs[k];
         let class = if run.has_completed() { "" } else { r#" class="failed""# };
@@ -41,8 +42,8 @@ pub fn write(report: &SweepReport, out: &mut dyn io::Write) -> io::Result<()> {
     if order.len() > MOST_ROWS {
         notes.push(format!("{MOST_ROWS} of {} runs", order.len()));
     }
-    if report.columns.len() > MOST_COLUMNS {
-        notes.push(format!("{MOST_COLUMNS} of {} columns", report.columns.len()));
+    if all.len() > MOST_COLUMNS {
+        notes.push(format!("{MOST_COLUMNS} of {} columns", all.len()));
     }
     if !notes.is_empty() {
         writeln!(out, "<p class=\"note\">The table shows {}; sweep.csv has all.</p>", notes.join(" and "))?;
@@ -51,9 +52,9 @@ pub fn write(report: &SweepReport, out: &mut dyn io::Write) -> io::Result<()> {
 }
 
 /// Indices of the runs in the order of the table.
-fn order(report: &SweepReport) -> Vec<usize> {
+fn order(report: &SweepReport, by: Option<&&SweepColumn>) -> Vec<usize> {
     let mut order: Vec<usize> = (0..report.runs.len()).collect();
-    let value = |k: usize| report.columns.first().and_then(|column| column.values[k]).unwrap_or(f64::NAN);
+    let value = |k: usize| by.and_then(|column| column.values[k]).unwrap_or(f64::NAN);
     let compare = |a: usize, b: usize| -> Ordering {
         let failed = |k: usize| !report.runs[k].has_completed();
         failed(a).cmp(&failed(b)).then(value(a).total_cmp(&value(b)))
