@@ -318,6 +318,7 @@ pub fn start_failure(error: StartError) -> Failure {
             "something that can turn or move has no inertia, such as a rod about itself: give it some, or hold it with a joint"
         }
         StartError::Crowded { .. } => "take away those that only repeat what others hold already, or spread them over several bodies",
+        StartError::NoNumber => "begin from a state of numbers, or from the model's start",
         StartError::NotFinite => "a formula may be outside its domain there, or a table outside its range",
         StartError::Nonholonomic { .. } => "take another formulation, such as the default",
         StartError::Step { .. } => "give a step above 0",

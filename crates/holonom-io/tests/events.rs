@@ -472,3 +472,50 @@ fn events_right_behind_a_nominal_time_happen_once() {
         assert!((last(&recording, "p.vx") - 2.0).abs() < 1e-6, "{method}, {accuracy:?}: {}", last(&recording, "p.vx"));
     }
 }
+
+/// A ball that falls on a stiff spring far from the origin, where rounding of its place decides for a moment on which side of the spring's end
+/// it is. It touches it and leaves it in turn, at times that are known.
+#[test]
+fn what_went_through_zero_does_not_come_back_by_rounding() {
+    let text = r#"
+gravity = [0, 0, -10]
+
+[point.ball]
+mass = 1
+position = [0, 0, 1000.2]
+
+[force.spring]
+type = "expression"
+point = "ball"
+force = [0, 0, "max(0, -1e6*(z - 1000))"]
+
+[event.touches]
+when = "ball.z - 1000"
+direction = "falling"
+
+[event.leaves]
+when = "ball.z - 1000"
+direction = "rising"
+"#;
+    let model = model(text);
+    let (speed, rate): (f64, f64) = (2.0, 1e3);
+    let contact = 2.0 / rate * (PI - (speed * rate / 10.0).atan());
+    let between = contact + 0.4;
+    let times = |k: usize| 0.2 + between * (k / 2) as f64 + contact * (k % 2) as f64;
+    for method in ["ode/dopri5", "ode/dop853", "radau"] {
+        for accuracy in [1e-6, 1e-8, 1e-10] {
+            let choice = Choice { accuracy: Some(accuracy), ..Choice::default().named(method) };
+            let (simulation, _) = common::run(&model, choice, 0.01, 2.1);
+            let found = simulation.events();
+            assert_eq!(found.len(), 10, "{method}, {accuracy:e}: {found:?}");
+            // Errors of speed add up from touch to touch.
+            for (k, event) in found.iter().enumerate() {
+                let off = (event.t - times(k)).abs();
+                assert!(
+                    event.event == ["touches", "leaves"][k % 2] && off < 100.0 * accuracy,
+                    "{method}, {accuracy:e}: {event:?}, {off:e} s off"
+                );
+            }
+        }
+    }
+}

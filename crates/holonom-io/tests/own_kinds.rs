@@ -8,7 +8,7 @@ use holonom::model::{
     Shape, Site, Solid, from_to,
 };
 use holonom::simulation::{Choice, Method, Simulation, Status};
-use holonom::system::{ConstraintFunction, Differences, Differentiated, Law, Place as Node, Reach, Response};
+use holonom::system::{ConstraintFunction, Differences, Differentiated, Law, Place as Node, Reach, Response, SystemBuilder};
 use holonom_io::Source;
 
 /// a hinge that is a spherical joint whose axes stay parallel
@@ -443,6 +443,32 @@ fn linear_momentum_is_kept_beside_a_formula() {
             assert_eq!(simulation.step_to(2.0), Status::Completed);
             let drift = simulation.audit().momentum_summary().linear_drift;
             assert!(drift < 1e-13, "{constraint}: {drift} kg·m/s");
+        }
+    }
+}
+
+/// A closure that adds to the force, and one that writes it for half a second only: what they leave unwritten is zero at each call.
+#[test]
+fn loads_write_into_zeros() {
+    type Push = fn(&[f64], &[f64], f64, &mut [f64]);
+    let adds: Push = |_, _, _, force| force[1] += 1.0;
+    let writes_at_first: Push = |_, _, t, force| {
+        if t < 0.5 {
+            force[1] = 1.0;
+        }
+    };
+    for (push, way) in [(adds, 0.5), (writes_at_first, 0.375)] {
+        for method in ["conserving-ggl", "radau", "generalized-alpha", "ode/dopri5", "lagrange-1/rk4"] {
+            let mut builder = SystemBuilder::new(2, [0.0; 3]);
+            let point = builder.free_node([0.0; 3], [0.0; 3]);
+            builder.mass(Node::Node(point), Node::Node(point), 1.0);
+            builder.load("push", &[point], Arc::new(Differences(push)));
+            let method = Method::resolve(&Choice::default().named(method)).unwrap();
+            let mut simulation = Simulation::new(builder.build(), method, 0.01).unwrap();
+            assert_eq!(simulation.step_to(1.0), Status::Completed);
+            // A step across the end of the push is off by some of it.
+            let off = (simulation.state().x[1] - way).abs();
+            assert!(off < 0.01, "{}: {off} m", simulation.method().name);
         }
     }
 }

@@ -286,3 +286,21 @@ fn a_drive_that_is_held_at_rest_has_no_forces() {
         }
     }
 }
+
+/// A simulation that was asked for its own forces, and not as its model finds them, tells none of joints where bodies share nodes.
+#[test]
+fn forces_of_another_system_are_not_taken_for_those_of_joints() {
+    let text = "plane = \"xy\"\ngravity = [0, -10]\n[body.a]\nmass = 1\ninertia = 0.1\nposition = [1, 0]\n[body.b]\nmass = 1\ninertia = 0.1\nposition = [3, 0]\n\
+                [joint.one]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0]\n\
+                [joint.two]\ntype = \"revolute\"\nbetween = [\"a\", \"b\"]\nat = [2, 0]\n";
+    let model = common::model_with_forces(text);
+    let method = Method::resolve(&Choice::default()).unwrap();
+    let mut simulation = Simulation::new(model.system.clone(), method, 0.01).unwrap();
+    simulation.find_reactions();
+    assert_eq!(model.reaction(&simulation, "two"), None);
+    let mut recorder = Recorder::new(&model.channels, &model.system, 1, Constraints::Joints);
+    assert_eq!(simulation.run(0.02, &mut recorder), Status::Completed);
+    assert!(recorder.finish().find("two.fy").unwrap().values.iter().all(|force| force.is_nan()));
+    model.find_reactions(&mut simulation);
+    assert!(model.reaction(&simulation, "two").is_some());
+}

@@ -86,6 +86,23 @@ fn a_state_of_another_start_is_taken_as_that_start() {
 }
 
 #[test]
+fn inputs_are_those_of_the_state() {
+    let text = "[input.push]\ndefault = 1\n[point.cart]\nmass = 2\nposition = [0, 0, 0]\n[force.engine]\ntype = \"expression\"\npoint = \"cart\"\nforce = [\"push\", 0, 0]\n";
+    let mut simulation = simulation(text);
+    let start = simulation.state().clone();
+    assert!(simulation.set_input("push", 4.0));
+    run(&mut simulation, 0.1);
+    let pushed = simulation.state().clone();
+    for (state, push) in [(&start, 1.0), (&pushed, 4.0)] {
+        simulation.set_state(state).unwrap();
+        assert_eq!(simulation.input("push"), Some(push));
+        let speed = simulation.state().v[0];
+        run(&mut simulation, state.t + 0.1);
+        assert!((simulation.state().v[0] - speed - 0.05 * push).abs() < 1e-12, "{push} N");
+    }
+}
+
+#[test]
 fn velocities_are_put_on_the_constraints() {
     let mut simulation = wheels(0.0);
     let mut state: State = simulation.state().clone();
@@ -104,6 +121,9 @@ fn what_cannot_start_leaves_the_simulation_as_it_was() {
     let mut torn = simulation.state().clone();
     torn.x[0] += 1.0;
     assert!(matches!(simulation.set_state(&torn), Err(StartError::Position { .. })));
+    let mut endless = simulation.state().clone();
+    endless.t = f64::INFINITY;
+    assert_eq!(simulation.set_state(&endless), Err(StartError::NoNumber));
     let pendulum = self::simulation("[point.A]\nmass = 1\nposition = [1, 0, 0]\n");
     assert_eq!(simulation.set_state(pendulum.state()), Err(StartError::Other));
     assert_eq!(simulation.checkpoint(), before);

@@ -86,9 +86,10 @@ impl Model {
         }
     }
 
-    /// Force and moment that the joint `name` transmits at the present state. `None` where there is no such joint, where the
-    /// simulation was not asked for forces ([`Model::find_reactions`]), and where the bodies share nodes at the joint and the model was not
-    /// [told](Model::tell_forces) how to find its force.
+    /// Force and moment that the joint `name` transmitted after the last step; inputs that were set since count once forces are
+    /// [found anew](Simulation::update_reactions). `None` where there is no such joint, where this model did not ask the simulation for forces
+    /// ([`Model::find_reactions`]), and where the bodies share nodes at the joint and the model was not [told](Model::tell_forces) how to find
+    /// its force.
     pub fn reaction(&self, simulation: &Simulation, name: &str) -> Option<Reaction> {
         let joint = self.channels.told().joints.iter().position(|joint| joint.name == name)?;
         let (force, moment) = self.channels.wrench(joint, simulation)?;

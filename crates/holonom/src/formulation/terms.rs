@@ -287,6 +287,7 @@ impl Workspace {
             let rows = entry.rows.rows();
             let x = gather(system.dim, &entry.nodes, &self.sampled.x);
             let hessian = &mut self.forces.dense[..x.len() * x.len()];
+            hessian.fill(0.0);
             entry.rows.hessian(&x, t, &self.lambda[first..first + rows], hessian);
             kkt.add_custom(block, k, hessian, factor);
             first += rows;

@@ -2,10 +2,14 @@
 
 use super::{Audit, Simulation};
 use crate::formulation::{Failure, Iteration, Sampling};
-use crate::integrator::Step;
+use crate::integrator::{Estimate, Step};
 
 /// Halvings of a step before a run gives up.
 const MOST_HALVINGS: u32 = 12;
+
+/// Accelerations are differences of positions over the square of a step: from a part of it that is shorter than this share, rounding would be
+/// carried on. Schemes of several steps know them from longer ones.
+const SHORT: f64 = 0.01;
 
 /// Most parts of a length before longer ones are tried again.
 const MOST_WANTED: u32 = 16;
@@ -44,6 +48,10 @@ impl Simulation {
         self.judge.supply(h, known, &self.audit, &self.work)?;
         self.steps += 1;
         self.audit.end_step(&self.system, &mut self.work, &self.state, self.steps);
+        let carries = !self.method.integrator.conserves && self.method.integrator.estimate != Estimate::OwnOfStates;
+        if self.pilot.is_none() && h < SHORT * self.step && carries {
+            self.begin_anew();
+        }
         if reacts {
             self.update_reactions();
         }

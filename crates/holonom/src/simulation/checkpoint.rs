@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::events::SHORTEST;
 use super::pilot::Flight;
 use super::{Audit, Happening, Method, Reactions, Simulation, State};
 use crate::formulation::{Fit, Newton, Rank, Workspace};
@@ -122,7 +123,7 @@ impl Grid {
         if t != self.at(self.passed) {
             *self = Self::new(t, self.step);
         }
-        let count = ((end - self.first) / self.step - 1e-9).ceil().max(0.0) as u64;
+        let count = ((end - self.first) / self.step - SHORTEST).ceil().max(0.0) as u64;
         self.passed += 1;
         if self.passed >= count { end } else { self.at(self.passed) }
     }
@@ -178,14 +179,15 @@ impl Simulation {
     }
 
     /// Goes on from a checkpoint of an earlier run of the same system: with the same method and nominal step to the same bits, with
-    /// others from its state. `None` when that is not one of this system and method.
+    /// others from its state. `None` when that is not one of this system and method, and where it or the step is no number to go on with.
     pub fn resume(system: impl Into<Arc<System>>, method: Method, step: f64, checkpoint: impl Into<Checkpoint>) -> Option<Self> {
         let system = system.into();
         let Checkpoint { state, run } = checkpoint.into();
         let mut work = Workspace::new(&system);
         let newton = Newton::new(&system, &work.scales, method.settings);
         let integrator = (method.integrator.make)(&system, &newton, method.parameters);
-        if !state.fits(&system) || state.memory.len() != integrator.memory(&system) {
+        let has_numbers = step > 0.0 && step.is_finite() && state.is_finite();
+        if !has_numbers || !state.fits(&system) || state.memory.len() != integrator.memory(&system) {
             return None;
         }
         work.level = method.settings.level;

@@ -107,7 +107,7 @@ impl Simulation {
         // Indicators that went through zero here and lie beside it again before anything else happens.
         let mut turned: Vec<(usize, f64)> = Vec::new();
         // Indicators at the last event, and when it has happened: that may lie a little behind the state at which it was taken.
-        let (mut at_last, mut last) = (vec![0.0; from.len()], self.state.t);
+        let (mut at_last, mut last) = (vec![f64::NAN; from.len()], self.state.t);
         loop {
             // The step that an accuracy takes is another after each event.
             let shortest = self.shortest(length);
@@ -148,7 +148,8 @@ impl Simulation {
             // Where the step is taken in parts it ends with the part in which something happens.
             let (mut low, mut lower) = (self.state.t, self.state.t);
             let mut look = |simulation: &mut Self| {
-                if simulation.state.t <= last {
+                // So shortly behind an event rounding decides on which side of zero its indicator is.
+                if simulation.state.t <= last + shortest {
                     return Ok(false);
                 }
                 let now = seen(simulation, &from)?;
@@ -161,6 +162,9 @@ impl Simulation {
                 Ok(false)
             };
             self.advance(until, reacts, Some(&mut Inside { look: &mut look, everywhere: true }))?;
+            if self.state.t <= last + shortest {
+                continue;
+            }
             let to = seen(self, &from).inspect_err(|_| self.restore(&before))?;
             let (t, behind, k, beside) = match crossed(&from, &to) {
                 Some(k) => {
@@ -179,11 +183,11 @@ impl Simulation {
                 }
             };
             let now = self.indicate()?;
+            at_last.copy_from_slice(&now);
             let now = if self.state.t == until { self.indicate_about(now)? } else { now };
             let happens = |at: usize| at == k || system.events[at].trigger.is_between(from[at], now[at]);
             let due = self.due(shortest);
             let happening: Vec<usize> = (0..now.len()).filter(|at| happens(*at) || due.contains(at)).collect();
-            at_last.copy_from_slice(&now);
             if self.state.t > begin {
                 pass(&mut from, now);
             } else {
@@ -256,13 +260,15 @@ impl Simulation {
     }
 
     /// Lets the events happen whose indicators jumped through zero when inputs were set, one after the other and each once, and says whether
-    /// one ends the run; nothing where there were none. Those beside zero since the last event jump where they are not as they were then.
+    /// one ends the run; nothing where there were none. What is as it was at the last event has not jumped since, nor has
+    /// what has come to zero and is past it.
     fn jump(&mut self, from: &mut [f64], at_last: &[f64]) -> Result<Option<bool>, Failure> {
         let (mut jumps, mut has_jumped) = (None, vec![false; from.len()]);
         for _ in 0..=from.len() {
-            let mut now = self.indicate_about(self.indicate()?)?;
-            let stays = |((now, from), at_last): &((&mut f64, &f64), &f64)| **now == **at_last && from.abs() == f64::MIN_POSITIVE;
-            now.iter_mut().zip(&*from).zip(at_last).filter(stays).for_each(|((now, from), _)| *now = *from);
+            let exact = self.indicate()?;
+            let mut now = self.indicate_about(exact.clone())?;
+            let is_past = |k: usize| exact[k] == 0.0 && from[k].abs() == f64::MIN_POSITIVE;
+            (0..now.len()).filter(|&k| exact[k] == at_last[k] || is_past(k)).for_each(|k| now[k] = from[k]);
             let is_between = |k: usize| !has_jumped[k] && self.system.events[k].trigger.is_between(from[k], now[k]);
             let jumped: Vec<usize> = (0..now.len()).filter(|&k| is_between(k)).collect();
             jumped.iter().for_each(|&k| has_jumped[k] = true);

@@ -60,12 +60,19 @@ impl Simulation {
                 None => bracket = bracket.narrowed(here, now[k], false),
             }
         }
-        let high = bracket.high;
-        let lands = if until - high < shortest { until } else { high };
-        if here != lands {
-            self.restore(&before);
-            self.advance(lands, wants_forces, None)?;
+        let (mut high, mut ahead) = (bracket.high, width);
+        loop {
+            let lands = if until - high < shortest { until } else { high };
+            if here != lands {
+                self.restore(&before);
+                self.advance(lands, wants_forces, None)?;
+                here = lands;
+            }
+            // What an iteration leaves may have the event a little later than when it was looked for: it would happen again.
+            if lands == until || crossed(&self.indicate()?).is_some() {
+                return Ok((high, high, k, beside));
+            }
+            (high, ahead) = ((high + ahead).min(until), 2.0 * ahead);
         }
-        Ok((high, high, k, beside))
     }
 }

@@ -169,15 +169,18 @@ impl Simulation {
         Self::begin(Arc::clone(&system), method, step, &Asked::of(&system, step))
     }
 
-    /// Puts the mechanism at the time, the positions and the velocities of a state, as at a start: what misses the constraints a little
-    /// is corrected, accelerations and multipliers are found anew, and the audit begins again. Angles are the nearest to those of
-    /// the state.
+    /// Puts the mechanism at the time, the positions and the velocities of a state, with its inputs, as at a start: what misses the
+    /// constraints a little is corrected, accelerations and multipliers are found anew, and the audit begins again. Angles are the
+    /// nearest to those of the state.
     ///
     /// # Errors
     /// As at a start; the simulation is then as it was.
     pub fn set_state(&mut self, state: &State) -> Result<(), StartError> {
         if !state.fits(&self.system) {
             return Err(StartError::Other);
+        }
+        if !state.is_finite() {
+            return Err(StartError::NoNumber);
         }
         let impulse = vec![0.0; self.system.coordinates()];
         let asked = Asked {
@@ -186,6 +189,7 @@ impl Simulation {
             v: &state.v,
             impulse: &impulse,
             angles: Some([&state.angle, &state.measured]),
+            inputs: Some(&state.inputs),
             step: self.step,
         };
         let found = Self::begin(Arc::clone(&self.system), self.method.clone(), self.step, &asked)?;
@@ -202,6 +206,9 @@ impl Simulation {
         crowd::require_few_rows(&system)?;
         let mut work = Workspace::new(&system);
         work.level = method.settings.level;
+        if let Some(inputs) = asked.inputs {
+            work.inputs.copy_from_slice(inputs);
+        }
         let mut newton = Newton::new(&system, &work.scales, method.settings);
         let start = start::prepare(&system, &method, asked, &mut newton, &mut work)?;
         let integrator = (method.integrator.make)(&system, &newton, method.parameters);
@@ -279,13 +286,11 @@ impl Simulation {
         self.run(t, &mut |_: &Self| Verdict::GoOn)
     }
 
-    /// Runs to time `end` (s), or to an event that ends the run, and shows the start and every nominal step to the observer.
+    /// Runs to time `end` (s), or to an event that ends the run, and shows the start and every nominal step to the observer. Where the end is closer
+    /// than a millionth of a step, it is there.
     pub fn run(&mut self, end: f64, observer: &mut dyn Observer) -> Status {
         self.has_ended = false;
-        if end.is_nan() {
-            return Status::Stopped { at: self.state.t, reason: "the time that the run is to end at is not a number".into() };
-        }
-        if let Some(reason) = self.is_endless(end) {
+        if let Some(reason) = self.cannot_run(end) {
             return Status::Stopped { at: self.state.t, reason };
         }
         match self.begin_sampling() {
@@ -297,7 +302,7 @@ impl Simulation {
             return self.interrupted();
         }
         self.begin_adapting(end);
-        while self.state.t < end {
+        while !self.is_there(end) {
             let before = self.state.t;
             let target = self.grid.next(before, end);
             let wants_forces = observer.wants_forces();
@@ -307,6 +312,9 @@ impl Simulation {
                     self.grid.back();
                     // Shorter attempts may profit from what failed ones learned of the rows; what comes after the run may not.
                     self.hints.restore(&mut self.newton, &mut *self.integrator);
+                    if let Some(pilot) = &mut self.pilot {
+                        pilot.forget(self.state.t);
+                    }
                     return Status::Stopped { at: self.state.t, reason: self.reason(failure) };
                 }
             };

@@ -3,6 +3,7 @@
 use super::Simulation;
 use super::events::SHORTEST;
 use crate::formulation::Failure;
+use crate::linalg::largest;
 use crate::system::Trigger;
 
 /// Periods of a span that can be counted one by one in floating point: of more, time does not move by one at the span's end.
@@ -13,9 +14,25 @@ pub(crate) fn uncountable(span: f64, period: f64) -> Option<f64> {
     Some(span / period).filter(|count| *count > COUNTABLE && span.is_finite())
 }
 
+/// Roundings of places that the indicator of an event may be off by.
+const ROUNDED: f64 = 64.0 * f64::EPSILON;
+
 impl Simulation {
+    /// Why no run goes to a time, in words, if none does.
+    pub(super) fn cannot_run(&self, end: f64) -> Option<String> {
+        let reason = match self.method.accuracy {
+            _ if end.is_nan() => "the time that the run is to end at is not a number",
+            Some(_) if end.is_infinite() => "an accuracy is that of a run with an end, and this one has none",
+            Some(_) if self.pilot.is_none() => {
+                "an element panicked in an earlier step, and what chooses the steps is lost: begin a new simulation"
+            }
+            _ => return self.is_endless(end),
+        };
+        Some(reason.into())
+    }
+
     /// Why a run to a time would never get there, in words, if it would not.
-    pub(super) fn is_endless(&self, end: f64) -> Option<String> {
+    fn is_endless(&self, end: f64) -> Option<String> {
         let span = end - self.state.t;
         let of_steps = uncountable(span, self.step).map(|count| format!("{count:e} nominal steps of {} s", self.step));
         // Periods are counted from t = 0.
@@ -70,10 +87,18 @@ impl Simulation {
         }
     }
 
-    /// Shortest part of a step of some length, of the next one that is chosen for an accuracy, and of the shortest period, s.
+    /// Shortest part of a step of some length and of the shortest period, s. Where steps are chosen for an accuracy it is that of the next one, but for the
+    /// time in which something moves by what rounding leaves of places.
     pub(super) fn shortest(&self, length: f64) -> f64 {
-        let chosen = self.pilot.iter().map(|pilot| pilot.control.step).filter(|step| *step > 0.0);
-        SHORTEST * self.periods().map(|(_, period, _)| period).chain(chosen).fold(length, f64::min)
+        let longest = SHORTEST * self.periods().map(|(_, period, _)| period).fold(length, f64::min);
+        let Some(step) = self.pilot.as_ref().map(|pilot| pilot.control.step).filter(|step| *step > 0.0) else { return longest };
+        let size = largest(&self.state.x) + largest(&self.system.origin());
+        (ROUNDED * size / largest(&self.shown_v)).max(SHORTEST * step).min(longest)
+    }
+
+    /// Whether a time is not so far ahead that a part of a step could be taken to it.
+    pub(super) fn is_there(&self, t: f64) -> bool {
+        t - self.state.t <= self.shortest(self.step)
     }
 
     /// Counts as happened what lies before the present time, at which a run begins.

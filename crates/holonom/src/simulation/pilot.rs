@@ -263,6 +263,11 @@ impl Pilot {
         self.last = None;
     }
 
+    /// Has the next run begin as at a start, where this one ended at `t` with attempts that failed: what these came to says nothing of it.
+    pub fn forget(&mut self, t: f64) {
+        (self.end, self.control.step, self.patience) = (t, 0.0, Patience::default());
+    }
+
     /// All energy there was to move up to where integration has come, J.
     pub fn supply(&self) -> f64 {
         self.front.audit.supply()[1]

@@ -174,7 +174,13 @@ impl Simulation {
         self.apart = Some(elsewhere);
     }
 
-    /// Forces of the constraints at the present state, if they were asked for.
+    /// Whether they are found in a system in which bodies share no nodes.
+    pub(crate) fn reacts_apart(&self) -> bool {
+        self.apart.is_some()
+    }
+
+    /// Forces of the constraints after the last step, if they were asked for. What was set since counts once they are
+    /// [found anew](Simulation::update_reactions).
     pub fn reactions(&self) -> Option<&Reactions> {
         self.reactions.as_ref()
     }

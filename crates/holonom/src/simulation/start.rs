@@ -28,6 +28,8 @@ pub(super) struct Asked<'a> {
     pub impulse: &'a [f64],
     /// Angles of the equations and of what is measured, from which turns are counted, rad.
     pub angles: Option<[&'a [f64]; 2]>,
+    /// Numbers from outside, where they are not the defaults.
+    pub inputs: Option<&'a [f64]>,
     /// Length of the steps to come, s.
     pub step: f64,
 }
@@ -35,7 +37,15 @@ pub(super) struct Asked<'a> {
 impl<'a> Asked<'a> {
     /// The start of the model.
     pub fn of(system: &'a System, step: f64) -> Self {
-        Self { t: 0.0, x: &system.start_position, v: &system.start_velocity, impulse: &system.start_impulse, angles: None, step }
+        Self {
+            t: 0.0,
+            x: &system.start_position,
+            v: &system.start_velocity,
+            impulse: &system.start_impulse,
+            angles: None,
+            inputs: None,
+            step,
+        }
     }
 }
 
@@ -86,6 +96,9 @@ pub enum StartError {
     /// Forces, or their derivatives, that are not finite.
     #[error("the accelerations at the start cannot be found: forces or their derivatives are not finite there")]
     NotFinite,
+    /// A time, positions, velocities, angles or inputs of a state that are not finite.
+    #[error("the state has numbers that are not finite")]
+    NoNumber,
     /// The state has other numbers of nodes, rows or angles than the system.
     #[error("the state is one of another system")]
     Other,

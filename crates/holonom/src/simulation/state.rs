@@ -75,6 +75,12 @@ impl State {
             && self.measured.len() == system.gauge_values().counted().len()
     }
 
+    /// Whether where it is, and when, are numbers.
+    pub(super) fn is_finite(&self) -> bool {
+        let numbers = [&self.x, &self.v, &self.angle, &self.inputs];
+        self.t.is_finite() && numbers.into_iter().flatten().all(|number| number.is_finite())
+    }
+
     /// Takes over another state of the same run, without allocating.
     pub(super) fn copy_from(&mut self, other: &Self) {
         (self.t, self.last_step) = (other.t, other.last_step);

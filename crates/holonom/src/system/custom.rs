@@ -48,7 +48,7 @@ impl Number for HyperDual64 {
 }
 
 /// Constraint rows Φ(q, t) as an engine sees them: values and derivatives. Made from a [`ConstraintFunction`] by
-/// [`Differentiated`], or written by hand.
+/// [`Differentiated`], or written by hand. What is to be written arrives zeroed.
 pub trait CustomRows: Send + Sync {
     /// Number of rows.
     fn rows(&self) -> usize;
@@ -74,13 +74,13 @@ pub trait ConstraintFunction: Send + Sync {
     /// Number of rows.
     fn rows(&self) -> usize;
 
-    /// Φ at coordinates `x` of the nodes, D numbers a node, and time `t`.
+    /// Φ at coordinates `x` of the nodes, D numbers a node, and time `t`. It arrives zeroed.
     fn evaluate<N: Number>(&self, x: &[N], t: N, phi: &mut [N]);
 }
 
 /// A force written once over any number type; [`Differentiated`] takes its derivatives.
 pub trait ForceFunction: Send + Sync {
-    /// Force at coordinates `x` and velocities `v` of the nodes, D numbers a node, and time `t`, N.
+    /// Force at coordinates `x` and velocities `v` of the nodes, D numbers a node, and time `t`, N. It arrives zeroed.
     fn evaluate<N: Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N]);
 
     /// Hands over where the force bends, as [`Law::bends`](super::Law::bends) does.
@@ -119,6 +119,7 @@ impl<F: Fn(&[f64], &[f64], f64, &mut [f64]) + Send + Sync> Load for Differences<
             let here = if is_position { x[i] } else { v[i] };
             for (sign, out) in [(1.0, &mut ahead), (-1.0, &mut behind)] {
                 *if is_position { &mut x[i] } else { &mut v[i] } = here + sign * h;
+                out.fill(0.0);
                 (self.0)(&x, &v, t, out);
             }
             *if is_position { &mut x[i] } else { &mut v[i] } = here;
@@ -139,6 +140,24 @@ fn with_room<N: Copy, T>(zero: N, count: usize, f: impl FnOnce(&mut [N]) -> T) -
     if count <= 3 * SIZE { f(&mut [zero; 3 * SIZE][..count]) } else { f(&mut vec![zero; count]) }
 }
 
+impl<F> Differentiated<F> {
+    fn rows_at<N: Number>(&self, x: &[N], t: N, phi: &mut [N])
+    where
+        F: ConstraintFunction,
+    {
+        phi.fill(N::from(0.0));
+        self.0.evaluate(x, t, phi);
+    }
+
+    fn force_at<N: Number>(&self, x: &[N], v: &[N], t: N, force: &mut [N])
+    where
+        F: ForceFunction,
+    {
+        force.fill(N::from(0.0));
+        self.0.evaluate(x, v, t, force);
+    }
+}
+
 impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
     fn rows(&self) -> usize {
         self.0.rows()
@@ -155,7 +174,7 @@ impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
             for direction in 0..k {
                 point.iter_mut().zip(x).for_each(|(point, &x)| *point = Dual64::from(x));
                 point[direction].eps = 1.0;
-                self.0.evaluate(point, Dual64::from(t), phi);
+                self.rows_at(point, Dual64::from(t), phi);
                 (0..rows).for_each(|row| by_position[row * k + direction] = phi[row].eps);
             }
         });
@@ -163,7 +182,7 @@ impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
         with_room(Dual2_64::from(0.0), k + rows, |room| {
             let (point, phi) = room.split_at_mut(k);
             point.iter_mut().zip(x).for_each(|(point, &x)| *point = Dual2_64::from(x));
-            self.0.evaluate(point, Dual2_64::new(t, 1.0, 0.0), phi);
+            self.rows_at(point, Dual2_64::new(t, 1.0, 0.0), phi);
             by_time.iter_mut().zip(phi).for_each(|(by_time, phi)| *by_time = phi.v1);
         });
     }
@@ -177,7 +196,7 @@ impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
                     point.iter_mut().zip(x).for_each(|(point, &x)| *point = HyperDual64::from(x));
                     point[i].eps1 = 1.0;
                     point[j].eps2 = 1.0;
-                    self.0.evaluate(point, HyperDual64::from(t), phi);
+                    self.rows_at(point, HyperDual64::from(t), phi);
                     let sum: f64 = phi.iter().zip(lambda).map(|(phi, lambda)| lambda * phi.eps1eps2).sum();
                     out[i * k + j] = sum;
                     out[j * k + i] = sum;
@@ -193,7 +212,7 @@ impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
             for i in 0..k {
                 point.iter_mut().zip(x).for_each(|(point, &x)| *point = HyperDual64::from(x));
                 point[i].eps1 = 1.0;
-                self.0.evaluate(point, HyperDual64::new(t, 0.0, 1.0, 0.0), phi);
+                self.rows_at(point, HyperDual64::new(t, 0.0, 1.0, 0.0), phi);
                 (0..rows).for_each(|row| out[row * k + i] = phi[row].eps1eps2);
             }
         });
@@ -203,7 +222,7 @@ impl<F: ConstraintFunction> CustomRows for Differentiated<F> {
         with_room(Dual2_64::from(0.0), x.len() + out.len(), |room| {
             let (point, phi) = room.split_at_mut(x.len());
             point.iter_mut().zip(x.iter().zip(v)).for_each(|(point, (&x, &v))| *point = Dual2_64::new(x, v, 0.0));
-            self.0.evaluate(point, Dual2_64::new(t, 1.0, 0.0), phi);
+            self.rows_at(point, Dual2_64::new(t, 1.0, 0.0), phi);
             out.iter_mut().zip(phi).for_each(|(out, phi)| *out = phi.v2);
         });
     }
@@ -233,7 +252,7 @@ impl<F: ForceFunction> Load for Differentiated<F> {
                     false => (&mut rate[direction - k], &mut *by_velocity),
                 };
                 varied.eps = 1.0;
-                self.0.evaluate(point, rate, Dual64::from(t), force);
+                self.force_at(point, rate, Dual64::from(t), force);
                 for i in 0..k {
                     out[i * k + direction % k] = force[i].eps;
                 }

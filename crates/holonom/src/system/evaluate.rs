@@ -112,6 +112,7 @@ impl System {
         }
         self.each_custom(out, |entry, out| {
             let local = gather(self.dim, &entry.nodes, x);
+            [&mut *out.value, &mut *out.gradient, &mut *out.by_time].into_iter().for_each(|numbers| numbers.fill(0.0));
             entry.rows.value(&local, t, out.value);
             entry.rows.gradient(&local, t, out.gradient, out.by_time);
         });
@@ -211,6 +212,7 @@ impl System {
         for entry in &self.custom {
             let (position, velocity) = (gather(self.dim, &entry.nodes, x), gather(self.dim, &entry.nodes, v));
             let rows = entry.rows.rows();
+            out[first..first + rows].fill(0.0);
             entry.rows.curvature(&position, &velocity, t, &mut out[first..first + rows]);
             first += rows;
         }
@@ -251,6 +253,7 @@ impl System {
             for row in 0..rows {
                 unit.fill(0.0);
                 unit[row] = 1.0;
+                hessian.fill(0.0);
                 entry.rows.hessian(&position, t, &unit, &mut hessian);
                 for i in 0..width {
                     let line = &hessian[i * width..(i + 1) * width];
@@ -349,6 +352,8 @@ fn directional_point(dim: usize, entry: &CustomEntry, span: Between<'_>, row: us
             local[i] = from[i] + beta * span.step * rate[i];
         }
         let t = span.start + beta * span.step;
+        gradient.fill(0.0);
+        by_time.fill(0.0);
         entry.rows.gradient(&local, t, &mut gradient, &mut by_time);
         let parts = (0..k).map(|i| gradient[row * k + i] * rate[i]).chain([by_time[row]]);
         // What keeps up with a row that moves is a sum of large parts, and rounded as they are.
@@ -357,6 +362,7 @@ fn directional_point(dim: usize, entry: &CustomEntry, span: Between<'_>, row: us
         if excess.abs() <= 4.0 * f64::EPSILON * (rise.abs() + span.step * size) {
             break;
         }
+        curvature.fill(0.0);
         entry.rows.curvature(&local, &rate, t, &mut curvature);
         let slope = span.step * span.step * curvature[row];
         if low_sign == 0.0 {

@@ -65,7 +65,7 @@ pub trait Law: Send + Sync {
 
 /// A force on nodes given directly, booked as work.
 pub trait Load: Send + Sync {
-    /// Writes the force on each of the load's nodes (D × nodes), N, for their positions `x`, velocities `v` and time.
+    /// Writes the force on each of the load's nodes (D × nodes), N, for their positions `x`, velocities `v` and time. It arrives zeroed.
     fn force(&self, x: &[f64], v: &[f64], t: f64, force: &mut [f64]);
 
     /// Hands over where the force bends, as [`Law::bends`] does.

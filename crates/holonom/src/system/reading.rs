@@ -92,13 +92,13 @@ impl System {
     pub(crate) fn load_forces(&self, load: &LoadEntry, look: Look<'_>, out: &mut [f64]) {
         let [x, v] = self.read(&load.reading, look);
         let own = load.reading.nodes.len() * self.dim;
+        out.fill(0.0);
         if load.reading.senses.is_empty() {
             load.load.force(&x, &v, look.t, out);
             return;
         }
         let mut force = Local::from_elem(0.0, x.len());
         load.load.force(&x, &v, look.t, &mut force);
-        out.fill(0.0);
         out[..own].copy_from_slice(&force[..own]);
         self.spread_senses(load, &look.at.gradient, |line, sense, slope| line[0] += force[own + sense] * slope, out, 1);
     }

@@ -75,7 +75,7 @@ impl Program {
 
 impl Op {
     /// The value of an operation on some numbers.
-    #[inline]
+    #[inline(always)]
     pub(super) fn of<N: Number>(&self, numbers: &[N]) -> N {
         match (self, numbers) {
             (Self::Neg, &[x]) => -x,
