@@ -3,6 +3,7 @@
 use std::io::IsTerminal;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 use holonom::record::Recorder;
 use holonom::simulation::{Divisions, Observer, Simulation, Verdict};
@@ -11,8 +12,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use crate::checkpoint::Point;
 use crate::keeper::Keeper;
 
-/// Steps between looks at the clocks.
-const LOOK: u64 = 64;
+/// Time between two changes of what the terminal shows.
+const SHOWN: Duration = Duration::from_millis(100);
 
 /// A recorder with a progress bar that saves the run from time to time and stops on an interrupt.
 pub struct Watched<'a, 'f> {
@@ -25,7 +26,7 @@ pub struct Watched<'a, 'f> {
     bar: ProgressBar,
     step: f64,
     end: f64,
-    seen: u64,
+    next_shown: Instant,
     interrupted: Arc<AtomicBool>,
 }
 
@@ -33,7 +34,8 @@ impl<'a, 'f> Watched<'a, 'f> {
     /// Watches a run in steps of `step` to `end` (s).
     pub fn new(recorder: Recorder<'a>, step: f64, end: f64, quiet: bool, interrupted: Arc<AtomicBool>) -> Self {
         let bar = bar(1000, "{bar:30} {percent:>3} %  {eta} left  {msg}", quiet);
-        Self { recorder, before_end: None, keeper: None, corrections: Vec::new(), bar, step, end, seen: 0, interrupted }
+        let next_shown = Instant::now() + SHOWN;
+        Self { recorder, before_end: None, keeper: None, corrections: Vec::new(), bar, step, end, next_shown, interrupted }
     }
 
     /// The same run, saved while it goes on, with what was put right before its start.
@@ -65,7 +67,6 @@ impl Observer for Watched<'_, '_> {
         {
             keeper.begin_anew();
         }
-        self.seen += 1;
         if (self.end - 1.5 * self.step..self.end).contains(&simulation.state().t) {
             // An event before the end may end the run within a step.
             let point = Point::of(simulation, &self.recorder, &self.corrections);
@@ -73,13 +74,12 @@ impl Observer for Watched<'_, '_> {
                 self.before_end = Some(point);
             }
         }
-        if self.seen.is_multiple_of(LOOK) {
-            if !self.bar.is_hidden() {
-                self.show(simulation);
-            }
-            if let Some(keeper) = &mut self.keeper {
-                keeper.look(simulation, &self.recorder, &self.corrections);
-            }
+        if !self.bar.is_hidden() && Instant::now() >= self.next_shown {
+            self.show(simulation);
+            self.next_shown = Instant::now() + SHOWN;
+        }
+        if let Some(keeper) = &mut self.keeper {
+            keeper.look(simulation, &self.recorder, &self.corrections);
         }
         if self.interrupted.load(Ordering::Relaxed) { Verdict::Stop } else { Verdict::GoOn }
     }

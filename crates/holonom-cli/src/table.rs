@@ -1,7 +1,12 @@
 //! Plain tables on a terminal.
 
-/// Characters of a line that every terminal has.
-const LINE: usize = 80;
+/// Characters of a line that a terminal has at least.
+const LEAST: usize = 40;
+
+/// Characters of a line of the terminal; another program, or a file, reads lines of any length.
+fn room() -> usize {
+    terminal_size::terminal_size_of(std::io::stdout()).map_or(usize::MAX, |(width, _)| usize::from(width.0).max(LEAST))
+}
 
 /// Between two columns.
 const GAP: &str = "  ";
@@ -9,6 +14,10 @@ const GAP: &str = "  ";
 /// Rows of cells under a header, columns as wide as their widest cell; the first column to the left, numbers to the right. Where a line has no room for all
 /// columns, the others follow below, beside the first again.
 pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
+    table_within(room(), header, rows)
+}
+
+fn table_within(room: usize, header: &[&str], rows: &[Vec<String>]) -> String {
     let width = |k: usize| rows.iter().map(|row| row[k].chars().count()).chain([header[k].chars().count()]).max().unwrap_or(0);
     let widths: Vec<usize> = (0..header.len()).map(width).collect();
     let line = |cells: &dyn Fn(usize) -> String, columns: &[usize]| {
@@ -23,15 +32,15 @@ pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
         let body = rows.iter().map(|row| line(&|k| row[k].clone(), &columns));
         [line(&|k| header[k].to_string(), &columns), rule].into_iter().chain(body).collect::<Vec<_>>().join("\n")
     };
-    blocks(&widths).into_iter().map(block).collect::<Vec<_>>().join("\n\n")
+    blocks(room, &widths).into_iter().map(block).collect::<Vec<_>>().join("\n\n")
 }
 
 /// Which columns of these widths stand beside each other, always with the first.
-fn blocks(widths: &[usize]) -> Vec<Vec<usize>> {
+fn blocks(room: usize, widths: &[usize]) -> Vec<Vec<usize>> {
     let mut blocks = vec![vec![0]];
     let mut used = widths[0];
     for (k, width) in widths.iter().enumerate().skip(1) {
-        if used + GAP.len() + width > LINE && blocks[blocks.len() - 1].len() > 1 {
+        if used + GAP.len() + width > room && blocks[blocks.len() - 1].len() > 1 {
             blocks.push(vec![0]);
             used = widths[0];
         }
@@ -44,9 +53,9 @@ fn blocks(widths: &[usize]) -> Vec<Vec<usize>> {
 /// Names and values, one a line; the further lines of a value under its first, and what a line has no room for a little to the right below it.
 pub fn list(items: &[(&str, String)]) -> String {
     let width = items.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
-    let margin = format!("\n{:width$}    ", "");
+    let (margin, room) = (format!("\n{:width$}    ", ""), room().saturating_sub(width + 4).max(LEAST / 2));
     let item = |(name, value): &(&str, String)| {
-        let lines = value.split('\n').map(|line| wrapped(line, LINE - width - 4).join(&format!("{margin}  ")));
+        let lines = value.split('\n').map(|line| wrapped(line, room).join(&format!("{margin}  ")));
         format!("  {name:width$}  {}", lines.collect::<Vec<_>>().join(&margin))
     };
     items.iter().map(item).collect::<Vec<_>>().join("\n")
@@ -155,14 +164,14 @@ mod tests {
     fn columns_without_room_follow_below() {
         let row = |cells: [&str; 4]| cells.map(String::from).to_vec();
         let wide = "w".repeat(40);
-        let told = table(&["run", "a", &wide, "b"], &[row(["one", "1", &wide, "3"]), row(["other", "2", "22", "4"])]);
+        let told = table_within(80, &["run", "a", &wide, "b"], &[row(["one", "1", &wide, "3"]), row(["other", "2", "22", "4"])]);
         assert!(!told.contains("\n\n"), "{told}");
-        let told = table(&["run", &wide, &wide, "b"], &[row(["one", "1", "2", "3"])]);
+        let told = table_within(80, &["run", &wide, &wide, "b"], &[row(["one", "1", "2", "3"])]);
         let blocks: Vec<Vec<&str>> = told.split("\n\n").map(|block| block.lines().collect()).collect();
         assert_eq!(blocks.len(), 2, "{told}");
         assert!(blocks[0][2].starts_with("one ") && blocks[0][2].ends_with(" 1"), "{told}");
         assert_eq!(blocks[1][2].split_whitespace().collect::<Vec<_>>(), ["one", "2", "3"], "{told}");
-        assert!(told.lines().all(|line| line.chars().count() <= LINE), "{told}");
+        assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
     }
 
     #[test]

@@ -151,9 +151,9 @@ impl Called {
 
     fn wrong<T>(&self, given: &Bound<'_, PyAny>) -> PyResult<T> {
         let values = self.parts.values;
-        let wanted = if values == 1 { "a number".to_string() } else { format!("{values} numbers") };
+        let wanted = if values == 1 { "a number is".to_string() } else { format!("{values} numbers are") };
         let given = given.repr().map_or(String::new(), |text| text.to_string_lossy().chars().take(60).collect());
-        Err(pyo3::exceptions::PyTypeError::new_err(format!("it gave {given}, and {wanted} is wanted")))
+        Err(pyo3::exceptions::PyTypeError::new_err(format!("it gave {given}, and {wanted} wanted")))
     }
 }
 

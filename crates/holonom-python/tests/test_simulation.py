@@ -1,5 +1,6 @@
 """Simulations that a program steps."""
 
+import copy
 import pickle
 import threading
 import time
@@ -319,3 +320,24 @@ def test_quaternions_do_not_depend_on_what_was_read(read):
             sim["top.vx" if read == "a velocity" else "top.qw"]
     # Three quarters of a turn: half of that is the angle of the quaternion.
     assert sim["top.qw"] == pytest.approx(-np.sqrt(0.5), abs=1e-3) and sim["top.qz"] == pytest.approx(np.sqrt(0.5), abs=1e-3)
+
+
+@pytest.mark.parametrize("take", [copy.copy, copy.deepcopy, pickle.dumps])
+def test_two_simulations_never_share_an_engine(take):
+    m = hm.Model()
+    m.point("bob", mass=1, position=[0, 0, 0])
+    with pytest.raises(hm.ModelError, match="neither copied nor pickled"):
+        take(hm.Simulation(m, step=0.01))
+
+
+def test_a_simulation_goes_on_when_what_failed_is_mended():
+    m = hm.Model(gravity=[0, 0, 0])
+    m.point("bob", mass=1, position=[0, 0, 0])
+    m.input("push", default=3)
+    m.force_expression("thrust", point="bob", force=["sqrt(1 + push)", 0, 0])
+    sim = hm.Simulation(m, step=0.1, accuracy=1e-6)
+    sim.step()
+    sim.inputs["push"] = -2
+    assert not sim.step()
+    sim.inputs["push"] = 3
+    assert sim.step() and sim.time > 0.1

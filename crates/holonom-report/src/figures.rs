@@ -95,9 +95,10 @@ fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
             )?;
         }
         if are_more > 0 {
+            let plural = if are_more == 1 { "" } else { "s" };
             writeln!(
                 out,
-                r#"<tr><td colspan="3"><small>{are_more} smaller ones: see the picker and <code>summary.json</code></small></td></tr>"#
+                r#"<tr><td colspan="3"><small>{are_more} smaller one{plural}: see the picker and <code>summary.json</code></small></td></tr>"#
             )?;
         }
         writeln!(out, "</tbody></table>")?;

@@ -105,7 +105,7 @@ fn peaks(summary: &Value, sort: usize) -> String {
     let width = |k: usize| peaks.iter().map(|peak| peak[k].chars().count()).max().unwrap_or(0);
     let (names, values) = (width(0), width(1));
     let mut lines: Vec<String> = peaks.iter().map(|[name, value, rest]| format!("{name:names$}  {value:>values$} {rest}")).collect();
-    lines.extend(more.as_u64().filter(|more| *more > 0).map(|more| format!("{more} smaller ones")));
+    lines.extend(more.as_u64().filter(|more| *more > 0).map(|more| format!("{more} smaller one{}", if more == 1 { "" } else { "s" })));
     lines.join("\n")
 }
 

@@ -67,8 +67,17 @@ impl Range {
         Setting::number(match (share, self.geometric) {
             (1.0, _) => self.high,
             (_, true) => self.low * libm::pow(self.high / self.low, share),
-            (_, false) => self.low + (self.high - self.low) * share,
+            (_, false) => self.without_round_off(self.low + (self.high - self.low) * share),
         })
+    }
+
+    /// A value of an even grid to fifteen digits of its larger end: what rounding adds behind them is not what was asked for.
+    fn without_round_off(&self, value: f64) -> f64 {
+        let digits = 14.0 - self.low.abs().max(self.high.abs()).log10().floor();
+        if self.count.is_none() || !(0.0..=300.0).contains(&digits) {
+            return value;
+        }
+        format!("{value:.*}", digits as usize).parse::<f64>().expect("it is a number") + 0.0
     }
 }
 
@@ -188,6 +197,8 @@ mod tests {
     fn ranges_are_even_in_difference_or_ratio_and_end_where_they_say() {
         assert_eq!(numbers("a.b=-1..1:5", 5), [-1.0, -0.5, 0.0, 0.5, 1.0]);
         assert_eq!(numbers("k=0.1..0.7:3", 3), [0.1, 0.4, 0.7]);
+        assert_eq!(numbers("k=1.6..2.1:6", 6), [1.6, 1.7, 1.8, 1.9, 2.0, 2.1]);
+        assert_eq!(numbers("k=-3e-9..6e-9:4", 4), [-3e-9, 0.0, 3e-9, 6e-9]);
         let ratios = numbers("k=1e3..1e5:5log", 5);
         assert_eq!((ratios[0], ratios[2], ratios[4]), (1e3, 1e4, 1e5));
         assert!(ratios.windows(2).all(|pair| (pair[1] / pair[0] - 10f64.sqrt()).abs() < 1e-14), "{ratios:?}");

@@ -138,6 +138,13 @@ class Simulation:
             raise refuse("state", f"`state` is of type {type(state).__name__}, and a state is wanted", "give what state() gave")
         self._simulator.set_state(state)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise refuse(
+            "simulation",
+            "a simulation can be neither copied nor pickled",
+            "keep its state(), and set it in another Simulation of the model with set_state()",
+        )
+
     def live(self, *, limits: Mapping[str, tuple[float, float]] | None = None, speed: float = 1.0) -> Live:
         """A widget of a notebook that shows the mechanism while it moves, with a slider for each input: `limits` are the ends of sliders,
         such as ``{"torque": (-10, 10)}``, and `speed` is how many simulated seconds a second has. Other cells may read, set and step the
