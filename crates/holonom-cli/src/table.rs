@@ -1,5 +1,7 @@
 //! Plain tables on a terminal.
 
+use holonom_report::digits::{DIGITS, between, without_round_off};
+
 /// Characters of a line that a terminal has at least.
 const LEAST: usize = 40;
 
@@ -96,11 +98,8 @@ pub fn short(value: f64) -> String {
 
 /// A number of an answer: five figures.
 pub fn figures(value: f64) -> String {
-    significant(value, FIGURES)
+    significant(value, DIGITS)
 }
-
-/// Figures of answers.
-const FIGURES: usize = 5;
 
 fn significant(value: f64, figures: usize) -> String {
     let text = format!("{value:.*e}", figures - 1);
@@ -113,20 +112,15 @@ fn significant(value: f64, figures: usize) -> String {
     }
 }
 
-/// Share of the largest of some answers below which one is round-off.
-const ROUND_OFF: f64 = 1e-12;
-
 /// A number of an answer that is zero where it is round-off beside the largest of its like.
 pub fn figures_beside(value: f64, largest: f64) -> String {
-    figures(if value.abs() < ROUND_OFF * largest { 0.0 } else { value })
+    figures(without_round_off(value, largest))
 }
 
-/// A number between two others: of what changes by a small share of itself so many figures that this shows.
-pub fn figures_between(value: f64, [low, high]: [f64; 2]) -> String {
-    let (largest, span) = (low.abs().max(high.abs()), high - low);
-    let shares = if span > ROUND_OFF * largest { (largest / span).log10().floor() } else { 0.0 };
-    let figures = FIGURES + (shares - 1.0).max(0.0) as usize;
-    significant(if value.abs() < ROUND_OFF * largest { 0.0 } else { value }, figures)
+/// A number between two others.
+pub fn figures_between(value: f64, ends: [f64; 2]) -> String {
+    let (value, digits) = between(value, ends);
+    significant(value, digits)
 }
 
 /// Degrees of freedom, counted.

@@ -357,6 +357,46 @@ fn functions_of_a_program_are_formulas_of_a_file() {
     assert!(message.contains("`sin` is a constant or a function of every expression"), "{message}");
 }
 
+/// The square of a length, with the derivatives that are given.
+struct Square([f64; 2]);
+
+impl ExternalFunction for Square {
+    fn arguments(&self) -> usize {
+        2
+    }
+
+    fn call(&self, x: &[f64], values: &mut [f64]) {
+        values[0] = x[0] * x[0] + x[1] * x[1];
+    }
+
+    fn gradient(&self, x: &[f64], gradient: &mut [f64]) {
+        gradient.copy_from_slice(&[self.0[0] * x[0], self.0[1] * x[1]]);
+    }
+}
+
+/// Forces of a constraint would act along them, and do work that nothing accounts for.
+#[test]
+fn wrong_derivatives_of_constraints_are_refused() {
+    for size in [1e-6, 1.0, 1e6] {
+        let read = |given: [f64; 2]| {
+            let text = format!(
+                "plane = \"xy\"\n[point.P]\nmass = 1\nposition = [{}, {}]\n[constraint.rod]\ntype = \"expression\"\nvalue = \"square(P.x, P.y) - {}\"\n",
+                3.0 * size,
+                4.0 * size,
+                25.0 * size * size
+            );
+            let mut kinds = Kinds::default();
+            kinds.functions.insert("square".into(), External::new(Square(given)));
+            Source::read("own.toml", text.as_bytes()).unwrap().knowing(kinds).model()
+        };
+        assert!(read([2.0, 2.0]).is_ok(), "{size} m");
+        for wrong in [[2.0, 0.0], [2.5, 2.0], [-2.0, 2.0]] {
+            let message = read(wrong).err().unwrap();
+            assert!(message.contains("a function that this formula calls has a wrong derivative"), "{size} m: {message}");
+        }
+    }
+}
+
 #[test]
 fn a_constraint_as_a_formula_is_that_of_a_kind_of_one_s_own() {
     let written = FILE

@@ -334,7 +334,7 @@ def test_a_simulation_goes_on_when_what_failed_is_mended():
     m = hm.Model(gravity=[0, 0, 0])
     m.point("bob", mass=1, position=[0, 0, 0])
     m.input("push", default=3)
-    m.force_expression("thrust", point="bob", force=["sqrt(1 + push)", 0, 0])
+    m.expression("thrust", point="bob", force=["sqrt(1 + push)", 0, 0])
     sim = hm.Simulation(m, step=0.1, accuracy=1e-6)
     sim.step()
     sim.inputs["push"] = -2

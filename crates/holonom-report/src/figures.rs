@@ -2,7 +2,7 @@
 
 use crate::escape::html;
 use crate::outcome::is_measured;
-use crate::{Run, comparison, format};
+use crate::{Run, comparison, digits, format};
 use serde_json::Value;
 use std::io;
 
@@ -68,9 +68,6 @@ const PEAKS: [(&str, &str); 3] = [("drives", "Drives"), ("forces", "Forces"), ("
 /// Peaks of a sort and a unit that are shown.
 const ROWS: usize = 5;
 
-/// A peak that is a smaller share of the largest of its sort is round-off.
-const ROUND_OFF: f64 = 1e-12;
-
 /// The largest of what acts in the mechanism.
 fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
     let of = |sort: &str| summary.pointer(&format!("/peaks/{sort}")).and_then(Value::as_array).filter(|peaks| !peaks.is_empty());
@@ -80,7 +77,7 @@ fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
         let is_among_first = |k: usize| peaks[..k].iter().filter(|peak| peak.get("unit") == peaks[k].get("unit")).count() < ROWS;
         let size = |peak: &Value| peak.get("value").and_then(Value::as_f64).map_or(f64::INFINITY, f64::abs);
         let most = peaks.iter().map(size).fold(0.0, f64::max);
-        let is_shown = |&k: &usize| is_among_first(k) && (most.is_infinite() || size(&peaks[k]) >= ROUND_OFF * most);
+        let is_shown = |&k: &usize| is_among_first(k) && (most.is_infinite() || size(&peaks[k]) >= digits::ROUND_OFF * most);
         let shown: Vec<usize> = (0..peaks.len()).filter(is_shown).collect();
         let others = summary.pointer(&format!("/peaks/more/{k}")).and_then(Value::as_u64).unwrap_or(0);
         let are_more = (0..peaks.len()).filter(|k| !is_among_first(*k)).count() as u64 + others;

@@ -2,6 +2,8 @@
 
 use serde_json::Value;
 
+use crate::digits::{DIGITS, between, without_round_off};
+
 /// Up to six significant digits, `1.5e-9` where zeros would have to be counted.
 pub fn number(value: f64) -> String {
     if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
@@ -20,28 +22,20 @@ pub fn figure(value: f64) -> String {
     significant(value, 3)
 }
 
-/// Five significant digits, which answers have, as HTML.
+/// The digits that answers have, as HTML.
 pub fn answer(value: f64) -> String {
-    significant(value, ANSWER)
+    significant(value, DIGITS)
 }
-
-/// Digits of answers.
-const ANSWER: usize = 5;
-
-/// Share of the largest of some answers below which one is round-off.
-pub const ROUND_OFF: f64 = 1e-12;
 
 /// An answer that is zero where it is round-off beside the largest of its like.
 pub fn answer_beside(value: f64, largest: f64) -> String {
-    answer(if value.abs() < ROUND_OFF * largest { 0.0 } else { value })
+    answer(without_round_off(value, largest))
 }
 
-/// An answer between two others: of what changes by a small share of itself so many digits that this shows.
-pub fn answer_between(value: f64, [low, high]: [f64; 2]) -> String {
-    let (largest, span) = (low.abs().max(high.abs()), high - low);
-    let shares = if span > ROUND_OFF * largest { (largest / span).log10().floor() } else { 0.0 };
-    let digits = ANSWER + (shares - 1.0).max(0.0) as usize;
-    significant(if value.abs() < ROUND_OFF * largest { 0.0 } else { value }, digits)
+/// An answer between two others.
+pub fn answer_between(value: f64, ends: [f64; 2]) -> String {
+    let (value, digits) = between(value, ends);
+    significant(value, digits)
 }
 
 fn significant(value: f64, digits: usize) -> String {

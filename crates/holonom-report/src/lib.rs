@@ -8,6 +8,7 @@ mod answers;
 mod base64;
 mod comparison;
 mod data;
+pub mod digits;
 mod escape;
 mod figures;
 mod format;

@@ -10,7 +10,7 @@ mod runs;
 use std::io;
 
 use crate::escape::html;
-use crate::{format, page};
+use crate::{digits, format, page};
 
 /// A key of the model that was varied.
 pub struct SweepKey<'a> {
@@ -113,7 +113,7 @@ impl SweepReport<'_> {
 
     /// Whether a column is not the same in all runs, but for round-off.
     fn differs(&self, column: &SweepColumn) -> bool {
-        let least = format::ROUND_OFF * self.largest(column);
+        let least = digits::ROUND_OFF * self.largest(column);
         let is_as_first = |value: &Option<f64>| match (value, column.values[0]) {
             (Some(value), Some(first)) => *value == first || (value - first).abs() <= least,
             (value, first) => value.is_none() && first.is_none(),

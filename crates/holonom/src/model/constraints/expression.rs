@@ -67,6 +67,12 @@ impl Element for Expression {
                 "write it so that it grows on one side and falls on the other: x - y, not (x - y)^2",
             ));
         }
+        if let Some([given, found]) = rows.misleads(&start, &slope) {
+            let message = format!(
+                "a function that this formula calls has a wrong derivative: the formula's slope along a coordinate is {given} with it, and {found} by differences"
+            );
+            return Err(entry.refuse("value", message, "correct the derivative of the function, or leave it out"));
+        }
         // How far the nodes are from where it is zero.
         let far = off[0] / norm(&slope);
         assembly.check_start(entry, far, norm(&start), || {
@@ -96,6 +102,9 @@ impl Expression {
     }
 }
 
+/// Share of a slope that differences miss where a formula bends much.
+const MISLED: f64 = 1e-2;
+
 /// A formula that is kept at zero.
 struct Held {
     readings: Readings,
@@ -119,6 +128,27 @@ impl Held {
         self.value.slopes(&variables, &mut slopes);
         by_position.fill(N::from(0.0));
         self.readings.spread(&slopes[1..], [x, x], [by_position, &mut []]);
+    }
+
+    /// A slope as the derivative of a function has it, and as differences do, where these are far apart: forces act along the slopes, and would do
+    /// work that nothing accounts for.
+    fn misleads(&self, x: &[f64], slope: &[f64]) -> Option<[f64; 2]> {
+        if !self.value.calls() {
+            return None;
+        }
+        let largest = |numbers: &[f64]| numbers.iter().fold(0.0, |most: f64, number| most.max(number.abs()));
+        let mut place: Moving<f64> = x.into();
+        let step = f64::EPSILON.cbrt() * Some(largest(x)).filter(|size| *size > 0.0).unwrap_or(1.0);
+        let mut at = |i: usize, by: f64| {
+            place[i] = x[i] + by;
+            let value = self.value.evaluate(&self.variables(&place, 0.0));
+            place[i] = x[i];
+            value
+        };
+        let both = slope.iter().enumerate().map(|(i, &given)| [given, (at(i, step) - at(i, -step)) / (2.0 * step)]);
+        let both: Vec<[f64; 2]> = both.collect();
+        let size = largest(both.as_flattened());
+        both.into_iter().find(|[given, found]| (given - found).abs() > MISLED * size)
     }
 
     /// It with what it changes by along a line, up to the second derivative.

@@ -175,6 +175,11 @@ pub struct Program {
 }
 
 impl Program {
+    /// Whether it calls functions of a program.
+    pub(in crate::model) fn calls(&self) -> bool {
+        self.ops.iter().any(|op| matches!(op, Op::OfMany(..)))
+    }
+
     /// Parses an expression of `variables`, which are later given by their positions in this list.
     ///
     /// # Errors
