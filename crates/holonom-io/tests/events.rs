@@ -103,39 +103,6 @@ direction = "falling"
     assert!(times.len() == 2 && times.iter().zip(expected).all(|(t, known)| (t - known).abs() < 1e-7), "{times:?}, {expected:?}");
 }
 
-/// An event whose input turns the motion back, at the end of a step to round-off, is not seen again on the way back.
-#[test]
-fn what_turns_back_at_an_event_is_no_second_one() {
-    let text = "[input.u]\ndefault = 1\n[point.a]\nmass = 1\nposition = [0, 0, 0]\n\
-                [force.f]\ntype = \"expression\"\npoint = \"a\"\nforce = [\"u\", 0, 9.81]\n\
-                [event.still]\nwhen = \"a.vx\"\nset = { u = -1 }\n\
-                [event.right]\nwhen = \"a.vx - 0.05\"\ndirection = \"rising\"\nset = { u = -1 }\n\
-                [event.left]\nwhen = \"a.vx + 0.05\"\ndirection = \"falling\"\nset = { u = 1 }\n";
-    for (method, step) in [("conserving-ggl", 0.01), ("radau", 0.01), ("generalized-alpha", 0.05), ("conserving", 0.013)] {
-        let (simulation, _) = run(&model(text), method, step, 2.02, 1);
-        // Right at 0.05 s, then still and left in turns.
-        let expected: Vec<(&str, f64)> = (1..=40)
-            .map(|k| {
-                (
-                    if k == 1 {
-                        "right"
-                    } else if k % 2 == 0 {
-                        "still"
-                    } else {
-                        "left"
-                    },
-                    0.05 * f64::from(k),
-                )
-            })
-            .collect();
-        let found: Vec<&str> = simulation.events().iter().map(|event| event.event.as_str()).collect();
-        assert_eq!(found, expected.iter().map(|(name, _)| *name).collect::<Vec<_>>(), "{method}");
-        for (event, (_, t)) in simulation.events().iter().zip(&expected) {
-            assert!((event.t - t).abs() < 1e-10, "{method}: {event:?} and {t} s");
-        }
-    }
-}
-
 /// Events a hair before, at and a hair behind nominal times: rows stay at nominal times, none stands twice, and steps are counted as such.
 #[test]
 fn events_beside_nominal_times_leave_rows_there() {
@@ -302,23 +269,6 @@ fn a_relay_chatters_wherever_rounding_puts_it() {
     }
 }
 
-/// Two events that are closer together than a millionth of a step, right behind a nominal time, happen one after the other as they do in time,
-/// whatever their order in the file.
-#[test]
-fn close_events_happen_in_the_order_of_time() {
-    let early = "[event.early]\nwhen = \"p.x - 0.5\"\nset = { n = \"n + 1\" }\n";
-    let late = "[event.late]\nwhen = \"t - 0.5 - 1e-9\"\nset = { n = \"2*n\" }\n";
-    for (first, second) in [(early, late), (late, early)] {
-        let text = format!("plane = \"xy\"\n[point.p]\nmass = 1\nposition = [0, 0]\nvelocity = [1, 0]\n[input.n]\n{first}{second}");
-        for (method, accuracy) in [("radau", Some(1e-6)), ("radau", None), ("conserving-ggl", None), ("ode/dop853", Some(1e-8))] {
-            let choice = Choice { accuracy, ..Choice::default().named(method) };
-            let mut simulation = Simulation::new(model(&text).system, Method::resolve(&choice).unwrap(), 0.1).unwrap();
-            assert_eq!(simulation.run(1.0, &mut |_: &Simulation| Verdict::GoOn), Status::Completed);
-            assert_eq!(simulation.input("n"), Some(2.0), "{method}, {accuracy:?}");
-        }
-    }
-}
-
 /// A force of 10 N on 1 kg that is on for nine tenths of each 20 ms: its edges are nominal times, where rounding decides on which side of them they are.
 #[test]
 fn pulses_with_edges_at_nominal_times_miss_none() {
@@ -352,40 +302,6 @@ fn what_is_set_inside_long_steps_counts_from_then_on() {
             let [x, v, n] = ["m.x", "m.vx", "n"].map(|name| last(&recording, name));
             assert!((x - 1250.0).abs() < 1e-6 && (v - 50.0).abs() < 1e-8 && n == 1.0, "{method}, {accuracy:e}: {x} m, {v} m/s, {n}");
         }
-    }
-}
-
-/// A ball passes a height and comes back, and one event is for each way, where another divides the same step.
-#[test]
-fn an_event_for_each_way_through_a_height() {
-    let text = "plane = \"xz\"\n[point.ball]\nmass = 1\nposition = [0, 0]\nvelocity = [1, 5]\n[input.on]\n\
-                [event.up]\nwhen = \"ball.z - 1.274\"\ndirection = \"rising\"\nset = { on = 1 }\n\
-                [event.down]\nwhen = \"ball.z - 1.274\"\ndirection = \"falling\"\nset = { on = 0 }\n\
-                [event.e]\nwhen = \"sin(3*t) - 0.9999\"\n";
-    let model = model(text);
-    let root = (25.0_f64 - 2.0 * 9.81 * 1.274).sqrt();
-    for method in ["radau", "gauss", "conserving-ggl", "dopri5", "generalized-alpha"] {
-        let (simulation, recording) = run(&model, method, 0.02, 1.0, 1);
-        let times: Vec<f64> = simulation.events().iter().filter(|event| event.event != "e").map(|event| event.t).collect();
-        let exact = [(5.0 - root) / 9.81, (5.0 + root) / 9.81];
-        let within = if method == "generalized-alpha" { 1e-3 } else { 1e-9 };
-        assert!(times.len() == 2 && times.iter().zip(exact).all(|(t, exact)| (t - exact).abs() < within), "{method}: {times:?}");
-        assert_eq!(last(&recording, "on"), 0.0, "{method}");
-    }
-}
-
-/// A height that is passed at the time at which something else happens, where a method ends its steps on both sides of that time.
-#[test]
-fn two_events_at_one_time_of_a_formula_end() {
-    let text = "plane = \"xy\"\ngravity = [0, 0]\n[point.m]\nmass = 1\nposition = [0, 0]\nvelocity = [0, 1]\n[input.u]\n[input.n]\n\
-                [event.a]\nwhen = \"m.y - 0.5\"\nset = { u = 1, n = \"n + 1\" }\n[event.e]\nwhen = \"step(t - 0.5) - 0.5\"\nset = { n = \"n + 10\" }\n\
-                [force.f]\ntype = \"expression\"\npoint = \"m\"\nforce = [\"10*u\", 0]\n";
-    let model = model(text);
-    for method in ["dop853", "dopri5", "radau", "conserving-ggl"] {
-        let choice = Choice { accuracy: Some(1e-6), ..Choice::default().named(method) };
-        let recording = common::run(&model, choice, 0.005, 1.0).1;
-        let [x, v, n] = ["m.x", "m.vx", "n"].map(|name| last(&recording, name));
-        assert!((x - 1.25).abs() < 1e-6 && (v - 5.0).abs() < 1e-6 && n == 11.0, "{method}: {x} m, {v} m/s, {n}");
     }
 }
 
@@ -445,77 +361,5 @@ fn pulses_of_changing_width_miss_none() {
         let recording = common::run(&model, choice, step, 1.0).1;
         let [v, n] = ["m.vx", "n"].map(|name| last(&recording, name));
         assert!((v - speed).abs() < 1e-9 && n == 200.0, "{method}, {accuracy:?}, {step} s: {v} m/s in place of {speed}, {n}");
-    }
-}
-
-/// Events within a millionth of a step behind a nominal time, at which others happen, happen once.
-#[test]
-fn events_right_behind_a_nominal_time_happen_once() {
-    let conditions = ["p.y^2 - 0.25", "p.y - 0.500000001", "floor(t/0.500000001) - 0.5", "t - 0.5"];
-    let event = |(k, when): (usize, &str)| {
-        format!("[input.n{k}]\n[event.e{k}]\nwhen = \"{when}\"\ndirection = \"rising\"\nset = {{ n{k} = \"n{k} + 1\" }}\n")
-    };
-    let events: String = conditions.into_iter().enumerate().map(event).collect();
-    let text = format!(
-        "plane = \"xy\"\ngravity = [0, 0]\n[point.p]\nmass = 1\nposition = [0, 0]\nvelocity = [0, 1]\n\
-         [input.c]\n[event.clock]\nevery = 0.037\nset = {{ c = \"c + 1\" }}\n{events}\
-         [force.f]\ntype = \"expression\"\npoint = \"p\"\nforce = [\"n0 + n1 + n2 + n3\", 0]\n"
-    );
-    let model = model(&text);
-    for (method, accuracy) in
-        [("radau", None), ("radau", Some(1e-7)), ("conserving-ggl", None), ("dopri5", Some(1e-7)), ("ggl/bdf", Some(1e-5))]
-    {
-        let choice = Choice { accuracy, ..Choice::default().named(method) };
-        let recording = common::run(&model, choice, 0.01, 1.0).1;
-        let counts = ["n0", "n1", "n2", "n3", "c"].map(|name| last(&recording, name));
-        assert_eq!(counts, [1.0, 1.0, 1.0, 1.0, 28.0], "{method}, {accuracy:?}");
-        assert!((last(&recording, "p.vx") - 2.0).abs() < 1e-6, "{method}, {accuracy:?}: {}", last(&recording, "p.vx"));
-    }
-}
-
-/// A ball that falls on a stiff spring far from the origin, where rounding of its place decides for a moment on which side of the spring's end
-/// it is. It touches it and leaves it in turn, at times that are known.
-#[test]
-fn what_went_through_zero_does_not_come_back_by_rounding() {
-    let text = r#"
-gravity = [0, 0, -10]
-
-[point.ball]
-mass = 1
-position = [0, 0, 1000.2]
-
-[force.spring]
-type = "expression"
-point = "ball"
-force = [0, 0, "max(0, -1e6*(z - 1000))"]
-
-[event.touches]
-when = "ball.z - 1000"
-direction = "falling"
-
-[event.leaves]
-when = "ball.z - 1000"
-direction = "rising"
-"#;
-    let model = model(text);
-    let (speed, rate): (f64, f64) = (2.0, 1e3);
-    let contact = 2.0 / rate * (PI - (speed * rate / 10.0).atan());
-    let between = contact + 0.4;
-    let times = |k: usize| 0.2 + between * (k / 2) as f64 + contact * (k % 2) as f64;
-    for method in ["ode/dopri5", "ode/dop853", "radau"] {
-        for accuracy in [1e-6, 1e-8, 1e-10] {
-            let choice = Choice { accuracy: Some(accuracy), ..Choice::default().named(method) };
-            let (simulation, _) = common::run(&model, choice, 0.01, 2.1);
-            let found = simulation.events();
-            assert_eq!(found.len(), 10, "{method}, {accuracy:e}: {found:?}");
-            // Errors of speed add up from touch to touch.
-            for (k, event) in found.iter().enumerate() {
-                let off = (event.t - times(k)).abs();
-                assert!(
-                    event.event == ["touches", "leaves"][k % 2] && off < 100.0 * accuracy,
-                    "{method}, {accuracy:e}: {event:?}, {off:e} s off"
-                );
-            }
-        }
     }
 }

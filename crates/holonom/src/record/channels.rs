@@ -112,6 +112,11 @@ impl Channels {
         self.apart.as_ref().map_or(self, |apart| &apart.1)
     }
 
+    /// The same, where a simulation finds their forces, and not those of a system in which bodies share nodes.
+    fn found_by(&self, simulation: &Simulation) -> Option<&Self> {
+        Some(self.told()).filter(|_| self.apart.is_none() || simulation.reacts_apart())
+    }
+
     /// All columns but those of measures: what every recording begins with, motion, accelerations, the coordinates of joints and their
     /// rates, what forces and drives do, inputs, then `constraints`.
     pub fn headings(&self, system: &System, constraints: Constraints) -> Vec<Heading> {
@@ -169,7 +174,7 @@ impl Channels {
     /// Appends the columns of accelerations, where the simulation finds forces.
     pub(super) fn accelerations(&self, simulation: &Simulation, row: &mut Vec<f64>) {
         let Some(reactions) = simulation.reactions() else { return };
-        let (told, dim) = (if self.are_found_by(simulation) { self.told() } else { self }, self.axes.len());
+        let (told, dim) = (self.found_by(simulation).unwrap_or(self), self.axes.len());
         let (x, v, a) = (simulation.reacting_positions(), simulation.reacting_v(), &reactions.a);
         told.points.iter().for_each(|point| row.extend_from_slice(&rate_of(&point.terms, a, dim)[..dim]));
         for body in &told.bodies {
@@ -296,20 +301,16 @@ impl Channels {
         }
     }
 
-    /// Whether a simulation finds the forces of these channels, and not those of a system in which bodies share nodes.
-    fn are_found_by(&self, simulation: &Simulation) -> bool {
-        self.apart.is_none() || simulation.reacts_apart()
-    }
-
     /// Appends the columns of the forces of joints, couplers and rods; no numbers where bodies share nodes at the joint.
     pub(super) fn joint_forces(&self, simulation: &Simulation, row: &mut Vec<f64>) {
         let (dim, x) = (self.axes.len(), simulation.reacting_positions());
-        let (told, first, components) = (self.told(), row.len(), RecordedJoint::components(dim));
-        if !self.are_found_by(simulation) {
+        let (first, components) = (row.len(), RecordedJoint::components(dim));
+        let Some(told) = self.found_by(simulation) else {
+            let told = self.told();
             let others = told.couplings.len() + told.transmissions.len() * dim + told.rods.len();
             row.extend(std::iter::repeat_n(f64::NAN, told.joints.len() * components.len() + others));
             return;
-        }
+        };
         for joint in &told.joints {
             let wrench = joint.wrench(simulation, &x).unwrap_or(([f64::NAN; 3], [f64::NAN; 3]));
             row.extend(components.iter().map(|&k| component(wrench, k)));
@@ -340,10 +341,7 @@ impl Channels {
 
     /// Force and moment of one of the joints whose forces are found, as [`RecordedJoint::wrench`] has it, with what it bears of transmissions.
     pub(crate) fn wrench(&self, joint: usize, simulation: &Simulation) -> Option<Wrench> {
-        if !self.are_found_by(simulation) {
-            return None;
-        }
-        let (told, x) = (self.told(), simulation.reacting_positions());
+        let (told, x) = (self.found_by(simulation)?, simulation.reacting_positions());
         let mut sum = told.joints[joint].wrench(simulation, &x)?;
         for transmission in told.transmissions.iter().filter(|transmission| transmission.joints.contains(&joint)) {
             let push = told.push(transmission, simulation, &x);

@@ -92,8 +92,13 @@ impl Simulation {
     pub(super) fn shortest(&self, length: f64) -> f64 {
         let longest = SHORTEST * self.periods().map(|(_, period, _)| period).fold(length, f64::min);
         let Some(step) = self.pilot.as_ref().map(|pilot| pilot.control.step).filter(|step| *step > 0.0) else { return longest };
-        let size = largest(&self.state.x) + largest(&self.system.origin());
-        (ROUNDED * size / largest(&self.shown_v)).max(SHORTEST * step).min(longest)
+        // Directions of bodies have other units than points.
+        let of_points = |numbers: &[f64]| {
+            let nodes = numbers.chunks_exact(self.system.dim).zip(&self.system.is_point);
+            nodes.filter(|(_, is_point)| **is_point).fold(0.0, |most: f64, (node, _)| most.max(largest(node)))
+        };
+        let size = of_points(&self.state.x) + largest(&self.system.origin());
+        (ROUNDED * size / of_points(&self.shown_v)).max(SHORTEST * step).min(longest)
     }
 
     /// Whether a time is not so far ahead that a part of a step could be taken to it.

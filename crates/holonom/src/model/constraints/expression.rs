@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 use crate::model::assembly::Assembly;
 use crate::model::element::Element;
 use crate::model::entry::Entry;
-use crate::model::expression::{Program, names_in};
+use crate::model::expression::{Program, central, names_in};
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, Number};
 use crate::model::key::Shape;
@@ -102,8 +102,10 @@ impl Expression {
     }
 }
 
-/// Share of a slope that differences miss where a formula bends much.
+/// Share of the largest slope by which one is misled, and by which differences over one length and over so many times less may differ and are known.
 const MISLED: f64 = 1e-2;
+const KNOWN: f64 = 1e-3;
+const NARROWER: f64 = 8.0;
 
 /// A formula that is kept at zero.
 struct Held {
@@ -137,18 +139,19 @@ impl Held {
             return None;
         }
         let largest = |numbers: &[f64]| numbers.iter().fold(0.0, |most: f64, number| most.max(number.abs()));
-        let mut place: Moving<f64> = x.into();
-        let step = f64::EPSILON.cbrt() * Some(largest(x)).filter(|size| *size > 0.0).unwrap_or(1.0);
-        let mut at = |i: usize, by: f64| {
-            place[i] = x[i] + by;
-            let value = self.value.evaluate(&self.variables(&place, 0.0));
-            place[i] = x[i];
-            value
+        let wide = f64::EPSILON.cbrt() * Some(largest(x)).filter(|size| *size > 0.0).unwrap_or(1.0);
+        let over = |step: f64| {
+            let mut slopes = vec![0.0; x.len()];
+            let value = |place: &[f64], out: &mut [f64]| out[0] = self.value.evaluate(&self.variables(place, 0.0));
+            central(x, |_| step, 1, value, |i, _, slope| slopes[i] = slope);
+            slopes
         };
-        let both = slope.iter().enumerate().map(|(i, &given)| [given, (at(i, step) - at(i, -step)) / (2.0 * step)]);
-        let both: Vec<[f64; 2]> = both.collect();
-        let size = largest(both.as_flattened());
-        both.into_iter().find(|[given, found]| (given - found).abs() > MISLED * size)
+        let [wider, narrower] = [over(wide), over(wide / NARROWER)];
+        let size = largest(slope).max(largest(&narrower));
+        // A formula that bends within the differences has others over another length, and these tell nothing.
+        let is_known = |(_, (wider, narrower)): &(&f64, (&f64, &f64))| (*wider - *narrower).abs() <= KNOWN * size;
+        let known = slope.iter().zip(wider.iter().zip(&narrower)).filter(is_known);
+        known.map(|(&given, (_, &found))| [given, found]).find(|[given, found]| (given - found).abs() > MISLED * size)
     }
 
     /// It with what it changes by along a line, up to the second derivative.

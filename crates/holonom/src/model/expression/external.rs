@@ -34,16 +34,26 @@ pub trait ExternalFunction: Send + Sync {
 /// Derivatives of the values of a function by central differences.
 pub fn differences<F: ExternalFunction + ?Sized>(function: &F, arguments: &[f64], gradient: &mut [f64]) {
     let at = |arguments: &[f64], out: &mut [f64]| function.call(arguments, out);
-    central(arguments, f64::EPSILON.cbrt(), function.values(), at, |i, k, slope| gradient[k * arguments.len() + i] = slope);
+    central(arguments, over(f64::EPSILON.cbrt()), function.values(), at, |i, k, slope| gradient[k * arguments.len() + i] = slope);
 }
 
-/// Central differences of `count` numbers by each argument, over `share` of it, or of one where it is smaller: calls `put` with
-/// the argument, the number and the slope.
-fn central(arguments: &[f64], share: f64, count: usize, at: impl Fn(&[f64], &mut [f64]), mut put: impl FnMut(usize, usize, f64)) {
+/// A share of an argument, or of one where it is smaller.
+fn over(share: f64) -> impl Fn(f64) -> f64 {
+    move |here| share * here.abs().max(1.0)
+}
+
+/// Central differences of `count` numbers by each argument, over a step for its value: calls `put` with the argument, the number and the slope.
+pub(in crate::model) fn central(
+    arguments: &[f64],
+    step: impl Fn(f64) -> f64,
+    count: usize,
+    at: impl Fn(&[f64], &mut [f64]),
+    mut put: impl FnMut(usize, usize, f64),
+) {
     let mut place: Point = arguments.into();
     let (mut ahead, mut behind) = (Point::from_elem(0.0, count), Point::from_elem(0.0, count));
     for (i, &here) in arguments.iter().enumerate() {
-        let step = share * here.abs().max(1.0);
+        let step = step(here);
         place[i] = here + step;
         at(&place, &mut ahead);
         place[i] = here - step;
@@ -162,7 +172,7 @@ impl External {
             let mut curvature = Point::from_elem(0.0, m * n * n);
             let at_place = |place: &[f64], out: &mut [f64]| function.gradient(place, out);
             // Wider than for first derivatives: these may be differences themselves.
-            central(at, f64::EPSILON.powf(0.25), m * n, at_place, |i, kj, slope| {
+            central(at, over(f64::EPSILON.powf(0.25)), m * n, at_place, |i, kj, slope| {
                 let (k, j) = (kj / n, kj % n);
                 curvature[(k * n + i) * n + j] += 0.5 * slope;
                 curvature[(k * n + j) * n + i] += 0.5 * slope;

@@ -26,6 +26,7 @@ use smallvec::SmallVec;
 use crate::record::Formula;
 use crate::system::{Bend, EvenZeros, Number, Signal};
 pub use curve::{Beyond, Curve, refusal};
+pub(in crate::model) use external::central;
 pub use external::{External, ExternalFunction, Functions, differences};
 use functions::Function;
 pub use names::{Names, Nothing};

@@ -141,13 +141,10 @@ impl Load for EffortLoad {
     }
 
     fn force(&self, x: &[f64], v: &[f64], t: f64, force: &mut [f64]) {
-        force.fill(0.0);
         force[self.own] = self.effort.evaluate(&self.variables(x, v, t));
     }
 
     fn tangent(&self, x: &[f64], v: &[f64], t: f64, by_position: &mut [f64], by_velocity: &mut [f64]) {
-        by_position.fill(0.0);
-        by_velocity.fill(0.0);
         let own = self.own * x.len()..(self.own + 1) * x.len();
         let (by_x, by_v) = (&mut by_position[own.clone()], &mut by_velocity[own]);
         let variables = self.variables(x, v, t);
