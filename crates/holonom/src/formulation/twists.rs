@@ -9,6 +9,7 @@
 //! has the rows between bodies alone: of a body in space 6 unknowns in place of 12 and 6 multipliers.
 
 use nalgebra::Matrix3;
+use smallvec::SmallVec;
 
 use super::failure::{Failure, Unknown};
 use super::kkt::Augmented;
@@ -16,7 +17,7 @@ use super::passes::{LinearSystem, SHOWN, react};
 use super::rank::REDUNDANT;
 use super::workspace::Workspace;
 use crate::linalg::{Singular, Solver};
-use crate::system::{MassBlock, System, cross};
+use crate::system::{MassBlock, RowSlot, System, add_along_rows, cross};
 
 mod plan;
 
@@ -32,13 +33,9 @@ struct Motion {
 /// A rigid body.
 struct Body {
     /// Its nodes, the first of them a point.
-    nodes: Vec<usize>,
+    nodes: SmallVec<[u32; 4]>,
     /// First of the rows that keep it rigid: products of its edges, each with itself and those after it.
-    inner: usize,
-    /// The blocks of its mass matrix (nodes × nodes).
-    mass: Vec<MassBlock>,
-    /// Where its block of the matrix is, by rows.
-    places: Vec<u32>,
+    inner: u32,
     /// The inverse of the products of its edges, where the matrix was last written.
     reciprocal: Matrix3<f64>,
 }
@@ -50,38 +47,31 @@ struct Lone {
     places: Vec<u32>,
 }
 
-/// What a row has in common with a velocity or an angular velocity.
-struct Touch {
-    /// Place of each component in the multiplier's column and in its row.
-    places: Vec<[u32; 2]>,
-}
-
-/// A node of a row between bodies.
-struct Slot {
-    slot: usize,
-    node: usize,
-    /// The row, by the system's rows.
-    row: usize,
-    /// With the velocity and the angular velocity that move the node.
-    touches: [Option<u32>; 2],
-}
+/// What a row has in common with a velocity or an angular velocity: place of each component in the multiplier's column and in its row.
+type Touch = SmallVec<[[u32; 2]; 3]>;
 
 /// A row between bodies.
 struct Outer {
     /// By the system's rows, and by the unknowns.
-    row: usize,
-    unknown: usize,
+    row: u32,
+    unknown: u32,
     diagonal: u32,
 }
 
-/// The matrix, planned once.
+/// The matrix, planned once. What a body or a row has is in one list for all of them, as it is read one after the other: far more of it than fits
+/// near the processor.
 pub struct Twists {
     dim: usize,
     motions: Vec<Motion>,
     bodies: Vec<Body>,
+    /// The blocks of the mass matrices of the bodies (nodes × nodes), and where their blocks of this matrix are, by rows.
+    masses: Vec<MassBlock>,
+    places: Vec<u32>,
     lone: Vec<Lone>,
     touches: Vec<Touch>,
-    slots: Vec<Slot>,
+    /// The nodes of the rows between bodies, and what each row has in common with the velocity and the angular velocity that move the node.
+    slots: Vec<RowSlot>,
+    touched: Vec<[Option<u32>; 2]>,
     outer: Vec<Outer>,
     augmented: Vec<Augmented>,
     solver: Solver,
@@ -111,8 +101,8 @@ impl Twists {
         let is_moved = |motion: &Motion| {
             [motion.moves, motion.turns].into_iter().flatten().any(|first| (first as usize..first as usize + 3).contains(&pivot))
         };
-        Failure::Singular(match self.outer.iter().find(|outer| outer.unknown == pivot) {
-            Some(outer) => Unknown::Row(outer.row),
+        Failure::Singular(match self.outer.iter().find(|outer| outer.unknown as usize == pivot) {
+            Some(outer) => Unknown::Row(outer.row as usize),
             None => Unknown::Node(self.motions.iter().position(is_moved).unwrap_or(0)),
         })
     }
@@ -123,16 +113,19 @@ impl LinearSystem for Twists {
         let dim = self.dim;
         let values = self.solver.values_mut();
         values.fill(0.0);
-        for body in &mut self.bodies {
-            let first = body.nodes[0] * dim;
-            for &node in &body.nodes[1..] {
+        let (mut masses, size) = (&self.masses[..], dim + turns(dim));
+        for (body, places) in self.bodies.iter_mut().zip(self.places.chunks_exact(size * size)) {
+            let first = body.node(0) * dim;
+            for k in 1..body.nodes.len() {
+                let node = body.node(k);
                 let from = if self.motions[node].moves.is_some() { &work.end.x[first..first + dim] } else { &[0.0; 3][..dim] };
                 (0..dim).for_each(|c| self.arms[node * dim + c] = work.end.x[node * dim + c] - from[c]);
             }
-            body.reciprocal = body.products(dim, &self.arms).try_inverse().ok_or(Failure::Singular(Unknown::Node(body.nodes[1])))?;
-            let block = body.inertia(dim, &self.motions, &self.arms);
-            let size = body.places.len().isqrt();
-            for (k, &place) in body.places.iter().enumerate() {
+            body.reciprocal = body.products(dim, &self.arms).try_inverse().ok_or(Failure::Singular(Unknown::Node(body.node(1))))?;
+            let (mass, others) = masses.split_at(body.nodes.len().pow(2));
+            let block = body.inertia(dim, mass, &self.motions, &self.arms);
+            masses = others;
+            for (k, &place) in places.iter().enumerate() {
                 values[place as usize] += block[k / size][k % size];
             }
         }
@@ -146,7 +139,8 @@ impl LinearSystem for Twists {
             }
         }
         self.gradients.fill([0.0; 3]);
-        for &Slot { slot, node, touches, .. } in &self.slots {
+        for (&RowSlot { slot, node, .. }, touches) in self.slots.iter().zip(&self.touched) {
+            let (slot, node) = (slot as usize, node as usize);
             let gradient = &work.end.at.gradient[slot * dim..(slot + 1) * dim];
             if let Some(touch) = touches[0] {
                 (0..dim).for_each(|c| self.gradients[touch as usize][c] += gradient[c]);
@@ -157,16 +151,16 @@ impl LinearSystem for Twists {
             }
         }
         for (touch, gradient) in self.touches.iter().zip(&self.gradients) {
-            for ([column, row], g) in touch.places.iter().zip(gradient) {
+            for ([column, row], g) in touch.iter().zip(gradient) {
                 values[*column as usize] += g;
                 values[*row as usize] += g;
             }
         }
         let softness = &work.scales.softness;
-        self.outer.iter().for_each(|outer| values[outer.diagonal as usize] -= softness[outer.row] / rho);
+        self.outer.iter().for_each(|outer| values[outer.diagonal as usize] -= softness[outer.row as usize] / rho);
         self.augmented.iter_mut().for_each(|row| row.add(values));
         self.solver.factor().map_err(|singular| self.blame(singular))?;
-        let share = |outer: &Outer| self.solver.pivot(outer.unknown) / softness[outer.row] - 1.0 / rho;
+        let share = |outer: &Outer| self.solver.pivot(outer.unknown as usize) / softness[outer.row as usize] - 1.0 / rho;
         let weakest = self.outer.iter().map(share).fold(1.0, f64::min);
         Ok(if weakest > REDUNDANT { (1.0 / (rho * weakest)).min(1.0) } else { 1.0 })
     }
@@ -194,11 +188,8 @@ impl LinearSystem for Twists {
                 reduced[first as usize..].iter_mut().zip(&moment[..turns(dim)]).for_each(|(sum, m)| *sum += m);
             }
         }
-        for &Slot { slot, node, row, .. } in &*slots {
-            let along: f64 = (0..dim).map(|c| work.end.at.gradient[slot * dim + c] * inner[node * dim + c]).sum();
-            rows[row] -= along;
-        }
-        outer.iter().for_each(|outer| reduced[outer.unknown] = rows[outer.row]);
+        add_along_rows(dim, slots, -1.0, &work.end.at.gradient, inner, rows);
+        outer.iter().for_each(|outer| reduced[outer.unknown as usize] = rows[outer.row as usize]);
         augmented.iter().for_each(|row| row.pull(reduced));
         solver.solve(reduced);
         if !reduced.iter().all(|u| u.is_finite()) {
@@ -214,22 +205,26 @@ impl LinearSystem for Twists {
             }
         }
         rows.fill(0.0);
-        outer.iter().for_each(|outer| rows[outer.row] = reduced[outer.unknown]);
+        outer.iter().for_each(|outer| rows[outer.row as usize] = reduced[outer.unknown as usize]);
         Ok(())
     }
 }
 
 impl Body {
-    /// BᵀM B, by the velocity of the first point, then the angular velocity.
-    fn inertia(&self, dim: usize, motions: &[Motion], arms: &[f64]) -> [[f64; 6]; 6] {
+    fn node(&self, k: usize) -> usize {
+        self.nodes[k] as usize
+    }
+
+    /// BᵀM B of the blocks of its mass matrix, by the velocity of the first point, then the angular velocity.
+    fn inertia(&self, dim: usize, mass: &[MassBlock], motions: &[Motion], arms: &[f64]) -> [[f64; 6]; 6] {
         let arm = |k: usize| self.arm(k, dim, arms);
         // Mass, first moments and second ones.
-        let (mut mass, mut first, mut second) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
+        let (mut all, mut first, mut second) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
         let count = self.nodes.len();
-        for (k, block) in self.mass.iter().enumerate() {
+        for (k, block) in mass.iter().enumerate() {
             let (a, b) = (k / count, k % count);
-            if motions[self.nodes[a]].moves.is_some() {
-                mass += if motions[self.nodes[b]].moves.is_some() { block.m } else { 0.0 };
+            if motions[self.node(a)].moves.is_some() {
+                all += if motions[self.node(b)].moves.is_some() { block.m } else { 0.0 };
                 (0..dim).for_each(|c| first[c] += block.m * arm(b)[c]);
                 if dim == 2 {
                     first[0] -= block.s * arm(b)[1];
@@ -245,7 +240,7 @@ impl Body {
         }
         let trace = second[0][0] + second[1][1] + second[2][2];
         let mut matrix = [[0.0; 6]; 6];
-        (0..dim).for_each(|c| matrix[c][c] = mass);
+        (0..dim).for_each(|c| matrix[c][c] = all);
         if dim == 2 {
             [matrix[0][2], matrix[1][2]] = [-first[1], first[0]];
             matrix[2] = [-first[1], first[0], trace, 0.0, 0.0, 0.0];
@@ -266,7 +261,7 @@ impl Body {
 
     /// The arm of a node of it, and its edges, the arms of all but the first.
     fn arm<'a>(&self, k: usize, dim: usize, arms: &'a [f64]) -> &'a [f64] {
-        &arms[self.nodes[k] * dim..(self.nodes[k] + 1) * dim]
+        &arms[self.node(k) * dim..(self.node(k) + 1) * dim]
     }
 
     /// Products of its edges, and 1 where there are fewer than three.
@@ -285,7 +280,7 @@ impl Body {
     /// reciprocal to them.
     fn keep_rigid(&self, dim: usize, arms: &[f64], rows: &[f64], motion: &mut [f64]) {
         let edges = self.nodes.len() - 1;
-        let (mut row, mut change) = (self.inner, Matrix3::zeros());
+        let (mut row, mut change) = (self.inner as usize, Matrix3::zeros());
         for i in 0..edges {
             for j in i..edges {
                 let asked = if i == j { rows[row] } else { 0.5 * rows[row] };
@@ -295,7 +290,7 @@ impl Body {
         }
         let shares = change * self.reciprocal;
         for i in 0..edges {
-            let out = self.nodes[i + 1] * dim;
+            let out = self.node(i + 1) * dim;
             for c in 0..dim {
                 motion[out + c] = (0..edges).map(|j| shares[(i, j)] * self.arm(j + 1, dim, arms)[c]).sum();
             }

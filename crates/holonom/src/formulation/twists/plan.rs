@@ -5,10 +5,10 @@ use std::ops::Range;
 
 use nalgebra::Matrix3;
 
-use super::{Augmented, Body, Lone, Motion, Outer, Slot, Touch, Twists, turns};
+use super::{Augmented, Body, Lone, Motion, Outer, Twists, turns};
 use crate::formulation::scales::Scales;
 use crate::linalg::{Plan, Solver, fill_reducing_order};
-use crate::system::{MassBlock, NodeId, Quantity, System};
+use crate::system::{MassBlock, NodeId, Quantity, RowSlot, System};
 
 /// Neighbours from which on a body or node fills the matrix densely, as all rows of what hangs on it wait for it.
 const HUB: usize = 100;
@@ -41,7 +41,7 @@ impl Numbering {
         };
         for body in bodies {
             let [moves, turning] = [take(dim), take(turns(dim))];
-            for (k, &node) in body.nodes.iter().enumerate() {
+            for (k, node) in body.nodes.iter().map(|&node| node as usize).enumerate() {
                 carrier_of[node] = carriers.len();
                 motions[node] = Motion { moves: system.is_point[node].then_some(moves), turns: (k > 0).then_some(turning) };
             }
@@ -99,7 +99,7 @@ impl Twists {
     /// which come first. `None` where that is not so, and where one of them has so many neighbours that the rows at these should not wait for it.
     pub fn new(system: &System, scales: &Scales, bodies: &[Vec<NodeId>]) -> Option<Self> {
         let (dim, free) = (system.dim, system.free);
-        let (bodies, inner_rows) = rigid(system, bodies)?;
+        let Rigid { bodies, masses, rows: inner_rows } = rigid(system, bodies)?;
         let numbering = Numbering::new(system, &bodies);
         let Numbering { motions, carriers, carrier_of, coordinates } = &numbering;
         let rows = inner_rows..system.constraints();
@@ -121,13 +121,14 @@ impl Twists {
             .collect();
         let order = numbering.order(edges, &carriers_of)?;
         // A row touches velocities and angular velocities, each by the first of its unknowns.
-        let (mut touched, mut slots) = (BTreeMap::<(usize, u32), u32>::new(), Vec::new());
+        let (mut touched, mut slots, mut touches_of) = (BTreeMap::<(usize, u32), u32>::new(), Vec::new(), Vec::new());
         for (row, (slot, node)) in rows.clone().flat_map(|row| nodes_of(row).map(move |of| (row, of))) {
             let touches = [motions[node].moves, motions[node].turns].map(|first| {
                 let next = touched.len() as u32;
                 first.map(|first| *touched.entry((row, first)).or_insert(next))
             });
-            slots.push(Slot { slot, node, row, touches });
+            slots.push(RowSlot { row: row as u32, slot: slot as u32, node: node as u32 });
+            touches_of.push(touches);
         }
         let mut of_touches: Vec<(usize, u32)> = vec![(0, 0); touched.len()];
         touched.iter().for_each(|(&key, &touch)| of_touches[touch as usize] = key);
@@ -167,12 +168,15 @@ impl Twists {
         let mut twists = Self {
             dim,
             augmented: light.iter().map(augmented).collect(),
-            touches: of_touches.iter().map(|&(row, first)| Touch { places: all_of(first).map(|q| beside(q, row)).collect() }).collect(),
+            touches: of_touches.iter().map(|&(row, first)| all_of(first).map(|q| beside(q, row)).collect()).collect(),
             lone: lone.iter().map(|&(a, b, mass)| Lone { mass, places: block(a, b).map(at).collect() }).collect(),
-            bodies: bodies.into_iter().zip(&own).map(|(body, own)| Body { places: square(own).map(at).collect(), ..body }).collect(),
-            outer: rows.map(|row| Outer { row, unknown: multiplier(row) as usize, diagonal: diagonal(row) }).collect(),
+            places: own[..bodies.len()].iter().flat_map(|own| square(own)).map(at).collect(),
+            bodies,
+            masses,
+            outer: rows.map(|row| Outer { row: row as u32, unknown: multiplier(row), diagonal: diagonal(row) }).collect(),
             gradients: vec![[0.0; 3]; of_touches.len()],
             slots,
+            touched: touches_of,
             solver: Solver::new(plan.clone()),
             arms: vec![0.0; free * dim],
             inner: vec![0.0; system.nodes() * dim],
@@ -198,24 +202,32 @@ impl Twists {
             }
         }
         for body in &self.bodies {
-            for &node in &body.nodes[1..] {
+            for node in (1..body.nodes.len()).map(|k| body.node(k)) {
                 let Motion { moves, turns: Some(first) } = self.motions[node] else { continue };
-                let from = if moves.is_some() { x(body.nodes[0]) } else { &[0.0; 3][..self.dim] };
+                let from = if moves.is_some() { x(body.node(0)) } else { &[0.0; 3][..self.dim] };
                 let length = x(node).iter().zip(from).map(|(x, from)| (x - from).powi(2)).sum::<f64>().sqrt();
                 lower(first, turns(self.dim), scales.held[node].sqrt() / length);
             }
         }
-        self.outer.iter().for_each(|outer| units[outer.unknown] = 1.0 / scales.softness[outer.row].sqrt());
+        self.outer.iter().for_each(|outer| units[outer.unknown as usize] = 1.0 / scales.softness[outer.row as usize].sqrt());
         self.solver.set_units(&units);
     }
 }
 
-/// The bodies, still without places in the matrix, and the number of rows that keep them rigid.
-fn rigid(system: &System, bodies: &[Vec<NodeId>]) -> Option<(Vec<Body>, usize)> {
+/// The rigid bodies of a system.
+struct Rigid {
+    bodies: Vec<Body>,
+    /// The blocks of their mass matrices.
+    masses: Vec<MassBlock>,
+    /// How many rows keep them rigid.
+    rows: usize,
+}
+
+fn rigid(system: &System, bodies: &[Vec<NodeId>]) -> Option<Rigid> {
     let (dim, x) = (system.dim, &system.start_position);
     let mut at = system.evaluation();
     system.evaluate_again(x, 0.0, &mut at);
-    let (mut taken, mut row, mut found) = (vec![false; system.free], 0, Vec::new());
+    let (mut taken, mut row, mut found, mut masses) = (vec![false; system.free], 0, Vec::new(), Vec::new());
     for nodes in bodies {
         let nodes: Vec<usize> = nodes.iter().map(|node| node.index()).collect();
         let is_own = nodes.iter().all(|&node| node < system.free && !std::mem::replace(&mut taken[node], true));
@@ -244,8 +256,9 @@ fn rigid(system: &System, bodies: &[Vec<NodeId>]) -> Option<(Vec<Body>, usize)> 
         }
         let block =
             |a: usize, b: usize| system.mass.row(a).find(|&(other, _)| other == b).map_or(MassBlock { m: 0.0, s: 0.0 }, |(_, block)| block);
-        let mass = nodes.iter().flat_map(|&a| nodes.iter().map(move |&b| (a, b))).map(|(a, b)| block(a, b)).collect();
-        found.push(Body { nodes, inner, mass, places: Vec::new(), reciprocal: Matrix3::identity() });
+        masses.extend(nodes.iter().flat_map(|&a| nodes.iter().map(move |&b| (a, b))).map(|(a, b)| block(a, b)));
+        let nodes = nodes.into_iter().map(|node| node as u32).collect();
+        found.push(Body { nodes, inner: inner as u32, reciprocal: Matrix3::identity() });
     }
-    Some((found, row))
+    Some(Rigid { bodies: found, masses, rows: row })
 }
