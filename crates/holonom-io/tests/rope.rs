@@ -36,6 +36,23 @@ fn ropes(damping: f64) -> [(&'static str, Model); 3] {
     ]
 }
 
+/// A body flies until the damping of a rope begins to pull: rows between the steps of a method by accuracy are those of the flight up to there.
+#[test]
+fn rows_before_a_rope_pulls_are_of_free_flight() {
+    let text = "plane = \"xz\"\ngravity = [0, -9.81]\n[body.load]\nmass = 100\ninertia = 20\nposition = [0, -1]\npoints = { b = [0.5, 0.3] }\nvelocity = [1, 0]\n\
+                angular_velocity = 1\n[force.rope]\ntype = \"rope\"\nbetween = [[1, 0], \"load.b\"]\nstiffness = 1e5\ndamping = 800\nlength = 2.75\n";
+    let model = model(text);
+    for accuracy in (12..=28).map(|quarter| 10_f64.powf(-f64::from(quarter) / 4.0)) {
+        let choice = Choice { accuracy: Some(accuracy), ..Choice::default().named("ode/dop853") };
+        let (_, recording) = run(&model, choice, 0.01, 0.6);
+        let [t, z] = ["t", "load.z"].map(|name| recording.column(name).unwrap());
+        for (t, z) in t.iter().zip(z).filter(|(t, _)| **t < 0.514) {
+            let off = (z + 1.0 + 0.5 * G * t * t).abs();
+            assert!(off < 10.0 * accuracy, "accuracy {accuracy:e}: {off:e} m off at {t} s");
+        }
+    }
+}
+
 /// Stretch and its rate of a taut rope after a time: c is below critical.
 fn vibrate([p, v]: [f64; 2], c: f64, t: f64) -> [f64; 2] {
     let (delta, rest) = (0.5 * c, G / STIFFNESS);

@@ -5,7 +5,7 @@ use num_dual::Dual;
 use smallvec::SmallVec;
 
 use super::laws::SHORTEST;
-use super::rope_laws::is_taut;
+use super::rope_laws::{is_taut, taken_up};
 use crate::model::assembly::Assembly;
 use crate::model::entry::Entry;
 use crate::model::expression::Program;
@@ -188,6 +188,11 @@ impl RopeLoad {
         sum
     }
 
+    /// The whole length of its stretches, m.
+    fn whole<N: AnyNumber>(&self, x: &[N], v: &[N]) -> f64 {
+        self.factors.iter().enumerate().map(|(k, factor)| factor * length(x[self.own + k], v[self.own + k])[0].re()).sum()
+    }
+
     /// What its spring and its damper pull with.
     fn tension<N: AnyNumber>(&self, [stretch, speed]: [N; 2], read: &[N]) -> N {
         self.stiffness.at(read) * stretch + self.damping.at(read) * speed
@@ -199,7 +204,7 @@ impl ForceFunction for RopeLoad {
         let read = read(&self.readings, x, v, t);
         [&self.length, &self.stiffness, &self.damping].into_iter().for_each(|key| key.bends(&read, note));
         let [stretch, speed] = self.stretch(x, v, t);
-        note(Bend::Corner(stretch));
+        note(Bend::Corner(taken_up(stretch, speed, self.whole(x, v))));
         // Where a taut rope would begin to push.
         note(Bend::Corner(if stretch > 0.0 { self.tension([stretch, speed], &read) } else { 0.0 }));
     }
@@ -207,8 +212,7 @@ impl ForceFunction for RopeLoad {
     fn evaluate<N: AnyNumber>(&self, x: &[N], v: &[N], t: N, force: &mut [N]) {
         force.fill(N::from(0.0));
         let [stretch, speed] = self.stretch(x, v, t);
-        let whole = || self.factors.iter().enumerate().map(|(k, factor)| factor * length(x[self.own + k], v[self.own + k])[0].re()).sum();
-        if !is_taut(stretch.re(), || speed.re(), whole) {
+        if !is_taut(stretch.re(), || speed.re(), || self.whole(x, v)) {
             return;
         }
         let tension = self.tension([stretch, speed], &read(&self.readings, x, v, t));

@@ -16,6 +16,11 @@ pub(super) fn is_taut(beyond: f64, speed: impl FnOnce() -> f64, length: impl FnO
     beyond > 0.0 || (beyond >= -ROUNDED * length() && speed() > 0.0)
 }
 
+/// What goes through zero where such a rope gets taut or slack, m: where it gets longer, its damping begins to pull a rounding before its free length.
+pub(super) fn taken_up(beyond: f64, speed: f64, length: f64) -> f64 {
+    if speed > 0.0 { beyond + ROUNDED * length } else { beyond }
+}
+
 /// How the lengths of a rope add up.
 #[derive(Clone, Copy)]
 pub(super) struct Strands {
@@ -99,7 +104,8 @@ pub(super) trait Pull: Send + Sync {
     /// Tension between two positions, and its derivative by the length at the second.
     fn between(&self, change: &Change) -> [f64; 2];
 
-    /// What goes through zero where the tension bends, of a rope that is longer than its free length by `beyond`, m, where it is slack by less.
+    /// What goes through zero where the tension bends, of a rope that is taut where `beyond`, m, is more than zero: its length beyond the free one, and
+    /// what rounding may have taken from that.
     fn corner(&self, beyond: f64, speed: f64) -> f64;
 }
 
@@ -183,7 +189,8 @@ impl<P: Pull> Law for Taut<P> {
     }
 
     fn bends(&self, value: &[f64], rate: &[f64], _t: f64, note: &mut dyn FnMut(Bend)) {
-        note(Bend::Corner(self.pull.corner(self.strands.beyond(value), self.strands.speed(value, rate))));
+        let speed = self.strands.speed(value, rate);
+        note(Bend::Corner(self.pull.corner(taken_up(self.strands.beyond(value), speed, self.strands.whole(value)), speed)));
     }
 
     fn at(&self, value: &[f64], rate: &[f64], _t: f64, out: &mut Response) {
