@@ -121,6 +121,21 @@ pub fn in_parts(simulation: &Simulation) -> Option<String> {
     })
 }
 
+/// Steps by accuracy from which on it is said that another method takes fewer: one of order 5 seldom needs as many.
+const MANY_STEPS: u64 = 50_000;
+
+/// That the accuracy took very many steps, and which method takes fewer.
+pub fn many_steps(simulation: &Simulation) -> Option<String> {
+    let (method, steps) = (simulation.method(), simulation.audit().work_summary(simulation.steps()).steps_taken);
+    let accuracy = method.accuracy.filter(|_| steps >= MANY_STEPS && method.name != "radau")?;
+    let others = match (method.order(), method.integrator.is_explicit()) {
+        (..=2, _) => "one of order 5 takes far fewer: `radau`",
+        (_, true) => "`radau` takes far fewer where something is stiff",
+        _ => "`radau` often takes fewer",
+    };
+    Some(format!("`{}` took {steps} steps for an accuracy of {}: {others}", method.name, short(accuracy)))
+}
+
 /// That steps are too long for how forces without a potential change along the way, so that the energy is booked and yet wrong.
 pub fn unsure_work(simulation: &Simulation) -> Option<String> {
     let (unsure, supply, name) = simulation.unsure_work()?;
@@ -236,15 +251,6 @@ pub fn corrections(model: &Model, simulation: &Simulation) -> Vec<String> {
         notes.push(format!("to meet the constraints, start velocities were changed: {}", changes_in_words(&changes)));
     }
     notes
-}
-
-/// Accuracies below this take schemes of order 2 ten times the steps for two digits, where one of order 5 takes four times as many.
-const FINE: f64 = 1e-6;
-
-/// That another method would take far fewer steps.
-pub fn costly(method: &Method) -> Option<String> {
-    let accuracy = method.accuracy.filter(|accuracy| *accuracy < FINE && method.order() == 2)?;
-    Some(format!("`{}` is of order 2, and takes very many steps for an accuracy of {}: `radau` takes few", method.name, short(accuracy)))
 }
 
 /// That constraints leave nothing that could move, and nothing that moves is imposed.

@@ -23,7 +23,7 @@ use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
 use crate::message::note;
 use crate::notes::{
-    corrections, costly, in_parts, locked, long_turns, lost_energy, rivals, rows_without_forces, shared_forces, slips, strayed,
+    corrections, in_parts, locked, long_turns, lost_energy, many_steps, rivals, rows_without_forces, shared_forces, slips, strayed,
     turned_bushings, unknown_measures, unsure_work,
 };
 use crate::options::Destination;
@@ -147,7 +147,6 @@ pub(crate) fn simulate_kept(
         None => {
             let simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
             let mut corrections = corrections(model, &simulation);
-            corrections.extend(costly(simulation.method()));
             corrections.extend(model.unseen(simulation.method(), step, end));
             if !quiet {
                 slips(loaded).chain(corrections.clone()).for_each(|text| say(&text));
@@ -189,7 +188,11 @@ pub(crate) fn simulate_kept(
     let unknown = unknown_measures(model, watched.recorder.recording());
     let without = rows_without_forces(model, watched.recorder.recording());
     let turns = long_turns(model, simulation.method(), watched.recorder.recording());
-    let far = strayed(&simulation).into_iter().chain(in_parts(&simulation)).chain(turned_bushings(model, watched.recorder.recording()));
+    let far = strayed(&simulation)
+        .into_iter()
+        .chain(in_parts(&simulation))
+        .chain(many_steps(&simulation))
+        .chain(turned_bushings(model, watched.recorder.recording()));
     let of_energy = lost_energy(&simulation).into_iter().chain(unsure_work(&simulation)).filter(|_| status == Status::Completed);
     let of_steps = of_energy.chain(far).chain(turns);
     let of_results: Vec<String> =
