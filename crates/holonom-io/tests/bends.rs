@@ -156,6 +156,41 @@ fn jumps_are_passed_over_and_over() {
     }
 }
 
+/// BDF's steps grow again behind a force that jumps at a place, wherever that lies between the times that steps end at, also where what follows
+/// is a step so short that the place is still rounded to that of the jump. From 0.2 m, with what a spring leaves of 1 m/s, a damper stops the block, and the spring brings it back.
+#[test]
+fn steps_of_bdf_grow_behind_a_jump() {
+    let spring = "type = \"torsion\"\njoint = \"rail\"\nstiffness = 10\n[force.d]\ntype = \"effort\"\njoint = \"rail\"\neffort = \"-20*step(q - 0.2)*q_rate\"";
+    let text = block(0.0, 1.0, spring);
+    let [place] = last(&text, "radau", 1e-9, 3.0, 3.0, ["b.x"]);
+    for (method, most) in [("ggl/bdf", 2000), ("lagrange-3/bdf", 2000), ("ode/bdf", 2000), ("ggl/bdf-3", 10_000)] {
+        for (accuracy, step) in [(1e-6, 1.1), (1e-6, 0.37), (1e-6, 0.3), (10_f64.powf(-4.5), 0.3), (10_f64.powf(-5.5), 0.3)] {
+            let choice = Choice { accuracy: Some(accuracy), ..Choice::default().named(method) };
+            let (simulation, recording) = common::run(&model(&text), choice, step, 3.0);
+            let found = recording.column("b.x").unwrap()[recording.rows() - 1];
+            assert!((found - place).abs() < 10.0 * accuracy, "{method}, {accuracy:e}, step {step}: {found} for {place} m");
+            let taken = simulation.audit().work_summary(simulation.steps()).steps_taken;
+            assert!(taken < most, "{method}, {accuracy:e}, step {step}: {taken} steps");
+        }
+    }
+}
+
+/// The same behind a damped rope that gets taut at once at the end of 5 m of fall, which takes 1 s to the last digit.
+#[test]
+fn steps_of_bdf_grow_behind_a_damped_rope() {
+    let text = "plane = \"xz\"\ngravity = [0, -10]\n[point.j]\nmass = 80\nposition = [0, 5]\n\
+                [force.r]\ntype = \"rope\"\nbetween = [[0, 10], \"j\"]\nlength = 10\nstiffness = 400\ndamping = 30\n";
+    let [place] = last(text, "radau", 1e-9, 3.0, 3.0, ["j.z"]);
+    for step in [0.5, 0.6, 1.1] {
+        let choice = Choice { accuracy: Some(1e-5), ..Choice::default().named("ggl/bdf") };
+        let (simulation, recording) = common::run(&model(text), choice, step, 3.0);
+        let found = recording.column("j.z").unwrap()[recording.rows() - 1];
+        assert!((found - place).abs() < 1e-3, "step {step}: {found} for {place} m");
+        let taken = simulation.audit().work_summary(simulation.steps()).steps_taken;
+        assert!(taken < 2000, "step {step}: {taken} steps");
+    }
+}
+
 /// Peaks of formulas that are far narrower than steps are seen, in time and at a place: of 1 N·s, and of 0.5 J.
 #[test]
 fn narrow_peaks_are_seen() {

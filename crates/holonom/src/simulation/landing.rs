@@ -141,24 +141,37 @@ impl Simulation {
         if self.method.integrator.conserves {
             return;
         }
-        let sight = &pilot.sight;
-        let reached = |hop: &f64| {
-            let ahead = self.system.bends(&sight.seen.ahead(*hop)).corners;
-            (0..ahead.len()).all(|bend| !sight.reached[bend] || (sight.corners[bend] > 0.0) == (ahead[bend] > 0.0))
+        let sight = pilot.sight.clone();
+        // A number that is clipped on the other side stays at zero there.
+        let is_behind = |corners: &[f64], clipped: bool| {
+            let passes = |wanted: f64, there: f64| {
+                (wanted > 0.0 && there > 0.0) || (wanted < 0.0 && there < 0.0) || (clipped && wanted < 0.0 && there == 0.0)
+            };
+            (0..corners.len()).all(|bend| !sight.reached[bend] || passes(sight.corners[bend], corners[bend]))
         };
-        let mut hops = std::iter::successors(Some(LOCATED * step), |hop| Some(2.0 * hop)).take_while(|hop| *hop <= SHORTEST * step);
-        let Some(hop) = hops.find(reached) else { return };
+        let system = self.system.clone();
+        let ahead = |hop: f64| system.bends(&sight.seen.ahead(hop)).corners;
+        let hops = || std::iter::successors(Some(LOCATED * step), |hop| Some(2.0 * hop)).take_while(|hop| *hop <= SHORTEST * step);
+        let Some(clipped) = [false, true].into_iter().find(|clipped| hops().any(|hop| is_behind(&ahead(hop), *clipped))) else { return };
         self.begin_anew();
-        let Self { system, state, shown_v, work, gauges, audit, .. } = self;
-        state.x.iter_mut().zip(&*shown_v).for_each(|(x, v)| *x += hop * v);
-        for v in [&mut state.v, shown_v, &mut pilot.v] {
-            v.iter_mut().zip(&state.a).for_each(|(v, a)| *v += hop * a);
+        let (t, x, v, shown, smooth) = (self.state.t, self.state.x.clone(), self.state.v.clone(), self.shown_v.clone(), pilot.v.clone());
+        for hop in hops().filter(|hop| is_behind(&ahead(*hop), clipped)) {
+            let Self { state, shown_v, work, gauges, .. } = self;
+            state.x.iter_mut().zip(&x).zip(&shown).for_each(|((x, from), v)| *x = from + hop * v);
+            for (v, from) in [(&mut state.v, &v), (shown_v, &shown), (&mut pilot.v, &smooth)] {
+                v.iter_mut().zip(from).zip(&state.a).for_each(|((v, from), a)| *v = from + hop * a);
+            }
+            state.t = t + hop;
+            system.place_known(state.t, &mut state.x, &mut work.end.v, &mut work.a);
+            system.evaluate_again(&state.x, state.t, &mut work.start.at);
+            system.measure(&state.x, shown_v, gauges);
+            // The hop may be so short that the rounded place is still before the bend, or at it, with the forces of what came before.
+            if is_behind(&self.sight().corners, clipped) {
+                break;
+            }
         }
-        state.t += hop;
-        system.place_known(state.t, &mut state.x, &mut work.end.v, &mut work.a);
-        system.evaluate_again(&state.x, state.t, &mut work.start.at);
-        audit.move_on(system, state, work);
-        system.measure(&state.x, shown_v, gauges);
+        let Self { state, work, gauges, audit, .. } = self;
+        audit.move_on(&system, state, work);
         state.measured.copy_from_slice(gauges.counted());
     }
 
