@@ -67,6 +67,27 @@ fn errors_are_what_was_asked_for() {
     assert!(10 * kept >= 9 * cases);
 }
 
+/// What BDF loses of a rotation has the same sign in step after step, and what the velocity is off by adds up along many turns, also where a brake
+/// does work: the angle is that of the closed form. The units of the mechanism do not matter.
+#[test]
+fn bdf_keeps_the_angle_of_a_braked_shaft() {
+    for (unit, method, accuracy) in [(1.0, "ggl/bdf", 1e-3), (1.0, "ggl/bdf", 1e-5), (1.0, "ode/bdf", 1e-4), (1000.0, "ggl/bdf", 1e-3)] {
+        let text = format!(
+            "plane = \"xy\"\n[body.s]\nmass = 1\ninertia = {}\nposition = [0, 0]\nangular_velocity = 100\npoints = {{ tip = [{}, 0] }}\n\
+             [joint.j]\ntype = \"revolute\"\nbetween = [\"ground\", \"s\"]\nat = [0, 0]\n\
+             [force.d]\ntype = \"torsion\"\njoint = \"j\"\ndamping = {}\n",
+            0.01 * unit * unit,
+            0.3 * unit,
+            0.001 * unit * unit
+        );
+        let choice = Choice { accuracy: Some(accuracy), ..Choice::default().named(method) };
+        let (_, recording) = common::run(&model(&text), choice, 0.5, 3.0);
+        let angle = recording.column("j.angle").unwrap()[recording.rows() - 1];
+        let error = (angle - 1000.0 * (1.0 - (-0.3_f64).exp())).abs();
+        assert!(error < 10.0 * accuracy, "{method}, {accuracy:e}, unit {unit}: off by {error:e}");
+    }
+}
+
 /// Radau IIA of order 5 on the GGL form gives ten digits and more.
 #[test]
 fn radau_gives_ten_digits() {

@@ -85,6 +85,9 @@ pub struct LocalErrors {
     /// Of position (n), m, and velocity (n), m/s.
     pub q: Vec<f64>,
     pub v: Vec<f64>,
+    /// What these errors make of the energy, where an integrator says it, and what rounding makes of that, J.
+    pub energy: f64,
+    pub rounded: f64,
     /// Largest velocity that loads would make more or less in the step by what they are at its ends than they made, m/s.
     pub loads: f64,
     /// Those that are allowed, over the size of the mechanism and the step, 1/s, where steps follow from an accuracy.
@@ -185,7 +188,15 @@ impl Workspace {
             turned: Turned { v: vec![0.0; slots], a: vec![0.0; slots], rows: vec![0.0; slots], half: vec![0.0; system.invariants.len()] },
             phi: vec![0.0; r],
             phi_start: vec![0.0; r],
-            estimate: LocalErrors { q: vec![0.0; n], v: vec![0.0; n], loads: 0.0, allowed: 0.0, speed: f64::INFINITY },
+            estimate: LocalErrors {
+                q: vec![0.0; n],
+                v: vec![0.0; n],
+                energy: 0.0,
+                rounded: 0.0,
+                loads: 0.0,
+                allowed: 0.0,
+                speed: f64::INFINITY,
+            },
             inputs: system.inputs.iter().map(|(_, default)| *default).collect(),
             memory: Vec::new(),
             full: vec![0.0; all],

@@ -15,7 +15,7 @@ const KEPT: usize = 6;
 const LEAST: f64 = 1e-10;
 
 /// Numbers of the memory before those of the states.
-const HEAD: usize = 3;
+const HEAD: usize = 4;
 
 pub(super) struct Bdf {
     order: usize,
@@ -28,7 +28,7 @@ pub(super) struct Bdf {
 /// Gauss points on 0 … 1 and their weights, exact for powers through that many states.
 const GAUSS: [[f64; 2]; 3] = [[0.112_701_665_379_258_31, 5.0 / 18.0], [0.5, 4.0 / 9.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
 
-/// The memory: how many states there are, the order in use, the power where the last step ended, then for each state its time, the power
+/// The memory: how many states there are, the order in use, the power where the last step ended, how many steps were taken with that order, then for each state its time, the power
 /// there, positions and velocities, the latest first. The power at the first state is not known.
 struct History<'a> {
     n: usize,
@@ -156,6 +156,7 @@ impl Bdf {
         let order = self.order_in_use(history);
         if history.count() < self.order + usize::from(self.varies) {
             let step = self.starter.step(system, start, h, newton, work)?;
+            (work.estimate.energy, work.estimate.rounded) = (0.0, 0.0);
             history.set_power(if work.is_worked_on() { energy::power(system, start + h, &work.end.v, &work.a, work) } else { 0.0 });
             return Ok(step);
         }
@@ -189,6 +190,7 @@ impl Bdf {
         work.d.copy_from_slice(&self.stage.d);
         if self.varies {
             self.choose(order, t, history, work);
+            energy_error(system, order, t, history, work);
         }
         let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start, step: h, inertia: h * h, rate: 1.0 / h };
         Ok(Step { stage, work: Work::Sum(done), estimate: Some([order as u8; 2]) })
@@ -208,6 +210,10 @@ impl Bdf {
         let room = |order: usize, error: f64| (error / allowed).max(LEAST).powf(-1.0 / order as f64);
         let mut next = order;
         let mut best = 0.0;
+        // Differences of states that steps of other orders led to hold the errors of those: what they say of an order is sure where the states
+        // are of one. Else two orders can take turns, each with the shorter steps that it takes for the errors of the other.
+        history.numbers[3] += 1.0;
+        let is_settled = history.numbers[3] > order as f64;
         if order > 1 {
             best = room(order - 1, local_error(order - 1, t, history, work));
             next = order - 1;
@@ -220,25 +226,25 @@ impl Bdf {
         }
         // Another order must be worth it, and nothing is where hardly anything moves.
         let error = local_error(order, t, history, work);
-        if best < 1.1 * room(order, error) || error <= LEAST * allowed {
+        if !is_settled || best < 1.1 * room(order, error) || error <= LEAST * allowed {
             next = order;
+        }
+        if next != order {
+            history.numbers[3] = 0.0;
         }
         history.numbers[1] = next as f64;
     }
 }
 
 /// Writes the estimated local errors of a step to `t` with order `k`: ψ_1 … ψ_k times the divided difference over k + 2
-/// states over the leading weight of the derivative. Says the largest, of positions over the size of the mechanism and of velocities over
+/// states, by which the derivative is off, times the step. The state itself is off by less, by that over the leading weight of the derivative; but
+/// the steps that follow find it among those before them and add the rest, and what adds up over a run is the whole. Says the largest, of positions over the size of the mechanism and of velocities over
 /// their unit.
 fn local_error(order: usize, t: f64, history: &History<'_>, work: &mut Workspace) -> f64 {
     let n = history.n;
     let (length, speed) = (work.scales.length, work.estimate.speed);
     let time = |j: usize| if j == 0 { t } else { history.time(j - 1) };
-    let (mut product, mut leading) = (1.0, 0.0);
-    for j in 1..=order {
-        product *= t - time(j);
-        leading += 1.0 / (t - time(j));
-    }
+    let product: f64 = (1..=order).map(|j| t - time(j)).product();
     let mut largest = 0.0_f64;
     for k in 0..2 * n {
         let mut differences = [0.0; KEPT + 1];
@@ -251,7 +257,7 @@ fn local_error(order: usize, t: f64, history: &History<'_>, work: &mut Workspace
                 differences[j] = (differences[j] - differences[j + 1]) / (time(j) - time(j + level));
             }
         }
-        let error = product * differences[0] / leading;
+        let error = (t - time(1)) * product * differences[0];
         if k < n {
             work.estimate.q[k] = error;
             largest = largest.max(error.abs() / length);
@@ -261,4 +267,27 @@ fn local_error(order: usize, t: f64, history: &History<'_>, work: &mut Workspace
         }
     }
     largest
+}
+
+/// Leaves in the workspace what the estimated local errors of a step to `t` with order `k` make of the energy: the power of those of velocities
+/// less the work of all forces along those of positions. What rounding makes of it is what the weights of the states in the differences sum up to,
+/// times half the last digit of each.
+fn energy_error(system: &System, order: usize, t: f64, history: &History<'_>, work: &mut Workspace) {
+    let time = |j: usize| if j == 0 { t } else { history.time(j - 1) };
+    let product: f64 = (1..=order).map(|j| t - time(j)).product();
+    let weight = |j: usize| (0..=order + 1).filter(|&i| i != j).map(|i| time(j) - time(i)).product::<f64>().recip().abs();
+    let weights = (t - time(1)) * product * (0..=order + 1).map(weight).sum::<f64>();
+    let Workspace { full, estimate, start, end, a, d, .. } = work;
+    let (mut made, mut size) = (0.0, 0.0);
+    system.mass.times(system.dim, &end.v, full);
+    for (k, error) in estimate.v.iter().enumerate() {
+        made += full[k] * error;
+        size += (full[k] * end.v[k]).abs();
+    }
+    system.mass.times(system.dim, a, full);
+    for (k, error) in estimate.q.iter().enumerate() {
+        made -= full[k] * error;
+        size += (full[k] * (start.x[k] + d[k])).abs();
+    }
+    (estimate.energy, estimate.rounded) = (made, 0.5 * f64::EPSILON * weights * size);
 }

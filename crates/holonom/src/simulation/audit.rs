@@ -176,6 +176,11 @@ impl Audit {
         if is_round_off { 0.0 } else { made / (self.supply()[1] + round_off + still) }
     }
 
+    /// The same of an estimate of what a step made, J, of which so much is rounded.
+    pub(super) fn estimated(&self, made: f64, rounded: f64, still: f64) -> f64 {
+        if made.abs() <= rounded { 0.0 } else { made.abs() / (self.supply()[1] + rounded + still) }
+    }
+
     /// What integrator and projections have made of the energy so far that no work accounts for, J.
     pub(super) fn made(&self) -> f64 {
         self.integrator_total + self.projection_total

@@ -48,6 +48,9 @@ pub(super) struct Control {
     /// Order of the method, and that of the last step.
     order: u8,
     in_use: u8,
+    /// By which power of its length the error of a rejected step, over what is allowed, falls.
+    #[serde(default)]
+    falls: f64,
     estimate: Estimate,
     /// Whether the last attempt showed nothing but round-off near a singular position, and how many such steps were accepted in a row.
     is_rounded: bool,
@@ -73,6 +76,7 @@ impl Control {
             accuracy,
             order,
             in_use: order,
+            falls: f64::from(order),
             estimate,
             is_rounded: false,
             unseen: 0,
@@ -186,6 +190,9 @@ impl Control {
         let size = position.max(velocity);
         let error = if order > estimated { size.powf(f64::from(order + 1) / f64::from(estimated + 1)) } else { size };
         self.in_use = order;
+        // The states before stay as far apart as they are, however short the step: only its own length makes the difference.
+        let is_of_states = self.estimate == Estimate::OwnOfStates && order == estimated;
+        self.falls = if is_of_states { 2.0 } else { f64::from(order) };
         let ratio = (error / (self.allowed() * h)).max(LEAST);
         // Schemes that go on from the step before err where its length changes to and fro.
         self.is_rounded = amplified > 1.0 && size == 0.0 && differs;
@@ -231,6 +238,6 @@ impl Control {
 
     /// The next step after one that was rejected.
     pub(super) fn reject(&mut self, h: f64, ratio: f64) {
-        self.step = h * (SAFETY * ratio.powf(-1.0 / f64::from(self.in_use))).clamp(0.1, 0.9);
+        self.step = h * (SAFETY * ratio.powf(-1.0 / self.falls)).clamp(0.1, 0.9);
     }
 }

@@ -217,9 +217,9 @@ impl Pilot {
         let comes_and_goes = method.integrator.conserves || method.order() <= SYMMETRIC || is_rough(method);
         // What positions off their rows have of energy is no matter of the length of steps.
         let drifts = method.integrator.is_explicit() && !method.projection.position;
-        // Schemes of several steps book work less exactly than they find the motion.
+        // Schemes of several steps book work less exactly than they find the motion: where anything does work their estimate alone tells.
         let is_unsure = method.integrator.estimate == Estimate::OwnOfStates && audit.work != self.before.audit.work;
-        if comes_and_goes || drifts || is_unsure {
+        if comes_and_goes || drifts {
             return 0.0;
         }
         // Formulas of time round the velocities of what they drive as those of its largest speed, also where it comes to rest.
@@ -227,7 +227,10 @@ impl Pilot {
         let of_states = || energy::size(system, work, &state.x) + judge.lift(work.scales.length) + of_speeds;
         // What comes on in the whole run by no more than its error may be stands still.
         let still = judge.motion(self.control.allowed() * work.scales.length);
-        let made = audit.made_since(&self.before.audit, amplified, still, of_states);
+        let booked = if is_unsure { 0.0 } else { audit.made_since(&self.before.audit, amplified, still, of_states) };
+        // The estimate is no energy that is there: beside it the mechanism has at least what it has when it goes its own length in the run.
+        let slow = judge.motion(work.scales.length / self.control.span);
+        let made = booked.max(audit.estimated(work.estimate.energy, amplified * work.estimate.rounded, slow));
         made / (WORSE * self.control.allowed() * step * self.control.share_of_way(work.scales.length))
     }
 
