@@ -181,12 +181,17 @@ impl Damping {
 
 /// What dissipative laws would take in a step of length `h` (s) of motions that it turned round, J: of each argument by the less of the powers
 /// at the ends of the step, at the times `t` (s); and the law that would take most. No damper turns a motion round, but a method may do so
-/// where its steps are too long for the damper.
+/// where its steps are too long for the damper. What stands still but for its rounding turns round with that.
 pub fn taken_of_turned(system: &System, t: [f64; 2], h: f64, work: &Workspace) -> (f64, Option<usize>) {
     let (mut sum, mut most) = (0.0, (0.0, None));
     for (k, law) in system.laws.iter().enumerate().filter(|(_, law)| !law.law.conservative()) {
         let [from, to] = [(t[0], &work.start), (t[1], &work.end)].map(|(t, end)| Braking::of(system, law, t, &end.at, &end.v));
-        let turned = (0..law.arguments.len()).filter(|&i| from.rate[i] * to.rate[i] < 0.0);
+        let is_rounded = |i: usize, rate: f64| {
+            let sizes = system.sizes_of(law.arguments[i], &work.end.at, [&work.end.x, &work.end.v], work.scales.length);
+            rate.abs() <= sizes.of_rate(h)
+        };
+        let has_turned = |i: &usize| from.rate[*i] * to.rate[*i] < 0.0 && !is_rounded(*i, from.rate[*i].abs().min(to.rate[*i].abs()));
+        let turned = (0..law.arguments.len()).filter(has_turned);
         let taken: f64 = h.abs() * turned.map(|i| from.power[i].min(to.power[i]).max(0.0)).sum::<f64>();
         sum += taken;
         if taken > most.0 {

@@ -9,7 +9,7 @@ const MOST_HALVINGS: u32 = 12;
 
 /// Accelerations are differences of positions over the square of a step: from a part of it that is shorter than this share, rounding would be
 /// carried on. Schemes of several steps know them from longer ones.
-const SHORT: f64 = 0.01;
+pub(super) const SHORT: f64 = 0.01;
 
 /// Most parts of a length before longer ones are tried again.
 const MOST_WANTED: u32 = 16;
@@ -48,14 +48,18 @@ impl Simulation {
         self.judge.supply(h, known, &self.audit, &self.work)?;
         self.steps += 1;
         self.audit.end_step(&self.system, &mut self.work, &self.state, self.steps);
-        let carries = !self.method.integrator.conserves && self.method.integrator.estimate != Estimate::OwnOfStates;
-        if self.pilot.is_none() && h < SHORT * self.step && carries {
+        if self.pilot.is_none() && h < SHORT * self.step && self.carries_accelerations() {
             self.begin_anew();
         }
         if reacts {
             self.update_reactions();
         }
         Ok(())
+    }
+
+    /// Whether a step goes on from the accelerations of the one before alone.
+    pub(super) fn carries_accelerations(&self) -> bool {
+        !self.method.integrator.conserves && self.method.integrator.estimate != Estimate::OwnOfStates
     }
 
     /// In parts where it fails as a whole. Parts are counted, and their ends reckoned from the start: the sum of their rounded
@@ -148,7 +152,7 @@ impl Simulation {
         self.next_gauges.copy_from(&self.gauges);
         system.measure(&work.end.x, &work.end.v, &mut self.next_gauges);
         self.judge.turns(system, step, &self.gauges, &self.next_gauges)?;
-        self.judge.take(of_places);
+        self.judge.take(step, of_places);
         self.commit(audit, step, target);
         Ok(taken)
     }

@@ -225,9 +225,7 @@ impl Pilot {
         // Formulas of time round the velocities of what they drive as those of its largest speed, also where it comes to rest.
         let of_speeds = judge.of_speeds(audit.kinetic.max(self.before.audit.kinetic), self.control.speed);
         let of_states = || energy::size(system, work, &state.x) + judge.lift(work.scales.length) + of_speeds;
-        // What comes on in the whole run by no more than its error may be stands still.
-        let still = judge.motion(self.control.allowed() * work.scales.length);
-        let booked = if is_unsure { 0.0 } else { audit.made_since(&self.before.audit, amplified, still, of_states) };
+        let booked = if is_unsure { 0.0 } else { audit.made_since(&self.before.audit, amplified, judge.still(work), of_states) };
         // The estimate is no energy that is there: beside it the mechanism has at least what it has when it goes its own length in the run.
         let slow = judge.motion(work.scales.length / self.control.span);
         let made = booked.max(audit.estimated(work.estimate.energy, amplified * work.estimate.rounded, slow));
@@ -364,13 +362,16 @@ pub(super) fn is_rough(method: &Method) -> bool {
 }
 
 fn smoothing(method: &Method) -> Option<Projection> {
-    (is_rough(method) && method.integrator.estimate == Estimate::History).then_some(Projection {
-        position: false,
-        velocity: true,
-        acceleration: false,
-        metric: Metric::Mass,
-        solve: Solve::Exact,
-        strength: 1.0,
-        shadow: true,
-    })
+    (is_rough(method) && method.integrator.estimate == Estimate::History).then_some(TO_ROWS)
 }
+
+/// The projection that puts velocities on the rows.
+pub(super) const TO_ROWS: Projection = Projection {
+    position: false,
+    velocity: true,
+    acceleration: false,
+    metric: Metric::Mass,
+    solve: Solve::Exact,
+    strength: 1.0,
+    shadow: true,
+};

@@ -131,6 +131,8 @@ pub(super) struct Judge {
     farthest: f64,
     /// Largest size of what rounded positions make of energies in the parts of the nominal step so far, J.
     stiffest: f64,
+    /// Length of the shortest of these parts, s.
+    shortest: f64,
     /// Measures how near a singular position is, from when that is first asked, and how many rows are redundant everywhere, as far as is known.
     independence: Option<(Box<Independence>, usize)>,
 }
@@ -150,7 +152,9 @@ impl Judge {
             *promise = Promise::SuppliedEnergy;
         }
         let farthest = if method.subdivide { FARTHEST } else { PI };
-        Self { promises, looks_at_dampers, tolerance: TOLERANCES * tolerance, mass, weight, farthest, stiffest: 0.0, independence: None }
+        let (stiffest, shortest) = (0.0, f64::INFINITY);
+        let tolerance = TOLERANCES * tolerance;
+        Self { promises, looks_at_dampers, tolerance, mass, weight, farthest, stiffest, shortest, independence: None }
     }
 
     fn promises(&self, promise: Promise) -> bool {
@@ -164,12 +168,13 @@ impl Judge {
 
     /// Begins a nominal step.
     pub(super) fn begin_step(&mut self) {
-        self.stiffest = 0.0;
+        (self.stiffest, self.shortest) = (0.0, f64::INFINITY);
     }
 
-    /// Takes note of a step that is taken, with the size of what rounded positions make of its energies, J.
-    pub(super) fn take(&mut self, of_places: f64) {
+    /// Takes note of a step of length `h` (s) that is taken, with the size of what rounded positions make of its energies, J.
+    pub(super) fn take(&mut self, h: f64, of_places: f64) {
         self.stiffest = self.stiffest.max(of_places);
+        self.shortest = self.shortest.min(h.abs());
     }
 
     /// Looks at the energy after a step of length `h` (s); `before` and `after` are the audits around it, `of_places` is the size of what
@@ -202,7 +207,7 @@ impl Judge {
         let [excess, supply] = after.supply();
         let supply = supply.max(known);
         let moved = STILL * work.scales.length / h.abs();
-        let nothing = self.mass * moved * moved + self.nothing(h, 0.0, after, work);
+        let nothing = self.mass * moved * moved + self.nothing(h, 0.0, after, work) + self.still(work);
         // What sets off in this step has its energy of forces that may have jumped at its end, where their work is not seen: the next step shows it.
         let sets_off = work.is_worked_on() && after.kinetic_at_start_of_step() <= nothing;
         // What is no number is no energy.
@@ -219,7 +224,7 @@ impl Judge {
         }
         let [_, supply] = after.supply();
         match taken_of_turned(system, t, h, work) {
-            (taken, Some(law)) if taken > SUPPLY * supply + self.nothing(h, 0.0, after, work) => {
+            (taken, Some(law)) if taken > SUPPLY * supply + self.nothing(h, 0.0, after, work) + self.still(work) => {
                 Err(Failure::Ringing { law, taken, supply })
             }
             _ => Ok(()),
@@ -236,18 +241,28 @@ impl Judge {
         0.5 * self.mass * speed * speed
     }
 
+    /// Energy of what stands still as far as steps by accuracy tell, J: it comes on in the whole run by no more than its error may be. Steps that are as
+    /// long as their errors allow need not damp it.
+    pub(super) fn still(&self, work: &Workspace) -> f64 {
+        self.motion(work.estimate.allowed * work.scales.length)
+    }
+
     /// Energy that is nothing beside the energies after a nominal step of length `h` (s), J; `more` are others beside them.
     fn nothing(&self, h: f64, more: f64, after: &Audit, work: &Workspace) -> f64 {
         let length = work.scales.length;
-        // What velocities are rounded by is most of slow ones.
-        let rounded = ROUNDED * length * 2.0 / h.abs();
-        let trembling = (self.mass * rounded + self.most_momentum(after.kinetic + more)) * rounded;
+        // What velocities are rounded by is most of slow ones, and most after the shortest part.
+        let trembling = self.of_change(after.kinetic + more, ROUNDED * length * 2.0 / h.abs().min(self.shortest));
         WHOLE * (after.kinetic + more) + WEIGHED * (after.potential.abs() + self.weight * length) + trembling
     }
 
     /// Size of what a rounding of velocities at some speed (m/s) makes of the energy where the kinetic one is `kinetic`, J.
     pub(super) fn of_speeds(&self, kinetic: f64, speed: f64) -> f64 {
         (self.most_momentum(kinetic) + self.mass * ROUNDED * speed) * speed
+    }
+
+    /// Most that velocities which are off by a speed (m/s) make of a kinetic energy, J: of slow ones most is its own.
+    fn of_change(&self, kinetic: f64, speed: f64) -> f64 {
+        (self.mass * speed + self.most_momentum(kinetic)) * speed
     }
 
     /// Most that Σ m |v| may be with a kinetic energy T: √(2 T Σ m), by Cauchy and Schwarz.
@@ -281,7 +296,7 @@ impl Judge {
         let kinetic = before.kinetic.abs() + after.kinetic.abs();
         let rows = work.lambda.iter().zip(&scales.gradient).map(|(lambda, g)| (lambda * g).abs()).sum::<f64>() * scales.length;
         let sizes = kinetic + of_places + (after.work - before.work).abs() + rows;
-        ROUND_OFF * sizes + self.most_momentum(kinetic) * scales.length * 2.0 / h.abs() * (ROUNDED + self.tolerance)
+        ROUND_OFF * sizes + self.of_change(kinetic, scales.length * 2.0 / h.abs() * (ROUNDED + self.tolerance))
     }
 
     /// Looks for corners of rows that a step goes across.

@@ -21,6 +21,7 @@ mod part;
 mod potential;
 mod reading;
 mod respond;
+mod rounding;
 mod slots;
 mod switches;
 mod terms;
