@@ -477,3 +477,29 @@ fn short_motions_of_drives_leave_nothing_to_miss() {
         }
     }
 }
+
+/// A slider that is led, and a force along it that an event sets anew every 37 ms: each time the motion begins anew. Velocities that the method leaves
+/// off the rows would be a multiple of it after each, and soon anything.
+#[test]
+fn motions_that_begin_anew_again_and_again_stay_on_their_rows() {
+    let text = "gravity = [0, 0, 0]\n[body.b]\nmass = 1\ninertia = [0.3, 0.5, 0.6]\nposition = [0, 0, 0]\n\
+                [joint.rail]\ntype = \"JOINT\"\nbetween = [\"ground\", \"b\"]AT\naxis = [0, 0, 1]\n\
+                [drive.lead]\ntype = \"KIND\"\njoint = \"rail\"\nprofile = \"0.1*sin(2*t)\"\n\
+                [input.u]\ndefault = 0\n[event.sample]\nevery = PERIOD\nset = { u = \"sin(100*t)\" }\n\
+                [force.push]\ntype = \"expression\"\npoint = \"b\"\nforce = [0, 0, \"3*u\"]\n";
+    for (joint, at, kind, speed) in [("prismatic", "", "displacement", "b.vz"), ("revolute", "\nat = [0, 0, 0]", "angle", "b.wz")] {
+        for period in ["0.037", "0.05"] {
+            let model = model(&text.replace("JOINT", joint).replace("AT", at).replace("KIND", kind).replace("PERIOD", period));
+            for method in ["generalized-alpha", "lagrange-3/hht", "radau", "conserving-ggl"] {
+                for accuracy in [1e-3, 1e-4, 1e-5] {
+                    let choice = Choice { accuracy: Some(accuracy), ..Choice::default().named(method) };
+                    let (_, recording) = common::run(&model, choice, 0.01, 1.0);
+                    let off = |(t, v): (&f64, &f64)| (v - 0.2 * (2.0 * t).cos()).abs();
+                    let times = recording.column("t").unwrap();
+                    let most = times.iter().zip(recording.column(speed).unwrap()).map(off).fold(0.0, f64::max);
+                    assert!(most < 100.0 * accuracy, "{joint}, every {period} s, {method}, {accuracy:e}: {most:e}");
+                }
+            }
+        }
+    }
+}

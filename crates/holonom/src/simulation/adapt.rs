@@ -1,14 +1,14 @@
 //! Steps by accuracy at work: attempts, rejected ones taken back, and results between the steps of integrators with dense
 //! output.
 
-use super::advance::Inside;
+use super::advance::{Inside, SHORT};
 use super::control::KEEPING;
 use super::events::{LOCATED, SHORTEST};
 use super::landing::Landing;
-use super::pilot::{OFTEN, Pilot, SMALLEST_SHARE};
+use super::pilot::{OFTEN, Pilot, SMALLEST_SHARE, TO_ROWS, is_rough};
 use super::sight::INSIDE;
 use super::{Audit, Simulation, start};
-use crate::formulation::Failure;
+use crate::formulation::{Failure, Multipliers};
 use crate::integrator::{Step, Work};
 
 /// So many steps rejected one after the other are no matter of length: the motion is another one, and what was kept of the steps
@@ -195,9 +195,15 @@ impl Simulation {
             if has_bend {
                 pilot.bend();
             }
-            if !self.pass_switch(pilot) && has_bend {
+            if self.pass_switch(pilot) {
+                return Ok(true);
+            }
+            if has_bend {
                 self.pass_bend(pilot, step);
                 self.turn(pilot);
+            } else if step < SHORT * planned && self.carries_accelerations() {
+                // Longer steps would make more of their rounding.
+                self.begin_anew();
             }
             return Ok(true);
         }
@@ -260,13 +266,24 @@ impl Simulation {
         pilot.control.begin_anew(&self.state, &pilot.v);
     }
 
-    /// Goes on with the accelerations that forces have now, and without what was kept of the steps before.
+    /// Goes on with the accelerations that forces have now, and without what was kept of the steps before. As at a start velocities are on the rows:
+    /// what they are off would be a multiple of it after the first steps, and of that behind the next place like this.
     pub(super) fn begin_anew(&mut self) {
         self.state.memory.fill(0.0);
+        let is_soft = matches!(self.method.settings.multipliers, Multipliers::Penalty(_));
+        let is_off = is_rough(&self.method) && !self.method.integrator.conserves && !is_soft;
         let (system, work, t) = (&*self.system, &mut self.work, self.state.t);
         self.state.load(work);
         system.place_known(t, &mut work.end.x, &mut work.end.v, &mut work.a);
         system.evaluate(&self.state.x, t, &work.start.at, &mut work.end.at);
+        if is_off && TO_ROWS.apply(system, t, self.step, &mut self.newton, work).is_ok() {
+            self.audit.put_on_rows(system, &self.state.v, true, work);
+            self.state.v.copy_from_slice(&work.end.v);
+            self.shown_v.copy_from_slice(&work.end.v);
+            system.measure(&self.state.x, &self.shown_v, &mut self.gauges);
+        }
+        self.state.load(work);
+        system.place_known(t, &mut work.end.x, &mut work.end.v, &mut work.a);
         if start::accelerate(system, &self.method, t, &mut self.newton, work).is_ok() {
             self.state.a.copy_from_slice(&work.a);
             self.state.lambda.copy_from_slice(&work.lambda);

@@ -305,19 +305,21 @@ impl Audit {
         work: &mut Workspace,
     ) {
         self.potential = accounts.potential;
-        if method.projection.velocity {
-            let change = energy::kinetic_difference(system, &work.end.v, before, &mut work.full);
-            if !method.projection.shadow {
-                let is_pushed = system.is_driven() && method.projection.is_by_mass();
-                // What its impulses do along rows that move is all but −½ Δvᵀ M Δv.
-                let pushed = if is_pushed { change + energy::kinetic(system, &work.full) } else { 0.0 };
-                self.work += pushed;
-                self.projection_total += change - pushed;
-                self.kinetic = energy::kinetic(system, &work.end.v);
-            }
+        if method.projection.velocity && !method.projection.shadow {
+            self.put_on_rows(system, before, method.projection.is_by_mass(), work);
         }
         work.rate_violation(system, target);
         self.phi_dot = norm(&work.rows);
+    }
+
+    /// Books what a projection of velocities did, which were `before`; whether it was the full one in the metric of the mass.
+    pub(super) fn put_on_rows(&mut self, system: &System, before: &[f64], is_by_mass: bool, work: &mut Workspace) {
+        let change = energy::kinetic_difference(system, &work.end.v, before, &mut work.full);
+        // What its impulses do along rows that move is all but −½ Δvᵀ M Δv.
+        let pushed = if system.is_driven() && is_by_mass { change + energy::kinetic(system, &work.full) } else { 0.0 };
+        self.work += pushed;
+        self.projection_total += change - pushed;
+        self.kinetic = energy::kinetic(system, &work.end.v);
     }
 
     /// Books the violation of projected accelerations, which were `before`, and what the step took.
