@@ -187,8 +187,8 @@ pub fn taken_of_turned(system: &System, t: [f64; 2], h: f64, work: &Workspace) -
     for (k, law) in system.laws.iter().enumerate().filter(|(_, law)| !law.law.conservative()) {
         let [from, to] = [(t[0], &work.start), (t[1], &work.end)].map(|(t, end)| Braking::of(system, law, t, &end.at, &end.v));
         let is_rounded = |i: usize, rate: f64| {
-            let sizes = system.sizes_of(law.arguments[i], &work.end.at, [&work.end.x, &work.end.v], work.scales.length);
-            rate.abs() <= sizes.of_rate(h)
+            let rounding = system.rounding(&work.end.x, &work.end.v, Some(0.5 * h.abs()));
+            rate <= system.rounding_of_quantity(law.arguments[i], &work.end.at, rounding)[1]
         };
         let has_turned = |i: &usize| from.rate[*i] * to.rate[*i] < 0.0 && !is_rounded(*i, from.rate[*i].abs().min(to.rate[*i].abs()));
         let turned = (0..law.arguments.len()).filter(has_turned);

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::advance::Inside;
 use super::{Audit, Divisions, Observer, Simulation};
 use crate::formulation::Failure;
-use crate::system::{Look, Trigger};
+use crate::system::{Look, PAST, Trigger};
 
 /// An event that happened.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -127,7 +127,7 @@ impl Simulation {
                 self.join_parts(&first);
                 return Ok(stops);
             }
-            turned.drain(..).for_each(|(at, beside)| from[at] = f64::MIN_POSITIVE.copysign(beside));
+            turned.drain(..).for_each(|(at, beside)| from[at] = PAST.copysign(beside));
             let before = self.moment();
             let begin = before.t();
             let next = self.next_sample().unwrap_or(f64::INFINITY);
@@ -142,7 +142,7 @@ impl Simulation {
                 if t <= last || crossed(from, &now).is_some() {
                     return Ok(now);
                 }
-                let before = simulation.known(system.indicators(Look { t, ..simulation.look() }))?;
+                let before = simulation.indicate_by(Look { t, ..simulation.look() })?;
                 Ok(if crossed(from, &before).is_some() { before } else { now })
             };
             // Where the step is taken in parts it ends with the part in which something happens.
@@ -267,7 +267,7 @@ impl Simulation {
         for _ in 0..=from.len() {
             let exact = self.indicate()?;
             let mut now = self.indicate_about(exact.clone())?;
-            let is_past = |k: usize| exact[k] == 0.0 && from[k].abs() == f64::MIN_POSITIVE;
+            let is_past = |k: usize| exact[k] == 0.0 && from[k].abs() == PAST;
             (0..now.len()).filter(|&k| exact[k] == at_last[k] || is_past(k)).for_each(|k| now[k] = from[k]);
             let is_between = |k: usize| !has_jumped[k] && self.system.events[k].trigger.is_between(from[k], now[k]);
             let jumped: Vec<usize> = (0..now.len()).filter(|&k| is_between(k)).collect();
@@ -309,30 +309,31 @@ impl Simulation {
 
     /// Values of all indicators at the present state.
     pub(super) fn indicate(&self) -> Result<Vec<f64>, Failure> {
-        self.known(self.system.indicators(self.look()))
+        self.indicate_by(self.look())
+    }
+
+    /// These values, where all have one.
+    fn indicate_by(&self, look: Look<'_>) -> Result<Vec<f64>, Failure> {
+        let found = self.system.indicators(look, self.rounding());
+        match found.iter().position(|found| found.is_nan()) {
+            Some(event) => Err(Failure::NoIndicator { event }),
+            None => Ok(found),
+        }
     }
 
     /// These values `now`, but of those that time alone takes to the other side of zero within its rounding, that behind it: at a nominal time
     /// rounding decides on which side they are.
     fn indicate_about(&self, mut now: Vec<f64>) -> Result<Vec<f64>, Failure> {
         let t = self.state.t;
-        let ahead = self.known(self.system.indicators(Look { t: t + TIME_ROUNDED * t.abs(), ..self.look() }))?;
+        let ahead = self.indicate_by(Look { t: t + TIME_ROUNDED * t.abs(), ..self.look() })?;
         now.iter_mut().zip(ahead).filter(|(now, ahead)| **now * ahead <= 0.0 && *ahead != 0.0).for_each(|(now, ahead)| *now = ahead);
         Ok(now)
     }
-
-    /// These indicators, where all have a value.
-    fn known(&self, found: Vec<f64>) -> Result<Vec<f64>, Failure> {
-        match found.iter().position(|found| found.is_nan()) {
-            Some(event) => Err(Failure::NoIndicator { event }),
-            None => Ok(found),
-        }
-    }
 }
 
-/// Goes from indicators to what they are `now`. One that has come to zero without its event, which happens the other way, is past it.
+/// Goes from indicators to what they are `now`. One that has come to zero without its event, which happens the other way, is past it, and one that
+/// stays there is at zero.
 fn pass(from: &mut [f64], now: Vec<f64>) {
-    from.iter_mut()
-        .zip(now)
-        .for_each(|(from, now)| *from = if now == 0.0 { -from.signum() * f64::MIN_POSITIVE * f64::from(*from != 0.0) } else { now });
+    let passed = |from: f64| if from == 0.0 || from.abs() == PAST { 0.0 } else { -PAST.copysign(from) };
+    from.iter_mut().zip(now).for_each(|(from, now)| *from = if now == 0.0 { passed(*from) } else { now });
 }

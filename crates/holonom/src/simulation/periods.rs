@@ -2,9 +2,9 @@
 
 use super::Simulation;
 use super::events::SHORTEST;
+use super::pilot::is_rough;
 use crate::formulation::Failure;
-use crate::linalg::largest;
-use crate::system::Trigger;
+use crate::system::{Rounding, Trigger};
 
 /// Periods of a span that can be counted one by one in floating point: of more, time does not move by one at the span's end.
 const COUNTABLE: f64 = 1.0 / f64::EPSILON;
@@ -13,9 +13,6 @@ const COUNTABLE: f64 = 1.0 / f64::EPSILON;
 pub(crate) fn uncountable(span: f64, period: f64) -> Option<f64> {
     Some(span / period).filter(|count| *count > COUNTABLE && span.is_finite())
 }
-
-/// Roundings of places that the indicator of an event may be off by.
-const ROUNDED: f64 = 64.0 * f64::EPSILON;
 
 impl Simulation {
     /// Why no run goes to a time, in words, if none does.
@@ -91,14 +88,20 @@ impl Simulation {
     /// time in which something moves by what rounding leaves of places.
     pub(super) fn shortest(&self, length: f64) -> f64 {
         let longest = SHORTEST * self.periods().map(|(_, period, _)| period).fold(length, f64::min);
-        let Some(step) = self.pilot.as_ref().map(|pilot| pilot.control.step).filter(|step| *step > 0.0) else { return longest };
-        // Directions of bodies have other units than points.
-        let of_points = |numbers: &[f64]| {
-            let nodes = numbers.chunks_exact(self.system.dim).zip(&self.system.is_point);
-            nodes.filter(|(_, is_point)| **is_point).fold(0.0, |most: f64, (node, _)| most.max(largest(node)))
-        };
-        let size = of_points(&self.state.x) + largest(&self.system.origin());
-        (ROUNDED * size / of_points(&self.shown_v)).max(SHORTEST * step).min(longest)
+        let Some(step) = self.chosen_step() else { return longest };
+        let [places, _] = self.rounding().of_points;
+        (places / self.system.largest_of_points(&self.shown_v)).max(SHORTEST * step).min(longest)
+    }
+
+    /// What rounding leaves open of the present state.
+    pub(super) fn rounding(&self) -> Rounding {
+        let step = is_rough(&self.method).then(|| self.chosen_step().unwrap_or(self.step));
+        self.system.rounding(&self.state.x, &self.shown_v, step)
+    }
+
+    /// The length of the next step that is chosen for an accuracy, s.
+    fn chosen_step(&self) -> Option<f64> {
+        self.pilot.as_ref().map(|pilot| pilot.control.step).filter(|step| *step > 0.0)
     }
 
     /// Whether a time is not so far ahead that a part of a step could be taken to it.

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{Look, Reading, System};
+use super::evaluate::Local;
+use super::{Look, Reading, Rounding, System};
 
 /// A number that is made of what is read.
 pub trait Indicator: Send + Sync {
@@ -33,6 +34,9 @@ impl Crossing {
     }
 }
 
+/// The size of an indicator that has come to zero without its event, which happens the other way: it is past zero.
+pub(crate) const PAST: f64 = f64::MIN_POSITIVE;
+
 /// When an event happens.
 #[derive(Clone)]
 pub enum Trigger {
@@ -43,9 +47,10 @@ pub enum Trigger {
 }
 
 impl Trigger {
-    /// Whether it happens between two values of its indicator.
+    /// Whether it happens between two values of its indicator. One that is [just past](PAST) zero and is found at it has stayed there.
     pub(crate) fn is_between(&self, from: f64, to: f64) -> bool {
-        matches!(self, Self::When(_, crossing) if crossing.is_between(from, to))
+        let has_stayed = to == 0.0 && from.abs() == PAST;
+        matches!(self, Self::When(_, crossing) if !has_stayed && crossing.is_between(from, to))
     }
 }
 
@@ -64,13 +69,28 @@ pub struct Event {
     pub set: Vec<(usize, Arc<dyn Indicator>)>,
 }
 
+/// How many times more than rounding leaves open numbers are changed to see what that makes of an indicator: a change by rounding alone would be
+/// rounded itself.
+const MAGNIFIED: f64 = 1e6;
+
+/// In how many ways they are changed together: in one, what some do might take back what others do.
+const WAYS: usize = 4;
+
 impl System {
-    /// Values of the indicators of all events; zero of those that have none.
-    pub(crate) fn indicators(&self, look: Look<'_>) -> Vec<f64> {
+    /// Values of the indicators of all events; zero of those that have none, and where rounding decides on which side of zero one is.
+    pub(crate) fn indicators(&self, look: Look<'_>, rounding: Rounding) -> Vec<f64> {
         let value = |event: &Event| match &event.trigger {
             Trigger::When(indicator, _) => {
                 let [x, v] = self.read(&event.reading, look);
-                indicator.value(&x, &v, look.t)
+                let value = indicator.value(&x, &v, look.t);
+                let is_rounded = || {
+                    let roundings = self.rounding_of_reading(&event.reading, look.at, rounding);
+                    is_rounding(value, |way| {
+                        let [x, v] = [(&x, &roundings[0]), (&v, &roundings[1])].map(|(of, by)| changed(of, by, way));
+                        indicator.value(&x, &v, look.t)
+                    })
+                };
+                if value != 0.0 && is_rounded() { 0.0 } else { value }
             }
             Trigger::Every(_) => 0.0,
         };
@@ -85,4 +105,21 @@ impl System {
         let [x, v] = self.read(&event.reading, look);
         event.set.iter().map(|(input, value)| (*input, value.value(&x, &v, look.t))).collect()
     }
+}
+
+/// Whether a number is no more than what rounding leaves open of it. `changed` is the number where all that it is made of is changed in a way.
+fn is_rounding(value: f64, changed: impl Fn(usize) -> f64) -> bool {
+    let change = |way: usize| (changed(way) - value).abs();
+    // Mostly it is far more.
+    value.abs() <= change(0) && value.abs() * MAGNIFIED <= (0..WAYS).map(change).fold(0.0, f64::max)
+}
+
+/// Numbers, each changed by its rounding, magnified, or half of that to the whole of it; which of them up and which down depends on the way.
+fn changed(numbers: &[f64], roundings: &[f64], way: usize) -> Local {
+    let by = |k: usize| {
+        // No two ways have the same signs: multiples of the golden section are spread evenly.
+        let spread = (((k + 1) * (way + 1)) as f64 * 0.618_033_988_749_895).fract() - 0.5;
+        MAGNIFIED * (spread + 0.5_f64.copysign(spread))
+    };
+    (0..).zip(numbers.iter().zip(roundings)).map(|(k, (number, rounding))| number + by(k) * rounding).collect()
 }

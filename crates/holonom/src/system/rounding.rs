@@ -1,37 +1,64 @@
-//! What rates of quantities are rounded by.
+//! What rounding leaves open of a state, and of what is read of it.
 
-use super::{Evaluation, Quantity, System};
+use super::evaluate::Local;
+use super::{Evaluation, Quantity, Reading, Sense, System};
 use crate::linalg::largest;
 
-/// Rounding of a number at both ends of a step, over the sizes of the terms that it is a sum of.
-const ROUNDED: f64 = 4.0 * f64::EPSILON;
+/// Roundings of numbers of about one that what follows from a state may be off by.
+const ROUNDED: f64 = 64.0 * f64::EPSILON;
 
-/// Sizes of the terms that a number and its rate are sums of: of those of the number that are rounded with positions, and of those of the rate that
-/// are rounded with velocities.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Sizes {
-    value: f64,
-    rate: f64,
-}
+/// Roundings of the origin of the system: places are counted from there, and it is added once, where they are read.
+const ADDED: f64 = 4.0 * f64::EPSILON;
 
-impl Sizes {
-    /// What the rate is rounded by in a step of length `step` (s): velocities are as sure as increments of rounded positions over half of it.
-    pub fn of_rate(self, step: f64) -> f64 {
-        ROUNDED * (2.0 * self.value / step.abs() + self.rate)
-    }
+/// What rounding leaves open of places (m) and velocities (m/s) of points, and of directions and their rates (1/s).
+#[derive(Clone, Copy)]
+pub(crate) struct Rounding {
+    pub of_points: [f64; 2],
+    pub of_directions: [f64; 2],
 }
 
 impl System {
-    /// The sizes of a quantity and its rate at positions and velocities of all nodes, where it is evaluated, in a mechanism of the size `length` (m).
-    /// Positions near the origin are no surer than others: the fixed places that they are compared with are rounded, too.
-    pub(crate) fn sizes_of(&self, quantity: Quantity, at: &Evaluation, [x, v]: [&[f64]; 2], length: f64) -> Sizes {
-        let mut sizes = Sizes { value: at.value[self.value_index(quantity)].abs(), rate: 0.0 };
-        for slot in self.slots_of(quantity) {
-            let (g, node) = (slot * self.dim, self.slots.nodes[slot] as usize * self.dim);
-            let gradient = largest(&at.gradient[g..g + self.dim]);
-            sizes.value += gradient * largest(&x[node..node + self.dim]).max(length);
-            sizes.rate += gradient * largest(&v[node..node + self.dim]);
-        }
-        sizes
+    /// What rounding leaves open of positions and velocities of all nodes: places near the origin are no surer than others, as the fixed ones that
+    /// they are compared with are rounded, too. Velocities that no row holds are the ways of a `step` (s) over its length.
+    pub(crate) fn rounding(&self, x: &[f64], v: &[f64], step: Option<f64>) -> Rounding {
+        let of = |size: f64, speed: f64| [ROUNDED * size, ROUNDED * (speed + step.map_or(0.0, |step| size / step))];
+        let [places, speeds] = of(self.largest_of_points(x), self.largest_of_points(v));
+        Rounding { of_points: [places + ADDED * largest(&self.origin), speeds], of_directions: of(1.0, self.largest_of(false, v)) }
+    }
+
+    /// The largest of some numbers of all nodes that are those of points: directions have other units.
+    pub(crate) fn largest_of_points(&self, numbers: &[f64]) -> f64 {
+        self.largest_of(true, numbers)
+    }
+
+    fn largest_of(&self, points: bool, numbers: &[f64]) -> f64 {
+        let nodes = numbers.chunks_exact(self.dim).zip(&self.is_point);
+        nodes.filter(|(_, is_point)| **is_point == points).fold(0.0, |most: f64, (node, _)| most.max(largest(node)))
+    }
+
+    /// What rounding leaves open of the numbers that are read and of their rates.
+    pub(crate) fn rounding_of_reading(&self, reading: &Reading, at: &Evaluation, rounding: Rounding) -> [Local; 2] {
+        let of_nodes = reading.nodes.iter().flat_map(|node| std::iter::repeat_n(self.rounding_of_node(node.index(), rounding), self.dim));
+        let of_senses = reading.senses.iter().map(|sense| match *sense {
+            Sense::Input(_) => [0.0; 2],
+            Sense::Quantity(quantity) => self.rounding_of_quantity(quantity, at, rounding),
+        });
+        let (x, v) = of_nodes.chain(of_senses).map(|[x, v]| (x, v)).unzip();
+        [x, v]
+    }
+
+    /// What rounding leaves open of a quantity and of its rate.
+    pub(crate) fn rounding_of_quantity(&self, quantity: Quantity, at: &Evaluation, rounding: Rounding) -> [f64; 2] {
+        // Itself it is rounded as a number of its size is.
+        let own = [ROUNDED * at.value[self.value_index(quantity)].abs(), 0.0];
+        self.slots_of(quantity).fold(own, |[x, v], slot| {
+            let gradient = largest(&at.gradient[slot * self.dim..(slot + 1) * self.dim]);
+            let [of_x, of_v] = self.rounding_of_node(self.slots.nodes[slot] as usize, rounding);
+            [x + gradient * of_x, v + gradient * of_v]
+        })
+    }
+
+    fn rounding_of_node(&self, node: usize, rounding: Rounding) -> [f64; 2] {
+        if self.is_point[node] { rounding.of_points } else { rounding.of_directions }
     }
 }
