@@ -32,8 +32,9 @@ struct Motion {
 
 /// A rigid body.
 struct Body {
-    /// Its nodes, the first of them a point.
-    nodes: SmallVec<[u32; 4]>,
+    /// Its nodes, the first of them a point, and how many it has.
+    nodes: [u32; 4],
+    count: usize,
     /// First of the rows that keep it rigid: products of its edges, each with itself and those after it.
     inner: u32,
     /// The inverse of the products of its edges, where the matrix was last written.
@@ -116,13 +117,13 @@ impl LinearSystem for Twists {
         let (mut masses, size) = (&self.masses[..], dim + turns(dim));
         for (body, places) in self.bodies.iter_mut().zip(self.places.chunks_exact(size * size)) {
             let first = body.node(0) * dim;
-            for k in 1..body.nodes.len() {
+            for k in 1..body.count {
                 let node = body.node(k);
                 let from = if self.motions[node].moves.is_some() { &work.end.x[first..first + dim] } else { &[0.0; 3][..dim] };
                 (0..dim).for_each(|c| self.arms[node * dim + c] = work.end.x[node * dim + c] - from[c]);
             }
             body.reciprocal = body.products(dim, &self.arms).try_inverse().ok_or(Failure::Singular(Unknown::Node(body.node(1))))?;
-            let (mass, others) = masses.split_at(body.nodes.len().pow(2));
+            let (mass, others) = masses.split_at(body.count.pow(2));
             let block = body.inertia(dim, mass, &self.motions, &self.arms);
             masses = others;
             for (k, &place) in places.iter().enumerate() {
@@ -220,7 +221,7 @@ impl Body {
         let arm = |k: usize| self.arm(k, dim, arms);
         // Mass, first moments and second ones.
         let (mut all, mut first, mut second) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
-        let count = self.nodes.len();
+        let count = self.count;
         for (k, block) in mass.iter().enumerate() {
             let (a, b) = (k / count, k % count);
             if motions[self.node(a)].moves.is_some() {
@@ -267,8 +268,8 @@ impl Body {
     /// Products of its edges, and 1 where there are fewer than three.
     fn products(&self, dim: usize, arms: &[f64]) -> Matrix3<f64> {
         let mut products = Matrix3::identity();
-        for i in 1..self.nodes.len() {
-            for j in 1..self.nodes.len() {
+        for i in 1..self.count {
+            for j in 1..self.count {
                 let pairs = self.arm(i, dim, arms).iter().zip(self.arm(j, dim, arms));
                 products[(i - 1, j - 1)] = pairs.map(|(a, b)| a * b).sum();
             }
@@ -279,7 +280,7 @@ impl Body {
     /// The motion of its edges that changes their products by what stands at the rows which keep it rigid: half of that along the edges that are
     /// reciprocal to them.
     fn keep_rigid(&self, dim: usize, arms: &[f64], rows: &[f64], motion: &mut [f64]) {
-        let edges = self.nodes.len() - 1;
+        let edges = self.count - 1;
         let (mut row, mut change) = (self.inner as usize, Matrix3::zeros());
         for i in 0..edges {
             for j in i..edges {

@@ -41,7 +41,7 @@ impl Numbering {
         };
         for body in bodies {
             let [moves, turning] = [take(dim), take(turns(dim))];
-            for (k, node) in body.nodes.iter().map(|&node| node as usize).enumerate() {
+            for (k, node) in (0..body.count).map(|k| body.node(k)).enumerate() {
                 carrier_of[node] = carriers.len();
                 motions[node] = Motion { moves: system.is_point[node].then_some(moves), turns: (k > 0).then_some(turning) };
             }
@@ -202,7 +202,7 @@ impl Twists {
             }
         }
         for body in &self.bodies {
-            for node in (1..body.nodes.len()).map(|k| body.node(k)) {
+            for node in (1..body.count).map(|k| body.node(k)) {
                 let Motion { moves, turns: Some(first) } = self.motions[node] else { continue };
                 let from = if moves.is_some() { x(body.node(0)) } else { &[0.0; 3][..self.dim] };
                 let length = x(node).iter().zip(from).map(|(x, from)| (x - from).powi(2)).sum::<f64>().sqrt();
@@ -257,8 +257,9 @@ fn rigid(system: &System, bodies: &[Vec<NodeId>]) -> Option<Rigid> {
         let block =
             |a: usize, b: usize| system.mass.row(a).find(|&(other, _)| other == b).map_or(MassBlock { m: 0.0, s: 0.0 }, |(_, block)| block);
         masses.extend(nodes.iter().flat_map(|&a| nodes.iter().map(move |&b| (a, b))).map(|(a, b)| block(a, b)));
-        let nodes = nodes.into_iter().map(|node| node as u32).collect();
-        found.push(Body { nodes, inner: inner as u32, reciprocal: Matrix3::identity() });
+        let count = nodes.len();
+        let nodes = std::array::from_fn(|k| nodes.get(k).map_or(0, |&node| node as u32));
+        found.push(Body { nodes, count, inner: inner as u32, reciprocal: Matrix3::identity() });
     }
     Some(Rigid { bodies: found, masses, rows: row })
 }
