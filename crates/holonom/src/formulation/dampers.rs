@@ -4,6 +4,8 @@
 //! (2 − z)/(2 + z) of a velocity. At the rate θ ẋ₁ + (1 − θ) ẋ₀ it is (1 − (1 − θ) z)/(1 + θ z), which is never negative with
 //! θ = max(½, 1 − 1/z): then order 2 stays, as z falls with the step, and what is overdamped stands still.
 
+use std::cell::LazyCell;
+
 use serde::{Deserialize, Serialize};
 
 use super::failure::Failure;
@@ -184,13 +186,15 @@ impl Damping {
 /// where its steps are too long for the damper. What stands still but for its rounding turns round with that.
 pub fn taken_of_turned(system: &System, t: [f64; 2], h: f64, work: &Workspace) -> (f64, Option<usize>) {
     let (mut sum, mut most) = (0.0, (0.0, None));
+    // Velocities may be as sure as increments of rounded positions over half the step.
+    let rounding = LazyCell::new(|| system.rounding(&work.end.x, &work.end.v, Some(0.5 * h.abs())));
     for (k, law) in system.laws.iter().enumerate().filter(|(_, law)| !law.law.conservative()) {
         let [from, to] = [(t[0], &work.start), (t[1], &work.end)].map(|(t, end)| Braking::of(system, law, t, &end.at, &end.v));
-        let is_rounded = |i: usize, rate: f64| {
-            let rounding = system.rounding(&work.end.x, &work.end.v, Some(0.5 * h.abs()));
-            rate <= system.rounding_of_quantity(law.arguments[i], &work.end.at, rounding)[1]
+        let rounded = |i: usize| system.rounding_of_quantity(law.arguments[i], &work.end.at, *rounding)[1];
+        let has_turned = |&i: &usize| {
+            let (before, after) = (from.rate[i], to.rate[i]);
+            before * after < 0.0 && before.abs().min(after.abs()) > rounded(i)
         };
-        let has_turned = |i: &usize| from.rate[*i] * to.rate[*i] < 0.0 && !is_rounded(*i, from.rate[*i].abs().min(to.rate[*i].abs()));
         let turned = (0..law.arguments.len()).filter(has_turned);
         let taken: f64 = h.abs() * turned.map(|i| from.power[i].min(to.power[i]).max(0.0)).sum::<f64>();
         sum += taken;

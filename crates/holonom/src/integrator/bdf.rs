@@ -28,8 +28,8 @@ pub(super) struct Bdf {
 /// Gauss points on 0 … 1 and their weights, exact for powers through that many states.
 const GAUSS: [[f64; 2]; 3] = [[0.112_701_665_379_258_31, 5.0 / 18.0], [0.5, 4.0 / 9.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
 
-/// The memory: how many states there are, the order in use, the power where the last step ended, how many steps were taken with that order, then for each state its time, the power
-/// there, positions and velocities, the latest first. The power at the first state is not known.
+/// The memory: how many states there are, the order in use, the power where the last step ended, how many steps were taken with that order, then for
+/// each state its time, the power there, positions and velocities, the latest first. The power at the first state is not known.
 struct History<'a> {
     n: usize,
     numbers: &'a mut [f64],
@@ -214,11 +214,11 @@ impl Bdf {
         // are of one. Else two orders can take turns, each with the shorter steps that it takes for the errors of the other.
         history.numbers[3] += 1.0;
         let is_settled = history.numbers[3] > order as f64;
-        if order > 1 {
+        if is_settled && order > 1 {
             best = room(order - 1, local_error(order - 1, t, history, work));
             next = order - 1;
         }
-        if order < self.order && history.count() >= order + 2 {
+        if is_settled && order < self.order && history.count() >= order + 2 {
             let higher = room(order + 1, local_error(order + 1, t, history, work));
             if higher > best {
                 (best, next) = (higher, order + 1);
@@ -226,7 +226,7 @@ impl Bdf {
         }
         // Another order must be worth it, and nothing is where hardly anything moves.
         let error = local_error(order, t, history, work);
-        if !is_settled || best < 1.1 * room(order, error) || error <= LEAST * allowed {
+        if best < 1.1 * room(order, error) || error <= LEAST * allowed {
             next = order;
         }
         if next != order {
@@ -236,15 +236,20 @@ impl Bdf {
     }
 }
 
-/// Writes the estimated local errors of a step to `t` with order `k`: ψ_1 … ψ_k times the divided difference over k + 2
-/// states, by which the derivative is off, times the step. The state itself is off by less, by that over the leading weight of the derivative; but
-/// the steps that follow find it among those before them and add the rest, and what adds up over a run is the whole. Says the largest, of positions over the size of the mechanism and of velocities over
-/// their unit.
+/// What the divided differences over the states of a step to `t` with order `k` are multiplied by to estimate its local errors: ψ_1 … ψ_k, for what
+/// the derivative is off by, times the step. The state itself is off by less, by that over the leading weight of the derivative; but the steps that
+/// follow find it among those before them and add the rest, and what adds up over a run is the whole.
+fn reach(order: usize, t: f64, history: &History<'_>) -> f64 {
+    (t - history.time(0)) * (0..order).map(|j| t - history.time(j)).product::<f64>()
+}
+
+/// Writes the estimated local errors of a step to `t` with order `k`: what it [reaches](reach), times the divided differences over k + 2 states. Says
+/// the largest, of positions over the size of the mechanism and of velocities over their unit.
 fn local_error(order: usize, t: f64, history: &History<'_>, work: &mut Workspace) -> f64 {
     let n = history.n;
     let (length, speed) = (work.scales.length, work.estimate.speed);
     let time = |j: usize| if j == 0 { t } else { history.time(j - 1) };
-    let product: f64 = (1..=order).map(|j| t - time(j)).product();
+    let reach = reach(order, t, history);
     let mut largest = 0.0_f64;
     for k in 0..2 * n {
         let mut differences = [0.0; KEPT + 1];
@@ -257,7 +262,7 @@ fn local_error(order: usize, t: f64, history: &History<'_>, work: &mut Workspace
                 differences[j] = (differences[j] - differences[j + 1]) / (time(j) - time(j + level));
             }
         }
-        let error = (t - time(1)) * product * differences[0];
+        let error = reach * differences[0];
         if k < n {
             work.estimate.q[k] = error;
             largest = largest.max(error.abs() / length);
@@ -274,9 +279,8 @@ fn local_error(order: usize, t: f64, history: &History<'_>, work: &mut Workspace
 /// times half the last digit of each.
 fn energy_error(system: &System, order: usize, t: f64, history: &History<'_>, work: &mut Workspace) {
     let time = |j: usize| if j == 0 { t } else { history.time(j - 1) };
-    let product: f64 = (1..=order).map(|j| t - time(j)).product();
     let weight = |j: usize| (0..=order + 1).filter(|&i| i != j).map(|i| time(j) - time(i)).product::<f64>().recip().abs();
-    let weights = (t - time(1)) * product * (0..=order + 1).map(weight).sum::<f64>();
+    let weights = reach(order, t, history) * (0..=order + 1).map(weight).sum::<f64>();
     let Workspace { full, estimate, start, end, a, d, .. } = work;
     let (mut made, mut size) = (0.0, 0.0);
     system.mass.times(system.dim, &end.v, full);

@@ -271,23 +271,35 @@ impl Simulation {
     pub(super) fn begin_anew(&mut self) {
         self.state.memory.fill(0.0);
         let is_soft = matches!(self.method.settings.multipliers, Multipliers::Penalty(_));
-        let is_off = is_rough(&self.method) && !self.method.integrator.conserves && !is_soft;
-        let (system, work, t) = (&*self.system, &mut self.work, self.state.t);
-        self.state.load(work);
-        system.place_known(t, &mut work.end.x, &mut work.end.v, &mut work.a);
-        system.evaluate(&self.state.x, t, &work.start.at, &mut work.end.at);
-        if is_off && TO_ROWS.apply(system, t, self.step, &mut self.newton, work).is_ok() {
-            self.audit.put_on_rows(system, &self.state.v, true, work);
-            self.state.v.copy_from_slice(&work.end.v);
-            self.shown_v.copy_from_slice(&work.end.v);
-            system.measure(&self.state.x, &self.shown_v, &mut self.gauges);
+        self.stand_at_state();
+        if is_rough(&self.method) && !self.method.integrator.conserves && !is_soft {
+            self.put_velocities_on_rows();
+            self.stand_at_state();
         }
-        self.state.load(work);
-        system.place_known(t, &mut work.end.x, &mut work.end.v, &mut work.a);
+        let (system, work, t) = (&*self.system, &mut self.work, self.state.t);
         if start::accelerate(system, &self.method, t, &mut self.newton, work).is_ok() {
             self.state.a.copy_from_slice(&work.a);
             self.state.lambda.copy_from_slice(&work.lambda);
             self.audit.change_power(system, &self.state, work);
+        }
+    }
+
+    /// Puts the workspace at the present state, as the end of a step.
+    fn stand_at_state(&mut self) {
+        let (system, work, t) = (&*self.system, &mut self.work, self.state.t);
+        self.state.load(work);
+        system.place_known(t, &mut work.end.x, &mut work.end.v, &mut work.a);
+        system.evaluate(&self.state.x, t, &work.start.at, &mut work.end.at);
+    }
+
+    /// Puts the velocities of the present state, at which the workspace is, on the rows, where that can be.
+    fn put_velocities_on_rows(&mut self) {
+        let Self { system, state, shown_v, gauges, audit, newton, work, .. } = self;
+        if TO_ROWS.apply(system, state.t, self.step, newton, work).is_ok() {
+            audit.put_on_rows(system, &state.v, true, work);
+            state.v.copy_from_slice(&work.end.v);
+            shown_v.copy_from_slice(&work.end.v);
+            system.measure(&state.x, shown_v, gauges);
         }
     }
 

@@ -314,7 +314,7 @@ impl Simulation {
 
     /// These values, where all have one.
     fn indicate_by(&self, look: Look<'_>) -> Result<Vec<f64>, Failure> {
-        let found = self.system.indicators(look, self.rounding());
+        let found = self.system.indicators(look, || self.rounding());
         match found.iter().position(|found| found.is_nan()) {
             Some(event) => Err(Failure::NoIndicator { event }),
             None => Ok(found),

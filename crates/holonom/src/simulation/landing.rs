@@ -144,9 +144,7 @@ impl Simulation {
         let sight = pilot.sight.clone();
         // A number that is clipped on the other side stays at zero there.
         let is_behind = |corners: &[f64], clipped: bool| {
-            let passes = |wanted: f64, there: f64| {
-                (wanted > 0.0 && there > 0.0) || (wanted < 0.0 && there < 0.0) || (clipped && wanted < 0.0 && there == 0.0)
-            };
+            let passes = |wanted: f64, there: f64| wanted * there > 0.0 || (clipped && wanted < 0.0 && there == 0.0);
             (0..corners.len()).all(|bend| !sight.reached[bend] || passes(sight.corners[bend], corners[bend]))
         };
         let system = self.system.clone();
@@ -156,7 +154,7 @@ impl Simulation {
         self.begin_anew();
         let (t, x, v, shown, smooth) = (self.state.t, self.state.x.clone(), self.state.v.clone(), self.shown_v.clone(), pilot.v.clone());
         for hop in hops().filter(|hop| is_behind(&ahead(*hop), clipped)) {
-            let Self { state, shown_v, work, gauges, .. } = self;
+            let Self { state, shown_v, work, .. } = self;
             state.x.iter_mut().zip(&x).zip(&shown).for_each(|((x, from), v)| *x = from + hop * v);
             for (v, from) in [(&mut state.v, &v), (shown_v, &shown), (&mut pilot.v, &smooth)] {
                 v.iter_mut().zip(from).zip(&state.a).for_each(|((v, from), a)| *v = from + hop * a);
@@ -164,14 +162,14 @@ impl Simulation {
             state.t = t + hop;
             system.place_known(state.t, &mut state.x, &mut work.end.v, &mut work.a);
             system.evaluate_again(&state.x, state.t, &mut work.start.at);
-            system.measure(&state.x, shown_v, gauges);
             // The hop may be so short that the rounded place is still before the bend, or at it, with the forces of what came before.
             if is_behind(&self.sight().corners, clipped) {
                 break;
             }
         }
-        let Self { state, work, gauges, audit, .. } = self;
+        let Self { state, shown_v, work, gauges, audit, .. } = self;
         audit.move_on(&system, state, work);
+        system.measure(&state.x, shown_v, gauges);
         state.measured.copy_from_slice(gauges.counted());
     }
 

@@ -365,7 +365,7 @@ fn smoothing(method: &Method) -> Option<Projection> {
     (is_rough(method) && method.integrator.estimate == Estimate::History).then_some(TO_ROWS)
 }
 
-/// The projection that puts velocities on the rows.
+/// The projection that puts velocities on the rows, by the least change in the metric of the mass.
 pub(super) const TO_ROWS: Projection = Projection {
     position: false,
     velocity: true,

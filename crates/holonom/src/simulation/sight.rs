@@ -114,8 +114,9 @@ impl Sight {
         a_while * self.corners[bend] / (self.corners[bend] - system.bends(&self.seen.ahead(a_while)).corners[bend])
     }
 
-    /// Whether the number of a bend is on the other side of zero now. One that stays at zero there, as what is clipped does, passes it where it is
-    /// clipped, and at zero itself forces may be those of what follows; one that was reached a little before zero is back where it is farther from there than it was.
+    /// Whether the number of a bend is at zero now, where forces may be those of what follows already, or on the other side. One that stays at zero
+    /// there, as what is clipped does, passes it where it is clipped; one that was reached a little before zero is back where it is farther from there
+    /// than it was.
     fn is_passed(&self, bend: usize, now: f64) -> bool {
         let from = self.corners[bend];
         let is_beyond = (from < 0.0 && now >= 0.0) || (from > 0.0 && now <= 0.0);

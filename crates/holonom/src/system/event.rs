@@ -1,5 +1,6 @@
 //! Moments of a simulation at which something happens: when a condition is met, and at a fixed rate.
 
+use std::cell::LazyCell;
 use std::sync::Arc;
 
 use super::evaluate::Local;
@@ -78,13 +79,14 @@ const WAYS: usize = 4;
 
 impl System {
     /// Values of the indicators of all events; zero of those that have none, and where rounding decides on which side of zero one is.
-    pub(crate) fn indicators(&self, look: Look<'_>, rounding: Rounding) -> Vec<f64> {
+    pub(crate) fn indicators(&self, look: Look<'_>, rounding: impl FnOnce() -> Rounding) -> Vec<f64> {
+        let rounding = LazyCell::new(rounding);
         let value = |event: &Event| match &event.trigger {
             Trigger::When(indicator, _) => {
                 let [x, v] = self.read(&event.reading, look);
                 let value = indicator.value(&x, &v, look.t);
                 let is_rounded = || {
-                    let roundings = self.rounding_of_reading(&event.reading, look.at, rounding);
+                    let roundings = self.rounding_of_reading(&event.reading, look.at, *rounding);
                     is_rounding(value, |way| {
                         let [x, v] = [(&x, &roundings[0]), (&v, &roundings[1])].map(|(of, by)| changed(of, by, way));
                         indicator.value(&x, &v, look.t)
