@@ -66,6 +66,10 @@ impl Names for Reads<'_> {
         Some(self.columns.axes)
     }
 
+    fn has(&self, name: &str) -> bool {
+        self.columns.known.contains(name)
+    }
+
     fn known(&self) -> Vec<String> {
         let mut known: Vec<String> = self.columns.known.iter().cloned().collect();
         known.sort_unstable();

@@ -29,7 +29,7 @@ pub trait Names {
         None
     }
 
-    /// Whether an input or a measure has this name.
+    /// Whether an input or a measure has this name, or a column of every run where these can be read.
     fn has(&self, _name: &str) -> bool {
         false
     }

@@ -209,6 +209,11 @@ impl Parser<'_> {
                 Err(self.mistake(message, format!("give the {what} another name")))
             }
             (Some(k), _) => Ok(Some(Op::Variable(k))),
+            (None, Some(_)) if self.names.has(name) => {
+                let what = if self.scope.indices.iter().any(|(index, _)| index == name) { "index" } else { "parameter" };
+                let message = format!("`{name}` could be the {what} of this name or the column of results of this name");
+                Err(self.mistake(message, format!("give the {what} another name")))
+            }
             (None, Some(Value::Known(value))) => Ok(Some(Op::Constant(value))),
             (None, Some(Value::Faulty)) => Err(Mistake::known()),
             (None, None) => Ok(CONSTANTS.iter().find(|constant| constant.0 == name).map(|&(_, value)| Op::Constant(value))),
