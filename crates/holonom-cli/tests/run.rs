@@ -418,3 +418,29 @@ fn long_steps_are_told() {
     fs::write(folder.path().join("top.toml"), rotor("[drive.motor]\ntype = \"angle\"\njoint = \"axle\"\nprofile = \"600*t\"\n")).unwrap();
     assert!(!notes("").contains("comes on by"), "{}", notes(""));
 }
+
+/// Swings as cos 2πt: 20 times through its middle in 9.9 s, and what happens once is not lost behind them.
+#[test]
+fn events_are_told_by_their_names() {
+    let folder = folder();
+    let model = "plane = \"xy\"\ngravity = [0, 0]\n[point.m]\nmass = 1\nposition = [1, 0]\n\
+                 [force.spring]\ntype = \"spring\"\nbetween = [\"ground\", \"m\"]\nalong = [1, 0]\nrest_length = 0\nstiffness = \"(2*pi)^2\"\n\
+                 [event.middle]\nwhen = \"m.x\"\n[event.rare]\nwhen = \"t - 7.3\"\n[event.over]\nwhen = \"t - 9.9\"\nstop = true\n\
+                 [event.far]\nwhen = \"m.x - 5\"\n[event.fast]\nwhen = \"m.vx - 50\"\n[input.u]\n[event.clock]\nevery = 0.5\nset = { u = \"t\" }\n\
+                 [simulation]\nend = 20\nstep = 0.01\nmethod = \"gauss\"\norder = 6\n";
+    std::fs::write(folder.path().join("swing.toml"), model).unwrap();
+    let told = prints(&folder, "run swing.toml --no-report", 0);
+    let lines: Vec<&str> = told.lines().skip_while(|line| !line.contains("events")).take(4).map(str::trim).collect();
+    assert_eq!(
+        lines,
+        [
+            "events     middle 20 times, first at 0.25 s and last at 9.75 s",
+            "rare at 7.3 s",
+            "over at 9.9 s, where the run ended",
+            "far, fast did not happen"
+        ],
+        "{told}"
+    );
+    let beside = prints(&folder, "compare swing.toml --variant simulation.step=0.02 --no-report", 0);
+    assert!(beside.contains("ended at 9.9 s by the event `over`"), "{beside}");
+}

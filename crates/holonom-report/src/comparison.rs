@@ -3,7 +3,7 @@
 use crate::answers::{Answer, answers};
 use crate::escape::html;
 use crate::figures::{badge, figure, known, reason};
-use crate::outcome::{Outcome, completed, outcomes};
+use crate::outcome::{Outcome, completed, ended, outcomes};
 use crate::{Run, format};
 use serde_json::Value;
 use std::io;
@@ -61,12 +61,12 @@ pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
 /// Rows of answers that are seen at once; more would push the picture far down.
 const ROWS: usize = 15;
 
-/// How each run ended, where one did not complete, then a row for each answer, with its difference to that of the first run.
+/// How each run ended, where one did not come to the end asked for, then a row for each answer, with its difference to that of the first run.
 fn answers_of(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
     let summaries: Vec<&Value> = runs.iter().map(|run| run.summary).collect();
     let outcomes = outcomes(runs);
     let mut rows = Vec::new();
-    if outcomes.iter().any(|outcome| *outcome != Outcome::Sound) {
+    if outcomes.iter().any(|outcome| *outcome != Outcome::Sound) || summaries.iter().any(|summary| ended(summary).is_some()) {
         let cells: String = runs.iter().zip(&outcomes).map(|(run, outcome)| status_cell(run.summary, *outcome)).collect();
         rows.push(format!(r#"<tr><th scope="row">status</th>{cells}</tr>"#));
     }

@@ -1,7 +1,7 @@
 //! The top of the page: which method, how it ended, and the figures a run is judged by.
 
 use crate::escape::html;
-use crate::outcome::is_measured;
+use crate::outcome::{ended, is_measured};
 use crate::{Run, comparison, digits, format};
 use serde_json::Value;
 use std::io;
@@ -229,9 +229,12 @@ pub fn badge(summary: &Value) -> String {
     format!(r#"<span class="badge stopped">{status}{when}</span>"#)
 }
 
-/// Why a run stopped, if it did.
+/// Why a run stopped, if it did, or which event ended it.
 pub fn reason(summary: &Value) -> String {
-    text(summary, "reason").map_or(String::new(), |reason| format!(r#"<span class="reason">{reason}</span>"#))
+    let by_event =
+        |(event, t)| format!(r#"<span class="reason of-event">ended by the event {} at {} s</span>"#, html(event), format::answer(t));
+    let of_stop = text(summary, "reason").map(|reason| format!(r#"<span class="reason">{reason}</span>"#));
+    of_stop.or_else(|| ended(summary).map(by_event)).unwrap_or_default()
 }
 
 /// A key of the summary as HTML, unless it is null.

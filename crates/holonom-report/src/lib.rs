@@ -28,6 +28,7 @@ use std::io;
 
 pub use answers::{Answer, answers};
 pub use live::{Frames, LIVE};
+pub use outcome::ended;
 pub use stability::{Search, StabilityReport};
 pub use sweep::{SweepColumn, SweepKey, SweepReport, SweepRun};
 

@@ -38,6 +38,13 @@ pub fn completed(summary: &Value) -> bool {
     summary["status"] == "completed"
 }
 
+/// The event that ended a run, and when, s; none of one that came to the end asked for, or stopped.
+pub fn ended(summary: &Value) -> Option<(&str, f64)> {
+    let event = summary["ended_by"].as_str()?;
+    let last = summary["events"].as_array()?.iter().rfind(|one| one["event"] == event && one["stopped"] == true)?;
+    Some((event, last["t"].as_f64()?))
+}
+
 /// Whether this is no run but what was measured.
 pub fn is_measured(summary: &Value) -> bool {
     summary["status"] == "measured"

@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 
 use holonom::record::Recording;
 use holonom_io::Writer;
-use holonom_report::{Answer, Report, Run, answers};
+use holonom_report::{Answer, Report, Run, answers, ended};
 use serde_json::{Map, Value, json};
 
 use crate::columns::unknown;
@@ -214,13 +214,15 @@ fn hardly_meets(one: &Compared, first: &Compared) -> Option<String> {
         .then(|| format!("\nonly {common} of {} rows of {} are at times that {} has: times are in s", own.len(), one.label, first.label))
 }
 
-/// A table of all runs, and why those stopped that did.
+/// A table of all runs, and why those ended that did not come to the end asked for.
 fn describe_runs(summaries: &[&Value]) -> String {
     let header = ["run", "status", "reached s", "drift J", "largest rise J", "‖Φ‖", "‖dΦ/dt‖", "‖d²Φ/dt²‖", "its/step", "µs/step"];
     let rows: Vec<Vec<String>> = summaries.iter().map(|summary| row(summary)).collect();
     let reasons = summaries.iter().filter_map(|summary| {
-        let at = summary["stopped_at"].as_f64()?;
-        Some(format!("\n{} stopped at {} s: {}", text(summary, "label"), short(at), text(summary, "reason")))
+        let label = text(summary, "label");
+        let by_event = || ended(summary).map(|(event, at)| format!("\n{label} ended at {} s by the event `{event}`", short(at)));
+        let stopped = summary["stopped_at"].as_f64();
+        stopped.map(|at| format!("\n{label} stopped at {} s: {}", short(at), text(summary, "reason"))).or_else(by_event)
     });
     let reasons: String = reasons.collect();
     let gap = if reasons.is_empty() { "" } else { "\n" };
@@ -229,7 +231,8 @@ fn describe_runs(summaries: &[&Value]) -> String {
 
 fn row(summary: &Value) -> Vec<String> {
     let number = |group: &str, key: &str| digits(summary[group][key].as_f64().unwrap_or(f64::NAN));
-    let reached = summary["stopped_at"].as_f64().or(summary["end"].as_f64()).unwrap_or(f64::NAN);
+    let at_event = ended(summary).map(|(_, at)| at);
+    let reached = summary["stopped_at"].as_f64().or(at_event).or(summary["end"].as_f64()).unwrap_or(f64::NAN);
     vec![
         text(summary, "label").into(),
         text(summary, "status").into(),
@@ -293,5 +296,15 @@ mod tests {
         let stopped = json!({"label": "bold", "status": "stopped", "stopped_at": 1.5, "reason": "no convergence"});
         let told = describe_runs(&[&stopped, &json!({"label": "good", "status": "completed", "stopped_at": null, "end": 2.0})]);
         assert!(told.ends_with("\n\nbold stopped at 1.5 s: no convergence"), "{told}");
+    }
+
+    #[test]
+    fn a_run_that_an_event_ended_did_not_reach_the_end_asked_for() {
+        let events = json!([{"event": "lands", "t": 0.25, "stopped": false}, {"event": "lands", "t": 0.75, "stopped": true}]);
+        let ended = json!({"label": "low", "status": "completed", "stopped_at": null, "end": 2.0, "ended_by": "lands", "events": events});
+        let told = describe_runs(&[&ended, &json!({"label": "high", "status": "completed", "stopped_at": null, "end": 2.0})]);
+        assert!(told.ends_with("\n\nlow ended at 0.75 s by the event `lands`"), "{told}");
+        let reached: Vec<&str> = told.lines().skip(2).take(2).map(|line| line.split_whitespace().nth(2).unwrap()).collect();
+        assert_eq!(reached, ["0.75", "2"], "{told}");
     }
 }

@@ -9,7 +9,7 @@ use crate::failure::{Failure, STOPPED};
 use crate::folder::{Folder, file_stem, holds};
 use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
-use crate::message::note;
+use crate::message::{listed, note};
 use crate::options::{OutputArguments, RunArguments};
 use crate::output::{Order, recorder, simulate_kept, writers};
 use crate::progress::interrupt_flag;
@@ -121,25 +121,39 @@ fn measures(of: &Value) -> String {
     of.as_array().into_iter().flatten().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// Events that are listed one by one.
-const LISTED: usize = 10;
+/// Events that have lines of their own.
+const LISTED: usize = 20;
 
-/// The events of the run.
-fn events(of: &Value) -> String {
-    let events = of.as_array().map_or(&[][..], Vec::as_slice);
-    let line = |event: &Value| {
-        let end = if event["stopped"] == true { ", where the run ended" } else { "" };
+/// The events of the run by their names: how often each happened, first and last, the one that ended the run at the end; and those that did not happen.
+fn events(summary: &Value, conditions: &[String]) -> String {
+    let events = summary["events"].as_array().map_or(&[][..], Vec::as_slice);
+    let name = |event: &Value| event["event"].as_str().unwrap_or("").to_string();
+    let mut happened: Vec<(String, Vec<f64>)> = Vec::new();
+    for event in events {
         let t = event["t"].as_f64().unwrap_or(f64::NAN);
-        // Frequencies are read off times: small ones have as many figures as others.
-        let t = if (1e-12..1e-3).contains(&t) { format!("{t:.5e}") } else { short(t) };
-        format!("{} at {t} s{end}", event["event"].as_str().unwrap_or(""))
-    };
-    let (first, last) = events.split_at(events.len().min(LISTED));
-    let mut lines: Vec<String> = first.iter().map(line).collect();
-    if let Some((end, between)) = last.split_last() {
-        lines.extend((!between.is_empty()).then(|| format!("{} more", between.len())));
-        lines.push(line(end));
+        match happened.iter_mut().find(|(known, _)| *known == name(event)) {
+            Some((_, times)) => times.push(t),
+            None => happened.push((name(event), vec![t])),
+        }
     }
+    // Frequencies are read off times: small ones have as many figures as others.
+    let time = |t: f64| if (1e-12..1e-3).contains(&t) { format!("{t:.5e}") } else { short(t) };
+    let ended_by = summary["ended_by"].as_str();
+    happened.sort_by_key(|(name, _)| Some(name.as_str()) == ended_by);
+    let line = |(name, times): &(String, Vec<f64>)| {
+        let (first, last) = (time(times[0]), time(times[times.len() - 1]));
+        let end = if Some(name.as_str()) == ended_by { ", where the run ended" } else { "" };
+        match times.len() {
+            1 => format!("{name} at {first} s{end}"),
+            count => format!("{name} {count} times, first at {first} s and last at {last} s{end}"),
+        }
+    };
+    let missing: Vec<String> = conditions.iter().filter(|name| happened.iter().all(|(known, _)| known != *name)).cloned().collect();
+    let mut lines: Vec<String> = happened.iter().map(line).collect();
+    if let more @ 1.. = lines.len().saturating_sub(LISTED) {
+        lines.splice(LISTED - 1..LISTED - 1 + more, [format!("{more} more in summary.json")]);
+    }
+    lines.extend((!missing.is_empty()).then(|| format!("{} did not happen", listed(&missing))));
     lines.join("\n")
 }
 
@@ -165,13 +179,18 @@ fn status(summary: &Value) -> String {
     }
 }
 
+/// Names of the events that happen on a condition; those with a period happen all the time.
+fn conditions(loaded: &Loaded) -> Vec<String> {
+    loaded.model.system.conditions().map(str::to_string).collect()
+}
+
 /// The summary as people read it.
 pub fn describe(loaded: &Loaded, summary: &Value) -> String {
     let number = |group: &str, key: &str| short(summary[group][key].as_f64().unwrap_or(f64::NAN));
     let time = |key: &str| summary["time"][key].as_f64().map_or("–".into(), measured);
     let mut items = vec![("method", summary["method"]["name"].as_str().unwrap_or("").to_string()), ("status", status(summary))];
     // What the model asks for comes first.
-    items.extend([("measures", measures(&summary["peaks"]["measures"])), ("events", events(&summary["events"]))]);
+    items.extend([("measures", measures(&summary["peaks"]["measures"])), ("events", events(summary, &conditions(loaded)))]);
     items.extend([0, 1, 2].map(|sort| (SORTS[sort], peaks(summary, sort))));
     items.retain(|(_, text)| !text.is_empty());
     items.extend([

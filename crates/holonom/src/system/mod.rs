@@ -241,6 +241,12 @@ impl System {
         self.rows.iter().any(|row| !row.is_constant()) || !(self.motions.is_empty() && self.custom.is_empty())
     }
 
+    /// Names of the events that happen on a condition, and not with a period.
+    pub fn conditions(&self) -> impl Iterator<Item = &str> {
+        let of_condition = self.events.iter().filter(|event| matches!(event.trigger, Trigger::When(..)));
+        of_condition.map(|event| event.name.as_str())
+    }
+
     /// Names of the events.
     pub fn event_names(&self) -> impl Iterator<Item = &str> {
         self.events.iter().map(|event| event.name.as_str())
