@@ -45,7 +45,12 @@ pub fn listed(words: &[String]) -> String {
 
 /// What a model does not need.
 pub fn unused_parameters(source: &Source) -> Option<String> {
-    let quoted: Vec<String> = source.unused_parameters().iter().map(|name| format!("`{name}`")).collect();
+    nothing_uses(&source.unused_parameters())
+}
+
+/// That nothing uses some parameters.
+pub fn nothing_uses(names: &[&str]) -> Option<String> {
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     match quoted.len() {
         0 => None,
         1 => Some(format!("nothing uses the parameter {}", quoted[0])),

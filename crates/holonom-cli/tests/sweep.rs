@@ -306,3 +306,21 @@ fn what_cannot_be_swept_is_refused_before_anything_runs() {
     prints(&folder, "sweep short.toml --vary simulation.step=0.1,0.2 --end 1 --quiet --out a", 0);
     assert!(Path::new(&folder.path().join("a/sweep.csv")).exists());
 }
+
+/// Parameters that nothing uses are named, those that are varied as what makes no difference; what a varied formula or a column names is used.
+#[test]
+fn parameters_that_nothing_uses_are_named() {
+    let folder = folder();
+    let ball =
+        "[parameters]\nh = 1\nidle = 2\nused = 3\n[point.ball]\nmass = 1\nposition = [0, 0, \"h\"]\n[simulation]\nend = 0.1\nstep = 0.01\n";
+    fs::write(folder.path().join("ball.toml"), ball).unwrap();
+    let told = |words: &str| text(&holonom(&folder, &format!("sweep ball.toml --no-report --out a --force {words}")).stderr);
+    let both = told("--vary parameters.idle=1,2");
+    assert!(both.contains("note: nothing uses the parameter `idle`, so that its values make no difference\n"), "{both}");
+    assert!(both.contains("note: nothing uses the parameter `used`\n"), "{both}");
+    let formula = told("--vary parameters.h=used,idle");
+    assert!(!formula.contains("nothing uses"), "{formula}");
+    let column = told("--vary parameters.h=1,2 --columns ball.z*used*idle");
+    assert!(!column.contains("nothing uses"), "{column}");
+    assert!(!told("--vary parameters.idle=1,2 --quiet").contains("nothing uses"));
+}

@@ -294,6 +294,38 @@ fn columns_that_there_are_not_are_refused_before_anything_runs() {
     assert!(!folder.path().join("results").exists());
 }
 
+/// An event ends the run of a ball from 0.5 m after 0.32 s, and that from 2 m after 0.64 s.
+#[test]
+fn times_that_runs_do_not_come_to_are_told() {
+    let folder = folder();
+    let ball = "[parameters]\nh = 1\n[point.ball]\nmass = 1\nposition = [0, 0, \"h\"]\n[event.lands]\nwhen = \"ball.z\"\nstop = true\n\
+                [simulation]\nend = 2\nstep = 0.01\n";
+    fs::write(folder.path().join("ball.toml"), ball).unwrap();
+    let told = |columns: &str| text(&sweep(&folder, "ball.toml", columns, "--vary parameters.h=0.5,2 --out a --force --no-report").stderr);
+    assert!(
+        told("at(ball.z, 0.5)").contains("note: `at(ball.z, 0.5)` has no value in one run of 2, which ended before 0.5 s"),
+        "{}",
+        told("at(ball.z, 0.5)")
+    );
+    assert!(told("at(ball.z, 0.7)").contains("note: `at(ball.z, 0.7)` has no value in 2 runs of 2, which"), "{}", told("at(ball.z, 0.7)"));
+    assert!(!told("at(ball.z, 0.3)").contains("has no value"), "{}", told("at(ball.z, 0.3)"));
+}
+
+/// `t` in a formula is the time, and no parameter.
+#[test]
+fn parameters_called_like_columns_are_refused_in_formulas() {
+    let folder = folder();
+    fs::write(folder.path().join("m.toml"), OSCILLATOR.replace("n = 1", "n = 1\nt = 5")).unwrap();
+    let output = sweep(&folder, "m.toml", "max(2*t)", "--vary parameters.n=1,2");
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(
+        message.contains("`t` could be the parameter of this name or the column of results")
+            && message.contains("cure: give the parameter another name"),
+        "{message}"
+    );
+}
+
 /// A measure may be called as a column that every table has: two of one name tell nobody which is which.
 #[test]
 fn no_two_columns_have_one_name() {

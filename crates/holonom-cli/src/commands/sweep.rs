@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use crate::failure::{Failure, STOPPED};
 use crate::items::items;
 use crate::load;
+use crate::message::note;
 use crate::options::SweepArguments;
 use crate::output::table_writers;
 use crate::progress::{interrupt_flag, runs_bar};
@@ -29,6 +30,9 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
     let (source, name) = load::open(&arguments.model.model, &overrides)?;
     let columns: Vec<String> = arguments.columns.iter().flat_map(|given| items(given)).map(str::to_string).collect();
     let study = Study::new(source, &name, plan, arguments.method.name.as_deref(), &columns)?;
+    if !arguments.to.quiet {
+        study.slips().iter().for_each(|text| note(text));
+    }
     let identity = identity(arguments, &columns, overrides.given(), &study);
     let mut store = Store::claim(&arguments.to, &format!("{name}-sweep"), &study, &identity)?;
     let spent = run(&study, &mut store, arguments)?;
@@ -45,6 +49,9 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
         summary["columns"] = answers.values();
     }
     tell(arguments, &store, &summary, &answers, is_whole);
+    if is_whole && !arguments.to.quiet {
+        study.late(&table).iter().for_each(|text| note(text));
+    }
     // Whatever was asked not to be said, a status of failure has its reason.
     if !arguments.to.quiet || !any_completed {
         tell_failures(&study.failures(&table), any_completed);

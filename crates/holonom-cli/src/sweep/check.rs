@@ -15,6 +15,7 @@ use super::watch::{Columns, recorder};
 use crate::columns::unknown;
 use crate::failure::Failure;
 use crate::load::{self, OF_METHOD};
+use crate::message::nothing_uses;
 use crate::output;
 
 /// Refuses keys that nothing can be made of, a model that is not sound and columns that there are not; finds out what the columns take. Formulas among these
@@ -68,6 +69,22 @@ pub fn of_formula(faults: &Faults, asked: &[Asked]) -> Option<(String, String)> 
     let typed = |fault: &Fault| asked.iter().find(|asked| asked.is_formula && path_of(&asked.of) == fault.path);
     let (fault, asked) = faults.0.iter().find_map(|fault| Some((fault, typed(fault)?)))?;
     Some((format!("`{}`: {}", asked.text, fault.message), fault.cure.clone()))
+}
+
+/// What looks like a slip in a plan: parameters that nothing uses in any of its runs, varied or not.
+pub fn slips(source: &Source, plan: &Plan) -> Vec<String> {
+    let mut first = source.clone();
+    for (vary, setting) in plan.varied.iter().zip(plan.settings(1)) {
+        // Where it cannot be set the plan was refused.
+        let _ = first.put(&vary.path, setting.value);
+    }
+    let is_word = |text: &str, name: &str| text.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|word| word == name);
+    let is_used = |name: &str| plan.varied.iter().any(|vary| vary.words().any(|setting| is_word(&setting.text, name)));
+    let unused: Vec<&str> = first.unused_parameters().into_iter().filter(|name| !is_used(name)).collect();
+    let is_varied = |name: &str| plan.varied.iter().any(|vary| vary.path.strip_prefix("parameters.") == Some(name));
+    let (varied, others): (Vec<&str>, Vec<&str>) = unused.into_iter().partition(|name| is_varied(name));
+    let of_varied = nothing_uses(&varied).map(|words| format!("{words}, so that its values make no difference"));
+    of_varied.into_iter().chain(nothing_uses(&others)).collect()
 }
 
 /// SHA-256 of the files that runs of a plan read, by their names. Runs get them as they were read here.

@@ -82,6 +82,15 @@ impl Sheet {
         }
     }
 
+    /// How many runs of a table completed without a value in a column of the motion.
+    pub fn lacking(&self, table: &Table, name: &str) -> usize {
+        let status = &table.columns[1 + self.varied.len()].1;
+        let first = self.width() - self.shown.len();
+        let Some(column) = self.shown.iter().position(|shown| shown == name).map(|k| &table.columns[first + k].1) else { return 0 };
+        let lacks = |row: &usize| status.text(*row) == Ending::Completed.word() && column.text(*row).is_empty();
+        (0..table.rows()).filter(lacks).count()
+    }
+
     /// What became of the runs of a table that did not complete, in words.
     pub fn failures(&self, table: &Table) -> Vec<String> {
         let cell = |column: usize, row: usize| table.columns[column].1.text(row);

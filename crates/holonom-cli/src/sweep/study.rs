@@ -9,8 +9,10 @@ use holonom_io::{Source, Table, sha256};
 use rayon::prelude::*;
 use serde_json::json;
 
-use super::check::{check, files};
+use super::check::{check, files, slips};
+use super::column::Asked;
 use super::plan::Plan;
+use super::reduction::Function;
 use super::report::write_report;
 use super::run::{Ending, Outcome, Runner};
 use super::sheet::Sheet;
@@ -68,6 +70,24 @@ impl Study {
     pub fn asking(mut self, complaint: Complaint) -> Self {
         self.complaint = Some(complaint);
         self
+    }
+
+    /// What looks like a slip in it.
+    pub fn slips(&self) -> Vec<String> {
+        slips(&self.source, &self.plan)
+    }
+
+    /// Columns of values at a time that runs of a table lack, as they ended before it.
+    pub fn late(&self, table: &Table) -> Vec<String> {
+        let at = |asked: &Asked| if let Function::At(t) = asked.function { Some(t) } else { None };
+        let told = |asked: &Asked| {
+            let (t, count) = (at(asked)?, self.sheet.lacking(table, &asked.text));
+            let runs = if count == 1 { "one run".into() } else { format!("{count} runs") };
+            (count > 0).then(|| {
+                format!("`{}` has no value in {runs} of {}, which ended before {t} s or lack the column", asked.text, table.rows())
+            })
+        };
+        self.columns.asked.iter().filter_map(told).collect()
     }
 
     /// Number of runs.
