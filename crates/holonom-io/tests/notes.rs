@@ -168,6 +168,11 @@ fn orientations_of_more_than_a_turn_are_noted() {
     for right in ["axis = [0, 0, 1], angle = \"-tau\"", "axis = [0, 0, 1], angle_deg = 90", "rpy_deg = [0, 0, 90]", "rpy = [0, 3, 6]"] {
         assert_eq!(notes(right), [""; 0], "{right}");
     }
+    // Who writes the unit means it.
+    for right in ["axis = [0, 0, 1], angle = \"400*deg\"", "rpy = [\"400*deg\", 0, \"-2*200*deg\"]"] {
+        assert_eq!(notes(right), [""; 0], "{right}");
+    }
+    assert_eq!(notes("rpy = [\"400*deg\", 0, \"2*90\"]"), [note("rpy", 180.0)]);
     let planar = "plane = \"xy\"\n[body.a]\nmass = 1\ninertia = 1\nposition = [0, 0]\norientation = { angle = 45 }\n";
     assert_eq!(model(planar).notes, [note("angle", 45.0)]);
 }

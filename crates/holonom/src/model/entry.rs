@@ -4,7 +4,7 @@
 //! asks which of them there are: one look at a model finds everything.
 
 use super::bodies::Files;
-use super::expression::{Mistake, Scope};
+use super::expression::{Mistake, Scope, names_in};
 use super::fault::{Fault, Read, Refused, Sink, suggest};
 use super::key::REPEAT;
 use super::value::{Table, Value, item_path, key_path};
@@ -71,6 +71,15 @@ impl<'a> Entry<'a> {
     /// Records what looks like a slip and is taken all the same; of an entry that is repeated for the first alone.
     pub fn note<'s>(&self, spot: impl Into<Spot<'s>>, message: impl Into<String>) {
         self.sink.note(&self.path_of(spot.into()), || self.told(message.into()));
+    }
+
+    /// Whether the number at a key, or the k-th of the list there, is written as a formula of the unit `deg`.
+    pub(super) fn is_in_degrees(&self, key: &str, k: usize) -> bool {
+        let is_of_degrees = |value: &Value| matches!(value, Value::Text(text) if names_in(text).iter().any(|name| name == "deg"));
+        match self.written.value(key) {
+            Some(Value::List(items)) => items.get(k).is_some_and(is_of_degrees),
+            value => value.is_some_and(|value| is_of_degrees(&value)),
+        }
     }
 
     /// Whether something in it was wrong.

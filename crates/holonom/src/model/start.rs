@@ -131,7 +131,7 @@ impl Start {
             let coordinate = coordinate(assembly, entry, at.into(), &format!("{}.{key}", entry.name))?;
             if let Some(value) = value.filter(|value| coordinate.is_angle && value.abs() >= std::f64::consts::PI) {
                 let within = "take the same angle within half a turn";
-                let are_degrees = value.abs() > std::f64::consts::TAU;
+                let are_degrees = value.abs() > std::f64::consts::TAU && !entry.is_in_degrees(key, 0);
                 let cure = if are_degrees { format!("{within}; in degrees write \"{value}*deg\"") } else { within.into() };
                 return Err(entry.refuse(key, format!("{value} rad is half a turn or more"), cure));
             }

@@ -155,9 +155,10 @@ impl Orientation {
     }
 }
 
-/// Notes angles of more than a turn, which may be degrees.
+/// Notes angles of more than a turn, which may be degrees; not those whose formula says that they are.
 fn note_degrees(entry: &Entry<'_>, key: &str, radians: &[f64]) {
-    if let Some(angle) = radians.iter().find(|angle| angle.abs() > std::f64::consts::TAU) {
+    let is_long = |(k, angle): (usize, &f64)| angle.abs() > std::f64::consts::TAU && !entry.is_in_degrees(key, k);
+    if let Some((_, angle)) = radians.iter().enumerate().find(|one| is_long(*one)) {
         entry.note(key, format!("{angle} rad is more than a full turn; degrees are written as `{key}_deg`"));
     }
 }
