@@ -264,6 +264,27 @@ fn bushings_push_back_along_all_axes() {
     }
 }
 
+/// Turned by the angle q about one axis it shows sin q, a number without a unit.
+#[test]
+fn bushings_show_sines_of_their_rotations() {
+    for (plane, body, at, axis, column) in [
+        ("", "inertia = [1, 1, 1]\nposition = [0, 0, 0]", "[0, 0, 0]", "axis = [0, 1, 0]", "k.ry"),
+        ("plane = \"xy\"\n", "inertia = 1\nposition = [0, 0]", "[0, 0]", "", "k.r"),
+    ] {
+        let stiffness = if plane.is_empty() { "[0, 0, 0, 1, 1, 1]" } else { "[0, 0, 1]" };
+        let model = model(&format!(
+            "{plane}[body.b]\nmass = 1\n{body}\n[joint.h]\ntype = \"revolute\"\nbetween = [\"ground\", \"b\"]\nat = {at}\n{axis}\n\
+             [drive.d]\ntype = \"angle\"\njoint = \"h\"\nprofile = \"2*t\"\n\
+             [force.k]\ntype = \"bushing\"\nbetween = [\"ground\", \"b\"]\nat = {at}\nstiffness = {stiffness}\n"
+        ));
+        let recording = run_with(&model, 0.01, 1.0, Constraints::Joints).1;
+        let heading = &recording.find(column).unwrap().heading;
+        assert_eq!(heading.unit, "1", "{column}");
+        assert!(heading.meaning.starts_with("sine of the rotation about"), "{}", heading.meaning);
+        each(&recording, ["t", column], |[t, sine]| close("sine", sine, (2.0 * t).sin()));
+    }
+}
+
 /// What turns a free body is the moment of its bushing: Iα + ω × Iω, far from small angles and about three axes at once, and about the normal of a
 /// plane.
 #[test]

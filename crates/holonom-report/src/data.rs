@@ -138,11 +138,16 @@ fn channels<'a>(run: &Run<'a>, thinning: &Thinning) -> Vec<ChannelData<'a>> {
     let is_measure = |column: &&Column| measured.contains(column.heading.name.as_str());
     let bodies = scene.bodies.iter().map(|body| body.name.as_str());
     let moving: HashSet<&str> = scene.points.iter().map(|point| point.name.as_str()).chain(bodies).collect();
+    // Of bushings, which are shown with all that they do, rotations are sines without a unit.
+    let bushings: HashSet<&str> = scene.bushings.iter().map(|bushing| bushing.name.as_str()).collect();
+    let is_of_bushing = |name: &str| name.rsplit_once('.').is_some_and(|(owner, _)| bushings.contains(owner));
     let is_motion = |column: &&Column| column.heading.name.rsplit_once('.').is_some_and(|(owner, _)| moving.contains(owner));
     let shown = recording.columns().iter().filter(|column| {
         let heading = &column.heading;
         let is_of_run = COLUMNS.iter().any(|(name, _)| *name == heading.name);
-        (heading.unit != "1" || is_measure(column)) && !is_of_run && !column.values.iter().all(|value| value.is_nan())
+        (heading.unit != "1" || is_measure(column) || is_of_bushing(&heading.name))
+            && !is_of_run
+            && !column.values.iter().all(|value| value.is_nan())
     });
     let (measures, others): (Vec<&Column>, Vec<&Column>) = shown.partition(is_measure);
     let (motion, others): (Vec<&Column>, Vec<&Column>) = others.into_iter().partition(is_motion);

@@ -151,8 +151,11 @@ impl RecordedForce {
                 }
             }
             Shows::Along(coordinates) | Shows::Bushing { coordinates, .. } => {
-                let shown = |along: &Along| along.value.clone().map(|[suffix, words]| (suffix, words, Units::of(along.is_angle)));
-                headings.extend(coordinates.iter().filter_map(shown).map(|(suffix, words, units)| of(&suffix, units.value, words)));
+                // A bushing shows the sines of its angles.
+                let of_angle = if matches!(self.shows, Shows::Bushing { .. }) { "1" } else { Units::of(true).value };
+                let unit = |along: &Along| if along.is_angle { of_angle } else { Units::of(false).value };
+                let shown = |along: &Along| along.value.clone().map(|[suffix, words]| of(&suffix, unit(along), words));
+                headings.extend(coordinates.iter().filter_map(shown));
                 headings.extend(coordinates.iter().map(|along| along.effort_heading(&of)));
             }
             Shows::Load { is_moment, .. } => {

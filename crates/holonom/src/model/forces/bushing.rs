@@ -119,7 +119,7 @@ fn shown(coordinates: &[FunctionId], axes: &str) -> Vec<Along> {
         let along = format!("along {letter} of the first body");
         match is_angle {
             true => [
-                [format!("r{letter}"), format!("sine of the rotation {about}")],
+                [format!("r{letter}"), format!("sine of the rotation {about}, and no angle")],
                 [format!("t{letter}"), format!("moment on the second body {about}")],
             ],
             false => {
