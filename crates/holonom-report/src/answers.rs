@@ -12,7 +12,7 @@ pub struct Answer {
     pub unit: String,
     /// Of each run that has it.
     pub values: Vec<Option<f64>>,
-    /// How large the answer of the first run is, over all that is told of it: differences are shares of that.
+    /// How large the answer of the first run is, over all that is told of it: what is round-off beside that is zero.
     pub size: f64,
 }
 
@@ -25,13 +25,18 @@ const MOST: usize = 3;
 /// What is told of a measure, and its key.
 const OF_MEASURES: [(&str, &str); 3] = [("least", "min"), ("largest", "max"), ("last", "last")];
 
+/// Share of the size below which an answer is nearly zero, so that it says nothing how many times itself a difference is.
+const SMALL: f64 = 1e-3;
+
 /// A difference that is a smaller share is beyond the figures that are shown.
 const SHOWN: f64 = 5e-6;
 
 impl Answer {
-    /// How far the answer of a run is from that of the first, in percent of its size; nothing where both look the same or one has none.
+    /// How far the answer of a run is from that of the first, in percent of this; nothing where both look the same, one has none, or the first is
+    /// nearly zero.
     pub fn difference(&self, run: usize) -> Option<String> {
-        let share = (self.values[run]? - self.values[0]?) / self.size;
+        let first = self.values[0].filter(|first| first.abs() >= SMALL * self.size)?;
+        let share = (self.values[run]? - first) / first.abs();
         let percent = 100.0 * share;
         let decimals = (1.0 - percent.abs().log10().floor()).clamp(0.0, 6.0) as usize;
         match share.abs() {
@@ -126,6 +131,19 @@ mod tests {
         );
         let differences: Vec<Option<String>> = found.iter().map(|one| one.difference(1)).collect();
         assert_eq!(differences, [None, Some("+0.50 %".to_owned()), None, None, None, None, None]);
+    }
+
+    /// A least value of 4 beside a largest of 2000 is 50 % more at 6, and not 0.1 %.
+    #[test]
+    fn differences_of_least_values_are_shares_of_these() {
+        let run =
+            |min: f64, last: f64| json!({"peaks": {"measures": [{"name": "gap", "unit": "m", "min": min, "max": 2000.0, "last": last}]}});
+        let runs = [run(4.0, 1e-9), run(6.0, 5.0)];
+        let told: Vec<Option<String>> = answers(&runs.iter().collect::<Vec<_>>()).iter().map(|one| one.difference(1)).collect();
+        assert_eq!(told, [Some("+50 %".to_owned()), None, None], "nothing is a share of nearly nothing");
+        let below = [run(-4.0, -8.0), run(-6.0, -4.0)];
+        let told: Vec<Option<String>> = answers(&below.iter().collect::<Vec<_>>()).iter().map(|one| one.difference(1)).collect();
+        assert_eq!(told, [Some("-50 %".to_owned()), None, Some("+50 %".to_owned())], "a percentage has the sign of the difference");
     }
 
     #[test]
