@@ -415,3 +415,28 @@ fn fails_to_parse(folder: &tempfile::TempDir, words: &str) -> String {
     assert_eq!(output.status.code(), Some(2), "{words}");
     text(&output.stderr)
 }
+
+/// What the command line sets is shown as that, and not as if it stood in the file; what follows from it in the file is told with it.
+#[test]
+fn faults_of_what_the_command_line_sets_are_told_as_such() {
+    let folder = folder();
+    let model = "[parameters]\nk = 2\nm = \"k\"\n[body.arm]\nmass = \"m\"\ninertia = [0.1, 0.1, 0.1]\nposition = [0, 0, 0]\n\
+                 [simulation]\nend = 1\nstep = 0.01\n";
+    std::fs::write(folder.path().join("arm.toml"), model).unwrap();
+    let outside = "which is set outside arm.toml, by --set or another option";
+    for (words, told) in [
+        ("check arm.toml --set body.arm.mass=-1", format!("--> body.arm.mass = -1, {outside}")),
+        ("run arm.toml --step abc", format!("--> simulation.step = \"abc\", {outside}")),
+        ("check arm.toml --set body.arm.positon=[0,0,0]", format!("--> body.arm.positon = [0, 0, 0], {outside}")),
+        ("check arm.toml --set body.arm.inertia=[1,\"x\",1]", format!("--> body.arm.inertia = [1, \"x\", 1], {outside}")),
+        ("check arm.toml --set parameters.k=zz", format!("--> parameters.k = \"zz\", {outside}")),
+        ("check arm.toml --set parameters.k=-1", "must be above 0, with parameters.k = -1 from --set or another option".into()),
+    ] {
+        let message = fails(&folder, words, 2);
+        assert!(message.contains(&told), "{words}\n{message}");
+    }
+    // What has nothing to do with it is told as ever.
+    std::fs::write(folder.path().join("arm.toml"), model.replace("position = [0, 0, 0]", "position = [0, 0]")).unwrap();
+    let message = fails(&folder, "check arm.toml --set parameters.k=3", 2);
+    assert!(message.contains("--> arm.toml:7:12 (body.arm.position)") && !message.contains("--set"), "{message}");
+}

@@ -8,7 +8,7 @@ mod render;
 mod rows;
 mod toml;
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
@@ -193,12 +193,46 @@ impl Source {
         // In the order of the file; what has no place in it comes last.
         let mut faults: Vec<&Fault> = faults.0.iter().collect();
         faults.sort_by_key(|fault| self.places.find(&fault.path, fault.on_key).map_or(usize::MAX, |bytes| bytes.start));
-        let shown: Vec<String> = faults.into_iter().map(|fault| render::fault(&self.name, &self.text, &self.places, fault)).collect();
+        let shown: Vec<String> = faults.into_iter().map(|fault| self.shown(fault)).collect();
         let count = shown.len();
         match count {
             1 => shown.join("\n"),
             _ => format!("{}\n{count} faults", shown.join("\n")),
         }
+    }
+
+    /// A fault with its place in the file, or in what was set outside of it.
+    fn shown(&self, fault: &Fault) -> String {
+        let set = |key: &str| render::setting(key, self.get(key));
+        if let Some((key, _)) = self.replaced.iter().find(|(key, _)| is_within(&fault.path, key)) {
+            let place = format!("{}, which is set outside {}, by --set or another option", set(key), self.name);
+            return render::whole(&place, &fault.message, &fault.cure);
+        }
+        let named = self.parameters_of(&fault.offending);
+        let is_part = |key: &str| is_within(key, &fault.path) || key.strip_prefix("parameters.").is_some_and(|name| named.contains(name));
+        let parts: Vec<String> = self.replaced.iter().filter(|(key, _)| is_part(key)).map(|(key, _)| set(key)).collect();
+        let message = match parts.is_empty() {
+            true => fault.message.clone(),
+            false => format!("{}, with {} from --set or another option", fault.message, parts.join(" and ")),
+        };
+        render::fault(&self.name, &self.text, &self.places, &Fault { message, ..fault.clone() })
+    }
+
+    /// The parameters that a text names, by itself and through others.
+    fn parameters_of<'a>(&'a self, text: &'a str) -> HashSet<&'a str> {
+        let mut found = HashSet::new();
+        let Some(Value::Table(parameters)) = self.get("parameters") else { return found };
+        let mut open = vec![text];
+        while let Some(text) = open.pop() {
+            for word in text.split(|c: char| !(c.is_alphanumeric() || c == '_')) {
+                if let Some(value) = parameters.get(word).filter(|_| found.insert(word))
+                    && let Value::Text(text) = value
+                {
+                    open.push(text);
+                }
+            }
+        }
+        found
     }
 
     /// Line and column, both from 1, at which a fault or the nearest thing around it stands in the file; none where nothing of it does.
@@ -216,6 +250,11 @@ impl Source {
 /// A value as `--set` takes it: written as in a file, and a text where it is no TOML value.
 pub fn read_value(text: &str) -> Value {
     toml::value(text).unwrap_or_else(|| Value::text(text))
+}
+
+/// Whether a path is that of a key or of something in it.
+fn is_within(path: &str, key: &str) -> bool {
+    path.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
 /// Puts a value at a key of a description, with the tables around it; or says which part of the key is no table.

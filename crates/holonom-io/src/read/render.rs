@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use holonom::model::Fault;
+use holonom::model::{Fault, Value};
 
 use super::places::Places;
 use super::toml::SyntaxError;
@@ -46,6 +46,13 @@ pub(super) fn position(text: &str, byte: usize) -> [usize; 2] {
 /// What was written, for faults of what does not stand in the file.
 fn offending(fault: &Fault) -> String {
     if fault.offending.is_empty() { String::new() } else { format!(": {}", fault.offending) }
+}
+
+/// A key with the value that it is set to, as it is written.
+pub(super) fn setting(key: &str, value: Option<&Value>) -> String {
+    let text = value.map_or(String::new(), Value::quoted);
+    let (shown, _) = window(&text, 1);
+    format!("{key} = {shown}")
 }
 
 /// The byte of a character in a text value, behind its opening quote. Escapes before it would shift it; then the mark

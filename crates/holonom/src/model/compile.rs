@@ -35,7 +35,8 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
     let room = || Cell::new(repeat::MOST);
     let functions = &description.functions;
     let nothing = Tables::new();
-    let first = Compiler { sink: &sink, files, parameters: &parameters, tables: &nothing, functions, room: room() };
+    let others: HashMap<String, &'static str> = description.others().map(|(name, what)| (name.to_string(), what)).collect();
+    let first = Compiler { sink: &sink, files, parameters: &parameters, tables: &nothing, functions, others: &others, room: room() };
     let tables = first.tables(description, unread);
     let compiler = Compiler { tables: &tables, room: room(), ..first };
     compiler.functions();
@@ -118,13 +119,21 @@ struct Compiler<'a> {
     parameters: &'a HashMap<String, Known>,
     tables: &'a Tables,
     functions: &'a Functions,
+    /// What the entries are that are neither points nor bodies.
+    others: &'a HashMap<String, &'static str>,
     /// Entries that repetitions may still make.
     room: Cell<usize>,
 }
 
 impl Compiler<'_> {
     fn entry<'b>(&'b self, name: &'b str, path: &'b str, written: &'b dyn Written) -> Entry<'b> {
-        let scope = Scope { parameters: Some(self.parameters), indices: &[], tables: Some(self.tables), functions: Some(self.functions) };
+        let scope = Scope {
+            parameters: Some(self.parameters),
+            indices: &[],
+            tables: Some(self.tables),
+            functions: Some(self.functions),
+            others: Some(self.others),
+        };
         Entry { name, path, written, scope, sink: self.sink, files: self.files }
     }
 

@@ -7,7 +7,7 @@ use super::bodies::{Body, Files, NoFiles};
 use super::element::Boxed;
 use super::entries::{Entries, Named};
 use super::event::Event;
-use super::expression::{External, ExternalFunction, Functions};
+use super::expression::{BAR, External, ExternalFunction, Functions};
 use super::fault::{Fault, Faults, Read, Refused, Sink, suggest};
 use super::fields::{Field, Keys, List, Number};
 use super::input::Input;
@@ -226,6 +226,23 @@ impl Description {
         ];
         sections.into_iter().for_each(|(name, section)| section.into_iter().for_each(|section| table.push(name, section)));
         Value::Table(table)
+    }
+
+    /// Names of the entries that are neither points nor bodies, and what they are.
+    pub(super) fn others(&self) -> impl Iterator<Item = (&str, &'static str)> {
+        let what = |section| match section {
+            "input" => Some("an input"),
+            "measure" => Some("a measure"),
+            "event" => Some("an event"),
+            "table" => Some("a table"),
+            "bar" => Some(BAR),
+            "joint" => Some("a joint"),
+            "constraint" => Some("a constraint"),
+            "drive" => Some("a drive"),
+            "force" => Some("a force"),
+            _ => None,
+        };
+        self.names().filter_map(move |(section, name)| Some((name, what(section)?)))
     }
 
     /// Names of all entries with their sections.

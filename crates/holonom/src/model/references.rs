@@ -4,7 +4,7 @@ use super::assembly::{Assembly, GROUND};
 use super::bodies::nodes::Member;
 use super::ends::{End, fixed};
 use super::entry::{Entry, Spot, all};
-use super::expression::indexed;
+use super::expression::{BAR, indexed};
 use super::fault::{Read, Refused, nearest, suggest};
 use super::fields::{self as field, Field, Number};
 use super::geometry::Vec3;
@@ -115,6 +115,9 @@ impl Assembly<'_> {
         if self.faulty.contains(base) {
             return Err(Refused);
         }
+        if let Some(refused) = refuse_other(entry, spot, &full, "a body or a point") {
+            return Err(refused);
+        }
         let names = self.bodies.iter().map(|body| body.name.as_str()).chain(self.points.iter().map(|point| point.name.as_str()));
         let cure = match nearest(&full, names.chain([GROUND])) {
             Some(near) => format!("did you mean `{near}`?"),
@@ -140,6 +143,9 @@ impl Assembly<'_> {
         }
         if self.faulty_joints.contains(full.split('[').next().unwrap_or(&full)) {
             return Err(Refused);
+        }
+        if let Some(refused) = refuse_other(entry, spot, &full, "a joint") {
+            return Err(refused);
         }
         let cure = suggest(&full, self.joints.iter().map(|joint| joint.name.as_str()));
         Err(entry.refuse(spot, format!("there is no joint `{full}`"), cure))
@@ -238,6 +244,9 @@ impl Assembly<'_> {
         if self.sink.is_full() {
             return Err(entry.refuse(spot, "", ""));
         }
+        if let Some(refused) = refuse_other(entry, spot, &full, "a point or a body") {
+            return Err(refused);
+        }
         let begins = format!("{base}[");
         let mut many = self.points.iter().filter(|point| point.name.starts_with(&begins));
         if let (Some(first), last) = (many.next(), many.next_back()) {
@@ -253,6 +262,16 @@ impl Assembly<'_> {
         };
         Err(entry.refuse(spot, format!("there is no point `{full}`"), cure))
     }
+}
+
+/// Refuses the name of something else than is wanted.
+fn refuse_other(entry: &Entry<'_>, spot: Spot<'_>, name: &str, wanted: &str) -> Option<Refused> {
+    let what = entry.scope.called(name).filter(|what| *what != wanted)?;
+    let cure = match what == BAR && wanted != "a joint" {
+        true => "name a point at its ends, or make a body of it, which has a mass and an inertia".to_string(),
+        false => format!("name {wanted}"),
+    };
+    Some(entry.refuse(spot, format!("`{name}` is {what}, and {wanted} is wanted here"), cure))
 }
 
 /// Numbers of a list that may itself be an item of a list, zeros behind them.

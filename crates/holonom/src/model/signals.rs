@@ -315,6 +315,9 @@ impl Names for Reader<'_, '_> {
         if let Some(leaf) = leaf {
             return Ok(Some(self.leaf(name, leaf)));
         }
+        if let Some(mistake) = self.entry.scope.of_bar(name).filter(|_| !name.ends_with(".force")) {
+            return Err(mistake);
+        }
         if let Some((_, column)) = name.rsplit_once('.')
             && is_of_all_that_acts(column)
         {

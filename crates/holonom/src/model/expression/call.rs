@@ -259,6 +259,9 @@ impl Parser<'_> {
         if self.names.variable(&coordinate)?.is_some() {
             return Ok(());
         }
+        if let Some(mistake) = self.scope.of_bar(place) {
+            return Err(mistake);
+        }
         let (known, suffix) = (self.names.known(), format!(".{axis}"));
         let places = known.iter().filter_map(|name| name.strip_suffix(&suffix));
         let cure = match nearest(place, places.chain([GROUND])) {

@@ -71,6 +71,9 @@ pub enum Value {
     Faulty,
 }
 
+/// What bars are in [`Scope::others`].
+pub(in crate::model) const BAR: &str = "a bar";
+
 /// The names an expression may use beside its variables.
 #[derive(Clone, Copy, Default)]
 pub struct Scope<'a> {
@@ -82,6 +85,8 @@ pub struct Scope<'a> {
     pub tables: Option<&'a HashMap<String, Option<Arc<Curve>>>>,
     /// Functions that a program gives.
     pub functions: Option<&'a Functions>,
+    /// What the entries of the model are that are neither points nor bodies, such as `"a bar"`.
+    pub others: Option<&'a HashMap<String, &'static str>>,
 }
 
 impl<'a> Scope<'a> {
@@ -89,6 +94,21 @@ impl<'a> Scope<'a> {
     pub fn value(&self, name: &str) -> Option<Value> {
         let index = self.indices.iter().find(|(index, _)| index == name).map(|&(_, value)| Value::Known(value));
         index.or_else(|| self.parameters.and_then(|parameters| parameters.get(name).copied()))
+    }
+
+    /// What an entry is, by its name with or without an index, that is neither a point nor a body.
+    pub fn called(&self, name: &str) -> Option<&'static str> {
+        let base = name.split('[').next().unwrap_or(name);
+        self.others.and_then(|others| others.get(base).copied())
+    }
+
+    /// What is wrong with a name that has places, or the name of a coordinate, where it is that of a bar.
+    pub(in crate::model) fn of_bar(&self, name: &str) -> Option<Mistake> {
+        let bar = name.rsplit_once('.').map_or(name, |(owner, _)| owner);
+        (self.called(bar) == Some(BAR)).then(|| {
+            let cure = format!("name a point at its ends; measures also read its tension, `{bar}.force`");
+            Mistake::new(0, format!("`{bar}` is a bar, which has no place and no motion of its own"), cure)
+        })
     }
 
     /// All names, indices first.

@@ -236,6 +236,13 @@ impl Parser<'_> {
         if self.scope.functions.is_some_and(|functions| functions.contains_key(name)) {
             return self.mistake(format!("the function `{name}` needs its arguments"), format!("write {name}(…)"));
         }
+        if let Some(mistake) = self.scope.of_bar(name) {
+            return self.mistake(mistake.message, mistake.cure);
+        }
+        if let Some(what @ ("an input" | "a measure")) = self.scope.called(name) {
+            let message = format!("`{name}` is {what}, which cannot be read here: what this formula says must be known before the run");
+            return self.mistake(message, "let a force read it, such as an `effort` that pushes towards it, or make it a parameter");
+        }
         let of_mechanism = self.names.known();
         let message = format!("the name `{name}` is not known here");
         if name.contains('.') && of_mechanism.is_empty() {
