@@ -40,7 +40,7 @@ pub struct Point {
     pub run: Checkpoint,
     pub recorder: RecorderMark,
     pub rows: usize,
-    /// What was put right before the start, in words.
+    /// What was found and put right before the start, in words: a run that goes on from elsewhere would find something else.
     pub corrections: Vec<String>,
 }
 

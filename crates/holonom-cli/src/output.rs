@@ -140,22 +140,27 @@ pub(crate) fn simulate_kept(
         Some((Point { run, recorder, corrections, .. }, rows)) => (Some((run, corrections)), Some((recorder, rows))),
         None => (None, None),
     };
-    let (mut simulation, corrections) = match resume {
+    let is_new = resume.is_none();
+    let (mut simulation, mut corrections) = match resume {
         Some((run, corrections)) => Simulation::resume(model.system.clone(), method, step, run)
             .map(|simulation| (simulation, corrections))
             .ok_or_else(|| Failure::usage("the checkpoint is of another model", "run from the start, without --resume"))?,
         None => {
             let simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
-            let mut corrections = corrections(model, &simulation);
-            corrections.extend(model.unseen(simulation.method(), step, end));
-            if !quiet {
-                slips(loaded).chain(corrections.clone()).for_each(|text| say(&text));
-            }
+            let corrections = corrections(model, &simulation);
             (simulation, corrections)
         }
     };
     let rank = analysis::rank_of(&simulation);
-    let overruled = locked(model, &rank).or_else(|| rivals(&mut simulation, &rank));
+    if is_new {
+        corrections.extend(locked(model, &rank).or_else(|| rivals(&mut simulation, &rank)));
+    }
+    // The end may be a later one than that of the run before.
+    let unseen = model.unseen(simulation.method(), step, end);
+    let of_start: Vec<String> = slips(loaded).chain(corrections.clone()).chain(unseen).collect();
+    if !quiet {
+        of_start.iter().for_each(|text| say(text));
+    }
     if model.output.constraints() != Constraints::Nothing || !model.channels.efforts.is_empty() {
         model.find_reactions(&mut simulation);
     }
@@ -195,13 +200,12 @@ pub(crate) fn simulate_kept(
         .chain(turned_bushings(model, watched.recorder.recording()));
     let of_energy = lost_energy(&simulation).into_iter().chain(unsure_work(&simulation)).filter(|_| status == Status::Completed);
     let of_steps = of_energy.chain(far).chain(turns);
-    let of_results: Vec<String> =
-        overruled.into_iter().chain(unknown).chain(without).chain(shared_forces(model, &simulation)).chain(of_steps).collect();
+    let of_results: Vec<String> = unknown.into_iter().chain(without).chain(shared_forces(model, &simulation)).chain(of_steps).collect();
     if !quiet {
         of_results.iter().for_each(|text| say(text));
     }
     value["provenance"] = serde_json::to_value(&provenance).expect("a provenance is plain data");
-    value["notes"] = slips(loaded).chain(corrections.clone()).chain(of_results).collect();
+    value["notes"] = of_start.into_iter().chain(of_results).collect();
     let last = Point::of(&simulation, &watched.recorder, &corrections);
     let before_end = watched.before_end.take().filter(|_| !last.run.goes_on_unbroken());
     let recording = watched.finish();

@@ -70,6 +70,30 @@ fn a_run_in_parts_has_the_bytes_of_an_unbroken_one() {
     in_parts("example:flyball-governor", "--no-report", &["0.1"], "0.2");
 }
 
+/// What is noted of a run that goes on is that of the unbroken one: of two drives of one freedom, which is found at the start, and of a pulse between two
+/// steps that comes after the end of the first part.
+#[test]
+fn a_run_in_parts_has_the_notes_of_an_unbroken_one() {
+    let text = "[input.u]\n[point.ball]\nmass = 1\nposition = [0, 0, 5]\n\
+                [force.pulse]\ntype = \"expression\"\npoint = \"ball\"\nforce = [\"10*step(t - 1.503)*step(1.507 - t)\", 0, 0]\n\
+                [body.a]\nmass = 1\ninertia = [0.1, 0.1, 0.1]\nposition = [1, 0, 0]\n\
+                [body.b]\nmass = 1\ninertia = [0.1, 0.1, 0.1]\nposition = [-1, 0, 0]\n\
+                [joint.left]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n\
+                [joint.right]\ntype = \"revolute\"\nbetween = [\"ground\", \"b\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n\
+                [joint.gear]\ntype = \"gear\"\njoints = [\"left\", \"right\"]\nratio = 1\n\
+                [drive.one]\ntype = \"angle\"\njoint = \"left\"\nprofile = \"t\"\n\
+                [drive.two]\ntype = \"angle\"\njoint = \"right\"\nprofile = \"t\"\n\
+                [simulation]\nend = 2\nstep = 0.01\n";
+    let folder = folder();
+    let path = folder.path().join("pulse.toml");
+    fs::write(&path, text).unwrap();
+    let model = path.to_str().unwrap();
+    let summary = json(&folder, &format!("run {model} --no-report --json"));
+    let notes = summary["notes"].to_string();
+    assert!(notes.contains("lead the same freedom") && notes.contains("pulse"), "{notes}");
+    in_parts(model, "--no-report", &["1"], "2");
+}
+
 /// Ends that are no whole number of steps, or are one but for rounding: the last step is shorter, and is taken once more.
 #[test]
 fn an_end_between_steps_leaves_no_trace() {
