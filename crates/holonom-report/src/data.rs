@@ -44,6 +44,8 @@ pub struct RunData<'a> {
     /// Name of a body → coordinates of its centre of mass along `scene.axes` from the origin of the page and its orientation (`qw`, `qx`,
     /// `qy`, `qz`; in a plane `angle`), row after row, base64 of 32-bit floats.
     bodies: BTreeMap<&'a str, String>,
+    /// Names and times (s) of the events that are marked in plots.
+    events: Vec<(&'a str, f64)>,
     /// What else was recorded: measures, then what acts and joint coordinates, then motion.
     channels: Vec<ChannelData<'a>>,
 }
@@ -85,9 +87,27 @@ impl<'a> RunData<'a> {
             columns: columns(recording, &thinning),
             points: paths(recording, scene.points.iter().map(|point| point.name.as_str()), &place, origin, &thinning),
             bodies: paths(recording, scene.bodies.iter().map(|body| body.name.as_str()), &pose, origin, &thinning),
+            events: events(run.summary),
             channels: channels(run, &thinning),
         }
     }
+}
+
+/// Most events of a run that are marked: more lines in a plot hide its curves.
+const MARKED: usize = 30;
+
+/// The events of a run in the order of their times: all where they are few, and else those that happen seldom, as long as they are few together.
+fn events(summary: &Value) -> Vec<(&str, f64)> {
+    let all = summary["events"].as_array().map_or(&[][..], Vec::as_slice);
+    let all: Vec<(&str, f64)> = all.iter().filter_map(|event| Some((event["event"].as_str()?, event["t"].as_f64()?))).collect();
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    all.iter().for_each(|(name, _)| *counts.entry(name).or_default() += 1);
+    let mut seldom: Vec<(usize, &str)> = counts.into_iter().map(|(name, count)| (count, name)).collect();
+    seldom.sort_unstable();
+    let mut room = MARKED;
+    let mut fits = |count: usize| room.checked_sub(count).map(|left| room = left).is_some();
+    let marked: HashSet<&str> = seldom.into_iter().take_while(|(count, _)| fits(*count)).map(|(_, name)| name).collect();
+    all.into_iter().filter(|(name, _)| marked.contains(name)).collect()
 }
 
 /// World axes, whose letters end the columns of places.

@@ -7,7 +7,7 @@
 mod chromium;
 mod sample;
 
-use chromium::{checks_in, dump_dom};
+use chromium::{WINDOW, checks_in, dump_dom};
 use holonom_report::{Report, Run};
 use sample::Sample;
 use serde_json::{Value, json};
@@ -66,6 +66,32 @@ fn what_the_machine_does_comes_first() {
     for picture in taken["pictures"].as_array().unwrap() {
         assert_eq!((&picture[0], &picture[1]), (&Value::from("image/png"), &Value::from(true)), "{seen:#}");
         assert!(picture[2].as_u64().unwrap() > 300 && picture[3].as_u64().unwrap() > 200, "{seen:#}");
+    }
+}
+
+/// Events are lines in plots at their times, with their names; those that happen too often for that are not.
+#[test]
+fn events_are_marked_in_plots() {
+    let mut sample = sample::motor();
+    let often = (1..=100).map(|k| json!({"event": "tooth", "t": 0.029 * f64::from(k), "stopped": false}));
+    let seldom = [("top", 1.5), ("late", 2.392)].map(|(name, t)| json!({"event": name, "t": t, "stopped": false}));
+    sample.summary["events"] = often.chain(seldom).collect();
+    let seen = open("events", &[sample]);
+    assert_eq!(seen["events"], json!([["top at 1.500 s", 50], ["late at 2.392 s", 80]]), "{seen:#}");
+}
+
+/// Long names of runs on a narrow screen: the legend does not go beyond it, and the choice of what is shown is free of the buttons.
+#[test]
+fn a_narrow_screen_has_room_for_long_names() {
+    let named = |label: &str| {
+        let label = format!("simulation.method={label},body.connecting_rod.mass=0.25,parameters.spin=3.125,parameters.length=12");
+        sample::pendulum(&label, 0.025, 100, 1.0)
+    };
+    let runs = [named("generalized-alpha"), named("conserving-projected")];
+    for window in [[500, 900], WINDOW] {
+        let seen = open_at("narrow", &runs, &[], window);
+        assert_eq!((&seen["faults"], &seen["ready"]), (&Value::Array(Vec::new()), &Value::Bool(true)), "{seen:#}");
+        assert_eq!(seen["layout"], json!({"legendFits": true, "choiceIsFree": true, "choiceFits": true}), "{window:?} {seen:#}");
     }
 }
 
@@ -280,6 +306,11 @@ fn open(name: &str, samples: &[Sample]) -> Value {
 
 /// The same where some columns are asked for.
 fn open_with(name: &str, samples: &[Sample], columns: &[String]) -> Value {
+    open_at(name, samples, columns, WINDOW)
+}
+
+/// The same in a window of this width and height, px.
+fn open_at(name: &str, samples: &[Sample], columns: &[String], window: [u32; 2]) -> Value {
     let runs: Vec<Run> =
         samples.iter().map(|s| Run { label: &s.label, recording: &s.recording, scene: &s.scene, summary: &s.summary }).collect();
     let mut page = Vec::new();
@@ -294,5 +325,5 @@ fn open_with(name: &str, samples: &[Sample], columns: &[String]) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("page.html");
     fs::write(&file, format!("{body}<script>{CHECKS}</script></body>{tail}")).unwrap();
-    checks_in(&dump_dom(&file, folder.path()))
+    checks_in(&dump_dom(&file, folder.path(), window))
 }

@@ -6,7 +6,7 @@
 mod chromium;
 mod sample;
 
-use chromium::{checks_in, dump_dom};
+use chromium::{WINDOW, checks_in, dump_dom};
 use holonom_report::{Frames, LIVE};
 use serde_json::{Value, json};
 use std::fs;
@@ -28,7 +28,7 @@ fn a_widget_shows_frames_and_sends_inputs() {
     let kernel = KERNEL.replace("GIVEN", &given.to_string().replace("</", "<\\/")).replace("SCRIPT", &encoded);
     fs::write(&page, format!("<!DOCTYPE html><meta charset=utf-8><body><div id=cell></div><script type=module>{kernel}</script></body>"))
         .unwrap();
-    let seen = checks_in(&dump_dom(&page, folder.path()));
+    let seen = checks_in(&dump_dom(&page, folder.path(), WINDOW));
     assert_eq!(seen["faults"], Value::Array(Vec::new()), "{seen:#}");
     // The picture has something in it and follows the frames, also back to the start.
     assert!(seen["pictures"][0]["different"].as_u64().unwrap() > 500, "{seen:#}");

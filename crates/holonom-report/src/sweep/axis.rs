@@ -20,6 +20,9 @@ const MANY_DECADES: f64 = 1e3;
 /// Words that have a tick.
 const MOST_WORDS: usize = 8;
 
+/// Fewest powers of ten, and 2 and 5 times them, that are enough for a logarithmic axis.
+const FEWEST: usize = 3;
+
 /// Characters that ticks have room for along the whole axis.
 const ROOM: usize = 54;
 
@@ -92,21 +95,23 @@ impl Axis {
 
     /// Places and labels.
     pub fn ticks(&self) -> Vec<(f64, String)> {
-        let values = match self {
+        match self {
             Self::Words(words) => {
                 let stride = words.len().div_ceil(MOST_WORDS).max(1);
                 let (shown, room) = (words.iter().step_by(stride), room(words.len().div_ceil(stride)));
-                return shown.filter_map(|word| Some((self.place(word)?, shortened(word, room)))).collect();
+                shown.filter_map(|word| Some((self.place(word)?, shortened(word, room)))).collect()
             }
-            Self::Numbers { low, high, is_logarithmic: true } => logarithmic(*low, *high),
-            Self::Numbers { low, high, .. } => {
+            Self::Numbers { low, high, is_logarithmic } => {
+                // Within a decade there are hardly any powers of ten to read values off.
+                if let Some(powers) = is_logarithmic.then(|| logarithmic(*low, *high)).filter(|powers| powers.len() >= FEWEST) {
+                    return powers.into_iter().filter_map(|value| Some((self.at(value)?, label(value)))).collect();
+                }
                 let decimals = (-step(*low, *high).log10().floor()).max(0.0) as usize;
                 let fine =
                     |value: f64| if (1e-3..1e6).contains(&value.abs()) { minus(&format!("{value:.decimals$}")) } else { label(value) };
-                return even(*low, *high).into_iter().filter_map(|value| Some((self.at(value)?, fine(value)))).collect();
+                even(*low, *high).into_iter().filter_map(|value| Some((self.at(value)?, fine(value)))).collect()
             }
-        };
-        values.into_iter().filter_map(|value| Some((self.at(value)?, label(value)))).collect()
+        }
     }
 }
 
@@ -174,8 +179,7 @@ fn logarithmic(low: f64, high: f64) -> Vec<f64> {
     let stride = (decades / 6.0).ceil().max(1.0) as usize;
     let powers = (small.log10().floor() as i32..=large.log10().ceil() as i32).step_by(stride);
     let all = powers.flat_map(|power| leads.iter().map(move |lead| lead * 10f64.powi(power)));
-    let within: Vec<f64> = all.filter(|v| (small * (1.0 - 1e-9)..=large * (1.0 + 1e-9)).contains(v)).map(|v| sign * v).collect();
-    if within.len() < 2 { vec![low, high] } else { within }
+    all.filter(|v| (small * (1.0 - 1e-9)..=large * (1.0 + 1e-9)).contains(v)).map(|v| sign * v).collect()
 }
 
 #[cfg(test)]
@@ -194,6 +198,8 @@ mod tests {
         assert_eq!(labels(&Axis::of_values(&[-3.2, 4.1]).rounded()), ["\u{2212}4", "\u{2212}2", "0", "2", "4", "6"]);
         let axis = Axis::of_key(["1000", "100000"].into_iter(), true);
         assert_eq!((labels(&axis), axis.place("10000")), (["1000", "10000", "100000"].map(String::from).to_vec(), Some(0.5)));
+        assert_eq!(labels(&Axis::of_key(["20000", "80000"].into_iter(), true)), ["20000", "40000", "60000", "80000"]);
+        assert_eq!(labels(&Axis::of_key(["2.1", "2.4"].into_iter(), true)), ["2.1", "2.2", "2.3", "2.4"]);
         assert_eq!(labels(&Axis::of_key(["-1", "-100"].into_iter(), true)), ["\u{2212}1", "\u{2212}10", "\u{2212}100"]);
         assert_eq!(labels(&Axis::of_values(&[1e-12, 3.0]).rounded()).len(), 5);
         assert_eq!(labels(&Axis::of_values(&[9.810001, 9.810003])), ["9.8100010", "9.8100015", "9.8100020", "9.8100025", "9.8100030"]);

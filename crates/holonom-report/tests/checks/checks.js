@@ -31,6 +31,21 @@
     seen.plots = document.querySelectorAll(".plot").length;
     seen.emptyPlots = plots().filter((image) => image.length < 2000).length;
     seen.start = moment();
+    {
+      const first = document.querySelector(".plot .u-over");
+      const over = first?.getBoundingClientRect();
+      seen.events = [...(first?.querySelectorAll(".event") ?? [])].map((line) => {
+        const { left, width } = line.getBoundingClientRect();
+        return [line.title, Math.round((100 * (left + width / 2 - over.left)) / over.width)];
+      });
+      const rectangle = (place) => document.querySelector(place)?.getBoundingClientRect() ?? {};
+      const [choice, tools, stage] = [".stage .choice select", ".stage .tools", ".stage"].map(rectangle);
+      seen.layout = {
+        legendFits: [...document.querySelectorAll("#legend button")].every((button) => button.getBoundingClientRect().right <= innerWidth),
+        choiceIsFree: choice.right <= tools.left || choice.top >= tools.bottom,
+        choiceFits: choice.right <= stage.right,
+      };
+    }
 
     const slider = document.querySelector("input#time");
     slider.value = String(Number(slider.max) / 2);

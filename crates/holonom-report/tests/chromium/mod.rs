@@ -11,8 +11,11 @@ pub fn checks_in(dom: &str) -> Value {
     serde_json::from_str(json).unwrap()
 }
 
-/// The page as it is after everything in it has run.
-pub fn dump_dom(file: &Path, folder: &Path) -> String {
+/// Width and height of a window, px.
+pub const WINDOW: [u32; 2] = [1400, 1000];
+
+/// The page as it is after everything in it has run, in a window of this width and height, px.
+pub fn dump_dom(file: &Path, folder: &Path, [width, height]: [u32; 2]) -> String {
     let browser = std::env::var("CHROMIUM").unwrap_or_else(|_| "chromium".to_owned());
     let quiet = "--headless --no-sandbox --no-first-run --disable-background-networking --disable-component-update --disable-sync";
     // WebGL in software: a machine that runs tests has no graphics card.
@@ -20,7 +23,8 @@ pub fn dump_dom(file: &Path, folder: &Path) -> String {
     let output = Command::new(&browser)
         .args(quiet.split(' ').chain(software.split(' ')))
         .arg(format!("--user-data-dir={}", folder.join("profile").display()))
-        .args(["--window-size=1400,1000", "--virtual-time-budget=20000", "--dump-dom"])
+        .arg(format!("--window-size={width},{height}"))
+        .args(["--virtual-time-budget=20000", "--dump-dom"])
         .arg(format!("file://{}", file.display()))
         .output()
         .unwrap_or_else(|e| panic!("cannot start `{browser}`: {e}\nThis test needs Chromium: apt install chromium"));

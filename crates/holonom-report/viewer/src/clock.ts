@@ -2,6 +2,14 @@
 
 import { Listeners } from "./listeners";
 
+/** A moment that plots mark: when an event of a run happened. */
+export interface Moment {
+  /** s */
+  t: number;
+  run: number;
+  name: string;
+}
+
 export class Clock {
   /** Simulated seconds per second of playing. */
   speed: number;
@@ -11,7 +19,7 @@ export class Clock {
   private readonly timeListeners = new Listeners<[t: number]>();
   private readonly stateListeners = new Listeners<[playing: boolean]>();
 
-  constructor(readonly start: number, readonly end: number) {
+  constructor(readonly start: number, readonly end: number, readonly moments: Moment[] = []) {
     this.now = start;
     this.speed = comfortableSpeed(end - start);
   }

@@ -37,7 +37,7 @@ export class Film {
     this.from = axes.map((_, i) => starts.reduce((sum, start) => sum + numbers[start + i], 0) / Math.max(starts.length, 1));
     const origin: Vec3 = [0, 0, 0];
     axes.forEach((axis, i) => (origin[axis] = this.from[i]));
-    const nothing = { columns: new Map(), channels: [], channelOf: new Map() };
+    const nothing = { columns: new Map(), events: [], channels: [], channelOf: new Map() };
     this.run = { label: "", sound: true, origin, scene: seenFromOrigin(scene, origin), points: new Map(), bodies: new Map(), times: this.times, ...nothing };
     const track = (width: number, into: Map<string, Float32Array>) => (name: string): Track => ({ all: new Float32Array(ROWS * width), width, into, name });
     this.tracks = [...points.map(track(axes.length, this.run.points)), ...bodies.map(track(pose, this.run.bodies))];

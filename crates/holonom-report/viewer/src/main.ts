@@ -47,7 +47,9 @@ function main(): void {
   const world = (place: Vec3 | undefined): Vec3 | undefined => place && (place.map((x, i) => x + origin[i]) as Vec3);
   const motions = payload.runs.map((run) => new Motion(run));
   const start = Math.min(...motions.map((motion) => motion.run.times[0] ?? 0));
-  const clock = new Clock(start, Math.max(start, ...motions.map((motion) => motion.end)));
+  const several = motions.length > 1;
+  const moments = motions.flatMap(({ run: { label, events } }, run) => events.map(([name, t]) => ({ t, run, name: several ? `${name} of ${label}` : name })));
+  const clock = new Clock(start, Math.max(start, ...motions.map((motion) => motion.end)), moments);
   const visibility = new Visibility();
   window.holonom = {
     ready: false,

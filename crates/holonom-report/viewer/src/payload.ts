@@ -91,6 +91,8 @@ export interface Run {
   bodies: Map<string, Float32Array>;
   /** Times of the rows, s. */
   times: Float64Array;
+  /** Events that are marked in plots: their names and times, s. */
+  events: [string, number][];
   /** Measures, what acts and joint coordinates, then motion. */
   channels: Channel[];
   channelOf: Map<string, Channel>;
@@ -115,6 +117,7 @@ interface RawRun {
   columns: Record<string, string>;
   points: Record<string, string>;
   bodies: Record<string, string>;
+  events: [string, number][];
   channels: (Omit<Channel, "values"> & { values: string; middle: number })[];
 }
 
@@ -157,7 +160,7 @@ function decodeRuns(runs: RawRun[], origin: Vec3): Run[] {
       return { ...channel, values };
     });
     const channelOf = new Map(channels.map((channel) => [channel.name, channel]));
-    return [{ label: raw.label, sound: raw.sound, origin, scene, columns, points, bodies, times: columns.get("t") ?? new Float64Array(), channels, channelOf }];
+    return [{ label: raw.label, sound: raw.sound, origin, scene, columns, points, bodies, times: columns.get("t") ?? new Float64Array(), events: raw.events, channels, channelOf }];
   });
 }
 

@@ -3,6 +3,7 @@
 import uPlot from "uplot";
 import type { Clock } from "../clock";
 import { element } from "../dom";
+import { reading } from "../format";
 import { curveColor, curveDash, onThemeChange, theme } from "../theme";
 import type { Visibility } from "../visibility";
 import { axisOf, departures, drawable, type Departure, type Extent } from "./bounds";
@@ -66,6 +67,8 @@ const INSTANT = 1e-3;
 class Drawing {
   readonly plot: uPlot;
   private readonly marker = element("div", { class: "marker" });
+  /** A line for each moment that is marked, under the pointer wider than it looks. */
+  private readonly moments: HTMLElement[];
   /** The last rows of curves that are cut. */
   private rows: Map<Curve, number>;
 
@@ -81,7 +84,8 @@ class Drawing {
     container.append(figure);
     this.rows = lastRows(departures(chart, this.shown()));
     this.plot = new uPlot(plotOptions(chart, place.clientWidth || 500), tableOf(chart, this.rows), place);
-    this.plot.over.append(this.marker);
+    this.moments = clock.moments.map(({ t, name }) => element("div", { class: "event", title: `${name} at ${reading(t)} s` }));
+    this.plot.over.append(...this.moments, this.marker);
     figure.append(pictureButton(this.plot, withUnit(chart.title, chart.unit), chart.curves));
     onClick(this.plot.over, (x) => clock.setTime(this.plot.posToVal(x, "x")));
     const mark = (): void => this.mark();
@@ -124,6 +128,7 @@ class Drawing {
       if (this.plot.series[i + 1].show !== show) this.plot.setSeries(i + 1, { show });
     });
     this.cut(lastRows(gone));
+    this.mark();
     return gone;
   }
 
@@ -141,9 +146,14 @@ class Drawing {
   }
 
   private mark(): void {
-    const left = this.plot.valToPos(this.clock.time, "x");
-    this.marker.style.display = left >= 0 && left <= this.plot.over.clientWidth ? "" : "none";
-    this.marker.style.transform = `translateX(${left}px)`;
+    this.put(this.marker, this.clock.time, true);
+    this.clock.moments.forEach(({ t, run }, i) => this.put(this.moments[i], t, this.visibility.shows(run)));
+  }
+
+  private put(line: HTMLElement, t: number, shows: boolean): void {
+    const left = this.plot.valToPos(t, "x");
+    line.style.display = shows && left >= 0 && left <= this.plot.over.clientWidth ? "" : "none";
+    line.style.transform = `translateX(${left}px)`;
   }
 }
 
