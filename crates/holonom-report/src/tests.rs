@@ -3,7 +3,7 @@
 use crate::{Report, Run};
 use holonom::record::{Anchor, Line, LineKind, PointKind, Recording, Scene, ScenePoint};
 #[cfg(feature = "viewer")]
-use holonom::record::{SceneBody, SceneShape};
+use holonom::record::{SceneBody, SceneLoad, SceneShape};
 use serde_json::{Value, json};
 
 const COLUMNS: [&str; 11] =
@@ -140,6 +140,22 @@ fn notes_stand_right_below_how_the_run_ended() {
     let page = page("t", "m", &recording(3, 0.0), &json!({"status": "completed", "notes": ["a < b"]}));
     let (header, rest) = page.split_once("</header>").unwrap();
     assert!(header.contains("<strong>note:</strong> a &lt; b") && !rest.contains("a &lt; b"));
+}
+
+/// The rotations of bushings are sines, and plotted as all that bushings do; other numbers without a unit, such as orientations, are not.
+#[cfg(feature = "viewer")]
+#[test]
+fn sines_of_bushings_are_plotted() {
+    let mut recording = Recording::new(["t", "mount.r", "other"].map(str::to_owned));
+    recording.push(&[0.0, 0.5, 1.0]);
+    let bushings = vec![SceneLoad { name: "mount".to_owned(), at: Anchor::Fixed([0.0; 3]) }];
+    let scene = Scene { bushings, ..scene() };
+    let runs = [Run { label: "a", recording: &recording, scene: &scene, summary: &json!({"status": "completed"}) }];
+    let mut out = Vec::new();
+    Report { title: "t", model_text: "m", runs: &runs, columns: &[] }.write(&mut out).unwrap();
+    let data = embedded(&String::from_utf8(out).unwrap());
+    let names: Vec<&str> = data["runs"][0]["channels"].as_array().unwrap().iter().map(|one| one["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["mount.r"]);
 }
 
 #[test]
