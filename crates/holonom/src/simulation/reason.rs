@@ -2,6 +2,7 @@
 
 use super::Simulation;
 use super::no_value::Lack;
+use super::pilot::is_rough;
 use crate::formulation::{Failure, Independence, Workspace};
 
 /// A row that is missed by less than this share of the mechanism's size is not to blame for a step that fails.
@@ -26,7 +27,11 @@ impl Simulation {
             };
             return format!("the force of `{force}` {what} at t = {t:.6} s");
         }
-        let what = format!("{} at t = {t:.6} s{row}", failure.describe(&self.system));
+        let mut what = format!("{} at t = {t:.6} s{row}", failure.describe(&self.system));
+        if failure == Failure::TooSmall && is_rough(&self.method) {
+            what += "; this method leaves velocities off the constraints, and by how much they are off differs from step to step, which hides the errors of short \
+                     steps (take radau or ggl/bdf, which hold them)";
+        }
         // What rows are to blame for no force is.
         let of_steps = matches!(failure, Failure::NotConverged { .. } | Failure::Crawling { .. });
         let by_accuracy = self.pilot.is_some() && matches!(failure, Failure::JumpsBack { .. } | Failure::Broken { .. });
