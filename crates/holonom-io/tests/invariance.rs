@@ -63,6 +63,7 @@ units! {
     similar_units: "length × 1.3, mass × 0.7, time × 1.1", 1.3, 0.7, 1.1;
     // No rounding is another one: without constants that have a unit, every figure is zero.
     lengths_by_a_power_of_four: "length × 2^20", 1_048_576.0, 1.0, 1.0;
+    lengths_by_a_smaller_power_of_four: "length × 2^10", 1024.0, 1.0, 1.0;
     lengths_by_a_power_of_a_quarter: "length × 2^-20", 1.0 / 1_048_576.0, 1.0, 1.0;
     masses_by_a_power_of_four: "mass × 2^20", 1.0, 1_048_576.0, 1.0;
     masses_by_a_power_of_a_quarter: "mass × 2^-20", 1.0, 1.0 / 1_048_576.0, 1.0;

@@ -32,7 +32,7 @@ pub struct Scales {
     pub length: f64,
     /// Largest diagonal entry of the mass matrix, kg.
     pub heaviest: f64,
-    /// Length of the shortest row that turns, the gradient of an invariant with curvature, over `length`, at most 1.
+    /// Length of the shortest row that turns, the gradient of an invariant over its curvature, over `length`, at most 1.
     pub shortest: f64,
     /// 1 over the mass of each free node, 1/kg; directions that are light count as the heaviest node, as their bodies hold them.
     pub agility: Vec<f64>,
@@ -101,9 +101,12 @@ impl Scales {
         }
         for (row, &size) in longest[..system.rows.len()].iter().enumerate() {
             let Quantity::Invariant(id) = system.rows[row].quantity else { continue };
-            let turns = system.invariants.hessian(id).iter().any(|&(a, b, _)| (a.max(b) as usize) < system.free);
-            if turns && size > SHORT * self.length {
-                self.shortest = self.shortest.min(size / self.length);
+            // Rows have any unit: what a gradient turns by is its length over the curvature.
+            let curved = system.invariants.hessian(id).into_iter().filter(|&(a, b, _)| (a.max(b) as usize) < system.free);
+            let curvature = curved.map(|(.., block)| block.size()).fold(0.0, f64::max);
+            let share = size / (curvature * self.length);
+            if share > SHORT && share < self.shortest {
+                self.shortest = share;
             }
         }
         self.are_light = self.has_light.contains(&true);

@@ -60,6 +60,14 @@ pub(crate) enum HessianBlock {
     Skew(f64, [f64; 3]),
 }
 
+impl HessianBlock {
+    /// Its factor, without sign.
+    pub fn size(self) -> f64 {
+        let (Self::Isotropic(factor) | Self::Skew(factor, _)) = self;
+        factor.abs()
+    }
+}
+
 /// A sum of factors of places is a whole number but for round-off, which would be much times a far origin.
 fn whole(sum: f64) -> f64 {
     if (sum - sum.round()).abs() < 1e-12 { sum.round() } else { sum }
