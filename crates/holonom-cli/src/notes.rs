@@ -251,6 +251,14 @@ pub fn corrections(model: &Model, simulation: &Simulation) -> Vec<String> {
     if !changes.is_empty() {
         notes.push(format!("to meet the constraints, start velocities were changed: {}", changes_in_words(&changes)));
     }
+    let spins = model.spins_left_out();
+    if !spins.is_empty() {
+        let spins: Vec<String> = spins.iter().map(|(name, spin)| format!("`{name}` by {} rad/s", short(*spin))).collect();
+        notes.push(format!(
+            "bodies whose moment of inertia about an axis is less than 1e-9 of the others are rods, and do not turn about themselves: {} was left out",
+            listed(&spins)
+        ));
+    }
     notes
 }
 

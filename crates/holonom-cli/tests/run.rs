@@ -282,6 +282,20 @@ fn velocities_that_were_written_and_changed_are_told() {
     }
 }
 
+/// A body that counts as a rod has no turn about itself: that one was written is not left out in silence, unless it is a rod by what is written.
+#[test]
+fn spins_of_rods_about_themselves_that_were_written_are_told() {
+    let folder = folder();
+    for (moment, told) in [("1e-6", false), ("1e-10", true), ("0", false)] {
+        let text_of = format!(
+            "gravity = [0, 0, 0]\n[body.needle]\nmass = 1\ninertia = [{moment}, 1, 1]\nposition = [0, 0, 0]\nangular_velocity = [7, 0, 0]\n"
+        );
+        fs::write(folder.path().join("m.toml"), text_of).unwrap();
+        let notes = text(&holonom(&folder, "run m.toml --end 0.1 --step 0.01 --no-report --out a --force").stderr);
+        assert_eq!(notes.contains("do not turn about themselves: `needle` by 7 rad/s was left out"), told, "{moment}: {notes}");
+    }
+}
+
 /// Patterns choose columns of the tables, whatever the order of the patterns; a run that was ended goes on to the same bytes.
 #[test]
 fn output_chooses_columns_by_patterns() {

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::Model;
+use super::bodies::BodyInfo;
 use crate::system::{Place, rate_of};
 
 /// By how much the start has changed the velocity that was written of a body or point, so that constraints are met.
@@ -35,8 +36,7 @@ impl Model {
         let world = self.system.in_world(x);
         let bodies = self.bodies.iter().map(|body| {
             let mut spin = Vector3::from(body.angular_velocity);
-            if let ([(local, _)], 3) = (&body.recorded.directions[..], dim) {
-                let axis = body.recorded.start * Vector3::from(*local);
+            if let Some(axis) = own_axis(body, dim) {
                 spin -= axis * axis.dot(&spin);
             }
             (&body.name, [[body.velocity.into(), spin], body.recorded.velocity(&world, v, dim)])
@@ -60,5 +60,24 @@ impl Model {
             StartChange { name: name.clone(), velocity, angular_velocity, was_at_rest: written.iter().all(|v| v.norm() == 0.0) }
         });
         changes.filter(|change| change.velocity > 0.0 || change.angular_velocity > 0.0).collect()
+    }
+
+    /// Bodies that were written to turn about themselves with some inertia and do not, as they count as rods, in file order; with that spin, rad/s.
+    pub fn spins_left_out(&self) -> Vec<(&str, f64)> {
+        let spin = |body: &BodyInfo| {
+            let axis = own_axis(body, self.dimension)?;
+            let inertia = axis.dot(&(body.inertia * axis)) / body.inertia.trace();
+            let spin = axis.dot(&Vector3::from(body.angular_velocity)).abs();
+            (inertia > f64::EPSILON && spin > 0.0).then_some(spin)
+        };
+        self.bodies.iter().filter_map(|body| Some((body.name.as_str(), spin(body)?))).collect()
+    }
+}
+
+/// The axis of a rod, of which nothing shows how far it has turned about itself.
+fn own_axis(body: &BodyInfo, dim: usize) -> Option<Vector3<f64>> {
+    match (&body.recorded.directions[..], dim) {
+        ([(local, _)], 3) => Some(body.recorded.start * Vector3::from(*local)),
+        _ => None,
     }
 }
