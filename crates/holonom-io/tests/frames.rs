@@ -57,6 +57,26 @@ fn a_planar_body_may_be_written_by_the_origin_of_its_axes() {
     assert!(difference(&a, &b, &["arm.", "hinge."]) < 1e-12);
 }
 
+/// Bodies at points of others are where the arithmetic of angles has them, whatever the order in the file.
+#[test]
+fn a_body_may_be_placed_at_a_point_of_another() {
+    let link = |name: &str, place: &str, degrees: i32| {
+        format!(
+            "[body.{name}]\nmass = 1\ninertia = 0.1\ncom = [0.5, 0.25]\nposition = \"{place}\"\norientation = {{ angle_deg = {degrees} }}\n\
+             points = {{ tip = [2, 0] }}\n"
+        )
+    };
+    let pivot = "[point.pivot]\nposition = [1, 2]\nfixed = true\n".to_string();
+    let mut parts = [pivot, link("a", "pivot", 90), link("b", "a.tip", 0), link("c", "b", -90)];
+    for _ in 0..2 {
+        let (_, found) = run(&model(&format!("plane = \"xy\"\n{}", parts.concat())), Choice::default().named("radau"), 0.01, 0.01);
+        let places = ["a.x", "a.y", "b.x", "b.y", "c.x", "c.y"].map(|name| found.column(name).unwrap()[0]);
+        let expected = [0.75, 2.5, 1.5, 4.25, 1.75, 3.75];
+        assert!(places.iter().zip(expected).all(|(found, place)| (found - place).abs() < 1e-14), "{places:?}");
+        parts.reverse();
+    }
+}
+
 /// A bar between two bodies moves as a body that is a rod, on two balls.
 #[test]
 fn bars_end_at_places_of_bodies() {

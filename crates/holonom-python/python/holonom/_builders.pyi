@@ -1093,7 +1093,7 @@ class Builders:
         shape: Mapping[str, Any] | None = None,
         density: Number | None = None,
         com: Numbers | None = None,
-        position: Numbers,
+        position: Place,
         orientation: Mapping[str, Any] | None = None,
         velocity: Numbers | None = None,
         angular_velocity: Number | Numbers | None = None,
@@ -1109,7 +1109,7 @@ class Builders:
         shape: a shape of uniform density, for mass, inertia and picture [m]; default: none: mass and inertia are needed
         density: of the shape, instead of a mass; of a rod in kg/m [kg/m³]; default: none
         com: centre of mass in body axes; position, velocity and points are then those of the origin of these axes, and counted from there [m]; default: the origin of the body axes
-        position: of the centre of mass, or with `com` of the origin of the body axes, at the start [m]
+        position: of the centre of mass, or with `com` of the origin of the body axes, at the start; or the name of a point, or of a body or a place of one, where that is [m]
         orientation: of the body's axes, at the start; default: that of the model's axes
         velocity: of the same place, at the start [m/s]; default: 0
         angular_velocity: in the axes of the model, at the start; one number in a planar model [rad/s]; default: 0

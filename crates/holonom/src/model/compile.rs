@@ -8,13 +8,14 @@ use std::sync::Arc;
 use super::adrift;
 use super::assembly::{Assembly, Axes};
 use super::bodies::nodes::{self, Member};
-use super::bodies::{Files, RigidBody, short};
+use super::bodies::{Files, Placing, RigidBody, short};
 use super::description::{Description, Unread};
 use super::element::Boxed;
 use super::entries::{Entries, Named};
 use super::entry::{Entry, Written};
 use super::expression::{Functions, Mistake, Program, Scope, TimeProgram, Value as Known};
 use super::fault::{Fault, Faults, Read, Refused, Sink};
+use super::fields as field;
 use super::geometry::{self, Vec3, unit};
 use super::joints::{self, Geometry, Survey};
 use super::jumps;
@@ -42,9 +43,13 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
     compiler.functions();
     let (axes, gravity) = compiler.head(description);
     let (specs, faulty_points) = compiler.points(&description.points, axes);
-    let (bodies, faulty_bodies) = compiler.bodies(&description.bodies, axes);
+    let (mut bodies, faulty_bodies) = compiler.bodies(&description.bodies, axes);
+    let mut faulty: HashSet<String> =
+        [&faulty_points, &faulty_bodies, &unread.points, &unread.bodies].into_iter().flatten().cloned().collect();
+    let misplaced = compiler.place(&description.bodies, &specs, &mut bodies, &faulty);
+    faulty.extend(misplaced);
     let mut assembly = Assembly::new(SystemBuilder::new(axes.dimension(), gravity), axes, gravity, &sink, bodies);
-    assembly.faulty = [&faulty_points, &faulty_bodies, &unread.points, &unread.bodies].into_iter().flatten().cloned().collect();
+    assembly.faulty = faulty;
     assembly.faulty_joints.clone_from(&unread.joints);
     assembly.signals = compiler.signals(description, unread, &mut assembly.builder);
     points::add(&mut assembly, &specs);
@@ -285,6 +290,25 @@ impl Compiler<'_> {
             Ok(())
         });
         (bodies, faulty)
+    }
+
+    /// Moves the bodies that are placed at points of others there. Hands back the names of those for which that was not possible.
+    fn place(
+        &self,
+        entries: &Entries<super::Body>,
+        specs: &[points::Spec],
+        bodies: &mut [RigidBody],
+        faulty: &HashSet<String>,
+    ) -> HashSet<String> {
+        let mut placing = Placing::new(bodies, specs.iter().map(points::Spec::place).collect(), faulty);
+        let looks_again = || Compiler { room: Cell::new(usize::MAX), ..*self };
+        let unnamed = looks_again().each("body", entries, |entry, body| match &body.position {
+            field::Place::Named(name) => placing.wait(entry, name),
+            field::Place::Fixed(_) => Ok(()),
+        });
+        let mut lost = looks_again().each("body", entries, |entry, _| placing.place(entry));
+        lost.extend(unnamed);
+        lost
     }
 
     /// Looks at joints and forces for what bodies share and need, and makes the nodes. Hands back where the joints of each entry are, unless

@@ -43,6 +43,13 @@ pub struct Spec {
     motion: Motion,
 }
 
+impl Spec {
+    /// Its name and where it is at the start.
+    pub fn place(&self) -> (&str, [f64; 3]) {
+        (&self.name, self.start)
+    }
+}
+
 enum Motion {
     Free { velocity: [f64; 3] },
     Fixed,

@@ -8,7 +8,7 @@ use super::rigid::RigidBody;
 use super::shape_key::{Shaped, Solid};
 use crate::model::entry::{Entry, all};
 use crate::model::fault::Read;
-use crate::model::fields::{Keys, List, Map, Number, Turn};
+use crate::model::fields::{Keys, List, Map, Number, Place, Turn};
 use crate::model::geometry::{Vec3, subtract};
 use crate::model::key::Shape;
 
@@ -35,9 +35,10 @@ pub struct Body {
     /// centre of mass in body axes; position, velocity and points are then those of the origin of these axes, and counted from there
     #[key(unit = "m", default = "the origin of the body axes", shape = Shape::Vector)]
     pub com: Option<List<Number>>,
-    /// of the centre of mass, or with `com` of the origin of the body axes, at the start
-    #[key(unit = "m", shape = Shape::Vector)]
-    pub position: List<Number>,
+    /// of the centre of mass, or with `com` of the origin of the body axes, at the start; or the name of a point, or of a body or a place
+    /// of one, where that is
+    #[key(unit = "m")]
+    pub position: Place,
     /// of the body's axes, at the start
     #[key(default = "that of the model's axes")]
     pub orientation: Option<Orientation>,
@@ -56,7 +57,8 @@ pub struct Body {
 }
 
 impl Body {
-    /// The body at the start; of a mesh that is not at its centre of mass, `position` is that of the centre all the same.
+    /// The body at the start, at the origin where its place has a name; of a mesh that is not at its centre of mass, `position` is that of the
+    /// centre all the same.
     pub(in crate::model) fn evaluate(&self, entry: &Entry<'_>, dim: usize) -> Read<RigidBody> {
         let vector = |list: &List<Number>, entry: &Entry<'_>, key: &str| list.vector(entry, key, dim);
         let mass = entry.optional("mass", &self.mass, Number::positive);
@@ -65,7 +67,10 @@ impl Body {
             .optional("inertia", &self.inertia, |inertia, entry, key| inertia.tensor(entry, key, dim, self.check_inertia != Some(false)));
         let shape = entry.optional("shape", &self.shape, |solid, entry, key| entry.within(key, solid, |entry| solid.evaluate(entry, dim)));
         let com = entry.optional("com", &self.com, vector);
-        let position = self.position.vector(entry, "position", dim);
+        let position = match &self.position {
+            Place::Fixed(numbers) => numbers.vector(entry, "position", dim),
+            Place::Named(_) => Ok([0.0; 3]),
+        };
         let orientation = entry.optional("orientation", &self.orientation, |orientation, entry, key| {
             entry.within(key, orientation, |entry| {
                 let rotation = orientation.rotation(entry, dim)?;
