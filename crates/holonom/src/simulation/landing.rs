@@ -1,13 +1,19 @@
 //! Steps by accuracy end where forces bend (methods §16).
 
+use std::cell::LazyCell;
+
 use super::Simulation;
 use super::bracket::Bracket;
+use super::control::Control;
 use super::events::{LOCATED, MOST_TRIES, SHORTEST};
-use super::pilot::{BETWEEN, Pilot, SMALLEST_SHARE};
+use super::pilot::{BETWEEN, Pilot, SMALLEST_SHARE, is_rough};
 use super::sight::{INSIDE, Passed, Sight};
 use crate::formulation::Failure;
 use crate::integrator::Step;
-use crate::system::{Bends, System};
+use crate::system::{Bends, Seen, System};
+
+/// Share of what the accuracy allows a step to err by within which what is at a kink rests there.
+const REST: f64 = 0.1;
 
 /// Where a step ends.
 pub(super) enum Landing {
@@ -74,12 +80,14 @@ impl Simulation {
             return Ok(Landing::TooLong(left));
         }
         let width = (LOCATED * whole).max(f64::EPSILON * self.state.t.abs());
-        let Some(first) = from.first_passed(&at, &system) else {
-            return Ok(match at.first_beyond(width, &system) {
+        let open = LazyCell::new(|| self.open(whole, &pilot.control));
+        let Some(first) = from.first_passed(&at, &system, &open) else {
+            return Ok(match at.first_beyond(from, width, &system, &open) {
                 Some(bend) => at.land(bend, from, whole, least, &system),
                 None => Landing::Between(at),
             });
         };
+        let open = open.clone();
         let left = whole * Bracket::new(first.shares, first.values).secant();
         if left <= SHORTEST * whole {
             return Ok(Landing::AtOnce { again: from.pass(first.bend, whole, &system) });
@@ -129,7 +137,7 @@ impl Simulation {
             *step = next - begin;
             *taken = self.substep(*step, next)?;
             at = self.sight();
-            passed = from.first_passed(&at, &system);
+            passed = from.first_passed(&at, &system, &&open);
         }
         Ok(at.land(bend, from, *step, least, &system))
     }
@@ -171,6 +179,14 @@ impl Simulation {
         audit.move_on(&system, state, work);
         system.measure(&state.x, shown_v, gauges);
         state.measured.copy_from_slice(gauges.counted());
+    }
+
+    /// What rounding, and the accuracy for a step so long (s), leave open at the present state of what forces that bend depend on.
+    fn open(&self, step: f64, control: &Control) -> Seen {
+        let Self { system, state, shown_v, work, method, .. } = self;
+        let rounding = system.rounding(&state.x, shown_v, is_rough(method).then_some(step));
+        let sizes = [work.scales.length, system.largest_of_directions(&state.x)];
+        system.open(&work.start.at, rounding.or_share(REST * control.allowed() * step, sizes, control.speed))
     }
 
     /// What is seen of forces that bend at the present state.

@@ -1,5 +1,7 @@
 //! What is seen of forces that bend, at a state and on the way to the next.
 
+use std::ops::Deref;
+
 use serde::{Deserialize, Serialize};
 
 use super::golden::highest;
@@ -30,28 +32,32 @@ pub(super) struct Passed {
 }
 
 impl Sight {
-    /// The first of the forces that bends on the way to what is seen `at` the end, if one does.
-    pub fn first_passed(&self, at: &Self, system: &System) -> Option<Passed> {
+    /// The first of the forces that bends on the way to what is seen `at` the end, if one does by more than what is left `open` of what it depends on.
+    pub fn first_passed(&self, at: &Self, system: &System, open: &impl Deref<Target = Seen>) -> Option<Passed> {
         if self.corners.is_empty() {
             return None;
         }
-        let look = |share: f64| if share < 1.0 { system.bends(&self.seen.between(&at.seen, share)).corners } else { at.corners.clone() };
-        let passed = |from: f64, last: &[f64], share: f64, bends: &[f64]| {
-            let bend = (0..bends.len()).find(|&k| self.is_passed(k, bends[k]))?;
+        let look = |share: f64| {
+            let seen = if share < 1.0 { self.seen.between(&at.seen, share) } else { at.seen.clone() };
+            let corners = system.bends(&seen).corners;
+            (seen, corners)
+        };
+        let passed = |from: f64, last: &[f64], share: f64, (seen, bends): &(Seen, Vec<f64>)| {
+            let bend = (0..bends.len()).find(|&k| self.is_passed(k, bends[k]) && !self.rests(k, seen, system, open))?;
             Some(Passed { bend, shares: [from, share], values: [last[bend], bends[bend]] })
         };
         let mut before = self.corners.clone();
         let mut last = self.corners.clone();
         for part in 1..=INSIDE as u32 {
             let [from, share] = [part - 1, part].map(|part| f64::from(part) / INSIDE);
-            let bends = look(share);
+            let here = look(share);
             // What comes near zero and goes away again may have been there: look where the parabola through three has its end.
-            let near = (0..bends.len()).filter_map(|k| nearest([before[k], last[k], bends[k]])).filter(|_| part > 1);
+            let near = (0..last.len()).filter_map(|k| nearest([before[k], last[k], here.1[k]])).filter(|_| part > 1);
             let turn = near.map(|place| from + place / INSIDE).find_map(|turn| passed(from.min(turn), &last, turn, &look(turn)));
-            if let Some(first) = turn.or_else(|| passed(from, &last, share, &bends)) {
+            if let Some(first) = turn.or_else(|| passed(from, &last, share, &here)) {
                 return Some(first);
             }
-            before = std::mem::replace(&mut last, bends);
+            before = std::mem::replace(&mut last, here.1);
         }
         None
     }
@@ -100,13 +106,19 @@ impl Sight {
         self.is_passed(bend, system.bends(&self.seen.ahead(later)).corners[bend])
     }
 
-    /// The first force that has.
-    pub fn first_beyond(&self, later: f64, system: &System) -> Option<usize> {
+    /// The first force that has, and that has not been at its kink `before` already.
+    pub fn first_beyond(&self, before: &Self, later: f64, system: &System, open: &impl Deref<Target = Seen>) -> Option<usize> {
         if self.corners.is_empty() {
             return None;
         }
         let ahead = system.bends(&self.seen.ahead(later)).corners;
-        (0..ahead.len()).find(|&bend| !self.reached[bend] && self.is_passed(bend, ahead[bend]))
+        (0..ahead.len())
+            .find(|&bend| !self.reached[bend] && self.is_passed(bend, ahead[bend]) && !before.rests(bend, &self.seen, system, open))
+    }
+
+    /// Whether a force is at a kink here and at another state as far as can be told: what takes it across there is no motion.
+    fn rests(&self, bend: usize, there: &Seen, system: &System, open: &impl Deref<Target = Seen>) -> bool {
+        [&self.seen, there].iter().all(|seen| system.is_at_kink(bend, seen, open))
     }
 
     /// How long it takes until a force bends, s, as what it depends on moves now and for a while, s; no number where nothing tells.

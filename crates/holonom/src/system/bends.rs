@@ -1,8 +1,11 @@
 //! Where forces jump or have kinks with what moves, and where they may have peaks.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
-use super::{Bend, Look, MAX_ARGUMENTS, System};
+use super::evaluate::Local;
+use super::{Bend, LawEntry, LoadEntry, Look, Response, System};
 
 /// The laws and the loads whose forces bend, by their numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -11,14 +14,17 @@ pub(crate) struct Bending {
     /// Those of them that may have peaks.
     peaked: Vec<usize>,
     loads: Vec<usize>,
+    /// Of each of them, laws first, which of the numbers seen are its own, and which of the corners.
+    pub(super) seen: Vec<Range<usize>>,
+    pub(super) corners: Vec<Range<usize>>,
 }
 
 /// What forces that bend depend on, at a time t (s): each number, and its rate.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Seen {
-    t: f64,
-    values: Vec<f64>,
-    rates: Vec<f64>,
+    pub(super) t: f64,
+    pub(super) values: Vec<f64>,
+    pub(super) rates: Vec<f64>,
 }
 
 /// Where forces bend, as much at every state: numbers that go through zero at corners, and logarithms that are largest at peaks.
@@ -26,6 +32,69 @@ pub(crate) struct Seen {
 pub(crate) struct Bends {
     pub corners: Vec<f64>,
     pub peaks: Vec<f64>,
+}
+
+/// A law or a load whose force bends.
+#[derive(Clone, Copy)]
+pub(super) enum Bent<'a> {
+    Law(&'a LawEntry),
+    Load(&'a LoadEntry),
+}
+
+impl<'a> Bent<'a> {
+    pub fn name(self) -> &'a str {
+        match self {
+            Self::Law(law) => &law.name,
+            Self::Load(load) => &load.name,
+        }
+    }
+
+    /// On how many numbers it depends, in so many dimensions.
+    pub fn width(self, dim: usize) -> usize {
+        match self {
+            Self::Law(law) => law.arguments.len(),
+            Self::Load(load) => load.reading.nodes.len() * dim + load.reading.senses.len(),
+        }
+    }
+
+    /// Hands over where it bends.
+    pub fn bends(self, x: &[f64], v: &[f64], t: f64, out: &mut Bends) {
+        let note = &mut |bend| out.take(bend);
+        match self {
+            Self::Law(law) => law.law.bends(x, v, t, note),
+            Self::Load(load) => load.load.bends(x, v, t, note),
+        }
+    }
+
+    /// How many corners and peaks it tells of, in so many dimensions.
+    pub fn count(self, dim: usize) -> [usize; 2] {
+        let (nothing, mut bends) = (Local::from_elem(0.0, self.width(dim)), Bends::default());
+        self.bends(&nothing, &nothing, 0.0, &mut bends);
+        [bends.corners.len(), bends.peaks.len()]
+    }
+
+    /// Its forces on these numbers.
+    pub fn force(self, x: &[f64], v: &[f64], t: f64) -> Local {
+        match self {
+            Self::Law(law) => {
+                let mut out = Response::default();
+                law.law.at(x, v, t, &mut out);
+                out.force[..x.len()].iter().copied().collect()
+            }
+            Self::Load(load) => {
+                let mut force = Local::from_elem(0.0, x.len());
+                load.load.force(x, v, t, &mut force);
+                force
+            }
+        }
+    }
+}
+
+impl Bending {
+    /// The law or load that has a corner.
+    pub fn force_of(&self, corner: usize) -> usize {
+        self.corners.partition_point(|own| own.end <= corner)
+    }
 }
 
 impl Bends {
@@ -61,36 +130,31 @@ impl Seen {
 impl System {
     /// The name of the force that has a corner.
     pub(crate) fn cornering_force(&self, corner: usize) -> &str {
-        let laws = self.bending.laws.iter().map(|&k| (self.bends_of_law(k), &self.laws[k].name));
-        let loads = self.bending.loads.iter().map(|&k| (self.bends_of_load(k), &self.loads[k].name));
-        let mut left = corner;
-        let found = laws.chain(loads).find(|([corners, _], _)| left.checked_sub(*corners).map(|rest| left = rest).is_none());
-        found.map_or("", |(_, name)| name)
+        self.bent(self.bending.force_of(corner)).name()
     }
 
-    /// How many corners and peaks a law tells of.
-    fn bends_of_law(&self, k: usize) -> [usize; 2] {
-        let (law, nothing, mut bends) = (&self.laws[k], [0.0; MAX_ARGUMENTS], Bends::default());
-        let nothing = &nothing[..law.arguments.len()];
-        law.law.bends(nothing, nothing, 0.0, &mut |bend| bends.take(bend));
-        [bends.corners.len(), bends.peaks.len()]
-    }
-
-    /// How many corners and peaks a load tells of.
-    fn bends_of_load(&self, k: usize) -> [usize; 2] {
-        let (load, mut bends) = (&self.loads[k], Bends::default());
-        let nothing = vec![0.0; load.reading.nodes.len() * self.dim + load.reading.senses.len()];
-        load.load.bends(&nothing, &nothing, 0.0, &mut |bend| bends.take(bend));
-        [bends.corners.len(), bends.peaks.len()]
+    /// One of the laws and loads whose forces bend, in the order in which their numbers are seen.
+    pub(super) fn bent(&self, number: usize) -> Bent<'_> {
+        match self.bending.laws.get(number) {
+            Some(&law) => Bent::Law(&self.laws[law]),
+            None => Bent::Load(&self.loads[self.bending.loads[number - self.bending.laws.len()]]),
+        }
     }
 
     /// The laws and loads whose forces bend.
     pub(super) fn find_bending(&self) -> Bending {
-        let told: Vec<[usize; 2]> = (0..self.laws.len()).map(|k| self.bends_of_law(k)).collect();
+        let of_laws: Vec<[usize; 2]> = self.laws.iter().map(|law| Bent::Law(law).count(self.dim)).collect();
+        let of_loads: Vec<[usize; 2]> = self.loads.iter().map(|load| Bent::Load(load).count(self.dim)).collect();
+        let bending = |told: &[[usize; 2]]| -> Vec<usize> { (0..told.len()).filter(|&k| told[k] != [0; 2]).collect() };
+        let (laws, loads) = (bending(&of_laws), bending(&of_loads));
+        let widths = laws.iter().map(|&k| Bent::Law(&self.laws[k])).chain(loads.iter().map(|&k| Bent::Load(&self.loads[k])));
+        let corners = laws.iter().map(|&k| of_laws[k][0]).chain(loads.iter().map(|&k| of_loads[k][0]));
         Bending {
-            laws: (0..told.len()).filter(|&k| told[k] != [0; 2]).collect(),
-            peaked: (0..told.len()).filter(|&k| told[k][1] > 0).collect(),
-            loads: (0..self.loads.len()).filter(|&k| self.bends_of_load(k) != [0; 2]).collect(),
+            seen: one_after_the_other(widths.map(|bent| bent.width(self.dim))),
+            corners: one_after_the_other(corners),
+            peaked: laws.iter().copied().filter(|&k| of_laws[k][1] > 0).collect(),
+            laws,
+            loads,
         }
     }
 
@@ -117,20 +181,20 @@ impl System {
 
     /// Where forces bend.
     pub(crate) fn bends(&self, seen: &Seen) -> Bends {
-        let (mut found, mut first) = (Bends::default(), 0);
-        let mut next = |count: usize| {
-            let range = first..first + count;
-            first += count;
-            (&seen.values[range.clone()], &seen.rates[range])
-        };
-        for law in self.bending.laws.iter().map(|k| &self.laws[*k]) {
-            let (values, rates) = next(law.arguments.len());
-            law.law.bends(values, rates, seen.t, &mut |bend| found.take(bend));
-        }
-        for load in self.bending.loads.iter().map(|k| &self.loads[*k]) {
-            let (x, v) = next(load.reading.nodes.len() * self.dim + load.reading.senses.len());
-            load.load.bends(x, v, seen.t, &mut |bend| found.take(bend));
+        let mut found = Bends::default();
+        for (number, own) in self.bending.seen.iter().enumerate() {
+            self.bent(number).bends(&seen.values[own.clone()], &seen.rates[own.clone()], seen.t, &mut found);
         }
         found
     }
+}
+
+/// Ranges of these lengths.
+fn one_after_the_other(lengths: impl Iterator<Item = usize>) -> Vec<Range<usize>> {
+    let next = |first: &mut usize, length| {
+        let range = *first..*first + length;
+        *first = range.end;
+        Some(range)
+    };
+    lengths.scan(0, next).collect()
 }

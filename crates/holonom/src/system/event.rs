@@ -3,7 +3,7 @@
 use std::cell::LazyCell;
 use std::sync::Arc;
 
-use super::evaluate::Local;
+use super::rounding::{WAYS, changed};
 use super::{Look, Reading, Rounding, System};
 
 /// A number that is made of what is read.
@@ -74,9 +74,6 @@ pub struct Event {
 /// rounded itself.
 const MAGNIFIED: f64 = 1e6;
 
-/// In how many ways they are changed together: in one, what some do might take back what others do.
-const WAYS: usize = 4;
-
 impl System {
     /// Values of the indicators of all events; zero of those that have none, and where rounding decides on which side of zero one is.
     pub(crate) fn indicators(&self, look: Look<'_>, rounding: impl FnOnce() -> Rounding) -> Vec<f64> {
@@ -88,7 +85,7 @@ impl System {
                 let is_rounded = || {
                     let roundings = self.rounding_of_reading(&event.reading, look.at, *rounding);
                     is_rounding(value, |way| {
-                        let [x, v] = [(&x, &roundings[0]), (&v, &roundings[1])].map(|(of, by)| changed(of, by, way));
+                        let [x, v] = [(&x, &roundings[0]), (&v, &roundings[1])].map(|(of, by)| changed(of, by, way, MAGNIFIED));
                         indicator.value(&x, &v, look.t)
                     })
                 };
@@ -114,14 +111,4 @@ fn is_rounding(value: f64, changed: impl Fn(usize) -> f64) -> bool {
     let change = |way: usize| (changed(way) - value).abs();
     // Mostly it is far more.
     value.abs() <= change(0) && value.abs() * MAGNIFIED <= (0..WAYS).map(change).fold(0.0, f64::max)
-}
-
-/// Numbers, each changed by its rounding, magnified, or half of that to the whole of it; which of them up and which down depends on the way.
-fn changed(numbers: &[f64], roundings: &[f64], way: usize) -> Local {
-    let by = |k: usize| {
-        // No two ways have the same signs: multiples of the golden section are spread evenly.
-        let spread = (((k + 1) * (way + 1)) as f64 * 0.618_033_988_749_895).fract() - 0.5;
-        MAGNIFIED * (spread + 0.5_f64.copysign(spread))
-    };
-    (0..).zip(numbers.iter().zip(roundings)).map(|(k, (number, rounding))| number + by(k) * rounding).collect()
 }

@@ -14,6 +14,7 @@ mod event;
 mod function;
 mod gauge;
 mod invariant;
+mod kinks;
 mod law;
 mod mass;
 mod motion;

@@ -10,11 +10,25 @@ const ROUNDED: f64 = 64.0 * f64::EPSILON;
 /// Roundings of the origin of the system: places are counted from there, and it is added once, where they are read.
 const ADDED: f64 = 4.0 * f64::EPSILON;
 
+/// In how many ways numbers are changed together: in one, what some do might take back what others do.
+pub(super) const WAYS: usize = 4;
+
 /// What rounding leaves open of places (m) and velocities (m/s) of points, and of directions and their rates (1/s).
 #[derive(Clone, Copy)]
 pub(crate) struct Rounding {
     pub of_points: [f64; 2],
     pub of_directions: [f64; 2],
+}
+
+impl Rounding {
+    /// The same where an accuracy leaves open a share of the `size` of places (m) and of directions, and of `speed` (m/s), if that is more.
+    pub fn or_share(self, share: f64, [size, of_directions]: [f64; 2], speed: f64) -> Self {
+        let most = |[x, v]: [f64; 2], of: f64, rate: f64| [x.max(share * of), v.max(share * rate)];
+        Self {
+            of_points: most(self.of_points, size, speed),
+            of_directions: most(self.of_directions, of_directions, of_directions * speed / size),
+        }
+    }
 }
 
 impl System {
@@ -29,6 +43,11 @@ impl System {
     /// The largest of some numbers of all nodes that are those of points: directions have other units.
     pub(crate) fn largest_of_points(&self, numbers: &[f64]) -> f64 {
         self.largest_of(true, numbers)
+    }
+
+    /// The same of directions.
+    pub(crate) fn largest_of_directions(&self, numbers: &[f64]) -> f64 {
+        self.largest_of(false, numbers)
     }
 
     fn largest_of(&self, points: bool, numbers: &[f64]) -> f64 {
@@ -61,4 +80,15 @@ impl System {
     fn rounding_of_node(&self, node: usize, rounding: Rounding) -> [f64; 2] {
         if self.is_point[node] { rounding.of_points } else { rounding.of_directions }
     }
+}
+
+/// Numbers, each changed by so many `times` half of what is left open of it, or up to the whole of that; which of them up and which down depends on
+/// the way.
+pub(super) fn changed(numbers: &[f64], open: &[f64], way: usize, times: f64) -> Local {
+    let by = |k: usize| {
+        // No two ways have the same signs: multiples of the golden section are spread evenly.
+        let spread = (((k + 1) * (way + 1)) as f64 * 0.618_033_988_749_895).fract() - 0.5;
+        times * (spread + 0.5_f64.copysign(spread))
+    };
+    (0..).zip(numbers.iter().zip(open)).map(|(k, (number, open))| number + by(k) * open).collect()
 }
