@@ -22,7 +22,7 @@ pub(super) struct Bdf {
     /// Whether the order is chosen from the error estimates, up to `order`.
     varies: bool,
     /// Whether nothing holds velocities on the rows. They differ from step to step by what the derivative is off there, however short the next step
-    /// is, and their errors are estimated from positions.
+    /// is, and their errors are estimated from positions. Those of a penalty vibrate across the rows, and are what they are.
     is_rough: bool,
     starter: RungeKutta,
     stage: Collocation,
@@ -99,7 +99,7 @@ impl Bdf {
         Self {
             order: order.into(),
             varies,
-            is_rough: settings.level == Level::POSITION && !settings.doubled,
+            is_rough: settings.level == Level::POSITION && !settings.doubled && !settings.is_soft(),
             starter: RungeKutta::new(system, settings, Tableau::radau(5)),
             stage: Collocation::new(system, 1, settings),
         }

@@ -136,7 +136,7 @@ impl Pilot {
         let is_loose = method.order() <= SYMMETRIC && !method.integrator.conserves;
         let accuracy = if is_loose { LOOSE * method.accuracy? } else { method.accuracy? };
         let mut control = Control::new(accuracy, method.order(), estimate, system.coordinates());
-        control.is_rough = is_rough(method);
+        control.is_rough = is_rough(method) && !method.settings.is_soft();
         let mut independence = Independence::like(system, &newton.kkt);
         let redundant = independence.count_redundant(system, &state.x, state.t);
         let smooth = smoothing(method);
