@@ -71,8 +71,7 @@ fn errors_are_what_was_asked_for() {
 /// does work: the angle is that of the closed form. The units of the mechanism do not matter.
 #[test]
 fn bdf_keeps_the_angle_of_a_braked_shaft() {
-    let cases = [(1.0, "ggl/bdf", 1e-3), (1.0, "ggl/bdf", 1e-5), (1.0, "ggl/bdf", 1e-7), (1.0, "ode/bdf", 1e-4), (1000.0, "ggl/bdf", 1e-3)];
-    for (unit, method, accuracy) in cases {
+    for (unit, method, accuracy) in [(1.0, "ggl/bdf", 1e-3), (1.0, "ggl/bdf", 1e-5), (1.0, "ode/bdf", 1e-4), (1000.0, "ggl/bdf", 1e-3)] {
         let text = format!(
             "plane = \"xy\"\n[body.s]\nmass = 1\ninertia = {}\nposition = [0, 0]\nangular_velocity = 100\npoints = {{ tip = [{}, 0] }}\n\
              [joint.j]\ntype = \"revolute\"\nbetween = [\"ground\", \"s\"]\nat = [0, 0]\n\
@@ -87,57 +86,6 @@ fn bdf_keeps_the_angle_of_a_braked_shaft() {
         let error = (angle - 1000.0 * (1.0 - (-0.3_f64).exp())).abs();
         assert!(error < 10.0 * accuracy, "{method}, {accuracy:e}, unit {unit}: off by {error:e}");
     }
-}
-
-/// In steps so short that differences of states are round-off these say nothing of the energy: a mass of 1 kg at 1 m/s is back from a stop of 1e10 N/m
-/// after half a period of its contact, in any unit of mass.
-#[test]
-fn bdf_sees_no_energy_in_round_off() {
-    for mass in [1.0, 1e-6] {
-        let text = format!(
-            "plane = \"xy\"\ngravity = [0, 0]\n[body.block]\nmass = {mass}\ninertia = {}\nposition = [-0.5, 0]\nvelocity = [1, 0]\n\
-             [joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"block\"]\naxis = [1, 0]\n\
-             [force.stop]\ntype = \"stop\"\njoint = \"rail\"\nupper = 0.5\nstiffness = {}\n",
-            0.01 * mass,
-            1e10 * mass
-        );
-        for accuracy in [1e-8, 1e-9] {
-            let choice = Choice { accuracy: Some(accuracy), ..Choice::default().named("ggl/bdf") };
-            let (_, recording) = common::run(&model(&text), choice, 0.05, 1.0);
-            let error = (common::last(&recording, "block.x") + 0.5 - 1e-5 * std::f64::consts::PI).abs();
-            assert!(error < 10.0 * accuracy, "{mass} kg, {accuracy:e}: off by {error:e}");
-        }
-    }
-}
-
-/// Where no row holds velocities their differences over steps of other lengths do not fall with the next step. Errors of BDF are seen in positions
-/// there, and a rotor and pendulums go as far as they are asked to.
-#[test]
-fn bdf_sees_errors_of_velocities_off_their_rows_in_positions() {
-    let rotor = "plane = \"xy\"\ngravity = [0, 0]\n[body.rod]\nshape = { rod = 1 }\nmass = 1\nposition = [0.5, 0]\nvelocity = [0, 5]\n\
-                 angular_velocity = 10\n[joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"rod\"]\nat = [0, 0]\n";
-    for accuracy in [1e-3, 1e-5, 1e-7] {
-        let choice = Choice { accuracy: Some(accuracy), ..Choice::default().named("lagrange-3/bdf") };
-        let (_, recording) = common::run(&model(rotor), choice, 0.1, 2.0);
-        let error = (common::last(&recording, "hinge.angle") - 20.0).abs();
-        assert!(error < 10.0 * accuracy, "rotor, {accuracy:e}: off by {error:e}");
-        for reference in &REFERENCES[..3] {
-            let (error, _) = run(reference, reference.end, reference.place, "lagrange-3/bdf", accuracy);
-            assert!(error < 10.0 * accuracy, "{}, {accuracy:e}: off by {error:e}", reference.model);
-        }
-    }
-}
-
-/// Errors of steps of `lagrange-3/radau` are hidden by velocities off their rows: a run that finds no step short enough names methods that hold them.
-#[test]
-fn methods_without_rows_of_velocities_name_those_with_them() {
-    let pendulum = "plane = \"xy\"\ngravity = [0, -9.81]\n[body.rod]\nshape = { rod = 1 }\nmass = 1\nposition = [0.5, 0]\n\
-                    [joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"rod\"]\nat = [0, 0]\n";
-    let choice = Choice { accuracy: Some(1e-5), ..Choice::default().named("lagrange-3/radau") };
-    let mut simulation = Simulation::new(model(pendulum).system.clone(), Method::resolve(&choice).unwrap(), 0.1).unwrap();
-    let status = simulation.run(1.0, &mut |_: &Simulation| Verdict::GoOn);
-    let Status::Stopped { reason, .. } = &status else { panic!("{status:?}") };
-    assert!(reason.contains("take radau or ggl/bdf"), "{reason}");
 }
 
 /// Radau IIA of order 5 on the GGL form gives ten digits and more.

@@ -55,13 +55,6 @@ pub struct SolveSettings {
     pub iterations: Option<usize>,
 }
 
-impl SolveSettings {
-    /// Whether rows are springs, which stretch.
-    pub fn is_soft(&self) -> bool {
-        matches!(self.multipliers, Multipliers::Penalty(_))
-    }
-}
-
 /// Dimensionless penalty of the paper's loops where the user gives none (methods §3).
 const LOOP_RHO: f64 = 1e6;
 

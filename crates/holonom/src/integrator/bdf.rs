@@ -5,11 +5,11 @@
 use super::runge_kutta::{RungeKutta, Tableau};
 use super::{Integrator, Step, Work};
 use crate::energy;
-use crate::formulation::{Collocation, Failure, Level, Newton, RowsAt, Sampling, SolveSettings, Stage, Timing, Workspace};
+use crate::formulation::{Collocation, Failure, Newton, RowsAt, Sampling, SolveSettings, Stage, Timing, Workspace};
 use crate::system::System;
 
-/// States before the present one that are kept: what order 5 and its error estimate need, also where velocities are estimated from positions.
-const KEPT: usize = 7;
+/// States before the present one that are kept: what order 5 and its error estimate need.
+const KEPT: usize = 6;
 
 /// Error over what is allowed below which an order is as good as any.
 const LEAST: f64 = 1e-10;
@@ -21,9 +21,6 @@ pub(super) struct Bdf {
     order: usize,
     /// Whether the order is chosen from the error estimates, up to `order`.
     varies: bool,
-    /// Whether nothing holds velocities on the rows. They differ from step to step by what the derivative is off there, however short the next step
-    /// is, and their errors are estimated from positions. Those of a penalty vibrate across the rows, and are what they are.
-    is_rough: bool,
     starter: RungeKutta,
     stage: Collocation,
 }
@@ -99,7 +96,6 @@ impl Bdf {
         Self {
             order: order.into(),
             varies,
-            is_rough: settings.level == Level::POSITION && !settings.doubled && !settings.is_soft(),
             starter: RungeKutta::new(system, settings, Tableau::radau(5)),
             stage: Collocation::new(system, 1, settings),
         }
@@ -158,7 +154,7 @@ impl Bdf {
     ) -> Result<Step, Failure> {
         let n = system.coordinates();
         let order = self.order_in_use(history);
-        if history.count() < self.order + usize::from(self.varies) * (1 + usize::from(self.is_rough)) {
+        if history.count() < self.order + usize::from(self.varies) {
             let step = self.starter.step(system, start, h, newton, work)?;
             (work.estimate.energy, work.estimate.rounded) = (0.0, 0.0);
             history.set_power(if work.is_worked_on() { energy::power(system, start + h, &work.end.v, &work.a, work) } else { 0.0 });
@@ -219,17 +215,17 @@ impl Bdf {
         history.numbers[3] += 1.0;
         let is_settled = history.numbers[3] > order as f64;
         if is_settled && order > 1 {
-            best = room(order - 1, self.local_error(order - 1, t, history, work));
+            best = room(order - 1, local_error(order - 1, t, history, work));
             next = order - 1;
         }
-        if is_settled && order < self.order && history.count() >= order + 2 + usize::from(self.is_rough) {
-            let higher = room(order + 1, self.local_error(order + 1, t, history, work));
+        if is_settled && order < self.order && history.count() >= order + 2 {
+            let higher = room(order + 1, local_error(order + 1, t, history, work));
             if higher > best {
                 (best, next) = (higher, order + 1);
             }
         }
         // Another order must be worth it, and nothing is where hardly anything moves.
-        let error = self.local_error(order, t, history, work);
+        let error = local_error(order, t, history, work);
         if best < 1.1 * room(order, error) || error <= LEAST * allowed {
             next = order;
         }
@@ -238,46 +234,44 @@ impl Bdf {
         }
         history.numbers[1] = next as f64;
     }
-
-    /// Writes the estimated local errors of a step to `t` with order `k`: what it [reaches](reach), times the divided differences over k + 2 states,
-    /// or where velocities are rough over k + 3 positions. Says the largest, of positions over the size of the mechanism and of velocities over their
-    /// unit.
-    fn local_error(&self, order: usize, t: f64, history: &History<'_>, work: &mut Workspace) -> f64 {
-        let n = history.n;
-        let reach = reach(order, t, history);
-        for k in 0..n {
-            let end = work.start.x[k] + work.d[k];
-            work.estimate.q[k] = reach * difference(order + 1, k, end, t, history);
-            work.estimate.v[k] = reach
-                * if self.is_rough {
-                    // The k + 1st derivative of velocities, over (k + 1)!, from the k + 2nd of positions, over (k + 2)!.
-                    (order + 2) as f64 * difference(order + 2, k, end, t, history)
-                } else {
-                    difference(order + 1, n + k, work.end.v[k], t, history)
-                };
-        }
-        let largest = |errors: &[f64], unit: f64| errors.iter().fold(0.0, |largest: f64, error| largest.max(error.abs() / unit));
-        largest(&work.estimate.q, work.scales.length).max(largest(&work.estimate.v, work.estimate.speed))
-    }
-}
-
-/// The divided difference of a number `k` of the states over one at `t`, where it is `end`, and `level` before.
-fn difference(level: usize, k: usize, end: f64, t: f64, history: &History<'_>) -> f64 {
-    let time = |j: usize| if j == 0 { t } else { history.time(j - 1) };
-    let mut differences: [f64; KEPT + 1] = std::array::from_fn(|j| if j == 0 || j > level { end } else { history.state(j - 1)[k] });
-    for width in 1..=level {
-        for j in 0..=level - width {
-            differences[j] = (differences[j] - differences[j + 1]) / (time(j) - time(j + width));
-        }
-    }
-    differences[0]
 }
 
 /// What the divided differences over the states of a step to `t` with order `k` are multiplied by to estimate its local errors: ψ_1 … ψ_k, for what
-/// the derivative is off by, over the leading weight of the derivative, by which that comes to the state.
+/// the derivative is off by, times the step. The state itself is off by less, by that over the leading weight of the derivative; but the steps that
+/// follow find it among those before them and add the rest, and what adds up over a run is the whole.
 fn reach(order: usize, t: f64, history: &History<'_>) -> f64 {
-    let leading: f64 = (0..order).map(|j| 1.0 / (t - history.time(j))).sum();
-    (0..order).map(|j| t - history.time(j)).product::<f64>() / leading
+    (t - history.time(0)) * (0..order).map(|j| t - history.time(j)).product::<f64>()
+}
+
+/// Writes the estimated local errors of a step to `t` with order `k`: what it [reaches](reach), times the divided differences over k + 2 states. Says
+/// the largest, of positions over the size of the mechanism and of velocities over their unit.
+fn local_error(order: usize, t: f64, history: &History<'_>, work: &mut Workspace) -> f64 {
+    let n = history.n;
+    let (length, speed) = (work.scales.length, work.estimate.speed);
+    let time = |j: usize| if j == 0 { t } else { history.time(j - 1) };
+    let reach = reach(order, t, history);
+    let mut largest = 0.0_f64;
+    for k in 0..2 * n {
+        let mut differences = [0.0; KEPT + 1];
+        differences[0] = if k < n { work.start.x[k] + work.d[k] } else { work.end.v[k - n] };
+        for j in 1..=order + 1 {
+            differences[j] = history.state(j - 1)[k];
+        }
+        for level in 1..=order + 1 {
+            for j in 0..=order + 1 - level {
+                differences[j] = (differences[j] - differences[j + 1]) / (time(j) - time(j + level));
+            }
+        }
+        let error = reach * differences[0];
+        if k < n {
+            work.estimate.q[k] = error;
+            largest = largest.max(error.abs() / length);
+        } else {
+            work.estimate.v[k - n] = error;
+            largest = largest.max(error.abs() / speed);
+        }
+    }
+    largest
 }
 
 /// Leaves in the workspace what the estimated local errors of a step to `t` with order `k` make of the energy: the power of those of velocities

@@ -8,7 +8,7 @@ use super::landing::Landing;
 use super::pilot::{OFTEN, Pilot, SMALLEST_SHARE, TO_ROWS, is_rough};
 use super::sight::INSIDE;
 use super::{Audit, Simulation, start};
-use crate::formulation::Failure;
+use crate::formulation::{Failure, Multipliers};
 use crate::integrator::{Step, Work};
 
 /// So many steps rejected one after the other are no matter of length: the motion is another one, and what was kept of the steps
@@ -270,7 +270,7 @@ impl Simulation {
     /// what they are off would be a multiple of it after the first steps, and of that behind the next place like this.
     pub(super) fn begin_anew(&mut self) {
         self.state.memory.fill(0.0);
-        let is_soft = self.method.settings.is_soft();
+        let is_soft = matches!(self.method.settings.multipliers, Multipliers::Penalty(_));
         self.stand_at_state();
         if is_rough(&self.method) && !self.method.integrator.conserves && !is_soft {
             self.put_velocities_on_rows();

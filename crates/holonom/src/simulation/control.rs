@@ -48,15 +48,12 @@ pub(super) struct Control {
     /// Order of the method, and that of the last step.
     order: u8,
     in_use: u8,
-    estimate: Estimate,
-    /// Whether nothing holds velocities on the rows: they are differences of positions.
+    /// By which power of its length the error of a rejected step, over what is allowed, falls.
     #[serde(default)]
-    pub is_rough: bool,
+    falls: f64,
+    estimate: Estimate,
     /// Whether the last attempt showed nothing but round-off near a singular position, and how many such steps were accepted in a row.
     is_rounded: bool,
-    /// Whether the last attempt showed nothing but round-off anywhere.
-    #[serde(default)]
-    pub is_noise: bool,
     unseen: u32,
     /// Length of the run, s, over which errors may add up to the accuracy.
     pub span: f64,
@@ -79,10 +76,9 @@ impl Control {
             accuracy,
             order,
             in_use: order,
+            falls: f64::from(order),
             estimate,
-            is_rough: false,
             is_rounded: false,
-            is_noise: false,
             unseen: 0,
             span: 0.0,
             step: 0.0,
@@ -182,19 +178,21 @@ impl Control {
         let mut position = error(&work.estimate.q) / work.scales.length;
         let mut velocity = (error(&work.estimate.v) / self.speed).max(of_loads);
         let differs = self.estimate == Estimate::History;
-        let rounded = if differs || self.is_rough { 1.0 } else { OWN_ROUNDED };
+        let rounded = if differs { 1.0 } else { OWN_ROUNDED };
         let of_velocity = noise * (rounded * work.scales.length / (h * self.speed)).max(1.0);
         let is_noise = position <= noise && velocity.max(WORSE * of_loads) <= of_velocity;
         if amplified > 1.0 {
             (position, velocity) = (above(position, noise), above(velocity, of_velocity));
         }
-        self.is_noise = is_noise;
         // The estimate of a lower order shows how many times shorter than the motion's own time the step is; the error is
         // that to a higher power.
         let order = order.min(self.order);
         let size = position.max(velocity);
         let error = if order > estimated { size.powf(f64::from(order + 1) / f64::from(estimated + 1)) } else { size };
         self.in_use = order;
+        // The states before stay as far apart as they are, however short the step: only its own length makes the difference.
+        let is_of_states = self.estimate == Estimate::OwnOfStates && order == estimated;
+        self.falls = if is_of_states { 2.0 } else { f64::from(order) };
         let ratio = (error / (self.allowed() * h)).max(LEAST);
         // Schemes that go on from the step before err where its length changes to and fro.
         self.is_rounded = amplified > 1.0 && size == 0.0 && differs;
@@ -240,6 +238,6 @@ impl Control {
 
     /// The next step after one that was rejected.
     pub(super) fn reject(&mut self, h: f64, ratio: f64) {
-        self.step = h * (SAFETY * ratio.powf(-1.0 / f64::from(self.in_use))).clamp(0.1, 0.9);
+        self.step = h * (SAFETY * ratio.powf(-1.0 / self.falls)).clamp(0.1, 0.9);
     }
 }

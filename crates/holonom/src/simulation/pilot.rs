@@ -135,8 +135,7 @@ impl Pilot {
         // Errors of schemes of order 2 add up in one direction where nothing holds the energy.
         let is_loose = method.order() <= SYMMETRIC && !method.integrator.conserves;
         let accuracy = if is_loose { LOOSE * method.accuracy? } else { method.accuracy? };
-        let mut control = Control::new(accuracy, method.order(), estimate, system.coordinates());
-        control.is_rough = is_rough(method) && !method.settings.is_soft();
+        let control = Control::new(accuracy, method.order(), estimate, system.coordinates());
         let mut independence = Independence::like(system, &newton.kkt);
         let redundant = independence.count_redundant(system, &state.x, state.t);
         let smooth = smoothing(method);
@@ -229,9 +228,7 @@ impl Pilot {
         let booked = if is_unsure { 0.0 } else { audit.made_since(&self.before.audit, amplified, judge.still(work), of_states) };
         // The estimate is no energy that is there: beside it the mechanism has at least what it has when it goes its own length in the run.
         let slow = judge.motion(work.scales.length / self.control.span);
-        let estimated = audit.estimated(work.estimate.energy, amplified * work.estimate.rounded, slow);
-        // Differences of states that are round-off say nothing of the energy either, and shorter steps would only raise it.
-        let made = if self.control.is_noise { booked } else { booked.max(estimated) };
+        let made = booked.max(audit.estimated(work.estimate.energy, amplified * work.estimate.rounded, slow));
         made / (WORSE * self.control.allowed() * step * self.control.share_of_way(work.scales.length))
     }
 
