@@ -301,13 +301,21 @@ impl Compiler<'_> {
         faulty: &HashSet<String>,
     ) -> HashSet<String> {
         let mut placing = Placing::new(bodies, specs.iter().map(points::Spec::place).collect(), faulty);
-        let looks_again = || Compiler { room: Cell::new(usize::MAX), ..*self };
-        let unnamed = looks_again().each("body", entries, |entry, body| match &body.position {
-            field::Place::Named(name) => placing.wait(entry, name),
-            field::Place::Fixed(_) => Ok(()),
-        });
-        let mut lost = looks_again().each("body", entries, |entry, _| placing.place(entry));
-        lost.extend(unnamed);
+        // What is wrong with others has been told, and they may repeat without end.
+        let sound = || entries.iter().filter(|named| !faulty.contains(&named.name));
+        let again = Compiler { room: Cell::new(usize::MAX), ..*self };
+        let mut lost = HashSet::new();
+        for named in sound() {
+            let waits = again.instances("body", named, &mut |entry, body| match &body.position {
+                field::Place::Named(name) => placing.wait(entry, name),
+                field::Place::Fixed(_) => Ok(()),
+            });
+            lost.extend(waits.is_err().then(|| named.name.clone()));
+        }
+        for named in sound() {
+            let placed = again.instances("body", named, &mut |entry, _| placing.place(entry));
+            lost.extend(placed.is_err().then(|| named.name.clone()));
+        }
         lost
     }
 
