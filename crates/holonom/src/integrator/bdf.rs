@@ -237,10 +237,10 @@ impl Bdf {
 }
 
 /// What the divided differences over the states of a step to `t` with order `k` are multiplied by to estimate its local errors: ψ_1 … ψ_k, for what
-/// the derivative is off by, times the step. The state itself is off by less, by that over the leading weight of the derivative; but the steps that
-/// follow find it among those before them and add the rest, and what adds up over a run is the whole.
+/// the derivative is off by, over the leading weight of the derivative, by which that comes to the state.
 fn reach(order: usize, t: f64, history: &History<'_>) -> f64 {
-    (t - history.time(0)) * (0..order).map(|j| t - history.time(j)).product::<f64>()
+    let leading: f64 = (0..order).map(|j| 1.0 / (t - history.time(j))).sum();
+    (0..order).map(|j| t - history.time(j)).product::<f64>() / leading
 }
 
 /// Writes the estimated local errors of a step to `t` with order `k`: what it [reaches](reach), times the divided differences over k + 2 states. Says

@@ -48,13 +48,13 @@ pub(super) struct Control {
     /// Order of the method, and that of the last step.
     order: u8,
     in_use: u8,
-    /// By which power of its length the error of a rejected step, over what is allowed, falls.
-    #[serde(default)]
-    falls: f64,
     estimate: Estimate,
     /// Whether the last attempt showed nothing but round-off near a singular position, and how many such steps were accepted in a row.
     is_rounded: bool,
     unseen: u32,
+    /// Whether the last attempt showed nothing but round-off anywhere.
+    #[serde(skip)]
+    is_noise: bool,
     /// Length of the run, s, over which errors may add up to the accuracy.
     pub span: f64,
     /// Step to try next, s.
@@ -76,10 +76,10 @@ impl Control {
             accuracy,
             order,
             in_use: order,
-            falls: f64::from(order),
             estimate,
             is_rounded: false,
             unseen: 0,
+            is_noise: false,
             span: 0.0,
             step: 0.0,
             last_ratio: 1.0,
@@ -141,6 +141,11 @@ impl Control {
         self.is_rounded
     }
 
+    /// Whether the last attempt showed nothing but round-off anywhere.
+    pub(super) fn is_noise(&self) -> bool {
+        self.is_noise
+    }
+
     /// Whether nothing has been remembered since the start or since something changed abruptly.
     pub(super) fn begins(&self) -> bool {
         self.count == 1
@@ -180,7 +185,7 @@ impl Control {
         let differs = self.estimate == Estimate::History;
         let rounded = if differs { 1.0 } else { OWN_ROUNDED };
         let of_velocity = noise * (rounded * work.scales.length / (h * self.speed)).max(1.0);
-        let is_noise = position <= noise && velocity.max(WORSE * of_loads) <= of_velocity;
+        self.is_noise = position <= noise && velocity.max(WORSE * of_loads) <= of_velocity;
         if amplified > 1.0 {
             (position, velocity) = (above(position, noise), above(velocity, of_velocity));
         }
@@ -190,16 +195,13 @@ impl Control {
         let size = position.max(velocity);
         let error = if order > estimated { size.powf(f64::from(order + 1) / f64::from(estimated + 1)) } else { size };
         self.in_use = order;
-        // The states before stay as far apart as they are, however short the step: only its own length makes the difference.
-        let is_of_states = self.estimate == Estimate::OwnOfStates && order == estimated;
-        self.falls = if is_of_states { 2.0 } else { f64::from(order) };
         let ratio = (error / (self.allowed() * h)).max(LEAST);
         // Schemes that go on from the step before err where its length changes to and fro.
         self.is_rounded = amplified > 1.0 && size == 0.0 && differs;
         if self.is_rounded {
             return KEEPING;
         }
-        if is_noise { ratio.min(KEEPING) } else { ratio }
+        if self.is_noise { ratio.min(KEEPING) } else { ratio }
     }
 
     /// Local errors of a scheme of order 2 that errs by h³/12 of the third derivatives, from divided differences. Where the step is much shorter
@@ -238,6 +240,6 @@ impl Control {
 
     /// The next step after one that was rejected.
     pub(super) fn reject(&mut self, h: f64, ratio: f64) {
-        self.step = h * (SAFETY * ratio.powf(-1.0 / self.falls)).clamp(0.1, 0.9);
+        self.step = h * (SAFETY * ratio.powf(-1.0 / f64::from(self.in_use))).clamp(0.1, 0.9);
     }
 }
