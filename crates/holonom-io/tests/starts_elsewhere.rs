@@ -266,7 +266,29 @@ fn a_start_says_what_it_moves_that_nothing_ties() {
     let notes = common::model(&parts("")).notes;
     assert!(notes.iter().any(|note| note.contains("`platform` by 0 m and 0.5 rad, `turret` by 0 m and 0.5 rad")), "{notes:?}");
     let tied = "[joint.base]\ntype = \"revolute\"\nbetween = [\"ground\", \"platform\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n";
-    assert!(common::model(&parts(tied)).notes.is_empty());
+    let notes = common::model(&parts(tied)).notes;
+    assert!(notes.len() == 1 && notes[0].contains("joints that [start] does not name were moved, too"), "{notes:?}");
+    assert!(notes[0].contains(": `base.angle` is -0.5 rad (name them"), "{notes:?}");
+    for whole in ["[start.base]\nangle = 0.0\n", "[start.base]\nangle = 0.2\n"] {
+        assert!(common::model(&parts(&format!("{tied}{whole}"))).notes.is_empty());
+    }
+    // Rates of a joint alone set off the others, too, as an impulse between the two bodies does.
+    let notes = common::model(&parts(&format!("{tied}[start.base]\nangle = 0.0\n")).replace("angle = 1.0", "angle_rate = 1.0")).notes;
+    assert!(notes.len() == 1 && notes[0].contains("`base.angle_rate` is -0.5 rad/s"), "{notes:?}");
+}
+
+/// Where the joints that are named leave nothing free the others follow, and there is nothing to say of it.
+#[test]
+fn a_start_that_leaves_nothing_free_is_not_noted() {
+    let four_bar = "plane = \"xy\"\n[body.crank]\nmass = 1\ninertia = 0.1\nposition = [0, 0.5]\n[body.rod]\nmass = 1\ninertia = 0.1\nposition = [1, 1.2]\n\
+                    [body.rocker]\nmass = 1\ninertia = 0.1\nposition = [2, 0.7]\n\
+                    [joint.a]\ntype = \"revolute\"\nbetween = [\"ground\", \"crank\"]\nat = [0, 0]\n\
+                    [joint.b]\ntype = \"revolute\"\nbetween = [\"crank\", \"rod\"]\nat = [0, 1]\n\
+                    [joint.c]\ntype = \"revolute\"\nbetween = [\"rod\", \"rocker\"]\nat = [2, 1.4]\n\
+                    [joint.d]\ntype = \"revolute\"\nbetween = [\"ground\", \"rocker\"]\nat = [2, 0]\n\
+                    [start.a]\nangle = 0.3\nangle_rate = 2\n";
+    let notes = common::model(four_bar).notes;
+    assert!(notes.is_empty(), "{notes:?}");
 }
 
 /// Coordinates of joints with several: a plate on a table and a shaft at a universal joint begin where they are put.

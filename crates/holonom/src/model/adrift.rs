@@ -1,12 +1,13 @@
-//! What a start moves that no joint ties to the ground.
+//! What a start moves that it does not name: joints that the named ones leave free, and what no joint ties to the ground.
 
 use super::assembly::Assembly;
 use super::bodies::nodes::Member;
 use super::bodies::short;
 use super::geometry::{norm, subtract};
-use crate::system::{Term, place_of};
+use super::start::Target;
+use crate::system::{GaugeValues, System, SystemBuilder, Term, place_of};
 
-/// Most bodies that are named.
+/// Most bodies or coordinates that are named.
 const NAMED: usize = 3;
 
 /// What bodies move by less than, over the size of the mechanism, and turn by, rad, without a word.
@@ -40,17 +41,53 @@ pub(super) fn moved(assembly: &Assembly<'_>) -> Option<String> {
         (way > ADRIFT * assembly.builder.size() || turn > ADRIFT)
             .then(|| format!("`{}` by {} m and {} rad", body.name, short(way), short(turn)))
     });
+    let moved = list(moved)?;
+    Some(format!(
+        "bodies that no joint ties to the ground were moved, as little as they can be in the metric of the mass: {moved} (they stay where they are \
+         in a file that is written in the pose in which the run begins)"
+    ))
+}
+
+/// Coordinates of the joints of a system and their rates.
+pub(super) fn measured(builder: &SystemBuilder) -> (System, GaugeValues) {
+    let system = builder.clone().build();
+    let mut values = system.gauge_values();
+    system.measure(system.start_position(), system.start_velocity(), &mut values);
+    (system, values)
+}
+
+/// Says how joints were moved that the start does not name, though the named ones would let them stay: as little as they can be, which is seldom
+/// nothing.
+pub(super) fn followed(assembly: &Assembly<'_>, targets: &[Target], before: &GaugeValues) -> Option<String> {
+    let (system, after) = measured(&assembly.builder);
+    let moved = system.gauges().iter().enumerate().filter_map(|(k, name)| {
+        let target = targets.iter().find(|target| target.name() == *name);
+        let (unit, size) = if system.is_angle(k) { ("rad", 1.0) } else { ("m", assembly.builder.size()) };
+        let (value, rate) = (after.value[k], after.rate[k]);
+        let is_elsewhere = target.is_none_or(|target| !target.is_placed()) && value.abs() > ADRIFT * size;
+        // Where something is driven, rates follow from that.
+        let is_led = system.is_driven() || target.is_some_and(Target::is_rated);
+        let is_quick = !is_led && (rate - before.rate[k]).abs() > ADRIFT * size;
+        match (is_elsewhere, is_quick) {
+            (true, _) => Some(format!("`{name}` is {} {unit}", short(value))),
+            (false, true) => Some(format!("`{name}_rate` is {} {unit}/s", short(rate))),
+            _ => None,
+        }
+    });
+    let moved = list(moved)?;
+    Some(format!(
+        "joints that [start] does not name were moved, too, as little as they can be in the metric of the mass: {moved} (name them there, too, \
+         with 0 for those that are to stay)"
+    ))
+}
+
+/// The first of some, and how many more there are.
+fn list(moved: impl Iterator<Item = String>) -> Option<String> {
     let mut moved: Vec<String> = moved.collect();
     let more = moved.len().saturating_sub(NAMED);
     moved.truncate(NAMED);
     if more > 0 {
         moved.push(format!("{more} more"));
     }
-    (!moved.is_empty()).then(|| {
-        format!(
-            "bodies that no joint ties to the ground were moved, as little as they can be in the metric of the mass: {} (they stay where they are \
-             in a file that is written in the pose in which the run begins)",
-            moved.join(", ")
-        )
-    })
+    (!moved.is_empty()).then(|| moved.join(", "))
 }

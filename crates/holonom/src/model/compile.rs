@@ -90,10 +90,17 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
         }
         let starts = std::mem::take(&mut assembly.starts);
         let lengths = std::mem::take(&mut assembly.lengths);
-        if let Err((message, cure)) = start::begin(&mut assembly.builder, &starts, &lengths, &mut assembly.efforts) {
+        let before = (!starts.is_empty()).then(|| adrift::measured(&assembly.builder).1);
+        let begun = start::begin(&mut assembly.builder, &starts, &lengths, &mut assembly.efforts);
+        if let Err((message, cure)) = begun {
             drop(assembly);
             let _: Refused = sink.report(|| Fault::new("start", "start", message, cure));
             return Err(sink.finish().expect_err("there is a fault"));
+        }
+        if begun == Ok(true)
+            && let Some(message) = before.and_then(|before| adrift::followed(&assembly, &starts, &before))
+        {
+            sink.note("start", || message);
         }
         if starts.iter().any(start::Target::is_placed)
             && let Some(message) = adrift::moved(&assembly)

@@ -267,9 +267,13 @@ impl Assembly<'_> {
 /// Refuses the name of something else than is wanted.
 fn refuse_other(entry: &Entry<'_>, spot: Spot<'_>, name: &str, wanted: &str) -> Option<Refused> {
     let what = entry.scope.called(name).filter(|what| *what != wanted)?;
-    let cure = match what == BAR && wanted != "a joint" {
-        true => "name a point at its ends, or make a body of it, which has a mass and an inertia".to_string(),
-        false => format!("name {wanted}"),
+    let cure = match (what, wanted) {
+        (BAR, "a joint") => {
+            "a bar's pin has no angle: make a body of it, with shape = { rod = LENGTH }, held by revolute joints, and name one of these"
+                .to_string()
+        }
+        (BAR, _) => "name a point at its ends, or make a body of it, which has a mass and an inertia".to_string(),
+        _ => format!("name {wanted}"),
     };
     Some(entry.refuse(spot, format!("`{name}` is {what}, and {wanted} is wanted here"), cure))
 }

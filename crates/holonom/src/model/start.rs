@@ -8,7 +8,7 @@ use super::fault::{Read, nearest};
 use super::fields::{Keys, Number};
 use super::joints::{Coordinate, coordinate};
 use super::lengths::{DrivenLength, extend, released, require_held};
-use super::way::assemble;
+use super::way::{self, assemble};
 use crate::simulation::Places;
 use crate::system::{Constant, Shifted, Signal, SystemBuilder};
 
@@ -82,9 +82,19 @@ impl Target {
         builder.rows() - 1
     }
 
+    /// What is measured of the joint under its name: `JOINT.COORDINATE`.
+    pub(super) fn name(&self) -> String {
+        format!("{}.{}", self.coordinate.joint, self.coordinate.name)
+    }
+
     /// Whether the coordinate is put somewhere.
     pub(super) fn is_placed(&self) -> bool {
         self.value.is_some()
+    }
+
+    /// Whether its rate is given.
+    pub(super) fn is_rated(&self) -> bool {
+        self.rate.is_some()
     }
 }
 
@@ -164,7 +174,7 @@ pub(super) fn one_of(joint: &str) -> Option<String> {
     Some(format!("for `{joint}` alone write [start.{base}] with repeat = \"{}\", and a longer range for several", ranges.join(", ")))
 }
 
-/// Puts the mechanism where its coordinates are given, and has it move at the rates that are.
+/// Puts the mechanism where its coordinates are given, and has it move at the rates that are. Says whether these leave anything free.
 ///
 /// # Errors
 /// Why that cannot be, and the cure.
@@ -173,14 +183,15 @@ pub(super) fn begin(
     targets: &[Target],
     lengths: &[DrivenLength],
     efforts: &mut [Effort],
-) -> Result<(), (String, &'static str)> {
+) -> Result<bool, (String, &'static str)> {
+    let mut leaves_free = false;
     if targets.iter().any(Target::is_placed) {
         let released = released(builder, targets, lengths, efforts);
         require_held(builder, lengths, efforts, &released)?;
-        assemble(builder, targets, &released)?;
+        leaves_free = assemble(builder, targets, &released)?;
         extend(builder, lengths, efforts)?;
     }
-    set_off(builder, targets)
+    Ok(set_off(builder, targets)? || leaves_free)
 }
 
 /// A coordinate that has a rate: its value now, and that.
@@ -194,11 +205,11 @@ impl Signal for Rising {
 }
 
 /// Gives the nodes the velocities at which coordinates have their rates and all constraints are met, with as little as possible of a change
-/// of those that are written, in the metric of the mass.
-fn set_off(builder: &mut SystemBuilder, targets: &[Target]) -> Result<(), (String, &'static str)> {
+/// of those that are written, in the metric of the mass. Says whether the rates leave anything free.
+fn set_off(builder: &mut SystemBuilder, targets: &[Target]) -> Result<bool, (String, &'static str)> {
     let rated: Vec<(&Target, f64)> = targets.iter().filter_map(|target| Some((target, target.rate?))).collect();
     if rated.is_empty() {
-        return Ok(());
+        return Ok(false);
     }
     if let Some((Target { coordinate, .. }, _)) = rated.iter().find(|(target, _)| target.row.is_some()) {
         let message = format!("`{}.{}` is driven: its drive says how fast it is", coordinate.joint, coordinate.name);
@@ -218,16 +229,19 @@ fn set_off(builder: &mut SystemBuilder, targets: &[Target]) -> Result<(), (Strin
     let mut places = Places::new(led.build());
     let velocities = places.as_mut().ok().and_then(|places| {
         places.put(here.start_position()).ok()?;
-        places.velocities().ok()
+        let leaves_free = way::leaves_free(places);
+        Some((places.velocities().ok()?, leaves_free))
     });
     match velocities {
-        Some(velocities) => builder.set_velocity(velocities),
+        Some((velocities, leaves_free)) => {
+            builder.set_velocity(velocities);
+            Ok(leaves_free)
+        }
         None => {
             let name = |(Target { coordinate, .. }, _): &(&Target, f64)| format!("`{}.{}`", coordinate.joint, coordinate.name);
             let names = rated.iter().map(name).collect::<Vec<_>>().join(", ");
             let message = format!("no velocities at the start meet all constraints and the rates that are given of {names}");
-            return Err((message, "take rates that the joints can have together, and that no constraint forbids"));
+            Err((message, "take rates that the joints can have together, and that no constraint forbids"))
         }
     }
-    Ok(())
 }

@@ -21,11 +21,12 @@ const MOST_WAYS: usize = 10;
 /// Share of the size of all coordinates to which the places are found.
 const FOUND: f64 = 1e-13;
 
-/// Moves all nodes on a way along which every constraint is met, with as little as possible of all else, in the metric of the mass.
+/// Moves all nodes on a way along which every constraint is met, with as little as possible of all else, in the metric of the mass. Says whether the
+/// coordinates leave anything free.
 ///
 /// # Errors
 /// Why that cannot be, and the cure.
-pub(super) fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize]) -> Result<(), (String, &'static str)> {
+pub(super) fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize]) -> Result<bool, (String, &'static str)> {
     if builder.is_moving() {
         let message = "a velocity is written for the pose in the file, and the mechanism is moved from there".to_string();
         return Err((message, "remove the velocities, or write the bodies where they are at the start"));
@@ -39,7 +40,8 @@ pub(super) fn assemble(builder: &mut SystemBuilder, targets: &[Target], released
     let mut rate = None;
     // Where coordinates leave something free the place at the end follows from all of the way, and equal parts of it find the same one wherever the
     // model stands.
-    let is_free = !rolls && led.at(&here, 0.0).is_some() && led.leaves_free();
+    let leaves_free = led.at(&here, 0.0).is_some() && leaves_free(&led.places);
+    let is_free = !rolls && leaves_free;
     let longest = if is_free { FIRST_SHARE } else { 1.0 };
     let (mut share, mut step) = (0.0, FIRST_SHARE);
     for tries in 1.. {
@@ -65,7 +67,13 @@ pub(super) fn assemble(builder: &mut SystemBuilder, targets: &[Target], released
             None => return Err(stuck(share, is_driven)),
         }
     }
-    Ok(())
+    Ok(leaves_free)
+}
+
+/// Whether nodes may move where the coordinates that lead stand still.
+pub(super) fn leaves_free(places: &Places) -> bool {
+    let system = places.system();
+    system.coordinates() + places.redundant_rows() > system.constraints()
 }
 
 /// Says that the way ends at a share of it, and the cure.
@@ -120,12 +128,6 @@ impl Way {
         let x = self.places.system().start_position().to_vec();
         self.at(&x, 0.0)?;
         Some(self.places.redundant_rows())
-    }
-
-    /// Whether nodes may move where the coordinates that lead stand still.
-    fn leaves_free(&self) -> bool {
-        let system = self.places.system();
-        system.coordinates() + self.places.redundant_rows() > system.constraints()
     }
 
     /// Puts the nodes near `x` and the coordinates at a share of the way, and hands back where they are then.

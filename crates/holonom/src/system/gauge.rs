@@ -149,6 +149,11 @@ impl System {
         &self.gauges.names
     }
 
+    /// Whether what is measured is an angle (rad), and no displacement (m).
+    pub(crate) fn is_angle(&self, gauge: usize) -> bool {
+        self.gauges.is_angle[gauge]
+    }
+
     /// Room for what is measured; angles start within half a turn of those of the start.
     pub fn gauge_values(&self) -> GaugeValues {
         let Gauges { invariants, functions, names, .. } = &self.gauges;
