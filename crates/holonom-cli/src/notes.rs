@@ -151,6 +151,21 @@ pub fn unsure_work(simulation: &Simulation) -> Option<String> {
     })
 }
 
+/// That forces, as those of contacts, act for a few steps only, so that their largest values are missed.
+pub fn brief_forces(simulation: &Simulation) -> Option<String> {
+    let told = |(name, t, steps): (&str, f64, f64)| {
+        let steps = steps.round().max(1.0);
+        format!("`{name}` for {steps} step{} at {} s", if steps > 1.0 { "s" } else { "" }, short(t))
+    };
+    let told: Vec<String> = simulation.brief_forces().into_iter().map(told).collect();
+    (!told.is_empty()).then(|| {
+        format!(
+            "forces act for so few steps that their largest values may be far more than what is shown: {} (a shorter step or an accuracy)",
+            listed(&told)
+        )
+    })
+}
+
 /// Share of the mechanism's size from which on it is said that positions are off their constraints.
 const STRAYED: f64 = 1e-3;
 

@@ -23,8 +23,8 @@ use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
 use crate::message::note;
 use crate::notes::{
-    corrections, in_parts, locked, long_turns, lost_energy, many_steps, rivals, rows_without_forces, shared_forces, slips, strayed,
-    turned_bushings, unknown_measures, unsure_work,
+    brief_forces, corrections, in_parts, locked, long_turns, lost_energy, many_steps, rivals, rows_without_forces, shared_forces, slips,
+    strayed, turned_bushings, unknown_measures, unsure_work,
 };
 use crate::options::Destination;
 use crate::progress::Watched;
@@ -196,6 +196,7 @@ pub(crate) fn simulate_kept(
     let far = strayed(&simulation)
         .into_iter()
         .chain(in_parts(&simulation))
+        .chain(brief_forces(&simulation))
         .chain(many_steps(&simulation))
         .chain(turned_bushings(model, watched.recorder.recording()));
     let of_energy = lost_energy(&simulation).into_iter().chain(unsure_work(&simulation)).filter(|_| status == Status::Completed);

@@ -215,3 +215,46 @@ fn positions_far_off_their_rows_are_noted() {
         assert!(status == Some(0) && !text.contains("positions were"), "{method}: {text}");
     }
 }
+
+/// A slider of 2 kg that runs at 1.5 m/s into a stop of 1e6 N/m is in contact for π √(m/k) = 4.44 ms, in any units.
+fn impact(step: f64, second: f64, rest: &str) -> String {
+    format!(
+        "plane = \"xy\"\ngravity = [0, 0]\n[body.slider]\nmass = 2\ninertia = 1\nposition = [0, 0]\nvelocity = [{}, 0]\n\
+         [joint.guide]\ntype = \"prismatic\"\nbetween = [\"ground\", \"slider\"]\naxis = [1, 0]\n\
+         [force.buffer]\ntype = \"stop\"\njoint = \"guide\"\nupper = 0.01234\nstiffness = {}\n\
+         [simulation]\nend = {}\nstep = {}\n{rest}",
+        1.5 / second,
+        1e6 / (second * second),
+        0.05 * second,
+        step * second,
+    )
+}
+
+/// Contacts of which equal steps see little are noted, as the largest force that is shown is not that of the contact, v √(k m) = 2121 N; longer ones are
+/// not, nor are those of steps by accuracy, which show that force, nor a force that time alone switches.
+#[test]
+fn contacts_of_few_steps_are_noted() {
+    let note = "forces act for so few steps that their largest values may be far more than what is shown";
+    let (said, status) = run(&impact(8e-3, 1.0, ""));
+    assert!(
+        status == Some(0)
+            && on_one_line(&said).contains(&format!("{note}: `buffer` for 1 step at 0.016 s (a shorter step or an accuracy)")),
+        "{said}"
+    );
+    assert!(said.contains("buffer  -1543"), "{said}");
+    says(&impact(2e-3, 1e3, ""), &[note, "`buffer` for 2 steps at 10 s"], 0);
+    // An event where the contact begins divides a step, and makes it no longer.
+    says(&impact(2e-3, 1.0, "[event.hit]\nwhen = \"guide.displacement - 0.01234\"\n"), &[note, "`buffer` for 2 steps at 0.01 s"], 0);
+    let falling = |force: &str| format!("[point.ball]\nmass = 1\nposition = [0, 0, 1]\n{force}\n[simulation]\nend = 1\nstep = 4e-3\n");
+    let floor = falling("[force.floor]\ntype = \"expression\"\npoint = \"ball\"\nforce = [0, 0, \"1e5*max(0, -z)\"]");
+    let rope = falling("[force.rope]\ntype = \"rope\"\nbetween = [\"ball\", [0, 0, 1.5]]\nlength = 1.2\nstiffness = 1e5\ndamping = 1");
+    says(&floor, &[note, "`floor` for 3 steps at"], 0);
+    says(&rope, &[note, "`rope` for "], 0);
+    let pulse = "[force.pulse]\ntype = \"expression\"\npoint = \"ball\"\nforce = [\"10*step(t - 0.499)*step(0.509 - t)\", 0, 0]";
+    let accurate = impact(8e-3, 1.0, "accuracy = 1e-6\n");
+    says(&accurate, &["buffer -2121"], 0);
+    for silent in [impact(5e-4, 1.0, ""), accurate, falling(pulse)] {
+        let (said, status) = run(&silent);
+        assert!(status == Some(0) && !said.contains(note), "{said}");
+    }
+}

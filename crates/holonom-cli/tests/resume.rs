@@ -70,12 +70,13 @@ fn a_run_in_parts_has_the_bytes_of_an_unbroken_one() {
     in_parts("example:flyball-governor", "--no-report", &["0.1"], "0.2");
 }
 
-/// What is noted of a run that goes on is that of the unbroken one: of two drives of one freedom, which is found at the start, and of a pulse between two
-/// steps that comes after the end of the first part.
+/// What is noted of a run that goes on is that of the unbroken one: of two drives of one freedom, which is found at the start, of a pulse between two
+/// steps that comes after the end of the first part, and of a contact of four steps in the middle of which the first part ends.
 #[test]
 fn a_run_in_parts_has_the_notes_of_an_unbroken_one() {
     let text = "[input.u]\n[point.ball]\nmass = 1\nposition = [0, 0, 5]\n\
                 [force.pulse]\ntype = \"expression\"\npoint = \"ball\"\nforce = [\"10*step(t - 1.503)*step(1.507 - t)\", 0, 0]\n\
+                [force.floor]\ntype = \"expression\"\npoint = \"ball\"\nforce = [0, 0, \"1e4*max(0, 0.105 - z)\"]\n\
                 [body.a]\nmass = 1\ninertia = [0.1, 0.1, 0.1]\nposition = [1, 0, 0]\n\
                 [body.b]\nmass = 1\ninertia = [0.1, 0.1, 0.1]\nposition = [-1, 0, 0]\n\
                 [joint.left]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n\
@@ -90,7 +91,10 @@ fn a_run_in_parts_has_the_notes_of_an_unbroken_one() {
     let model = path.to_str().unwrap();
     let summary = json(&folder, &format!("run {model} --no-report --json"));
     let notes = summary["notes"].to_string();
-    assert!(notes.contains("lead the same freedom") && notes.contains("pulse"), "{notes}");
+    assert!(
+        notes.contains("lead the same freedom") && notes.contains("pulse") && notes.contains("`floor` for 4 steps at 1.02 s"),
+        "{notes}"
+    );
     in_parts(model, "--no-report", &["1"], "2");
 }
 

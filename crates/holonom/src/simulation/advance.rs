@@ -48,6 +48,7 @@ impl Simulation {
         self.judge.supply(h, known, &self.audit, &self.work)?;
         self.steps += 1;
         self.audit.end_step(&self.system, &mut self.work, &self.state, self.steps);
+        self.look_at_contacts();
         if self.pilot.is_none() && h < SHORT * self.step && self.carries_accelerations() {
             self.begin_anew();
         }
@@ -55,6 +56,14 @@ impl Simulation {
             self.update_reactions();
         }
         Ok(())
+    }
+
+    /// Sees which forces act that begin and end to do so with what moves.
+    pub(super) fn look_at_contacts(&mut self) {
+        let mut contacts = std::mem::take(&mut self.contacts);
+        let acting = self.system.acting(self.look());
+        contacts.iter_mut().zip(acting).for_each(|(contact, [force, power])| contact.look(self.state.t, force, power));
+        self.contacts = contacts;
     }
 
     /// Whether a step goes on from the accelerations of the one before alone.

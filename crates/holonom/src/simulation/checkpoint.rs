@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::doubts::Contact;
 use super::events::SHORTEST;
 use super::pilot::Flight;
 use super::{Audit, Happening, Method, Reactions, Simulation, State};
@@ -57,6 +58,7 @@ struct Progress {
     shown: [Vec<f64>; 2],
     measured: Measured,
     audit: Audit,
+    contacts: Vec<Contact>,
     reactions: Option<Reactions>,
     hints: Hints,
     /// Iterations and factorisations so far.
@@ -171,6 +173,7 @@ impl Simulation {
             shown: [self.shown_v.clone(), self.shown_a.clone()],
             measured,
             audit: self.audit.clone(),
+            contacts: self.contacts.clone(),
             reactions: self.reactions.clone(),
             hints: Hints::of(&self.newton, &*self.integrator),
             counters: [self.newton.iterations, self.newton.factorizations],
@@ -228,7 +231,7 @@ impl Simulation {
         [self.shown_v, self.shown_a] = progress.shown;
         self.gauges.restore(&progress.measured);
         self.gauges.count_on(&state.measured);
-        (self.audit, self.reactions) = (progress.audit, progress.reactions);
+        (self.audit, self.contacts, self.reactions) = (progress.audit, progress.contacts, progress.reactions);
         [self.newton.iterations, self.newton.factorizations] = progress.counters;
         self.hints = progress.hints;
         self.hints.restore(&mut self.newton, &mut *self.integrator);

@@ -54,6 +54,7 @@ use crate::formulation::{Independence, Newton, Workspace, independent};
 use crate::integrator::Integrator;
 use crate::system::{Evaluation, GaugeValues, System};
 use checkpoint::{Grid, Hints};
+use doubts::Contact;
 use pilot::Pilot;
 use promise::Judge;
 
@@ -133,6 +134,8 @@ pub struct Simulation {
     found_a: Vec<f64>,
     audit: Audit,
     judge: Judge,
+    /// What was seen of forces that begin and end to act with what moves; nothing where an accuracy chooses the steps, as these end there.
+    contacts: Vec<Contact>,
     start: Start,
     step: f64,
     grid: Grid,
@@ -248,6 +251,7 @@ impl Simulation {
             found_v: state.v.clone(),
             found_a: state.a.clone(),
             judge: Judge::new(&system, &method, &work),
+            contacts: if method.accuracy.is_none() { system.switching_forces().map(|_| Contact::default()).collect() } else { Vec::new() },
             system,
             method,
             newton,
@@ -300,6 +304,9 @@ impl Simulation {
         }
         if observer.after_step(self) == Verdict::Stop {
             return self.interrupted();
+        }
+        if self.steps == 0 {
+            self.look_at_contacts();
         }
         self.begin_adapting(end);
         while !self.is_there(end) {

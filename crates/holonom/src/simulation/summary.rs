@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::doubts::Stray;
+use super::doubts::{Stray, Touch};
 use super::{Happening, Simulation};
 
 /// Everything a run is judged by. Keys are stable; additions are allowed.
@@ -148,6 +148,9 @@ pub struct WorkSummary {
 /// Share of its length by which a mechanism that stands about still comes on in a run.
 const STILL: f64 = 1e-6;
 
+/// Share of the largest size of a force that is small.
+const SMALL: f64 = 0.1;
+
 /// Share of energies that is round-off of a run.
 const ROUNDED: f64 = 1e-9;
 
@@ -172,6 +175,22 @@ impl Simulation {
         let (unsure, number) = self.audit.unsure_work();
         let name = self.system.working_forces().nth(number)?;
         (unsure > self.nothing()).then(|| (unsure, self.audit.supply()[1], name))
+    }
+
+    /// Forces that begin and end to act with what moves, as those of contacts, and that equal steps have seen acting for a few steps only: of each that
+    /// was largest then its name, when that was, s, and about how many steps it acted for. Their largest values may be far from those at the ends of
+    /// steps. None where that is round-off, or small beside what the force was at other times.
+    pub fn brief_forces(&self) -> Vec<(&str, f64, f64)> {
+        let mut found: Vec<(&str, Touch)> = Vec::new();
+        for (name, contact) in self.system.switching_forces().zip(&self.contacts) {
+            let Some(touch) = contact.brief(SMALL).filter(|touch| touch.energy > self.nothing()) else { continue };
+            match found.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, known)) if touch.force > known.force => *known = touch,
+                Some(_) => (),
+                None => found.push((name, touch)),
+            }
+        }
+        found.into_iter().map(|(name, touch)| (name, touch.at, touch.steps)).collect()
     }
 
     /// Energy that is nothing beside what the mechanism has, J: where it stands about still, and round-off.

@@ -17,6 +17,8 @@ pub(crate) struct Bending {
     /// Of each of them, laws first, which of the numbers seen are its own, and which of the corners.
     pub(super) seen: Vec<Range<usize>>,
     pub(super) corners: Vec<Range<usize>>,
+    /// Those of all that have corners with what moves, and not with time alone.
+    switching: Vec<usize>,
 }
 
 /// What forces that bend depend on, at a time t (s): each number, and its rate.
@@ -33,6 +35,9 @@ pub(crate) struct Bends {
     pub corners: Vec<f64>,
     pub peaks: Vec<f64>,
 }
+
+/// Two numbers that nobody writes into a model.
+const PLACES: [f64; 2] = [0.577_215_664_901_532_9, 0.915_965_594_177_219];
 
 /// A law or a load whose force bends.
 #[derive(Clone, Copy)]
@@ -71,6 +76,16 @@ impl<'a> Bent<'a> {
         let (nothing, mut bends) = (Local::from_elem(0.0, self.width(dim)), Bends::default());
         self.bends(&nothing, &nothing, 0.0, &mut bends);
         [bends.corners.len(), bends.peaks.len()]
+    }
+
+    /// Whether it has corners that move where the numbers do that it depends on.
+    fn switches(self, dim: usize) -> bool {
+        let corners = |number: f64| {
+            let (numbers, mut bends) = (Local::from_elem(number, self.width(dim)), Bends::default());
+            self.bends(&numbers, &numbers, 0.0, &mut bends);
+            bends.corners
+        };
+        corners(PLACES[0]) != corners(PLACES[1])
     }
 
     /// Its forces on these numbers.
@@ -147,15 +162,43 @@ impl System {
         let of_loads: Vec<[usize; 2]> = self.loads.iter().map(|load| Bent::Load(load).count(self.dim)).collect();
         let bending = |told: &[[usize; 2]]| -> Vec<usize> { (0..told.len()).filter(|&k| told[k] != [0; 2]).collect() };
         let (laws, loads) = (bending(&of_laws), bending(&of_loads));
+        let bent = laws.iter().map(|&k| Bent::Law(&self.laws[k])).chain(loads.iter().map(|&k| Bent::Load(&self.loads[k])));
+        let switching = bent.enumerate().filter(|(_, bent)| bent.switches(self.dim)).map(|(number, _)| number).collect();
         let widths = laws.iter().map(|&k| Bent::Law(&self.laws[k])).chain(loads.iter().map(|&k| Bent::Load(&self.loads[k])));
         let corners = laws.iter().map(|&k| of_laws[k][0]).chain(loads.iter().map(|&k| of_loads[k][0]));
         Bending {
             seen: one_after_the_other(widths.map(|bent| bent.width(self.dim))),
             corners: one_after_the_other(corners),
+            switching,
             peaked: laws.iter().copied().filter(|&k| of_laws[k][1] > 0).collect(),
             laws,
             loads,
         }
+    }
+
+    /// Names of the forces that bend with what moves, and not with time alone, in the order of [`System::acting`].
+    pub(crate) fn switching_forces(&self) -> impl Iterator<Item = &str> {
+        self.bending.switching.iter().map(|&number| self.bent(number).name())
+    }
+
+    /// The sizes of these forces at a state, and the power that they have there, W.
+    pub(crate) fn acting(&self, look: Look<'_>) -> impl Iterator<Item = [f64; 2]> {
+        let size = |force: &[f64]| force.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+        let power = |force: &[f64], rates: &[f64]| force.iter().zip(rates).map(|(force, rate)| force * rate).sum();
+        self.bending.switching.iter().map(move |&number| match self.bent(number) {
+            Bent::Law(law) => {
+                let (rates, own) = self.respond(law, look.at, look.v, look.t);
+                let force = &own.force[..law.arguments.len()];
+                [size(force), power(force, &rates)]
+            }
+            Bent::Load(load) => {
+                let mut force = Local::from_elem(0.0, load.nodes.len() * self.dim);
+                self.load_forces(load, look, &mut force);
+                let parts = force.chunks_exact(self.dim).zip(&load.nodes);
+                let power = parts.map(|(force, node)| power(force, &look.v[node.index() * self.dim..])).sum();
+                [size(&force), power]
+            }
+        })
     }
 
     /// The laws that may have peaks, by their numbers.
