@@ -30,7 +30,7 @@ const ROUNDED: f64 = 1e-14;
 pub struct Scales {
     /// Diagonal of the box around the origin and all nodes at the start, m: the unit of increments.
     pub length: f64,
-    /// Largest diagonal entry of the mass matrix, kg.
+    /// Largest diagonal entry of the mass matrix, kg; where nothing that moves has a mass, what stands in for it.
     pub heaviest: f64,
     /// Length of the shortest row that turns, the gradient of an invariant over its curvature, over `length`, at most 1.
     pub shortest: f64,
@@ -58,7 +58,7 @@ impl Scales {
     pub fn new(system: &System) -> Self {
         let (free, rows) = (system.free, system.constraints());
         let own: Vec<f64> = (0..free).map(|node| system.mass.diagonal(node)).collect();
-        let heaviest = heaviest(&own);
+        let heaviest = heaviest(system, &own);
         let around = around(system, &own);
         let yielding: Vec<f64> = (0..free).map(|node| yielding(system, node)).collect();
         let is_light = |node: usize| yielding[node] < LIGHT * around[node];
@@ -137,17 +137,18 @@ fn around(system: &System, own: &[f64]) -> Vec<f64> {
         let root = find(&mut root, node);
         heaviest[root] = heaviest[root].max(mass);
     }
-    let any = self::heaviest(own);
+    let any = self::heaviest(system, own);
     let around = |node: usize| Some(heaviest[node]).filter(|mass| *mass > 0.0).unwrap_or(any);
     let most = |own: f64| if own > 0.0 { own / LEAST_SHARE } else { f64::INFINITY };
     (0..own.len()).map(|node| around(find(&mut root, node)).min(most(own[node]))).collect()
 }
 
-/// The heaviest of these masses, kg. Where there are none any other does as well: what is left to move of a slender rod that joints hold are
-/// directions without mass, and rows alone say where they are.
-fn heaviest(own: &[f64]) -> f64 {
+/// The heaviest of these masses, kg. Where there are none it is that of what never moves, as the middle of a shaft without inertia about its axis: what is
+/// left to move of it, or of a slender rod that joints hold, are directions without mass, and rows alone say where they are. Where nothing has a mass any
+/// does as well.
+fn heaviest(system: &System, own: &[f64]) -> f64 {
     let heaviest = own.iter().copied().fold(0.0, f64::max);
-    if heaviest > 0.0 { heaviest } else { 1.0 }
+    [heaviest, system.fixed_mass].into_iter().find(|mass| *mass > 0.0).unwrap_or(1.0)
 }
 
 /// The mass of a free node where all others that it has mass in common with yield, kg: of a body that is small beside its distance from its

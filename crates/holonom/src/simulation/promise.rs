@@ -123,7 +123,7 @@ pub(super) struct Judge {
     looks_at_dampers: bool,
     /// Tolerance of the iteration, over the size of the mechanism.
     tolerance: f64,
-    /// All mass, kg.
+    /// All mass that moves, kg, or what stands in for it where there is none.
     mass: f64,
     /// All weight, N.
     weight: f64,
@@ -141,7 +141,9 @@ impl Judge {
     pub(super) fn new(system: &System, method: &Method, work: &Workspace) -> Self {
         let is_absolute = method.settings.iteration != Iteration::Newton;
         let tolerance = method.settings.tolerance / if is_absolute { work.scales.length } else { 1.0 };
-        let mass = (0..system.free).map(|node| system.mass.diagonal(node)).sum();
+        let moving: f64 = (0..system.free).map(|node| system.mass.diagonal(node)).sum();
+        // Where nothing that moves has a mass, rows are solved for as if it had this one, and their round-off is that of this mass.
+        let mass = moving.max(work.scales.heaviest);
         let weight = work.forces.weight.iter().map(|w| w.abs()).sum();
         let mut promises = method.promises();
         let keeps_energy = [Promise::Energy, Promise::FallingEnergy].iter().any(|kept| promises.contains(kept));

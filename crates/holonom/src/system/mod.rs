@@ -164,6 +164,8 @@ pub struct System {
     pub(crate) start_impulse: Vec<f64>,
     /// Potential energy of what has weight and never moves, J.
     pub(crate) fixed_energy: f64,
+    /// Largest mass that never moves, kg.
+    pub(crate) fixed_mass: f64,
     /// Size of the mechanism as far as its nodes do not show it, m.
     pub(crate) size: f64,
     pub(crate) slots: Arc<Slots>,

@@ -121,6 +121,7 @@ impl SystemBuilder {
             start_velocity: self.velocity,
             start_impulse,
             fixed_energy: -(0..self.dim).map(|c| self.gravity[c] * self.fixed_moment[c]).sum::<f64>(),
+            fixed_mass: self.fixed_mass,
             size: self.size,
             slots: Arc::default(),
             plans: Arc::default(),

@@ -80,6 +80,8 @@ pub struct SystemBuilder {
     moving: Vec<Moving>,
     /// Σ m x of what has weight at places that never move, kg·m.
     fixed_moment: [f64; 3],
+    /// Largest mass at such a place, kg.
+    fixed_mass: f64,
     size: f64,
 }
 
@@ -120,6 +122,7 @@ impl SystemBuilder {
             velocity: Vec::new(),
             moving: Vec::new(),
             fixed_moment: [0.0; 3],
+            fixed_mass: 0.0,
             size: 0.0,
         }
     }
@@ -222,11 +225,15 @@ impl SystemBuilder {
     /// Adds the block m 1 + s J (kg) to (a, b) of the mass matrix, and its transpose to (b, a), without weight. In space
     /// there is no J.
     pub fn inertia(&mut self, a: Place, b: Place, m: f64, s: f64) {
-        if let (Place::Node(a), Place::Node(b)) = (a, b) {
-            self.mass.push((a.0, b.0, MassBlock { m, s }));
-            if a != b {
-                self.mass.push((b.0, a.0, MassBlock { m, s: -s }));
+        match (a, b) {
+            (Place::Node(a), Place::Node(b)) => {
+                self.mass.push((a.0, b.0, MassBlock { m, s }));
+                if a != b {
+                    self.mass.push((b.0, a.0, MassBlock { m, s: -s }));
+                }
             }
+            (Place::Fixed(_), Place::Fixed(_)) => self.fixed_mass = self.fixed_mass.max(m),
+            _ => (),
         }
     }
 
