@@ -151,7 +151,7 @@ pub(crate) fn simulate_kept(
             (simulation, corrections)
         }
     };
-    let rank = analysis::rank_of(&simulation);
+    let rank = analysis::rank_of(&mut simulation);
     if is_new {
         corrections.extend(locked(model, &rank).or_else(|| rivals(&mut simulation, &rank)));
     }

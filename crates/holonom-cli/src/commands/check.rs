@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use holonom::analysis::{Rank, projection_form, rank_of, undetermined};
-use holonom::model::{Model, StartChange};
+use holonom::model::{Model, StartChange, Value};
 use holonom::projection::Solve;
 use holonom::simulation::{Conflict, Method, ModelSize, PENALTY, Simulation};
 use holonom_io::Source;
@@ -33,29 +33,17 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
 /// # Errors
 /// A model that is not sound, or that cannot start.
 pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Found, Failure> {
-    // Bodies that share nodes have no rows where they are joined: what holds what is asked of the model without sharing.
-    let mut plain = source.clone();
-    plain.put("output.reactions", holonom::model::Value::Bool(true)).map_err(Failure::Model)?;
-    let (loaded, plain) = (read(source, name)?, read(plain, name)?);
+    let loaded = Loaded { model: source.model().map_err(Failure::Model)?, name: name.into(), source };
     let system = &loaded.model.system;
     let method = load::method(&loaded.model, None)?;
     let projection = method.projection.clone();
     let name = method.name.clone();
     let step = loaded.step().unwrap_or(1e-3);
     let unseen = loaded.model.times().map_or(Vec::new(), |[step, end]| loaded.model.unseen(&method, step, end));
-    let simulation = Simulation::new(system.clone(), method, step).map_err(load::start_failure)?;
-    let size = rank_of(&simulation).size(system);
+    let mut simulation = Simulation::new(system.clone(), method, step).map_err(load::start_failure)?;
+    let size = rank_of(&mut simulation).size(system);
     let changes = loaded.model.start_changes(&simulation.state().x, simulation.velocities());
     let (start, audit) = (simulation.start().clone(), simulation.audit().clone());
-    // The room that it takes is for the next one.
-    drop(simulation);
-    let mut held = Held::new(&plain, load::method(&plain.model, None)?, step)?;
-    held.notes.extend(unused_parameters(&loaded.source));
-    held.notes.extend(unseen);
-    // What asks for too much has a line of its own.
-    held.notes.extend(nowhere(&start).filter(|_| held.conflict.is_none()));
-    let found = &held.rank;
-    let near = found.near_singular(&plain.model.system);
     let form = match with_projection {
         true => {
             let alpha = if let Solve::Penalty(alpha) = projection.solve { alpha } else { PENALTY };
@@ -64,6 +52,21 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
         }
         false => None,
     };
+    let (title, gravity) = (loaded.title().to_string(), loaded.gravity());
+    // The room that the simulation and its model take is for the next ones. Bodies that share nodes have no rows where they are joined: what holds
+    // what is asked of the model without sharing.
+    drop(simulation);
+    let Loaded { model, mut source, name: own } = loaded;
+    drop(model);
+    source.put("output.reactions", Value::Bool(true)).map_err(Failure::Model)?;
+    let plain = source.model().map_err(Failure::Model)?;
+    let mut held = Held::new(&plain, load::method(&plain, None)?, step)?;
+    held.notes.extend(unused_parameters(&source));
+    held.notes.extend(unseen);
+    // What asks for too much has a line of its own.
+    held.notes.extend(nowhere(&start).filter(|_| held.conflict.is_none()));
+    let found = &held.rank;
+    let near = found.near_singular(&plain.system);
     let change = |change: &StartChange| {
         json!({
             "name": change.name, "velocity": change.velocity, "angular_velocity": change.angular_velocity,
@@ -72,7 +75,7 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
     };
     let changed: Vec<_> = changes.iter().map(change).collect();
     let mut value = json!({
-        "model": loaded.name, "method": name, "coordinates": size.coordinates, "constraints": size.constraints,
+        "model": own, "method": name, "coordinates": size.coordinates, "constraints": size.constraints,
         "rank": size.rank, "redundant": size.redundant, "dof": size.dof, "redundant_rows": found.redundant,
         "rows_in_redundancies": held.involved, "reactions_not_unique": held.not_unique, "notes": held.notes,
         "conflict": held.conflict.as_ref().map(|conflict| &conflict.row), "near_singular": near, "moved": start.moved, "start_changes": changed,
@@ -111,13 +114,13 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
         ("corrected", corrected),
         ("residual", format!("position {}, velocity {}, acceleration {}", short(audit.phi), short(audit.phi_dot), short(audit.phi_ddot))),
         ("energy", format!("kinetic {} J, potential {} J", short(audit.kinetic), short(audit.potential + audit.lift))),
-        ("gravity", loaded.gravity()),
+        ("gravity", gravity),
         ("method", name),
     ];
     if let Some(conflict) = &held.conflict {
         items.insert(3, ("conflict", format!("in the first step {conflict}")));
     }
-    let mut text = format!("{}\n{}", loaded.title(), list(&items));
+    let mut text = format!("{title}\n{}", list(&items));
     held.notes.iter().for_each(|note| text.push_str(&format!("\nnote: {note}")));
     if let Some(form) = form {
         let verdict = if form.dissipative {
@@ -134,11 +137,6 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
         text.push_str(&format!("\n\nvelocity projection at the start\n{}", list(&items)));
     }
     Ok(Found { value, text })
-}
-
-/// The model of a source.
-fn read(source: Source, name: &str) -> Result<Loaded, Failure> {
-    Ok(Loaded { model: source.model().map_err(Failure::Model)?, name: name.into(), source })
 }
 
 /// Coordinates and rows as they are solved, and where bodies share nodes those of every body and joint by itself, which redundancies
@@ -166,12 +164,11 @@ struct Held {
 }
 
 impl Held {
-    fn new(plain: &Loaded, method: Method, step: f64) -> Result<Self, Failure> {
-        let model = &plain.model;
+    fn new(model: &Model, method: Method, step: f64) -> Result<Self, Failure> {
         let mut simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
         let conflict = simulation.conflict();
+        let rank = rank_of(&mut simulation);
         let (system, x) = (&model.system, &simulation.state().x);
-        let rank = rank_of(&simulation);
         let size = rank.size(&model.system);
         let (mut involved, mut not_unique) = (Vec::new(), Vec::new());
         let free = if rank.redundant.is_empty() { None } else { undetermined(&model.system, x, 0.0) };

@@ -21,8 +21,9 @@ pub fn rank(system: &System, x: &[f64], t: f64) -> Rank {
 }
 
 /// The same at the present state of a simulation, by what it has planned.
-pub fn rank_of(simulation: &Simulation) -> Rank {
-    counted(simulation.system(), &simulation.independence())
+pub fn rank_of(simulation: &mut Simulation) -> Rank {
+    let shares = simulation.independence();
+    counted(simulation.system(), &shares)
 }
 
 fn counted(system: &System, shares: &[f64]) -> Rank {

@@ -1,5 +1,7 @@
 //! How independent the rows are: geometry alone, whatever the masses and units.
 
+use std::borrow::BorrowMut;
+
 use super::kkt::{ALL, Block, Kkt};
 use super::scales::Scales;
 use crate::system::{Evaluation, System};
@@ -52,9 +54,9 @@ pub fn independence(system: &System, x: &[f64], t: f64) -> Vec<f64> {
     Independence::new(system).shares(system, x, t)
 }
 
-/// Room for finding that at many positions.
-pub struct Independence {
-    kkt: Kkt,
+/// Room for finding that at many positions, with a matrix of its own or one that is lent.
+pub struct Independence<K = Kkt> {
+    kkt: K,
     /// What a row must add to count.
     least: f64,
     at: Evaluation,
@@ -76,14 +78,22 @@ impl Independence {
 
     /// With the pattern of a matrix of the system with one field.
     pub fn like(system: &System, kkt: &Kkt) -> Self {
+        Self::within(system, kkt.twin())
+    }
+}
+
+impl<K: BorrowMut<Kkt>> Independence<K> {
+    /// In the room of a matrix of the system with one field, whose values and factors are lost.
+    pub fn within(system: &System, own: K) -> Self {
         let rows = system.slots.rows.len();
         let mut at = system.evaluation();
         system.evaluate_again(&system.start_position, 0.0, &mut at);
         let natural = natural_sizes(system, &at);
-        let kkt = kkt.of_ones();
+        let kkt: &Kkt = own.borrow();
         let others = Vec::with_capacity(FEW * kkt.free * kkt.dim);
         let least = independent(kkt.free * kkt.dim);
-        Self { left: vec![0.0; kkt.size()], kkt, least, at, natural, shares: vec![0.0; rows], dropped: Vec::with_capacity(rows), others }
+        let left = vec![0.0; kkt.size()];
+        Self { kkt: own, left, least, at, natural, shares: vec![0.0; rows], dropped: Vec::with_capacity(rows), others }
     }
 
     /// What [`independence`] gives at the positions `x` and the time `t`.
@@ -101,6 +111,7 @@ impl Independence {
     /// Measures at the positions `x` and the time `t`.
     fn measure(&mut self, system: &System, x: &[f64], t: f64) {
         let Self { kkt, at, natural, shares, dropped, left, others, least } = self;
+        let kkt: &mut Kkt = kkt.borrow_mut();
         system.evaluate_again(x, t, at);
         for (row, natural) in natural.iter().enumerate() {
             let free = system.slots.rows[row].clone().filter(|&slot| kkt.is_free(slot));
@@ -111,7 +122,7 @@ impl Independence {
         }
         let block = Block(0, 0);
         kkt.clear();
-        kkt.start_with_mass(1.0);
+        kkt.start_with_weights(std::iter::repeat(&1.0));
         kkt.write_sum(block);
         kkt.add_columns(block, &at.gradient, 1.0);
         kkt.add_rows(block, &at.gradient, 1.0);
@@ -149,11 +160,12 @@ impl Independence {
 
     /// By how much a row has turned at most since its gradients were `before`, rad; without bound above a sixth of a turn.
     pub fn turned_since(&self, before: &[f64]) -> f64 {
+        let kkt: &Kkt = self.kkt.borrow();
         let square = |slots: &std::ops::Range<usize>| {
-            let place = slots.start * self.kkt.dim..slots.end * self.kkt.dim;
+            let place = slots.start * kkt.dim..slots.end * kkt.dim;
             self.at.gradient[place.clone()].iter().zip(&before[place]).map(|(now, before)| (now - before) * (now - before)).sum::<f64>()
         };
-        let chord = self.kkt.slots.rows.iter().map(square).fold(0.0, f64::max).sqrt();
+        let chord = kkt.slots.rows.iter().map(square).fold(0.0, f64::max).sqrt();
         if chord < 1.0 { 2.0 * (0.5 * chord).asin() } else { f64::INFINITY }
     }
 

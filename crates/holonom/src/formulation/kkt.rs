@@ -253,12 +253,6 @@ impl Kkt {
         }
     }
 
-    /// A matrix of the same pattern for a mass of one at each node, in which no row enters the part of the coordinates.
-    pub fn of_ones(&self) -> Self {
-        let nodes = self.slots.nodes.iter().map(|&node| node as usize + 1).fold(self.free, usize::max);
-        Self::of(self.pattern.clone(), &Mass::ones(nodes), Vec::new())
-    }
-
     /// Sets all values to zero.
     pub fn clear(&mut self) {
         self.solver.values_mut().fill(0.0);

@@ -132,7 +132,7 @@ impl Simulation {
     }
 
     /// Asks something with the matrix of the steps, which go on as if nobody had.
-    fn ask<T>(&mut self, question: impl FnOnce(&mut Self) -> T) -> T {
+    pub(super) fn ask<T>(&mut self, question: impl FnOnce(&mut Self) -> T) -> T {
         let counters = (self.newton.iterations, self.newton.factorizations);
         let answer = question(self);
         self.hints.restore(&mut self.newton, &mut *self.integrator);

@@ -393,15 +393,17 @@ impl Simulation {
         Some([self.gauges.value[at], self.gauges.rate[at]])
     }
 
-    /// How much each row (r) adds to those before it at the present state, as [`crate::formulation::independence`] has it.
-    pub fn independence(&self) -> Vec<f64> {
-        Independence::like(&self.system, &self.newton.kkt).shares(&self.system, &self.state.x, self.state.t)
+    /// How much each row (r) adds to those before it at the present state, as [`crate::formulation::independence`] has it. It is found in the room
+    /// of the matrix of the steps, which go on as if nobody had asked.
+    pub fn independence(&mut self) -> Vec<f64> {
+        self.ask(|own| Independence::within(&own.system, &mut own.newton.kkt).shares(&own.system, &own.state.x, own.state.t))
     }
 
     /// How many rows follow from others at the present state.
     fn redundant_rows(&self) -> usize {
         let least = independent(self.system.coordinates());
-        self.independence().into_iter().filter(|share| *share < least).count()
+        let shares = Independence::like(&self.system, &self.newton.kkt).shares(&self.system, &self.state.x, self.state.t);
+        shares.into_iter().filter(|share| *share < least).count()
     }
 
     /// The energy audit so far.

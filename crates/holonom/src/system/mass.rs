@@ -58,11 +58,6 @@ impl Mass {
         mass
     }
 
-    /// The unit matrix.
-    pub(crate) fn ones(nodes: usize) -> Self {
-        Self::new(nodes, (0..nodes as u32).map(|a| (a, a, MassBlock { m: 1.0, s: 0.0 })).collect())
-    }
-
     /// Number of nodes.
     pub fn nodes(&self) -> usize {
         self.start.len() - 1
