@@ -6,7 +6,7 @@ use super::level::Level;
 use super::scales::Scales;
 use super::stage::{Sampling, Stage};
 use crate::linalg::largest;
-use crate::system::{Evaluation, Response, System};
+use crate::system::{Evaluation, Response, Seen, System};
 
 /// A state of the step. Full vectors hold D numbers a node, free nodes first, known nodes in place.
 pub struct Moment {
@@ -94,6 +94,8 @@ pub struct LocalErrors {
     pub allowed: f64,
     /// The unit of errors of velocity, m/s.
     pub speed: f64,
+    /// What forces that bend depend on at the stages between the ends of the step, of explicit methods whose steps follow from an accuracy.
+    pub(crate) stages: Vec<Seen>,
 }
 
 /// A step as it is tried.
@@ -196,6 +198,7 @@ impl Workspace {
                 loads: 0.0,
                 allowed: 0.0,
                 speed: f64::INFINITY,
+                stages: Vec::new(),
             },
             inputs: system.inputs.iter().map(|(_, default)| *default).collect(),
             memory: Vec::new(),

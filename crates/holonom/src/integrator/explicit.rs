@@ -5,7 +5,7 @@ use super::dop853;
 use super::{Integrator, Step, Work};
 use crate::energy;
 use crate::formulation::{Failure, Newton, RowsAt, Sampling, Stage, Workspace};
-use crate::system::System;
+use crate::system::{Look, System};
 
 /// An explicit method: the row after the last stage is that of the end of the step.
 pub(super) struct Tableau {
@@ -208,8 +208,16 @@ impl Integrator for Explicit {
 
     fn step(&mut self, system: &System, start: f64, h: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
         let (n, stages) = (system.coordinates(), self.tableau.nodes.len());
+        work.estimate.stages.clear();
+        let is_looked_at = work.estimate.allowed > 0.0 && system.has_bends();
         for i in 0..stages {
-            self.take(system, (i, self.tableau.rows[i]), start + self.tableau.nodes[i] * h, h, newton, work)?;
+            let t = start + self.tableau.nodes[i] * h;
+            self.take(system, (i, self.tableau.rows[i]), t, h, newton, work)?;
+            if is_looked_at && i > 0 {
+                let Workspace { end, inputs, .. } = &*work;
+                let look = Look { x: &end.x, v: &end.v, t, at: &end.at, inputs, span: None };
+                work.estimate.stages.push(system.see(look));
+            }
         }
         let done = self.tableau.rows[stages].iter().zip(&self.powers).map(|(weight, power)| h * weight * power).sum();
         self.take(system, (stages, self.tableau.rows[stages]), start + h, h, newton, work)?;

@@ -82,9 +82,11 @@ impl Simulation {
         let width = (LOCATED * whole).max(f64::EPSILON * self.state.t.abs());
         let open = LazyCell::new(|| self.open(whole, &pilot.control));
         let Some(first) = from.first_passed(&at, &system, &open) else {
-            return Ok(match at.first_beyond(from, width, &system, &open) {
-                Some(bend) => at.land(bend, from, whole, least, &system),
-                None => Landing::Between(at),
+            let bend = at.first_beyond(from, width, &system, &open);
+            return Ok(match (bend, from.first_of(&self.work.estimate.stages, &system, &open)) {
+                (Some(bend), _) => at.land(bend, from, whole, least, &system),
+                (None, Some(t)) => Landing::TooLong((t - begin).min(0.5 * whole)),
+                (None, None) => Landing::Between(at),
             });
         };
         let open = open.clone();

@@ -62,6 +62,16 @@ impl Sight {
         None
     }
 
+    /// When a force has bent at one of the `stages` of a step (s) that ends on the side where it began: it was turned back by what acts on the other side,
+    /// and hardly any of that may be in the estimate of its error.
+    pub fn first_of(&self, stages: &[Seen], system: &System, open: &impl Deref<Target = Seen>) -> Option<f64> {
+        let bends = |seen: &&Seen| {
+            let corners = system.bends(seen).corners;
+            (0..corners.len()).any(|bend| self.is_passed(bend, corners[bend]) && !self.rests(bend, seen, system, open))
+        };
+        stages.iter().find(bends).map(|seen| seen.t)
+    }
+
     /// The share of the way to what is seen `at` the end after which a force has a peak of which neither end shows anything.
     pub fn first_hidden(&self, at: &Self, system: &System) -> Option<f64> {
         if self.peaks.is_empty() {

@@ -24,7 +24,7 @@ pub(crate) struct Bending {
 /// What forces that bend depend on, at a time t (s): each number, and its rate.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Seen {
-    pub(super) t: f64,
+    pub t: f64,
     pub(super) values: Vec<f64>,
     pub(super) rates: Vec<f64>,
 }
@@ -174,6 +174,11 @@ impl System {
             laws,
             loads,
         }
+    }
+
+    /// Whether any force bends.
+    pub(crate) fn has_bends(&self) -> bool {
+        !self.bending.seen.is_empty()
     }
 
     /// Names of the forces that bend with what moves, and not with time alone, in the order of [`System::acting`].
