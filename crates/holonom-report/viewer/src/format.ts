@@ -17,6 +17,14 @@ export function reading(value: number | null | undefined, digits = 4): string {
   return `${minus(mantissa)}·${power(Number(exponent))}`;
 }
 
+/** A share of the largest that is round-off. */
+const ROUND_OFF = 1e-12;
+
+/** A value beside the largest of its kind: nothing where it is round-off of that. */
+export function cleared(value: number, largest: number): number {
+  return Math.abs(value) < ROUND_OFF * largest ? 0 : value;
+}
+
 /** A value between two others: of what changes by a small share of itself so many digits that this shows. */
 export function readingBetween(value: number, low: number, high: number): string {
   const shares = Math.floor(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / (high - low)));

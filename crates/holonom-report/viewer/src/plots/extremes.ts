@@ -2,12 +2,9 @@
 
 import type { Clock } from "../clock";
 import { element } from "../dom";
-import { reading, readingBetween } from "../format";
+import { cleared, reading, readingBetween } from "../format";
 import type { Channel, Run } from "../payload";
 import { withUnit } from "./charts";
-
-/** A value that is a smaller share of the largest of its unit is round-off. */
-const ROUND_OFF = 1e-12;
 
 export class Extremes {
   readonly node = element("details", { class: "extremes", open: "" }, element("summary", {}, "Extremes of what is plotted"));
@@ -31,7 +28,7 @@ export class Extremes {
     const name = withUnit(column, channel.unit === "1" ? "" : channel.unit);
     const beside = largest(run, channel);
     const cell = (value: number, t: number): HTMLElement => {
-      const text = readingBetween(Math.abs(value) < ROUND_OFF * beside ? 0 : value, least, most);
+      const text = readingBetween(cleared(value, beside), least, most);
       return element("td", { class: "number" }, element("span", {}, text), " ", this.at(t));
     };
     const head = element("th", { scope: "row" }, this.runs.length > 1 ? `${name}, ${run.label}` : name);

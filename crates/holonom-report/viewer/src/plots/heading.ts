@@ -1,7 +1,7 @@
 // Title of a plot with the values of its curves: switches where it holds several curves of one run.
 
 import { element } from "../dom";
-import { reading } from "../format";
+import { cleared, reading } from "../format";
 import { curveColor } from "../theme";
 import { withUnit, type Chart, type Curve } from "./charts";
 import { valueAt } from "./values";
@@ -11,8 +11,12 @@ export class Heading {
   onToggle = (): void => {};
   private readonly entries: HTMLElement[];
   private readonly values: HTMLElement[];
+  /** The largest magnitude of each curve. */
+  private readonly largest: number[];
 
   constructor(private readonly chart: Chart) {
+    const larger = (most: number, value: number): number => (Number.isFinite(value) ? Math.max(most, Math.abs(value)) : most);
+    this.largest = chart.curves.map((curve) => curve.y.reduce(larger, 0));
     this.values = chart.curves.map(() => element("span", { class: "value" }));
     const several = chart.curves.length > 1;
     this.entries = chart.curves.map((curve, i) => (several ? this.entrySwitch(curve, i) : element("span", { class: "entry" }, this.values[i])));
@@ -20,7 +24,10 @@ export class Heading {
   }
 
   show(t: number): void {
-    this.chart.curves.forEach((curve, i) => (this.values[i].textContent = reading(valueAt(curve, t))));
+    this.chart.curves.forEach((curve, i) => {
+      const value = valueAt(curve, t);
+      this.values[i].textContent = reading(value === undefined ? value : cleared(value, this.largest[i]));
+    });
   }
 
   refresh(): void {
