@@ -157,10 +157,8 @@ impl Simulation {
         let (mut step, mut landing) = (step, Landing::Failed);
         let outcome = self.substep(step, target).and_then(|mut taken| {
             landing = self.land_on_bend(&mut taken, &mut step, pilot)?;
-            self.smooth(step, pilot)?;
             if matches!(landing, Landing::Between(_)) && self.lands_before_singular(&mut taken, &mut step, pilot)? {
                 landing = self.land_on_bend(&mut taken, &mut step, pilot)?;
-                self.smooth(step, pilot)?;
             }
             Ok(taken)
         });
@@ -305,7 +303,7 @@ impl Simulation {
 
     /// The velocities that errors are estimated from: those shown, or where the method leaves them off the constraints
     /// their projections.
-    fn smooth(&mut self, step: f64, pilot: &mut Pilot) -> Result<(), Failure> {
+    pub(super) fn smooth(&mut self, step: f64, pilot: &mut Pilot) -> Result<(), Failure> {
         pilot.v.copy_from_slice(&self.shown_v);
         let Some(projection) = &pilot.smooth else { return Ok(()) };
         // The end of the step is the start of the next already.

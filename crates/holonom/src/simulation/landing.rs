@@ -10,7 +10,7 @@ use super::pilot::{BETWEEN, Pilot, SMALLEST_SHARE, is_rough};
 use super::sight::{INSIDE, Passed, Sight};
 use crate::formulation::Failure;
 use crate::integrator::Step;
-use crate::system::{Bends, Seen, System};
+use crate::system::{Bends, Look, Seen, System};
 
 /// Share of what the accuracy allows a step to err by within which what is at a kink rests there.
 const REST: f64 = 0.1;
@@ -62,9 +62,10 @@ impl Simulation {
     /// Where a force bends within the step that was just taken, it is taken again and ends there: what follows is not continued from what came
     /// before.
     pub(super) fn land_on_bend(&mut self, taken: &mut Step, step: &mut f64, pilot: &mut Pilot) -> Result<Landing, Failure> {
-        let (system, from) = (self.system.clone(), &mut pilot.sight);
-        let mut at = self.sight();
+        let system = self.system.clone();
+        let mut at = self.smooth_sight(*step, pilot)?;
         let (begin, whole) = (pilot.before.state.t, *step);
+        let from = &mut pilot.sight;
         let least = 2.0 * SMALLEST_SHARE * pilot.control.span;
         // Over so short a way from a bend to a time, such as that of an event there, what has bent is where it was but for rounding.
         if whole < SHORTEST * pilot.control.step && from.reached.contains(&true) {
@@ -110,7 +111,7 @@ impl Simulation {
                 Some(Passed { bend: first, .. }) => {
                     let known = match bracket.take().filter(|_| first == bend) {
                         Some(known) => known.narrowed(t, at.corners[first], true),
-                        None => Bracket::new([begin, t], [from.corners[first], at.corners[first]]),
+                        None => Bracket::new([begin, t], [pilot.sight.corners[first], at.corners[first]]),
                     };
                     bend = first;
                     // It ends just before, where forces are those that the step has had.
@@ -132,16 +133,16 @@ impl Simulation {
                 }
             };
             if next <= begin {
-                return Ok(Landing::AtOnce { again: from.pass(bend, whole, &system) });
+                return Ok(Landing::AtOnce { again: pilot.sight.pass(bend, whole, &system) });
             }
             pilot.before.restore(self);
             self.audit.reject(&self.newton);
             *step = next - begin;
             *taken = self.substep(*step, next)?;
-            at = self.sight();
-            passed = from.first_passed(&at, &system, &&open);
+            at = self.smooth_sight(*step, pilot)?;
+            passed = pilot.sight.first_passed(&at, &system, &&open);
         }
-        Ok(at.land(bend, from, *step, least, &system))
+        Ok(at.land(bend, &pilot.sight, *step, least, &system))
     }
 
     /// Goes on to just behind the bends that a step of length `step` (s) has ended before, so that forces are those of what follows also where the
@@ -191,9 +192,21 @@ impl Simulation {
         system.open(&work.start.at, rounding.or_share(REST * control.allowed() * step, sizes, control.speed))
     }
 
+    /// What is seen of forces that bend at the end of a step of length `step` (s), with the velocities that errors are estimated from: those that no row
+    /// holds go to and fro, and so would what a rope along a rod seems to do.
+    fn smooth_sight(&mut self, step: f64, pilot: &mut Pilot) -> Result<Sight, Failure> {
+        self.smooth(step, pilot)?;
+        Ok(self.sight_of(&pilot.v))
+    }
+
     /// What is seen of forces that bend at the present state.
     pub(super) fn sight(&self) -> Sight {
-        let seen = self.system.see(self.look());
+        self.sight_of(&self.shown_v)
+    }
+
+    /// The same with these velocities.
+    fn sight_of(&self, v: &[f64]) -> Sight {
+        let seen = self.system.see(Look { v, ..self.look() });
         let Bends { corners, peaks } = self.system.bends(&seen);
         Sight { seen, reached: vec![false; corners.len()], corners, peaks }
     }
