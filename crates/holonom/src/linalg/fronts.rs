@@ -146,6 +146,16 @@ impl Fronts {
         self.entries = places;
     }
 
+    /// Whether they are those of a pattern of so many rows, whose entries may come in any order.
+    pub fn have_pattern(&self, size: usize, entries: &[(u32, u32)]) -> bool {
+        let mut is_found = vec![false; self.entries.len()];
+        let mut find = |&(row, column): &(u32, u32)| {
+            let place = self.find(row as usize, column as usize).and_then(|place| self.entries.binary_search(&(place as u32)).ok());
+            place.map(|place| is_found[place] = true).is_some()
+        };
+        self.place.len() == size && entries.iter().all(&mut find) && is_found.iter().all(|is_found| *is_found)
+    }
+
     /// Blocks of all fronts together.
     pub fn blocks(&self) -> usize {
         self.of_block.len()

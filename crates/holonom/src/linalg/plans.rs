@@ -16,15 +16,13 @@ pub struct Plans {
 }
 
 struct Plan {
-    size: usize,
-    entries: Vec<(u32, u32)>,
     order: Vec<u32>,
     fronts: Arc<Fronts>,
 }
 
 impl Plans {
     pub(super) fn fronts(&self, size: usize, entries: &[(u32, u32)], order: &[u32]) -> Arc<Fronts> {
-        let is_same = |plan: &&Plan| plan.size == size && plan.order == order && plan.entries == entries;
+        let is_same = |plan: &&Plan| plan.order == order && plan.fronts.have_pattern(size, entries);
         if let Some(plan) = self.made().iter().find(is_same) {
             return plan.fronts.clone();
         }
@@ -33,7 +31,7 @@ impl Plans {
         if made.len() == MOST {
             made.remove(0);
         }
-        made.push(Plan { size, entries: entries.into(), order: order.into(), fronts: fronts.clone() });
+        made.push(Plan { order: order.into(), fronts: fronts.clone() });
         fronts
     }
 
