@@ -208,9 +208,6 @@ pub(super) fn correct_velocities(
     start: &mut Start,
 ) -> Result<(), StartError> {
     let n = system.coordinates();
-    if !newton.factor_inertia(work) {
-        return Err(StartError::Acceleration);
-    }
     work.lambda.fill(0.0);
     let written = work.end.v.clone();
     let mut change = vec![0.0; written.len()];
@@ -219,7 +216,7 @@ pub(super) fn correct_velocities(
     // What only parts that share nodes are written with is in the impulse.
     let of_parts = asked.impulse.chunks_exact(system.dim).zip(&work.scales.agility).map(|(impulse, agility)| largest(impulse) * agility);
     let size = of_parts.fold(largest(&work.end.v), f64::max);
-    let (mut violation, mut size, mut is_sharp) = (f64::INFINITY, size, false);
+    let (mut violation, mut size, mut is_factored, mut is_sharp) = (f64::INFINITY, size, false, false);
     for pass in 0..PASSES {
         work.rate_violation(system, asked.t);
         let before = violation;
@@ -230,6 +227,11 @@ pub(super) fn correct_velocities(
         if is_met && (pass >= least || pass == 0 && !differ) {
             break;
         }
+        // What stands still on its rows needs no factors.
+        if !is_factored && !newton.factor_inertia(work) {
+            return Err(StartError::Acceleration);
+        }
+        is_factored = true;
         if !is_met && violation > SLOW * before {
             // Where masses are far apart δ is much to some rows.
             if is_sharp || !newton.factor_inertia_of_independent(system, asked.t, work) {
