@@ -5,6 +5,7 @@
 //! direction of a body are the world's at the start.
 
 use nalgebra::{DMatrix, Vector4};
+use smallvec::SmallVec;
 
 use super::rigid::RigidBody;
 use crate::model::geometry::{self, Vec3};
@@ -121,7 +122,8 @@ impl Frame {
             let clean = |value: f64| if value.abs() <= nothing { 0.0 } else { value };
             Term { place: basis.place, factor: clean(factor), turn: clean(turn) }
         });
-        terms.filter(|term| term.factor != 0.0 || term.turn != 0.0).collect()
+        // A body has many of these sums: each takes the room of its terms.
+        terms.filter(|term| term.factor != 0.0 || term.turn != 0.0).collect::<SmallVec<[Term; 4]>>().into_vec()
     }
 }
 

@@ -195,7 +195,7 @@ impl Group<'_> {
     /// lie in it, but for directions of its own across it, which then have no mass.
     fn basis(&self, builder: &mut SystemBuilder, places: &mut [Option<Found>]) -> Vec<Basis> {
         let (dim, centre, solid) = (builder.dimension(), self.centre(), self.solid(builder.dimension()));
-        let lies_in = |edge: Vec3| norm(rest(&solid, edge)) <= THIN * norm(edge);
+        let lies_in = |edge: Vec3| solid.len() == 3 || norm(rest(&solid, edge)) <= THIN * norm(edge);
         let mut own = self.shared.to_vec();
         let is_point = |k: usize| self.wanted.shared[k].is_point;
         // Fixed places first, as they are no unknowns; then points.
@@ -277,6 +277,9 @@ impl Group<'_> {
     fn needed_edges(&self, dim: usize, solid: &[Vec3], shared: &[(usize, Vec3)]) -> usize {
         if dim == 2 {
             return 1;
+        }
+        if solid.len() == 3 {
+            return 3;
         }
         let centre = self.centre();
         let needed = self.members.iter().flat_map(|&body| self.needed[body].iter().copied());
