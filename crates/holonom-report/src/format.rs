@@ -4,6 +4,9 @@ use serde_json::Value;
 
 use crate::digits::{DIGITS, between, without_round_off};
 
+/// Digits that a number has at most.
+pub const FIGURES: usize = 6;
+
 /// Up to six significant digits, `1.5e-9` where zeros would have to be counted.
 pub fn number(value: f64) -> String {
     if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {

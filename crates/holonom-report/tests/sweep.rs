@@ -96,6 +96,23 @@ fn two_keys_have_a_map() {
     assert!(page.contains("run 6, up = 1, right = b refused: too large"));
 }
 
+/// Labels of colours and of keys have as many digits as tell them apart, and no more.
+#[test]
+fn labels_of_a_narrow_range_are_told_apart() {
+    let labels = |low: f64, high: f64, keys: [&str; 2]| {
+        let runs: Vec<SweepRun> = (0..4).map(|k| run(k + 1, &[keys[k / 2].into(), k.to_string()])).collect();
+        let values = [low, high, low, high].map(Some).to_vec();
+        let page = page(true, &["up", "right"], &runs, &[column("c", values)]);
+        let svg = page.split_once("<svg class=\"chart\"").unwrap().1.split_once("</svg>").unwrap().0.to_string();
+        svg.split("<text ").skip(1).map(|rest| rest.split_once('>').unwrap().1.split_once('<').unwrap().0.to_string()).collect::<Vec<_>>()
+    };
+    let has =
+        |labels: &[String], wanted: [&str; 5]| assert!(wanted.iter().all(|one| labels.iter().any(|label| label == one)), "{labels:?}");
+    has(&labels(1.0, 2.0, ["0.1", "0.2"]), ["0.1", "0.2", "1", "1.5", "2"]);
+    has(&labels(9.81, 9.8108, ["20.001", "20.004"]), ["20.001", "20.004", "9.81", "9.8104", "9.8108"]);
+    has(&labels(9.810001, 9.810003, ["20.001", "20.004"]), ["20.001", "20.004", "9.810001", "9.810002", "9.810003"]);
+}
+
 #[test]
 fn samples_are_points_over_each_key() {
     let runs: Vec<SweepRun> = (0..50).map(|k| run(k + 1, &[(k * k % 7).to_string(), ["x", "y"][k % 2].into()])).collect();

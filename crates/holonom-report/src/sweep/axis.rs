@@ -120,6 +120,16 @@ pub fn label(value: f64) -> String {
     minus(&format::number(value))
 }
 
+/// A number with so many significant figures at most.
+pub fn figures(value: f64, figures: usize) -> String {
+    let rounded: f64 = format!("{value:.*e}", figures - 1).parse().unwrap_or(value);
+    if figures <= format::FIGURES {
+        return label(rounded);
+    }
+    let decimals = (figures as f64 - 1.0 - rounded.abs().log10().floor()).max(0.0) as usize;
+    minus(&if (1e-3..1e6).contains(&rounded.abs()) { format!("{rounded:.decimals$}") } else { format!("{value:.*e}", figures - 1) })
+}
+
 fn minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }
