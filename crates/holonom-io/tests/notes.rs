@@ -173,6 +173,16 @@ fn orientations_of_more_than_a_turn_are_noted() {
         assert_eq!(notes(right), [""; 0], "{right}");
     }
     assert_eq!(notes("rpy = [\"400*deg\", 0, \"2*90\"]"), [note("rpy", 180.0)]);
+    // So does who writes it in a parameter, or in one that others are made of.
+    let tilted = |tilt: &str| {
+        model(&format!(
+            "[parameters]\ntilt = {tilt}\ntwice = \"2*tilt\"\n[body.a]\nmass = 1\ninertia = [1, 1, 1]\nposition = [0, 0, 0]\n\
+             orientation = {{ rpy = [\"tilt\", 0, \"twice\"] }}\n"
+        ))
+        .notes
+    };
+    assert_eq!(tilted("\"400*deg\""), [""; 0]);
+    assert_eq!(tilted("\"4*100\""), [note("rpy", 400.0)]);
     let planar = "plane = \"xy\"\n[body.a]\nmass = 1\ninertia = 1\nposition = [0, 0]\norientation = { angle = 45 }\n";
     assert_eq!(model(planar).notes, [note("angle", 45.0)]);
 }

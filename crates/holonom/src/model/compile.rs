@@ -32,12 +32,13 @@ use crate::system::{self, SystemBuilder};
 
 /// Compiles a description. What could not be read is known by name, so that nothing that refers to it is a second fault.
 pub(super) fn model(description: &Description, unread: &Unread, files: &dyn Files, sink: Sink) -> Result<Model, Faults> {
-    let parameters = parameters::read(&description.parameters, &sink);
+    let (parameters, degrees) = parameters::read(&description.parameters, &sink);
     let room = || Cell::new(repeat::MOST);
     let functions = &description.functions;
     let nothing = Tables::new();
     let others: HashMap<String, &'static str> = description.others().map(|(name, what)| (name.to_string(), what)).collect();
-    let first = Compiler { sink: &sink, files, parameters: &parameters, tables: &nothing, functions, others: &others, room: room() };
+    let (parameters, degrees) = (&parameters, &degrees);
+    let first = Compiler { sink: &sink, files, parameters, degrees, tables: &nothing, functions, others: &others, room: room() };
     let tables = first.tables(description, unread);
     let compiler = Compiler { tables: &tables, room: room(), ..first };
     compiler.functions();
@@ -129,6 +130,8 @@ struct Compiler<'a> {
     sink: &'a Sink,
     files: &'a dyn Files,
     parameters: &'a HashMap<String, Known>,
+    /// Those of them whose formulas have the unit `deg`.
+    degrees: &'a HashSet<String>,
     tables: &'a Tables,
     functions: &'a Functions,
     /// What the entries are that are neither points nor bodies.
@@ -141,6 +144,7 @@ impl Compiler<'_> {
     fn entry<'b>(&'b self, name: &'b str, path: &'b str, written: &'b dyn Written) -> Entry<'b> {
         let scope = Scope {
             parameters: Some(self.parameters),
+            degrees: Some(self.degrees),
             indices: &[],
             tables: Some(self.tables),
             functions: Some(self.functions),

@@ -73,9 +73,10 @@ impl<'a> Entry<'a> {
         self.sink.note(&self.path_of(spot.into()), || self.told(message.into()));
     }
 
-    /// Whether the number at a key, or the k-th of the list there, is written as a formula of the unit `deg`.
+    /// Whether the number at a key, or the k-th of the list there, is written as a formula of the unit `deg`, or of parameters that are.
     pub(super) fn is_in_degrees(&self, key: &str, k: usize) -> bool {
-        let is_of_degrees = |value: &Value| matches!(value, Value::Text(text) if names_in(text).iter().any(|name| name == "deg"));
+        let is_one = |name: &String| name == "deg" || self.scope.degrees.is_some_and(|degrees| degrees.contains(name));
+        let is_of_degrees = |value: &Value| matches!(value, Value::Text(text) if names_in(text).iter().any(is_one));
         match self.written.value(key) {
             Some(Value::List(items)) => items.get(k).is_some_and(is_of_degrees),
             value => value.is_some_and(|value| is_of_degrees(&value)),

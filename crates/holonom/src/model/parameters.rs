@@ -9,12 +9,13 @@ use super::fault::{Read, Sink};
 use super::fields::{Field, Number};
 use super::value::{Table, Value};
 
-/// Values of all parameters; those that cannot be read are there as faulty.
-pub fn read(table: &Table, sink: &Sink) -> HashMap<String, Known> {
+/// Values of all parameters, where those that cannot be read are there as faulty, and which have the unit `deg` in their formulas or in those of parameters
+/// that they are made of.
+pub fn read(table: &Table, sink: &Sink) -> (HashMap<String, Known>, HashSet<String>) {
     let needs: HashMap<&str, Vec<String>> = table.iter().map(|(name, value)| (name, needed(table, value))).collect();
     let order = sorted(table, &needs);
     let circular = report_cycles(table, &needs, &order, sink);
-    let mut known = HashMap::new();
+    let (mut known, mut degrees) = (HashMap::new(), HashSet::new());
     // What is part of a cycle, or behind one, is there but faulty, so that no second fault comes of it.
     known.extend(circular.iter().map(|name| (name.to_string(), Known::Faulty)));
     for name in order {
@@ -22,7 +23,7 @@ pub fn read(table: &Table, sink: &Sink) -> HashMap<String, Known> {
             name: "",
             path: "parameters",
             written: table,
-            scope: Scope { parameters: Some(&known), ..Scope::default() },
+            scope: Scope { parameters: Some(&known), degrees: Some(&degrees), ..Scope::default() },
             sink,
             files: &NoFiles,
         };
@@ -30,9 +31,13 @@ pub fn read(table: &Table, sink: &Sink) -> HashMap<String, Known> {
         let number = Number::read(&entry, name.into(), table.get(name).expect("a name of the table"));
         let number = number.and_then(|number| number.number(&entry, name));
         let value = if valid { number.map_or(Known::Faulty, Known::Known) } else { Known::Faulty };
+        let is_in_degrees = entry.is_in_degrees(name, 0);
         known.insert(name.to_string(), value);
+        if is_in_degrees {
+            degrees.insert(name.to_string());
+        }
     }
-    known
+    (known, degrees)
 }
 
 /// The parameters of a file that nothing outside `[parameters]` names, neither by itself nor through other parameters.

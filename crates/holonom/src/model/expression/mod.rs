@@ -17,7 +17,7 @@ mod slopes;
 #[cfg(test)]
 mod tests;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use num_dual::Dual2_64;
@@ -79,6 +79,8 @@ pub(in crate::model) const BAR: &str = "a bar";
 pub struct Scope<'a> {
     /// `[parameters]`; none while there are no parameters yet.
     pub parameters: Option<&'a HashMap<String, Value>>,
+    /// Those of them whose formulas have the unit `deg`.
+    pub degrees: Option<&'a HashSet<String>>,
     /// Indices of `repeat` with their values.
     pub indices: &'a [(String, f64)],
     /// `[table.NAME]`, which are functions of one number; `None` where one could not be read.
