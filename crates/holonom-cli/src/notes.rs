@@ -93,7 +93,7 @@ pub fn rows_without_forces(model: &Model, recording: &Recording) -> Option<Strin
 const LOST: f64 = 0.01;
 
 /// That a method has made or lost much of the energy.
-pub fn lost_energy(simulation: &Simulation) -> Option<String> {
+fn lost_energy(simulation: &Simulation) -> Option<String> {
     let [made, supply] = simulation.made_energy();
     let did = if made > 0.0 { "made" } else { "lost" };
     (made.abs() > LOST * supply).then(|| {
@@ -109,7 +109,7 @@ pub fn lost_energy(simulation: &Simulation) -> Option<String> {
 const MANY_PARTS: f64 = 10.0;
 
 /// That nominal steps were taken in many parts, as they failed as a whole.
-pub fn in_parts(simulation: &Simulation) -> Option<String> {
+fn in_parts(simulation: &Simulation) -> Option<String> {
     let steps = simulation.steps();
     let parts = simulation.audit().work_summary(steps).steps_taken as f64 / steps.max(1) as f64;
     (simulation.method().accuracy.is_none() && parts >= MANY_PARTS).then(|| {
@@ -125,7 +125,7 @@ pub fn in_parts(simulation: &Simulation) -> Option<String> {
 const MANY_STEPS: u64 = 50_000;
 
 /// That the accuracy took very many steps, and which method takes fewer.
-pub fn many_steps(simulation: &Simulation) -> Option<String> {
+fn many_steps(simulation: &Simulation) -> Option<String> {
     let (method, steps) = (simulation.method(), simulation.audit().work_summary(simulation.steps()).steps_taken);
     let is_radau = method.integrator.name == "radau" && method.order() == 5;
     let accuracy = method.accuracy.filter(|_| steps >= MANY_STEPS && !is_radau)?;
@@ -138,7 +138,7 @@ pub fn many_steps(simulation: &Simulation) -> Option<String> {
 }
 
 /// That steps are too long for how forces without a potential change along the way, so that the energy is booked and yet wrong.
-pub fn unsure_work(simulation: &Simulation) -> Option<String> {
+fn unsure_work(simulation: &Simulation) -> Option<String> {
     let (unsure, supply, name) = simulation.unsure_work()?;
     (unsure > LOST * supply).then(|| {
         format!(
@@ -152,7 +152,7 @@ pub fn unsure_work(simulation: &Simulation) -> Option<String> {
 }
 
 /// That forces, as those of contacts, act for a few steps only, so that their largest values are missed.
-pub fn brief_forces(simulation: &Simulation) -> Option<String> {
+fn brief_forces(simulation: &Simulation) -> Option<String> {
     let told = |(name, t, steps): (&str, f64, f64)| {
         let steps = steps.round().max(1.0);
         format!("`{name}` for {steps} step{} at {} s", if steps > 1.0 { "s" } else { "" }, short(t))
@@ -170,7 +170,7 @@ pub fn brief_forces(simulation: &Simulation) -> Option<String> {
 const STRAYED: f64 = 1e-3;
 
 /// That positions were far off a constraint: by methods that do not hold them, such as those of a penalty.
-pub fn strayed(simulation: &Simulation) -> Option<String> {
+fn strayed(simulation: &Simulation) -> Option<String> {
     let (name, way, share) = simulation.strayed().filter(|(_, _, share)| *share > STRAYED)?;
     let settings = &simulation.method().settings;
     let cure = match settings.multipliers {
@@ -237,6 +237,12 @@ pub fn long_turns(model: &Model, method: &Method, recording: &Recording) -> Opti
             100.0 * lag.abs()
         )
     })
+}
+
+/// What is not sure of the results of a run, as far as the simulation itself knows at its end.
+pub fn doubts(simulation: &Simulation, completed: bool) -> impl Iterator<Item = String> {
+    let of_energy = lost_energy(simulation).into_iter().chain(unsure_work(simulation)).filter(move |_| completed);
+    of_energy.chain(strayed(simulation)).chain(in_parts(simulation)).chain(brief_forces(simulation)).chain(many_steps(simulation))
 }
 
 /// What looks like a slip, and what was put right before the start.

@@ -23,8 +23,7 @@ use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
 use crate::message::note;
 use crate::notes::{
-    brief_forces, corrections, in_parts, locked, long_turns, lost_energy, many_steps, rivals, rows_without_forces, shared_forces, slips,
-    strayed, turned_bushings, unknown_measures, unsure_work,
+    corrections, doubts, locked, long_turns, rivals, rows_without_forces, shared_forces, slips, turned_bushings, unknown_measures,
 };
 use crate::options::Destination;
 use crate::progress::Watched;
@@ -193,14 +192,8 @@ pub(crate) fn simulate_kept(
     let unknown = unknown_measures(model, watched.recorder.recording());
     let without = rows_without_forces(model, watched.recorder.recording());
     let turns = long_turns(model, simulation.method(), watched.recorder.recording());
-    let far = strayed(&simulation)
-        .into_iter()
-        .chain(in_parts(&simulation))
-        .chain(brief_forces(&simulation))
-        .chain(many_steps(&simulation))
-        .chain(turned_bushings(model, watched.recorder.recording()));
-    let of_energy = lost_energy(&simulation).into_iter().chain(unsure_work(&simulation)).filter(|_| status == Status::Completed);
-    let of_steps = of_energy.chain(far).chain(turns);
+    let turned = turned_bushings(model, watched.recorder.recording());
+    let of_steps = doubts(&simulation, status == Status::Completed).chain(turned).chain(turns);
     let of_results: Vec<String> = unknown.into_iter().chain(without).chain(shared_forces(model, &simulation)).chain(of_steps).collect();
     if !quiet {
         of_results.iter().for_each(|text| say(text));

@@ -250,11 +250,11 @@ fn columns_are_chosen_and_joints_have_theirs() {
     assert!(header.iter().any(|name| name.ends_with("_rate")) && !header.contains(&"phi_dot".to_string()), "{header:?}");
     prints(&folder, &format!("sweep {PAPER} --vary point.m1.mass=1,2 --end 0.1 --columns m2.x,phi --quiet --out b"), 0);
     let (header, rows) = cells(&table(&folder, "b"));
-    assert_eq!(header[10..], ["rejected_steps", "m2.x", "phi"].map(String::from)[..], "{header:?}");
+    assert_eq!(header[11..], ["rejected_steps", "m2.x", "phi"].map(String::from)[..], "{header:?}");
     assert_eq!(rows.len(), 2);
     prints(&folder, &format!("sweep {PAPER} --vary point.m1.mass=1,2 --end 0.1 --set output.points=[\"m2\"] --quiet --out c"), 0);
     let (header, _) = cells(&table(&folder, "c"));
-    assert_eq!(header[11..].join(","), "energy,m2.x,m2.y,m2.z,m2.vx,m2.vy,m2.vz");
+    assert_eq!(header[12..].join(","), "energy,m2.x,m2.y,m2.z,m2.vx,m2.vy,m2.vz");
 }
 
 #[test]
@@ -323,4 +323,32 @@ fn parameters_that_nothing_uses_are_named() {
     let column = told("--vary parameters.h=1,2 --columns ball.z*used*idle");
     assert!(!column.contains("nothing uses"), "{column}");
     assert!(!told("--vary parameters.idle=1,2 --quiet").contains("nothing uses"));
+}
+
+/// What is not sure of the runs of a sweep is in its table, and with slips on the screen, in the JSON and in the report: a contact of π √(m/k) = 4.44 ms that
+/// steps of 8 ms see once, and those of 0.5 ms nine times.
+#[test]
+fn notes_of_runs_are_in_the_table_and_named() {
+    let folder = folder();
+    let text = "plane = \"xy\"\ngravity = [0, 0]\n[parameters]\nidle = 1\n[body.slider]\nmass = 2\ninertia = 1\nposition = [0, 0]\nvelocity = [1.5, 0]\n\
+                [joint.guide]\ntype = \"prismatic\"\nbetween = [\"ground\", \"slider\"]\naxis = [1, 0]\n\
+                [force.buffer]\ntype = \"stop\"\njoint = \"guide\"\nupper = 0.01234\nstiffness = 1e6\n\
+                [simulation]\nend = 0.05\nstep = 8e-3\n";
+    fs::write(folder.path().join("impact.toml"), text).unwrap();
+    let output = holonom(&folder, "sweep impact.toml --vary simulation.step=5e-4,8e-3 --columns max(abs(buffer.effort)) --json --out a");
+    let (said, summary): (String, Value) = (common::text(&output.stderr), serde_json::from_slice(&output.stdout).unwrap());
+    let (header, rows) = cells(&table(&folder, "a"));
+    let notes = column(&header, &rows, "notes");
+    assert!(
+        notes[0].is_empty() && notes[1].starts_with("forces act for so few steps") && notes[1].contains("`buffer` for 1 step at 0.016 s"),
+        "{notes:?}"
+    );
+    let of_run = format!("1 of 2 runs has notes, in the column `notes`: run 2: {}", notes[1]);
+    let told = ["nothing uses the parameter `idle`".to_string(), of_run];
+    assert_eq!(summary["notes"], serde_json::json!(told));
+    let report = fs::read_to_string(folder.path().join("a/report.html")).unwrap();
+    for one in told {
+        assert!(said.contains(&format!("note: {one}\n")), "{said}");
+        assert!(report.contains(&format!("<li><strong>note:</strong> {one}</li>")), "{one}");
+    }
 }

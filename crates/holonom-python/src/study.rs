@@ -258,6 +258,11 @@ impl Sweep {
         Ending::ALL.map(|ending| self.study.count(&table, ending))
     }
 
+    /// What is said of the study beside its table.
+    fn notes(&self) -> Vec<String> {
+        self.study.notes(&self.held().table(&self.study))
+    }
+
     /// Why runs did not complete, in a line for each.
     fn failures(&self) -> Vec<String> {
         self.study.failures(&self.held().table(&self.study))

@@ -75,6 +75,18 @@ def test_the_table_is_that_of_the_command_and_the_same_for_any_threads(tmp_path)
     assert written(hm.sweep(throw(), rows=hm.grid(vary), columns=COLUMNS), tmp_path) == command
 
 
+def test_what_is_not_sure_is_warned_of_and_kept():
+    m = throw()
+    m.parameter("idle", 2)
+    m.expression("floor", point="ball", force=[0, 0, "1e6*max(0, -0.5 - z)"])
+    with pytest.warns(hm.ModelWarning) as warned:
+        study = hm.sweep(m, {"simulation.step": [1e-2, 1e-4]}, columns=COLUMNS, end=0.4)
+    # In contact for pi*sqrt(m/k) = 3.1 ms, from 0.3193 s on.
+    assert "`floor`" in study["notes"][0] and not study["notes"][1]
+    assert study.notes[0] == "nothing uses the parameter `idle`" and study.notes[1].startswith("1 of 2 runs has notes")
+    assert [str(one.message) for one in warned] == study.notes
+
+
 def test_runs_that_fail_are_rows():
     m = throw()
     study = hm.sweep(m, {"parameters.k": [1, -1, 2]}, columns=COLUMNS)

@@ -2,7 +2,7 @@
 
 use crate::escape::html;
 use crate::outcome::{ended, is_measured};
-use crate::{Run, comparison, digits, format};
+use crate::{Run, comparison, digits, format, page};
 use serde_json::Value;
 use std::io;
 
@@ -42,12 +42,7 @@ fn one(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
 
 /// What the run was told to look out for. It stands beside how the run ended, as a run that completed may still be wrong.
 fn notes(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
-    let notes = list(summary, "/notes");
-    if notes.is_empty() {
-        return Ok(());
-    }
-    let items: String = notes.iter().map(|note| format!("<li><strong>note:</strong> {}</li>", html(&format::value(note)))).collect();
-    writeln!(out, r#"<ul class="notes">{items}</ul>"#)
+    page::notes(list(summary, "/notes").iter().map(format::value), out)
 }
 
 /// Key figures of the solver: a list for one run, a table for several.

@@ -135,3 +135,9 @@ fn scripts(data: &Data, script: &str, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "<script type=\"application/json\" id=\"holonom-data\">{}</script>", json_in_script(&json))?;
     writeln!(out, "<script>\n{script}</script>")
 }
+
+/// A list of notes, where there are any.
+pub fn notes(notes: impl Iterator<Item = String>, out: &mut dyn io::Write) -> io::Result<()> {
+    let items: String = notes.map(|note| format!("<li><strong>note:</strong> {}</li>", html(&note))).collect();
+    if items.is_empty() { Ok(()) } else { writeln!(out, r#"<ul class="notes">{items}</ul>"#) }
+}

@@ -10,7 +10,9 @@ fn run(number: usize, settings: &[String]) -> SweepRun {
 fn page(is_grid: bool, keys: &[&str], runs: &[SweepRun], columns: &[SweepColumn]) -> String {
     let keys: Vec<SweepKey> = keys.iter().map(|name| SweepKey { name, is_logarithmic: false }).collect();
     let set = ["simulation.step=0.01".to_string()];
-    let report = SweepReport { title: "A <sweep>", model_text: "[point.\"<m>\"]", set: &set, is_grid, keys: &keys, columns, runs };
+    let notes = ["`k` < 0".to_string()];
+    let report =
+        SweepReport { title: "A <sweep>", notes: &notes, model_text: "[point.\"<m>\"]", set: &set, is_grid, keys: &keys, columns, runs };
     let mut out = Vec::new();
     report.write(&mut out).unwrap();
     String::from_utf8(out).unwrap()
@@ -43,6 +45,7 @@ fn one_key_has_a_curve_for_each_column() {
     assert!((x[0] - left).abs() < 0.1 && (x[4] - right).abs() < 0.1, "{x:?} {left} {right}");
     assert_eq!(page.matches("class=\"curve\"").count(), 2);
     assert!(page.contains("5 runs · 5 completed · grid of parameters.k") && page.contains("run 3, parameters.k = 200: 20<"));
+    assert!(page.contains("<li><strong>note:</strong> `k` &lt; 0</li>"));
     assert!(page.contains("max(s.force) <small>N</small>") && page.contains("simulation.step=0.01"));
 }
 

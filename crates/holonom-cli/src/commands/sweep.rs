@@ -48,9 +48,10 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
     if !columns.is_empty() {
         summary["columns"] = answers.values();
     }
+    summary["notes"] = if is_whole { study.notes(&table) } else { study.slips() }.into();
     tell(arguments, &store, &summary, &answers, is_whole);
     if is_whole && !arguments.to.quiet {
-        study.late(&table).iter().for_each(|text| note(text));
+        study.of_runs(&table).iter().for_each(|text| note(text));
     }
     // Whatever was asked not to be said, a status of failure has its reason.
     if !arguments.to.quiet || !any_completed {

@@ -13,13 +13,13 @@ use super::watch::Columns;
 /// Ratio of the largest to the least of some numbers beyond which they are shown in equal ratios.
 const MANY_TIMES: f64 = 30.0;
 
-/// Writes the page about all runs of a table. The model is known by its title, or by `name`.
+/// Writes the page about all runs of a table, with what is said of them. The model is known by its title, or by `name`.
 pub fn write_report(
     (source, name): (&Source, &str),
     set: &[String],
     plan: &Plan,
     columns: &Columns,
-    table: &Table,
+    (table, notes): (&Table, &[String]),
     out: &mut dyn Write,
 ) -> std::io::Result<()> {
     let keys: Vec<SweepKey<'_>> =
@@ -45,7 +45,7 @@ pub fn write_report(
         _ => name,
     };
     let report =
-        SweepReport { title, model_text: source.text(), set, is_grid: plan.is_grid(), keys: &keys, columns: &columns, runs: &runs };
+        SweepReport { title, notes, model_text: source.text(), set, is_grid: plan.is_grid(), keys: &keys, columns: &columns, runs: &runs };
     report.write(out)
 }
 

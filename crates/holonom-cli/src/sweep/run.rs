@@ -15,6 +15,7 @@ use super::vary::Setting;
 use super::watch::{Columns, Watch};
 use crate::failure::Failure;
 use crate::load;
+use crate::notes::doubts;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +49,8 @@ pub struct Outcome {
     pub stopped_at: Option<f64>,
     /// Why it did not complete; empty where it did.
     pub reason: String,
+    /// What is not sure of its results.
+    pub notes: Vec<String>,
     /// Nothing where the run was refused.
     pub figures: Option<Figures>,
 }
@@ -121,9 +124,10 @@ impl Runner<'_> {
             model.find_reactions(&mut simulation);
         }
         let figures = Some(figures(&simulation, watched.watch.values(&simulation)));
+        let notes = doubts(&simulation, status == Status::Completed).collect();
         Ok(Some(match status {
-            Status::Completed => Outcome { ending: Ending::Completed, stopped_at: None, reason: String::new(), figures },
-            Status::Stopped { at, reason } => Outcome { ending: Ending::Stopped, stopped_at: Some(at), reason, figures },
+            Status::Completed => Outcome { ending: Ending::Completed, stopped_at: None, reason: String::new(), notes, figures },
+            Status::Stopped { at, reason } => Outcome { ending: Ending::Stopped, stopped_at: Some(at), reason, notes, figures },
         }))
     }
 }
@@ -183,5 +187,5 @@ impl Task {
 }
 
 fn refused(reason: String) -> Outcome {
-    Outcome { ending: Ending::Refused, stopped_at: None, reason, figures: None }
+    Outcome { ending: Ending::Refused, stopped_at: None, reason, notes: Vec::new(), figures: None }
 }

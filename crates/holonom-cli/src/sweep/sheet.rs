@@ -12,7 +12,7 @@ const FIGURES: [&str; 6] = ["steps", "energy_drift", "position_violation", "velo
 
 /// Columns around the varied keys.
 const RUN: &str = "run";
-const ENDING: [&str; 3] = ["status", "stopped_at", "reason"];
+const ENDING: [&str; 4] = ["status", "stopped_at", "reason", "notes"];
 
 /// What the columns of a sweep are called.
 pub struct Sheet {
@@ -43,7 +43,12 @@ impl Sheet {
         let mut cells = vec![run.to_string()];
         cells.extend(settings.iter().map(|setting| one_line(&setting.text)));
         let optional = |value: Option<f64>| value.map_or(String::new(), csv_number);
-        cells.extend([outcome.ending.word().into(), optional(outcome.stopped_at), one_line(&outcome.reason)]);
+        cells.extend([
+            outcome.ending.word().into(),
+            optional(outcome.stopped_at),
+            one_line(&outcome.reason),
+            one_line(&outcome.notes.join("\n")),
+        ]);
         match &outcome.figures {
             None => cells.resize(self.width(), String::new()),
             Some(figures) => {
@@ -107,6 +112,16 @@ impl Sheet {
         failed.map(words).collect()
     }
 
+    /// How many runs of a table have notes, with those of the first.
+    pub fn noted(&self, table: &Table) -> Option<String> {
+        let notes = &table.columns[self.varied.len() + ENDING.len()].1;
+        let noted: Vec<usize> = (0..table.rows()).filter(|&row| !notes.text(row).is_empty()).collect();
+        let first = *noted.first()?;
+        let have = if noted.len() == 1 { "has" } else { "have" };
+        let [run, text] = [&table.columns[0].1, notes].map(|cells| cells.text(first));
+        Some(format!("{} of {} runs {have} notes, in the column `notes`: run {run}: {text}", noted.len(), table.rows()))
+    }
+
     fn width(&self) -> usize {
         1 + self.varied.len() + ENDING.len() + FIGURES.len() + self.shown.len()
     }
@@ -116,7 +131,7 @@ impl Sheet {
         let (whole, number, word) = (|| Cells::Whole(Vec::new()), || Cells::Numbers(Vec::new()), || Cells::Words(Vec::new()));
         let mut columns = vec![(RUN.to_string(), whole())];
         columns.extend(self.varied.iter().map(|(path, is_numeric)| (path.clone(), if *is_numeric { number() } else { word() })));
-        columns.extend(ENDING.into_iter().map(String::from).zip([word(), number(), word()]));
+        columns.extend(ENDING.into_iter().map(String::from).zip([word(), number(), word(), word()]));
         columns.extend(FIGURES.map(|name| (name.to_string(), if name.ends_with("steps") { whole() } else { number() })));
         columns.extend(self.shown.iter().map(|name| (name.clone(), number())));
         Table { columns }

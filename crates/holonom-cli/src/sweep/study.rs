@@ -78,7 +78,7 @@ impl Study {
     }
 
     /// Columns of values at a time that runs of a table lack, as they ended before it.
-    pub fn late(&self, table: &Table) -> Vec<String> {
+    fn late(&self, table: &Table) -> Vec<String> {
         let at = |asked: &Asked| if let Function::At(t) = asked.function { Some(t) } else { None };
         let told = |asked: &Asked| {
             let (t, count) = (at(asked)?, self.sheet.lacking(table, &asked.text));
@@ -88,6 +88,16 @@ impl Study {
             })
         };
         self.columns.asked.iter().filter_map(told).collect()
+    }
+
+    /// What is said of it beside the results: slips, and of all runs of a table what they lack and what is not sure of them.
+    pub fn notes(&self, table: &Table) -> Vec<String> {
+        self.slips().into_iter().chain(self.of_runs(table)).collect()
+    }
+
+    /// The same of the runs alone.
+    pub fn of_runs(&self, table: &Table) -> Vec<String> {
+        self.late(table).into_iter().chain(self.sheet.noted(table)).collect()
     }
 
     /// Number of runs.
@@ -178,7 +188,7 @@ impl Study {
     /// # Errors
     /// What cannot be written.
     pub fn report(&self, set: &[String], table: &Table, out: &mut dyn std::io::Write) -> std::io::Result<()> {
-        write_report((&self.source, &self.name), set, &self.plan, &self.columns, table, out)
+        write_report((&self.source, &self.name), set, &self.plan, &self.columns, (table, &self.notes(table)), out)
     }
 
     pub(super) fn sheet(&self) -> &Sheet {

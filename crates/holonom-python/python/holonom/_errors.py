@@ -61,7 +61,7 @@ class FunctionError(RuntimeError):
 
 class ModelWarning(UserWarning):
     """What looks like a slip in a model, or was put right before its start: velocities that its joints do not allow, a parameter that nothing
-    uses. The ``notes`` of runs and simulations have the same."""
+    uses. The ``notes`` of runs, simulations and studies have the same."""
 
 
 def warn(notes: Sequence[str]) -> None:

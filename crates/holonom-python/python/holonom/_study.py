@@ -13,7 +13,7 @@ import numpy as np
 from . import _engine
 from ._builders import text_of
 from ._engines import ENGINES
-from ._errors import needed, refuse, texts_of
+from ._errors import needed, refuse, texts_of, warn
 from ._model import Model, changes_of
 from ._run import Run
 from ._samplers import Table, mapping, values_of, whole
@@ -82,6 +82,11 @@ class Study:
     def whole(self) -> bool:
         """Whether all runs have ended: Ctrl-C ends a study before."""
         return self._sweep.is_whole()
+
+    @property
+    def notes(self) -> list[str]:
+        """What looks like a slip, and what is not sure of the results, as the command says it: they were warned of."""
+        return self._sweep.notes()
 
     @property
     def failed(self) -> list[Failed]:
@@ -225,7 +230,9 @@ def sweep(
             made.finish(formats, True)
     finally:
         made.release()
-    return Study(model, made, study)
+    result = Study(model, made, study)
+    warn(result.notes)
+    return result
 
 
 class _Bar:

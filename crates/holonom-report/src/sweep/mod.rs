@@ -54,6 +54,8 @@ impl SweepRun {
 pub struct SweepReport<'a> {
     /// Heading of the page, as plain text.
     pub title: &'a str,
+    /// What is said of it beside its results.
+    pub notes: &'a [String],
     /// The model file, shown at the bottom.
     pub model_text: &'a str,
     /// What the command line set of it, as `KEY=VALUE`.
@@ -79,6 +81,7 @@ impl SweepReport<'_> {
     pub fn write(&self, out: &mut dyn io::Write) -> io::Result<()> {
         page::head(self.title, "", out)?;
         writeln!(out, "<header>\n<h1>{}</h1>\n<p class=\"method\">{}</p>\n</header>\n<main>", html(self.title), self.question())?;
+        page::notes(self.notes.iter().cloned(), out)?;
         let (differing, constant): (Vec<&SweepColumn>, Vec<&SweepColumn>) = self.columns.iter().partition(|column| self.differs(column));
         self.charts(&differing, out)?;
         runs::write(self, &differing, out)?;
