@@ -231,7 +231,7 @@ fn impact(step: f64, second: f64, rest: &str) -> String {
 }
 
 /// Contacts of which equal steps see little are noted, as the largest force that is shown is not that of the contact, v √(k m) = 2121 N; longer ones are
-/// not, nor are those of steps by accuracy, which show that force, nor a force that time alone switches.
+/// not, nor are those of steps by accuracy, which show that force, nor a force that time or an input alone switches.
 #[test]
 fn contacts_of_few_steps_are_noted() {
     let note = "forces act for so few steps that their largest values may be far more than what is shown";
@@ -251,9 +251,13 @@ fn contacts_of_few_steps_are_noted() {
     says(&floor, &[note, "`floor` for 3 steps at"], 0);
     says(&rope, &[note, "`rope` for "], 0);
     let pulse = "[force.pulse]\ntype = \"expression\"\npoint = \"ball\"\nforce = [\"10*step(t - 0.499)*step(0.509 - t)\", 0, 0]";
+    // What an input switches is on for four steps, again and again.
+    let switched = "[input.u]\n[event.sample]\nevery = 0.02\nset = { u = \"floor(2*mod(12*t, 1))\" }\n\
+                    [force.thruster]\ntype = \"effort\"\njoint = \"guide\"\neffort = \"10*max(0, u)\"\n";
+    let switched = impact(1e-2, 1.0, switched).replace("upper = 0.01234", "upper = 100").replace("end = 0.05", "end = 2");
     let accurate = impact(8e-3, 1.0, "accuracy = 1e-6\n");
     says(&accurate, &["buffer -2121"], 0);
-    for silent in [impact(5e-4, 1.0, ""), accurate, falling(pulse)] {
+    for silent in [impact(5e-4, 1.0, ""), accurate, falling(pulse), switched] {
         let (said, status) = run(&silent);
         assert!(status == Some(0) && !said.contains(note), "{said}");
     }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use super::evaluate::Local;
-use super::{Bend, LawEntry, LoadEntry, Look, Response, System};
+use super::{Bend, LawEntry, LoadEntry, Look, Response, Sense, System};
 
 /// The laws and the loads whose forces bend, by their numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -78,10 +78,14 @@ impl<'a> Bent<'a> {
         [bends.corners.len(), bends.peaks.len()]
     }
 
-    /// Whether it has corners that move where the numbers do that it depends on.
+    /// Whether it has corners that move where the numbers of what moves do that it depends on; inputs stay.
     fn switches(self, dim: usize) -> bool {
         let corners = |number: f64| {
-            let (numbers, mut bends) = (Local::from_elem(number, self.width(dim)), Bends::default());
+            let (mut numbers, mut bends) = (Local::from_elem(number, self.width(dim)), Bends::default());
+            if let Self::Load(LoadEntry { reading, .. }) = self {
+                let senses = numbers[reading.nodes.len() * dim..].iter_mut().zip(&reading.senses);
+                senses.filter(|(_, sense)| matches!(sense, Sense::Input(_))).for_each(|(number, _)| *number = 1.0);
+            }
             self.bends(&numbers, &numbers, 0.0, &mut bends);
             bends.corners
         };
