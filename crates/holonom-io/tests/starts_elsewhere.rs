@@ -273,8 +273,11 @@ fn a_start_says_what_it_moves_that_nothing_ties() {
         assert!(common::model(&parts(&format!("{tied}{whole}"))).notes.is_empty());
     }
     // Rates of a joint alone set off the others, too, as an impulse between the two bodies does.
-    let notes = common::model(&parts(&format!("{tied}[start.base]\nangle = 0.0\n")).replace("angle = 1.0", "angle_rate = 1.0")).notes;
-    assert!(notes.len() == 1 && notes[0].contains("`base.angle_rate` is -0.5 rad/s"), "{notes:?}");
+    for (rate, other) in [("1.0", "-0.5"), ("2e-9", "-1e-9")] {
+        let rate = format!("angle_rate = {rate}");
+        let notes = common::model(&parts(&format!("{tied}[start.base]\nangle = 0.0\n")).replace("angle = 1.0", &rate)).notes;
+        assert!(notes.len() == 1 && notes[0].contains(&format!("`base.angle_rate` is {other} rad/s")), "{notes:?}");
+    }
 }
 
 /// Where the joints that are named leave nothing free the others follow, and there is nothing to say of it.

@@ -10,7 +10,7 @@ use crate::system::{GaugeValues, System, SystemBuilder, Term, place_of};
 /// Most bodies or coordinates that are named.
 const NAMED: usize = 3;
 
-/// What bodies move by less than, over the size of the mechanism, and turn by, rad, without a word.
+/// What bodies move by less than, over the size of the mechanism, and turn by, rad, without a word; of rates it is a share of the largest.
 const ADRIFT: f64 = 1e-6;
 
 /// Says how bodies that no joint ties to the ground were moved to a start where coordinates are given: they only move as little as they can.
@@ -60,14 +60,17 @@ pub(super) fn measured(builder: &SystemBuilder) -> (System, GaugeValues) {
 /// nothing.
 pub(super) fn followed(assembly: &Assembly<'_>, targets: &[Target], before: &GaugeValues) -> Option<String> {
     let (system, after) = measured(&assembly.builder);
+    let size = |k: usize| if system.is_angle(k) { 1.0 } else { assembly.builder.size() };
+    let quicker = |k: usize| (after.rate[k] - before.rate[k]).abs() / size(k);
+    let quickest = (0..after.rate.len()).map(quicker).fold(0.0, f64::max);
     let moved = system.gauges().iter().enumerate().filter_map(|(k, name)| {
         let target = targets.iter().find(|target| target.name() == *name);
-        let (unit, size) = if system.is_angle(k) { ("rad", 1.0) } else { ("m", assembly.builder.size()) };
+        let unit = if system.is_angle(k) { "rad" } else { "m" };
         let (value, rate) = (after.value[k], after.rate[k]);
-        let is_elsewhere = target.is_none_or(|target| !target.is_placed()) && value.abs() > ADRIFT * size;
+        let is_elsewhere = target.is_none_or(|target| !target.is_placed()) && value.abs() > ADRIFT * size(k);
         // Where something is driven, rates follow from that.
         let is_led = system.is_driven() || target.is_some_and(Target::is_rated);
-        let is_quick = !is_led && (rate - before.rate[k]).abs() > ADRIFT * size;
+        let is_quick = !is_led && quicker(k) > ADRIFT * quickest;
         match (is_elsewhere, is_quick) {
             (true, _) => Some(format!("`{name}` is {} {unit}", short(value))),
             (false, true) => Some(format!("`{name}_rate` is {} {unit}/s", short(rate))),

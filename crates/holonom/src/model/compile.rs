@@ -315,18 +315,12 @@ impl Compiler<'_> {
         // What is wrong with others has been told, and they may repeat without end.
         let sound = || entries.iter().filter(|named| !faulty.contains(&named.name));
         let again = Compiler { room: Cell::new(usize::MAX), ..*self };
-        let mut lost = HashSet::new();
-        for named in sound() {
-            let waits = again.instances("body", named, &mut |entry, body| match &body.position {
-                field::Place::Named(name) => placing.wait(entry, name),
-                field::Place::Fixed(_) => Ok(()),
-            });
-            lost.extend(waits.is_err().then(|| named.name.clone()));
-        }
-        for named in sound() {
-            let placed = again.instances("body", named, &mut |entry, _| placing.place(entry));
-            lost.extend(placed.is_err().then(|| named.name.clone()));
-        }
+        let unnamed = again.each_of("body", sound(), |entry, body| match &body.position {
+            field::Place::Named(name) => placing.wait(entry, name),
+            field::Place::Fixed(_) => Ok(()),
+        });
+        let mut lost = again.each_of("body", sound(), |entry, _| placing.place(entry));
+        lost.extend(unnamed);
         lost
     }
 
@@ -414,9 +408,19 @@ impl Compiler<'_> {
     }
 
     /// Calls `each` for all that the entries of a section make. Hands back the names of those in which something was wrong.
-    fn each<T: Written>(&self, section: &str, entries: &Entries<T>, mut each: impl FnMut(&Entry<'_>, &T) -> Read<()>) -> HashSet<String> {
+    fn each<T: Written>(&self, section: &str, entries: &Entries<T>, each: impl FnMut(&Entry<'_>, &T) -> Read<()>) -> HashSet<String> {
+        self.each_of(section, entries.iter(), each)
+    }
+
+    /// The same for some of the entries of a section.
+    fn each_of<'e, T: Written + 'e>(
+        &self,
+        section: &str,
+        entries: impl Iterator<Item = &'e Named<T>>,
+        mut each: impl FnMut(&Entry<'_>, &T) -> Read<()>,
+    ) -> HashSet<String> {
         let mut faulty = HashSet::new();
-        for named in entries.iter() {
+        for named in entries {
             if self.instances(section, named, &mut each).is_err() {
                 faulty.insert(named.name.clone());
             }
