@@ -18,8 +18,11 @@ const FEWEST_STEPS: usize = 20;
 /// Most places in a step of which its mean is found.
 const MOST_PLACES: usize = 256;
 
-/// To this share of how far a function goes in a step its mean is found.
+/// To this share of how far a function goes in a step its mean is told.
 const MEAN: f64 = 1e-4;
+
+/// To this share of how far a function goes in the run its mean over a step is found: few places do where it is nearly straight.
+const LOOK: f64 = 1e-3;
 
 /// Where a step is divided first: not evenly, so that nothing has the same period.
 const DIVISIONS: [f64; 6] = [0.0, 0.137, 0.382, 0.55, 0.791, 1.0];
@@ -158,16 +161,22 @@ fn first_missed(course: &Course, bends: &[f64], looks: &[[f64; 2]], most: usize,
     numbers.retain(|k| *k < count);
     numbers.sort_unstable();
     numbers.dedup();
-    let steps: Vec<Seen> = numbers.into_iter().map(|number| Seen::of(course, bends, looks, step, number)).collect();
     // How far it goes beside the straight line through its ends: a motion may go on for ever.
     let [begin, last] = [0.0, end].map(|t| course.at(t));
     let slope = (last - begin) / end;
+    let beside = |t: f64, value: f64| (value - begin - slope * t).abs();
     let far = |seen: &Seen| {
-        let t = seen.number as f64 * step;
-        let beside = |later: f64, value: f64| (value - begin - slope * (t + later)).abs();
-        beside(0.0, seen.ends[0]).max(beside(step, seen.ends[1])).max(beside(0.5 * step, seen.mean))
+        let [from, to] = seen.times(step);
+        beside(from, seen.ends[0]).max(beside(to, seen.ends[1])).max(beside(0.5 * (from + to), seen.mean))
     };
-    let reach = steps.iter().map(far).filter(|far| far.is_finite()).fold(0.0, f64::max);
+    let mut reach = 0.0_f64;
+    let mut steps: Vec<Seen> = Vec::with_capacity(numbers.len());
+    for number in numbers {
+        let seen = Seen::of(course, bends, looks, step, number, LOOK * reach);
+        let far = far(&seen);
+        reach = if far.is_finite() { reach.max(far) } else { reach };
+        steps.push(seen);
+    }
     let largest = steps.iter().map(|seen| seen.mean.abs()).filter(|mean| mean.is_finite()).fold(0.0, f64::max);
     if reach <= ROUNDED * largest {
         return None;
@@ -182,9 +191,11 @@ fn first_missed(course: &Course, bends: &[f64], looks: &[[f64; 2]], most: usize,
     // What happens beside the end of a step is seen by both or by none.
     let pairs = || steps.windows(2).filter(|pair| pair[1].number == pair[0].number + 1).map(|pair| pair[0].joined(&pair[1]));
     let (seen, length) = alone.or_else(|| pairs().find(|seen| is_missed(seen, 2.0 * step)).map(|seen| (seen, 2.0 * step)))?;
+    let exactly = |number| Seen::of(course, bends, looks, step, number, 0.0);
+    let told = if length > step { exactly(seen.number).joined(&exactly(seen.number + 1)) } else { exactly(seen.number) };
     let begin = seen.number as f64 * step;
     let known = |value: f64| if value.abs() < SMALL * reach { 0.0 } else { value };
-    Some(Missed { times: [begin, begin + length], mean: known(seen.mean), taken: known(seen.taken) })
+    Some(Missed { times: [begin, begin + length], mean: known(told.mean), taken: known(told.taken) })
 }
 
 impl Seen {
@@ -194,20 +205,32 @@ impl Seen {
         Self { number: self.number, ends: [self.ends[0], next.ends[1]], mean: both(|seen| seen.mean), taken: both(|seen| seen.taken) }
     }
 
-    fn of(course: &Course, bends: &[f64], looks: &[[f64; 2]], step: f64, number: usize) -> Self {
+    /// When the step begins and ends, s.
+    fn times(&self, step: f64) -> [f64; 2] {
+        [self.number, self.number + 1].map(|k| k as f64 * step)
+    }
+
+    /// A step, with its mean as near as `near`, or as the share `MEAN` of how far the function goes in it.
+    fn of(course: &Course, bends: &[f64], looks: &[[f64; 2]], step: f64, number: usize, near: f64) -> Self {
         let [from, to] = [number, number + 1].map(|k| k as f64 * step);
-        let ends = [course.at(from), course.at(to)];
-        // What jumps at an end has one value there.
-        let at = |share: f64| if share == 1.0 { ends[1] } else { course.at(from + share * step) };
-        let taken = looks.iter().map(|[share, weight]| weight * at(*share)).sum();
         let inside = &bends[bends.partition_point(|t| *t <= from)..bends.partition_point(|t| *t < to)];
         let mut places: Vec<f64> = DIVISIONS.iter().map(|share| from + share * (to - from)).chain(inside.iter().copied()).collect();
         places.sort_by(f64::total_cmp);
         places.dedup();
-        let pieces: Vec<Piece> = places.windows(2).map(|ends| Piece::new(course, [ends[0], ends[1]])).collect();
+        let values: Vec<f64> = places.iter().map(|t| course.at(*t)).collect();
+        let pairs = places.windows(2).zip(values.windows(2));
+        let pieces: Vec<Piece> = pairs.map(|(ends, values)| Piece::new(course, [ends[0], ends[1]], [values[0], values[1]])).collect();
+        // What jumps at an end has one value there.
+        let ends = [values[0], values[values.len() - 1]];
+        let at = |share: f64| match share {
+            0.0 => ends[0],
+            1.0 => ends[1],
+            _ => course.at(from + share * step),
+        };
+        let taken = looks.iter().map(|[share, weight]| weight * at(*share)).sum();
         let values = pieces.iter().flat_map(|piece| piece.values);
         let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(value), most.max(value)));
-        let width = MEAN * (most - least) * (to - from);
+        let width = near.max(MEAN * (most - least)) * (to - from);
         let mut left = MOST_PLACES;
         let integral: f64 = pieces.into_iter().map(|piece| piece.integral(course, width, &mut left)).sum();
         Self { number, ends, mean: integral / (to - from), taken }
@@ -221,9 +244,8 @@ struct Piece {
 }
 
 impl Piece {
-    fn new(course: &Course, ends: [f64; 2]) -> Self {
-        let middle = 0.5 * (ends[0] + ends[1]);
-        Self { ends, values: [ends[0], middle, ends[1]].map(|t| course.at(t)) }
+    fn new(course: &Course, ends: [f64; 2], values: [f64; 2]) -> Self {
+        Self { ends, values: [values[0], course.at(0.5 * (ends[0] + ends[1])), values[1]] }
     }
 
     /// By Simpson's rule.
@@ -231,9 +253,12 @@ impl Piece {
         (self.ends[1] - self.ends[0]) / 6.0 * (self.values[0] + 4.0 * self.values[1] + self.values[2])
     }
 
-    /// The same on halves until both are as near as `width`, at no more than as many places as are `left`.
+    /// The same on halves until both are as near as `width`, at no more than as many places as are `left`; as it is where a straight line would do.
     fn integral(self, course: &Course, width: f64, left: &mut usize) -> f64 {
         let ([begin, end], [first, middle, last]) = (self.ends, self.values);
+        if (0.5 * (end - begin) * (first + last) - self.rule()).abs() <= width {
+            return self.rule();
+        }
         let half = 0.5 * (begin + end);
         let [early, late] = [0.5 * (begin + half), 0.5 * (half + end)].map(|t| course.at(t));
         let halves =
