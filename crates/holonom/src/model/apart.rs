@@ -8,7 +8,7 @@ use crate::system::{Place, Term};
 impl Model {
     /// Whether bodies share nodes at a joint, so that its force is not among those of the rows.
     pub fn shares_nodes(&self) -> bool {
-        self.joints.iter().any(|joint| joint.is_shared)
+        self.joints.iter().any(|joint| joint.is_shared && !joint.geometry.is_of_bar())
     }
 
     /// Takes the forces of all joints and drives from the same model with `reactions = true` in `[output]`, in which no bodies share nodes. Says

@@ -97,6 +97,9 @@ pub struct Assembly<'a> {
     pub(in crate::model) frames: Vec<Frame>,
     /// Position of each body in the list, by name.
     pub(in crate::model) body_names: HashMap<String, usize>,
+    /// Position of each bar in the list, by name, and the ends of those that are built.
+    pub(in crate::model) bar_names: HashMap<String, usize>,
+    pub(in crate::model) bar_ends: Vec<Option<[End; 2]>>,
     /// Places of each body that something holds, in its axes, for the picture.
     pub(in crate::model) body_places: Vec<Vec<Vec3>>,
     /// All joints that are no couplers, in file order.
@@ -166,6 +169,8 @@ impl<'a> Assembly<'a> {
             body_names: bodies.iter().enumerate().map(|(k, body)| (body.name.clone(), k)).collect(),
             bodies,
             frames: Vec::new(),
+            bar_names: HashMap::new(),
+            bar_ends: Vec::new(),
             joints: Vec::new(),
             joint_names: HashMap::new(),
             driven: HashMap::new(),
@@ -206,6 +211,10 @@ impl Assembly<'_> {
             Member::Ground => Frame::Ground,
             Member::Point(k) => Frame::Particle(self.points[k].end.place().expect("a point is a node")),
             Member::Body(k) => self.frames[k].clone(),
+            Member::Bar(k) => {
+                let ends = self.bar_ends[k].as_ref().expect("what is of a bar with a fault is refused");
+                Frame::Bar(ends.each_ref().map(|end| (end.terms.clone(), end.start)))
+            }
         }
     }
 

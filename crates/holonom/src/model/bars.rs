@@ -60,6 +60,8 @@ impl Bar {
         assembly.rods.push(RecordedRod { name: entry.name.into(), row: assembly.builder.rows(), length: Arc::new(Constant(length)) });
         assembly.builder.constant_row(entry.name, half_square, 0.5 * length * length);
         assembly.draw(entry, LineKind::Bar, a, b);
+        let number = assembly.bar_names[entry.name];
+        assembly.bar_ends[number] = Some(ends);
         Ok(BarInfo { name: entry.name.to_string(), ends: places, mass, length })
     }
 }

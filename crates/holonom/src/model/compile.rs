@@ -46,7 +46,7 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
     let (specs, faulty_points) = compiler.points(&description.points, axes);
     let (mut bodies, faulty_bodies) = compiler.bodies(&description.bodies, axes);
     let mut faulty: HashSet<String> =
-        [&faulty_points, &faulty_bodies, &unread.points, &unread.bodies].into_iter().flatten().cloned().collect();
+        [&faulty_points, &faulty_bodies, &unread.points, &unread.bodies, &unread.bars].into_iter().flatten().cloned().collect();
     let misplaced = compiler.place(&description.bodies, &specs, &mut bodies, &faulty);
     faulty.extend(misplaced);
     let mut assembly = Assembly::new(SystemBuilder::new(axes.dimension(), gravity), axes, gravity, &sink, bodies);
@@ -54,6 +54,7 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
     assembly.faulty_joints.clone_from(&unread.joints);
     assembly.signals = compiler.signals(description, unread, &mut assembly.builder);
     points::add(&mut assembly, &specs);
+    compiler.bars(description, &mut assembly);
     let geometries = compiler.nodes(description, &mut assembly, &specs);
     points::complete(&mut assembly, specs);
     let mut bars = Vec::new();
@@ -377,6 +378,18 @@ impl Compiler<'_> {
         assembly.builder.set_size(if wanted.bodies.is_empty() { 0.0 } else { wanted.extent });
         assembly.frames = nodes::make(&mut assembly.builder, &wanted);
         geometries
+    }
+
+    /// The names of all bars, which joints may be at.
+    fn bars(&self, description: &Description, assembly: &mut Assembly<'_>) {
+        // What is named is built later: it counts then, and its faults are told then.
+        let unheard = Sink::default();
+        let namer = Compiler { sink: &unheard, room: Cell::new(self.room.get()), ..*self };
+        namer.each("bar", &description.bars, |entry, _| {
+            assembly.bar_names.insert(entry.name.to_string(), assembly.bar_names.len());
+            Ok(())
+        });
+        assembly.bar_ends = vec![None; assembly.bar_names.len()];
     }
 
     /// Joints first, then what names their coordinates.

@@ -1,11 +1,12 @@
 //! From what has been read to a model: its picture, what is recorded of it, and the system.
 
-use super::assembly::{self, Assembly, Axes};
+use super::assembly::{self, Assembly};
 use super::bodies::frame::Frame;
-use super::bodies::nodes::Member;
 use super::unseen::OverTime;
-use super::{BarInfo, BodyInfo, Model, Output, PointInfo, RigidBody, Settings, joints};
-use crate::record::{Channels, PointKind, RecordedEffort, RecordedJoint, RecordedPoint, Scene, SceneBody, ScenePoint};
+use super::{BarInfo, BodyInfo, Model, Output, PointInfo, Settings, joints};
+use crate::record::{
+    Channels, PointKind, RecordedEffort, RecordedJoint, RecordedPoint, RecordedTransmission, Scene, SceneBody, ScenePoint,
+};
 use crate::system::Place;
 
 /// Puts together what has been read without a fault.
@@ -18,6 +19,7 @@ pub(super) fn finish(
     over_time: Vec<OverTime>,
 ) -> Model {
     let notes = assembly.sink.notes();
+    let channels = channels(&assembly);
     let Assembly {
         mut builder,
         axes,
@@ -35,7 +37,6 @@ pub(super) fn finish(
         efforts,
         couplings,
         rods,
-        transmissions,
         forces,
         signals,
         ..
@@ -63,7 +64,6 @@ pub(super) fn finish(
         bushings,
         wheels,
     };
-    let channels = channels(axes, &points, &bodies, &frames, &joints);
     let bodies: Vec<BodyInfo> = bodies.iter().zip(&frames).map(|(body, frame)| BodyInfo::new(body, frame, axes, &mut builder)).collect();
     let points = points
         .into_iter()
@@ -86,7 +86,6 @@ pub(super) fn finish(
             efforts: recorded_efforts(efforts),
             couplings,
             rods,
-            transmissions,
             inputs: signals.inputs,
             ..channels
         },
@@ -102,35 +101,24 @@ fn recorded_efforts(efforts: Vec<assembly::Effort>) -> Vec<RecordedEffort> {
     efforts.into_iter().map(|assembly::Effort { name, row, length, is_moment }| RecordedEffort { name, row, length, is_moment }).collect()
 }
 
-/// Points, named points of bodies, and the forces of joints.
-fn channels(
-    axes: Axes,
-    points: &[assembly::PlacedPoint],
-    bodies: &[RigidBody],
-    frames: &[Frame],
-    joints: &[joints::JointInfo],
-) -> Channels {
+/// Points, named points of bodies, and the forces of joints and what they bear of couplers.
+fn channels(assembly: &Assembly<'_>) -> Channels {
+    let Assembly { axes, points, bodies, frames, joints, .. } = assembly;
     let own = points.iter().map(|point| RecordedPoint { name: point.name.clone(), terms: point.end.terms.clone() });
     let named = bodies.iter().zip(frames).flat_map(|(body, frame)| {
         body.points.iter().map(move |(name, at)| RecordedPoint { name: format!("{}.{name}", body.name), terms: frame.point(*at) })
     });
-    let joint = |joint: &joints::JointInfo| {
-        let [first, second] = joint.geometry.members.map(|member| match member {
-            Member::Ground => Frame::Ground,
-            Member::Point(k) => Frame::Particle(points[k].end.place().expect("a point is a node")),
-            Member::Body(k) => frames[k].clone(),
-        });
-        // The force on the ground is that on the other side, the other way.
-        let is_second = !matches!(second, Frame::Ground);
-        RecordedJoint {
-            name: joint.name.clone(),
-            rows: joint.rows.clone(),
-            is_known: !joint.is_shared,
-            nodes: if is_second { second.nodes() } else { first.nodes() },
-            sign: if is_second { 1.0 } else { -1.0 },
-            at: second.point(joint.geometry.at[1]),
-        }
+    let of_joints: Vec<Option<RecordedJoint>> = joints.iter().map(|joint| recorded_joint(assembly, joint)).collect();
+    // Numbers among the joints that are recorded.
+    let number = |count: &mut usize, joint: &Option<RecordedJoint>| {
+        *count += usize::from(joint.is_some());
+        Some(count.saturating_sub(1))
     };
+    let numbers: Vec<usize> = of_joints.iter().scan(0, number).collect();
+    let transmissions = assembly
+        .transmissions
+        .iter()
+        .map(|transmission| RecordedTransmission { joints: transmission.joints.map(|joint| numbers[joint]), ..transmission.clone() });
     let of_joint = |joint: &joints::JointInfo| {
         let angles = joint.coordinates.iter().filter(|coordinate| coordinate.is_angle);
         angles.map(|coordinate| format!("{}.{}", joint.name, coordinate.name)).collect::<Vec<_>>()
@@ -139,8 +127,30 @@ fn channels(
     Channels {
         axes: axes.name.to_string(),
         points: own.chain(named).collect(),
-        joints: joints.iter().map(joint).collect(),
+        transmissions: transmissions.collect(),
+        joints: of_joints.into_iter().flatten().collect(),
         angles: joints.iter().flat_map(of_joint).chain(of_bodies).collect(),
         ..Channels::default()
     }
+}
+
+/// A joint with its force; none of a bar's pin where nodes that it shares with others stand for rows.
+fn recorded_joint(assembly: &Assembly<'_>, joint: &joints::JointInfo) -> Option<RecordedJoint> {
+    let [first, second] = joint.geometry.members.map(|member| assembly.frame(member));
+    // The force on the ground is that on the other side, the other way; and so is that on a bar, whose ends are nodes of others, too.
+    let is_apart = |frame: &Frame| !matches!(frame, Frame::Ground | Frame::Bar(_));
+    let is_second = is_apart(&second) || !(is_apart(&first) || matches!(second, Frame::Ground));
+    let [nodes, others] = if is_second { [&second, &first] } else { [&first, &second] }.map(|frame| {
+        let nodes = frame.nodes().into_iter().map(|(node, _)| (node, !assembly.builder.is_direction(node)));
+        nodes.collect::<Vec<_>>()
+    });
+    let is_mixed = joint.geometry.is_of_bar() && (joint.is_shared || nodes.iter().any(|node| others.contains(node)));
+    (!is_mixed).then(|| RecordedJoint {
+        name: joint.name.clone(),
+        rows: joint.rows.clone(),
+        is_known: !joint.is_shared,
+        nodes,
+        sign: if is_second { 1.0 } else { -1.0 },
+        at: second.point(joint.geometry.at[1]),
+    })
 }

@@ -99,7 +99,7 @@ impl Assembly<'_> {
         Err(entry.refuse(key, "none of these can move freely", "at least one must be a point that is neither fixed nor driven"))
     }
 
-    /// A side of a joint: a body, a point or the ground.
+    /// A side of a joint: a body, a point, a bar in the plane or the ground.
     pub(in crate::model) fn member(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<Member> {
         if name == GROUND {
             return Ok(Member::Ground);
@@ -111,6 +111,9 @@ impl Assembly<'_> {
         if let Some(&k) = self.by_name.get(&full) {
             return Ok(Member::Point(k));
         }
+        if let Some(&k) = self.bar_names.get(&full).filter(|_| self.dimension() == 2) {
+            return Ok(Member::Bar(k));
+        }
         let base = full.split('[').next().unwrap_or(&full);
         if self.faulty.contains(base) {
             return Err(Refused);
@@ -118,7 +121,9 @@ impl Assembly<'_> {
         if let Some(refused) = refuse_other(entry, spot, &full, "a body or a point") {
             return Err(refused);
         }
-        let names = self.bodies.iter().map(|body| body.name.as_str()).chain(self.points.iter().map(|point| point.name.as_str()));
+        let bars = self.bar_names.keys().map(String::as_str).filter(|_| self.dimension() == 2);
+        let names =
+            self.bodies.iter().map(|body| body.name.as_str()).chain(self.points.iter().map(|point| point.name.as_str())).chain(bars);
         let cure = match nearest(&full, names.chain([GROUND])) {
             Some(near) => format!("did you mean `{near}`?"),
             None => format!("add [body.{base}], or name one that is there"),
@@ -269,8 +274,11 @@ fn refuse_other(entry: &Entry<'_>, spot: Spot<'_>, name: &str, wanted: &str) -> 
     let what = entry.scope.called(name).filter(|what| *what != wanted)?;
     let cure = match (what, wanted) {
         (BAR, "a joint") => {
-            "a bar's pin has no angle: make a body of it, with shape = { rod = LENGTH }, held by revolute joints, and name one of these"
+            "in a plane, name a revolute joint between the bar and what it turns against; in space make a body of it, with shape = { rod = LENGTH }, held by revolute joints"
                 .to_string()
+        }
+        (BAR, "a body or a point") => {
+            "joints take bars in a planar model: name a point at its ends, or make a body of it, with shape = { rod = LENGTH }".to_string()
         }
         (BAR, _) => "name a point at its ends, or make a body of it, which has a mass and an inertia".to_string(),
         _ => format!("name {wanted}"),

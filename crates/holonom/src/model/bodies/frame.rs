@@ -39,6 +39,8 @@ pub enum Frame {
         /// basis (basis × D + 1), coordinates from the first point. In the plane its numbers are complex.
         inverse: Vec<[Factor; 4]>,
     },
+    /// A bar in the plane: its ends, which are sums of nodes, with their reference coordinates.
+    Bar([(Vec<Term>, Vec3); 2]),
 }
 
 /// f + g J, J the quarter turn of the plane; g is 0 in space.
@@ -60,6 +62,7 @@ impl Frame {
             Self::Ground => vec![(Place::Fixed(x), 1.0).into()],
             Self::Particle(place) => vec![(*place, 1.0).into()],
             Self::Body { basis, .. } => self.combine(1.0, geometry::subtract(x, basis[0].at)),
+            Self::Bar(ends) => along(ends, 1.0, geometry::subtract(x, ends[0].1)),
         }
     }
 
@@ -72,10 +75,11 @@ impl Frame {
             Self::Ground => vec![(Place::Fixed(u), 1.0).into()],
             Self::Particle(_) => unreachable!("a particle has no directions"),
             Self::Body { .. } => self.combine(0.0, u),
+            Self::Bar(ends) => along(ends, 0.0, u),
         }
     }
 
-    /// The nodes that can move, and whether they are points.
+    /// The nodes that can move, and whether they are points, as far as a frame knows: the end of a bar may be a place of a body.
     pub fn nodes(&self) -> Vec<(NodeId, bool)> {
         let node = |place: &Place, is_point: bool| match place {
             Place::Node(node) => Some((*node, is_point)),
@@ -84,6 +88,7 @@ impl Frame {
         match self {
             Self::Ground => Vec::new(),
             Self::Particle(place) => node(place, true).into_iter().collect(),
+            Self::Bar(ends) => ends.iter().flat_map(|(terms, _)| terms).filter_map(|term| node(&term.place, true)).collect(),
             Self::Body { basis, .. } => basis.iter().filter_map(|basis| node(&basis.place, basis.is_point)).collect(),
         }
     }
@@ -93,7 +98,7 @@ impl Frame {
         match self {
             Self::Ground => true,
             Self::Particle(_) => false,
-            Self::Body { dim: 2, .. } => true,
+            Self::Body { dim: 2, .. } | Self::Bar(_) => true,
             Self::Body { basis, .. } => {
                 let edges: Vec<Vec3> = edges(basis).into_iter().map(|edge| edge.reference).collect();
                 geometry::norm(geometry::rest(&edges, u)) <= HELD * geometry::norm(u)
@@ -125,6 +130,24 @@ impl Frame {
         // A body has many of these sums: each takes the room of its terms.
         terms.filter(|term| term.factor != 0.0 || term.turn != 0.0).collect::<SmallVec<[Term; 4]>>().into_vec()
     }
+}
+
+/// A point of a bar (`one` is 1) at the way `x` from its first end, or a direction (0): (1 − z) a + z b or z (b − a) with z = x/(b − a), complex.
+fn along(ends: &[(Vec<Term>, Vec3); 2], one: f64, x: Vec3) -> Vec<Term> {
+    let edge = geometry::subtract(ends[1].1, ends[0].1);
+    let square = geometry::dot(edge, edge);
+    let (z, turn) = ((x[0] * edge[0] + x[1] * edge[1]) / square, (x[1] * edge[0] - x[0] * edge[1]) / square);
+    // Ends are differences of rounded places.
+    let places = ends.iter().map(|(_, at)| geometry::norm(*at)).fold(geometry::norm(x), f64::max);
+    let rounded = 4.0 * f64::EPSILON * (one + (geometry::norm(x) + places) / square.sqrt());
+    let clean = |value: f64| [0.0, 1.0].into_iter().find(|whole: &f64| (value - whole).abs() <= rounded).unwrap_or(value);
+    let factors = [[clean(one - z), clean(-turn)], [clean(z), clean(turn)]];
+    let terms = ends.iter().zip(factors).flat_map(|((terms, _), [f, g])| {
+        let times =
+            move |term: &Term| Term { place: term.place, factor: f * term.factor - g * term.turn, turn: f * term.turn + g * term.factor };
+        terms.iter().map(times)
+    });
+    terms.filter(|term| term.factor != 0.0 || term.turn != 0.0).collect()
 }
 
 fn inverse(basis: &[Basis]) -> Vec<[Factor; 4]> {

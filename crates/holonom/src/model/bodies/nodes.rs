@@ -31,6 +31,8 @@ pub enum Member {
     Point(usize),
     /// A body, by its position in the list of bodies.
     Body(usize),
+    /// A bar in the plane, by its position in the list of bars.
+    Bar(usize),
 }
 
 /// A point or direction that two sides of a joint have in common, with its reference coordinates on each.
@@ -106,7 +108,7 @@ fn known_place(shared: &Shared, wanted: &Wanted<'_>) -> Option<Found> {
         Member::Ground if shared.is_point => Some(Place::Fixed(at)),
         Member::Ground => Some(Place::Fixed(scale(at, wanted.length))),
         Member::Point(k) => (wanted.points)(k),
-        Member::Body(_) => None,
+        Member::Body(_) | Member::Bar(_) => None,
     });
     place.map(|place| (place, 1.0))
 }

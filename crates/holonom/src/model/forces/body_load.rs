@@ -40,6 +40,10 @@ pub(super) fn body(assembly: &Assembly<'_>, entry: &Entry<'_>, key: &str, name: 
             let cure = "name a [body.NAME]; a point takes forces of type \"constant\" and \"expression\"";
             Err(entry.refuse(key, format!("`{name}` is a point, and a body is wanted here"), cure))
         }
+        Member::Bar(_) => {
+            let cure = "name a [body.NAME]; a bar takes forces at its ends, and torques of type \"effort\" along the angle of a joint between it and others";
+            Err(entry.refuse(key, format!("`{name}` is a bar, and a body is wanted here"), cure))
+        }
         Member::Ground => Err(entry.refuse(key, format!("`{name}` is no body"), "name a [body.NAME]")),
     }
 }

@@ -88,6 +88,7 @@ fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, names: &[String]) -> Read
         let spot = Spot { key: "between", item: Some(k) };
         match assembly.member(entry, spot, name)? {
             Member::Point(_) => Err(entry.refuse(spot, format!("`{name}` is a point and does not turn"), "name a body, or use springs")),
+            Member::Bar(_) => Err(entry.refuse(spot, format!("`{name}` is a bar, and a body is wanted here"), "name a body")),
             member => Ok(member),
         }
     };

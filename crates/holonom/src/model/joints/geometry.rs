@@ -74,7 +74,7 @@ pub fn survey(assembly: &Assembly<'_>, joint: &dyn AnyJoint, geometry: &Geometry
             survey.arms.push((k, norm(arm)));
         }
     }
-    if !share {
+    if !share || geometry.is_of_bar() {
         return;
     }
     let sides = |of: [Vec3; 2]| [(geometry.members[0], of[0]), (geometry.members[1], of[1])];
@@ -99,6 +99,11 @@ pub fn survey(assembly: &Assembly<'_>, joint: &dyn AnyJoint, geometry: &Geometry
 const SAME: f64 = 1e-12;
 
 impl Geometry {
+    /// Whether a side is a bar, whose ends are nodes that others have, too.
+    pub(in crate::model) fn is_of_bar(&self) -> bool {
+        self.members.iter().any(|member| matches!(member, Member::Bar(_)))
+    }
+
     pub(in crate::model) fn of(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> Read<Self> {
         let members = members(assembly, entry, joint);
         let layout = joint.layout();
@@ -159,7 +164,7 @@ fn members(assembly: &Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> 
     let moves = |member: &Member| match member {
         Member::Ground => false,
         Member::Point(k) => assembly.points[*k].end.free,
-        Member::Body(_) => true,
+        Member::Body(_) | Member::Bar(_) => true,
     };
     if !members.iter().any(moves) {
         return Err(entry.refuse(

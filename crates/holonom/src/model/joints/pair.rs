@@ -7,7 +7,7 @@ use crate::model::bodies::frame::Frame;
 use crate::model::bodies::nodes::Member;
 use crate::model::ends::{End, fixed, subtract_shared};
 use crate::model::entry::Entry;
-use crate::model::fault::Read;
+use crate::model::fault::{Read, Refused};
 use crate::model::geometry::{Vec3, norm, subtract, unit};
 use crate::record::SceneJoint;
 use crate::system::{Form, InvariantId, Part, Place, Term};
@@ -72,6 +72,9 @@ pub enum Side {
 pub(in crate::model) fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>, joint: &dyn AnyJoint) -> Read<()> {
     let layout = joint.layout();
     let geometry = assembly.geometries.next().expect("every joint was surveyed");
+    if geometry.members.iter().any(|member| matches!(member, Member::Bar(k) if assembly.bar_ends[*k].is_none())) {
+        return Err(Refused);
+    }
     let frames = [0, 1].map(|side| assembly.frame(geometry.members[side]));
     let first = assembly.builder.rows();
     let mut pair =
@@ -95,19 +98,30 @@ pub(in crate::model) fn build(assembly: &mut Assembly<'_>, entry: &Entry<'_>, jo
 }
 
 fn draw(assembly: &mut Assembly<'_>, entry: &Entry<'_>, kind: &str, geometry: &Geometry, has_axis: bool) {
+    // Of a bar the end that is nearer.
+    let carrier = |side: usize| match geometry.members[side] {
+        Member::Bar(k) => {
+            let way = |end: &&End| norm(subtract(end.start, geometry.at[side]));
+            let end = assembly.bar_ends[k].iter().flatten().min_by(|a, b| way(a).total_cmp(&way(b)));
+            let point = end.and_then(|end| end.point).map(Member::Point);
+            point.or(end.and_then(|end| end.body).map(Member::Body)).unwrap_or(Member::Ground)
+        }
+        member => member,
+    };
+    let carriers = [0, 1].map(carrier);
     let name = |member: Member| match member {
         Member::Body(k) => Some(assembly.bodies[k].name.clone()),
         Member::Point(k) => Some(assembly.points[k].name.clone()),
-        Member::Ground => None,
+        Member::Bar(_) | Member::Ground => None,
     };
     // Drawn with the first side, which carries the axes, unless that is a point.
-    let side = usize::from(matches!(geometry.members[0], Member::Point(_)));
+    let side = usize::from(matches!(carriers[0], Member::Point(_)));
     let (mut at, mut axis) = (geometry.at[side], geometry.triad[side][0]);
-    if let Member::Body(k) = geometry.members[side] {
+    if let Member::Body(k) = carriers[side] {
         (at, axis) = (assembly.bodies[k].local(at), assembly.bodies[k].local_direction(axis));
     }
     (at, axis) = (assembly.axes.in_world(at), assembly.axes.in_world(axis));
-    let [body, other] = [side, 1 - side].map(|side| name(geometry.members[side]));
+    let [body, other] = [side, 1 - side].map(|side| name(carriers[side]));
     let axis = has_axis.then_some(axis);
     // Its force is recorded on the second side, whichever that is here.
     let (name, kind, acts_on_other) = (entry.name.to_string(), kind.to_string(), side == 0);
@@ -124,7 +138,7 @@ fn draw(assembly: &mut Assembly<'_>, entry: &Entry<'_>, kind: &str, geometry: &G
         curve: Vec::new(),
     });
     for side in 0..2 {
-        if let Member::Body(k) = geometry.members[side] {
+        if let Member::Body(k) = carriers[side] {
             let local = assembly.bodies[k].local(geometry.at[side]);
             assembly.body_places[k].push(local);
         }
@@ -160,6 +174,14 @@ impl Pair<'_, '_> {
             Member::Ground => fixed(at, GROUND.into()),
             Member::Point(k) => self.assembly.points[k].end.clone(),
             Member::Body(k) => self.assembly.body_end(k, at, &self.assembly.bodies[k].name),
+            Member::Bar(_) => End {
+                terms: self.frames[side as usize].point(at),
+                start: at,
+                free: true,
+                point: None,
+                body: None,
+                name: self.entry.name.to_string(),
+            },
         }
     }
 

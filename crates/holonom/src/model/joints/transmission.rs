@@ -38,6 +38,9 @@ impl Seats {
             let spot = |k| Spot { key: "joints", item: Some(k) };
             [assembly.joint(entry, spot(0), &coordinates[0].joint)?, assembly.joint(entry, spot(1), &coordinates[1].joint)?]
         };
+        if let Some(info) = infos.iter().find(|info| info.geometry.is_of_bar()) {
+            return Ok(Err(format!("`{}` is at a bar, and not between bodies", info.name)));
+        }
         let slides = !coordinates[1].is_angle;
         let [first, second] = infos.map(|info| info.geometry.members);
         let common: Vec<Member> = first.into_iter().filter(|member| second.contains(member)).collect();
