@@ -186,6 +186,21 @@ fn an_event_may_move_its_own_threshold() {
     }
 }
 
+/// A speed that is reached once is an event once, also with methods whose velocities lie beside the rows and are put on them where inputs are set.
+#[test]
+fn a_speed_is_reached_once() {
+    let text = "plane = \"xy\"\n[point.p]\nmass = 1\nposition = [1, 0]\n[constraint.rod]\ntype = \"distance\"\nbetween = [\"ground\", \"p\"]\n\
+                [input.push]\ndefault = 1\n[force.f]\ntype = \"expression\"\npoint = \"p\"\nforce = [\"-push*y\", \"push*x\"]\n\
+                [event.fast]\nwhen = \"p.vx^2 + p.vy^2 - 1.7\"\nset = { push = 2 }\n";
+    for method in ["generalized-alpha", "lagrange-3/hht", "trapezoidal", "conserving", "radau"] {
+        for step in [0.1, 0.03, 0.01] {
+            let (simulation, _) = run(&model(text), method, step, 2.0, 1);
+            let times: Vec<f64> = simulation.events().iter().map(|event| event.t).collect();
+            assert!(times.len() == 1 && (times[0] - 1.7_f64.sqrt()).abs() < step * step, "{method}, {step} s: {times:?}");
+        }
+    }
+}
+
 /// It goes on from a checkpoint as it would have without, also from the very time of an event.
 #[test]
 fn thresholds_go_on_from_checkpoints() {

@@ -215,7 +215,7 @@ impl Simulation {
     /// Lets events happen at a time, those with a period as samples that are due within so much of it, and says whether one ends the run.
     fn happen(&mut self, events: &[usize], t: f64, within: f64, from: &mut [f64]) -> Result<bool, Failure> {
         let mut stops = false;
-        let before = self.indicate()?;
+        let inputs = self.state.inputs.clone();
         for &k in events {
             if let Trigger::Every(_) = self.system.events[k].trigger {
                 self.sample(&[k], within)?;
@@ -226,8 +226,10 @@ impl Simulation {
             stops |= event.stops;
             self.happenings.push(Happening { event: event.name.clone(), t, stopped: event.stops });
         }
-        // What an event waits for may depend on what it sets: then it is not at zero any more.
+        // What an event waits for may depend on what it sets: then it is not at zero any more. Where inputs are set velocities may be put on the rows,
+        // which changes indicators, too: what they were with the inputs from before is taken with these velocities.
         let now = self.indicate()?;
+        let before = self.indicate_by(Look { inputs: &inputs, ..self.look() })?;
         events.iter().for_each(|&k| from[k] = if now[k] == before[k] { 0.0 } else { now[k] });
         Ok(stops)
     }
