@@ -34,6 +34,10 @@ const CURES: &[(&str, &str)] = &[
     ("key with no value", "write KEY = VALUE, or [TABLE] above its keys"),
     ("missing comma", "put a comma between items, and end the list with ]"),
     ("unexpected key or value", "write one key a line; decimal numbers have a point: 1.5"),
+    ("invalid mantissa", "a number has digits before its point: 0.5"),
+    ("invalid fraction", "a number has digits behind its point: 5.0"),
+    ("unexpected leading zero", "write the number without zeros before it"),
+    ("unclosed array", "put a comma between items, and end the list with ]"),
     ("invalid basic string", "end the text with \" on the same line"),
 ];
 
@@ -58,6 +62,9 @@ fn bare(text: &str, at: usize) -> Option<(String, String)> {
     }
     let cure = match word.to_lowercase().as_str() {
         flag @ ("true" | "false") => format!("write {flag}"),
+        _ if word.contains(char::is_whitespace) && word.split_whitespace().all(|number| number.parse::<f64>().is_ok()) => {
+            "put commas between numbers".to_string()
+        }
         _ => format!("texts and formulas stand in quotes: \"{word}\""),
     };
     Some((format!("`{word}` is neither a number nor a text in quotes"), cure))
