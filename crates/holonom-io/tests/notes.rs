@@ -153,6 +153,27 @@ fn a_stop_that_pushes_from_the_start_is_noted() {
     assert_eq!(flap("lower = -0.1\nupper = 0", ""), [""; 0]);
 }
 
+/// So is one that pushes because the start of another joint moves its own there, and one that does not push there any more is not.
+#[test]
+fn a_stop_is_noted_where_the_start_takes_it() {
+    let slider = |limits: &str, start: &str| {
+        let text = format!(
+            "plane = \"xy\"\n[body.crank]\nmass = 1\ninertia = 0.1\nposition = [0.5, 0]\n[body.slider]\nmass = 1\ninertia = 0.1\nposition = [3, 0]\n\
+             [joint.main]\ntype = \"revolute\"\nbetween = [\"ground\", \"crank\"]\nat = [0, 0]\n\
+             [joint.guide]\ntype = \"prismatic\"\nbetween = [\"ground\", \"slider\"]\naxis = [1, 0]\n\
+             [joint.rod]\ntype = \"distance\"\nbetween = [\"crank\", \"slider\"]\nat = [[1, 0], [3, 0]]\n\
+             [force.s]\ntype = \"stop\"\njoint = \"guide\"\nstiffness = 1e4\n{limits}\n{start}"
+        );
+        model(&text).notes
+    };
+    // With the crank at a right angle the slider is √(2² − 1²) from the ground.
+    let start = "[start.main]\nangle = \"90*deg\"\n";
+    let lower =
+        "force.s.lower: `guide.displacement` starts at -1.26795, below its limit -1: the stop pushes with 2679.49 N from the start";
+    assert_eq!(slider("lower = -1", start), [lower]);
+    assert_eq!(slider("lower = \"sqrt(3) - 3\"\nupper = -1", start), [""; 0]);
+}
+
 /// Degrees where radians are meant are taken as they are written, and noted.
 #[test]
 fn orientations_of_more_than_a_turn_are_noted() {

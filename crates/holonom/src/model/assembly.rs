@@ -10,6 +10,7 @@ use super::element::AnyElement;
 use super::ends::End;
 use super::entry::Entry;
 use super::fault::{Read, Sink};
+use super::forces::Limit;
 use super::geometry::Vec3;
 use super::joints::{Geometry, JointInfo};
 use super::lengths::DrivenLength;
@@ -118,6 +119,8 @@ pub struct Assembly<'a> {
     pub(in crate::model) starts: Vec<Target>,
     /// Distances that are driven.
     pub(in crate::model) lengths: Vec<DrivenLength>,
+    /// Limits of stops.
+    pub(in crate::model) limits: Vec<Limit>,
     /// Efforts of the drives.
     pub(in crate::model) efforts: Vec<Effort>,
     /// What couplers exert along the coordinates that they couple.
@@ -181,6 +184,7 @@ impl<'a> Assembly<'a> {
             wheels: Vec::new(),
             starts: Vec::new(),
             lengths: Vec::new(),
+            limits: Vec::new(),
             efforts: Vec::new(),
             couplings: Vec::new(),
             transmissions: Vec::new(),

@@ -16,6 +16,7 @@ use super::entry::{Entry, Written};
 use super::expression::{Functions, Mistake, Program, Scope, TimeProgram, Value as Known};
 use super::fault::{Fault, Faults, Read, Refused, Sink};
 use super::fields as field;
+use super::forces;
 use super::geometry::{self, Vec3, unit};
 use super::joints::{self, Geometry, Survey};
 use super::jumps;
@@ -109,6 +110,7 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
         {
             sink.note("start", || message);
         }
+        forces::note_pushing(&assembly);
         if let Some(fault) = spinless::refuse(&assembly) {
             drop(assembly);
             let _: Refused = sink.report(|| fault);

@@ -116,7 +116,7 @@ impl<'a> Entry<'a> {
     }
 
     /// Of an entry that is one of many, the message also says which.
-    fn told(&self, message: String) -> String {
+    pub(super) fn told(&self, message: String) -> String {
         if self.scope.indices.is_empty() { message } else { format!("{message}, in `{}`", self.name) }
     }
 

@@ -110,11 +110,6 @@ pub(super) fn profile(assembly: &mut Assembly<'_>, coordinate: &Coordinate, prof
     }
 }
 
-/// What a coordinate is at the start.
-pub(super) fn value(assembly: &Assembly<'_>, coordinate: &Coordinate) -> f64 {
-    assembly.starts.iter().find(|target| target.is_of(coordinate)).and_then(|target| target.value).unwrap_or(0.0)
-}
-
 impl Start {
     /// Adds the coordinates of the joint that the entry is called after to those that are moved.
     pub(super) fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {

@@ -29,6 +29,7 @@ pub use friction::Friction;
 pub use rope::Rope;
 pub use spring::Spring;
 pub use stop::Stop;
+pub(super) use stop::{Limit, note_pushing};
 pub use torque::Torque;
 pub use torsion::Torsion;
 

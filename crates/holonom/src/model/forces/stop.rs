@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use super::coordinate_laws::{Buffer, Impact};
 use super::joint::acted_on;
+use crate::model::adrift::measured;
 use crate::model::assembly::Assembly;
 use crate::model::bodies::short;
 use crate::model::element::Element;
@@ -9,7 +10,9 @@ use crate::model::entry::Entry;
 use crate::model::fault::Read;
 use crate::model::fields::{Keys, Number};
 use crate::model::joints::coordinate;
-use crate::model::start;
+
+/// Share of the size of a coordinate within which it counts as at its limit.
+const ROUNDED: f64 = 1e-9;
 
 /// buffers at the ends of a joint's way: springs that act beyond its limits only, with what an impact takes out
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -56,6 +59,36 @@ pub struct Stop {
     pub dissipation: Option<Number>,
 }
 
+/// A limit of a coordinate, which may be beyond it at the start.
+pub(in crate::model) struct Limit {
+    path: String,
+    coordinate: String,
+    buffer: Buffer,
+    /// Which of repeated entries it is of.
+    told: String,
+}
+
+/// Notes stops that push from the start, where that is by more than the rounding of places.
+pub(in crate::model) fn note_pushing(assembly: &Assembly<'_>) {
+    if assembly.limits.is_empty() {
+        return;
+    }
+    let (system, measured) = measured(&assembly.builder);
+    for Limit { path, coordinate, buffer: Buffer { stiffness, limit, sign }, told } in &assembly.limits {
+        let Some(k) = system.gauges().iter().position(|name| name == coordinate) else { continue };
+        let (q, is_angle) = (measured.value[k], system.is_angle(k));
+        let size = if is_angle { 1.0 } else { assembly.builder.size() };
+        if sign * (q - limit) > ROUNDED * size {
+            let [from, to, force] = [q, *limit, stiffness * (q - limit).abs()].map(short);
+            let (side, unit) = (if *sign < 0.0 { "below" } else { "above" }, if is_angle { "N·m" } else { "N" });
+            let message = || {
+                format!("`{coordinate}` starts at {from}, {side} its limit {to}: the stop pushes with {force} {unit} from the start{told}")
+            };
+            assembly.sink.note(path, message);
+        }
+    }
+}
+
 impl Element for Stop {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let coordinate = coordinate(assembly, entry, "joint".into(), &self.joint);
@@ -74,19 +107,12 @@ impl Element for Stop {
             }
             _ => (),
         }
-        let at_start = start::value(assembly, &coordinate);
         let q = acted_on(assembly, &coordinate);
-        for (key, limit, sign, side) in [("lower", lower, -1.0, "below"), ("upper", upper, 1.0, "above")] {
+        for (key, limit, sign) in [("lower", lower, -1.0), ("upper", upper, 1.0)] {
             let Some(limit) = limit else { continue };
-            if sign * (at_start - limit) > 0.0 {
-                let (name, unit) = (format!("{}.{}", coordinate.joint, coordinate.name), if coordinate.is_angle { "N·m" } else { "N" });
-                let [from, to, force] = [at_start, limit, stiffness * (at_start - limit).abs()].map(short);
-                entry.note(
-                    key,
-                    format!("`{name}` starts at {from}, {side} its limit {to}: the stop pushes with {force} {unit} from the start"),
-                );
-            }
             let buffer = || Buffer { stiffness, limit, sign };
+            let (path, told) = (entry.path_of(key.into()), entry.told(String::new()));
+            assembly.limits.push(Limit { path, coordinate: format!("{}.{}", coordinate.joint, coordinate.name), buffer: buffer(), told });
             assembly.builder.law(entry.name, &[q], Arc::new(buffer()));
             if let Some(dissipation) = dissipation.filter(|&dissipation| dissipation > 0.0) {
                 assembly.builder.law(entry.name, &[q], Arc::new(Impact { buffer: buffer(), dissipation }));
