@@ -168,8 +168,7 @@ fn a_stop_is_noted_where_the_start_takes_it() {
     };
     // With the crank at a right angle the slider is √(2² − 1²) from the ground.
     let start = "[start.main]\nangle = \"90*deg\"\n";
-    let lower =
-        "force.s.lower: `guide.displacement` starts at -1.26795, below its limit -1: the stop pushes with 2679.49 N from the start";
+    let lower = "force.s.lower: `guide.displacement` starts at -1.26795, below its limit -1: the stop pushes with 2679.49 N from the start";
     assert_eq!(slider("lower = -1", start), [lower]);
     assert_eq!(slider("lower = \"sqrt(3) - 3\"\nupper = -1", start), [""; 0]);
 }

@@ -1,3 +1,4 @@
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::coordinate_laws::{Buffer, Impact};
@@ -74,8 +75,9 @@ pub(in crate::model) fn note_pushing(assembly: &Assembly<'_>) {
         return;
     }
     let (system, measured) = measured(&assembly.builder);
+    let numbers: HashMap<&str, usize> = system.gauges().iter().enumerate().map(|(k, name)| (name.as_str(), k)).collect();
     for Limit { path, coordinate, buffer: Buffer { stiffness, limit, sign }, told } in &assembly.limits {
-        let Some(k) = system.gauges().iter().position(|name| name == coordinate) else { continue };
+        let Some(&k) = numbers.get(coordinate.as_str()) else { continue };
         let (q, is_angle) = (measured.value[k], system.is_angle(k));
         let size = if is_angle { 1.0 } else { assembly.builder.size() };
         if sign * (q - limit) > ROUNDED * size {
