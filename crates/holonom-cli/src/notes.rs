@@ -257,6 +257,13 @@ pub fn slips(loaded: &Loaded) -> impl Iterator<Item = String> {
     unused_parameters(&loaded.source).into_iter().chain(loaded.model.notes.clone())
 }
 
+/// What was put right before the start, and what the rank there says of drives and of what could move.
+pub fn of_start(model: &Model, simulation: &mut Simulation, rank: &Rank) -> Vec<String> {
+    let mut notes = corrections(model, simulation);
+    notes.extend(locked(model, rank).or_else(|| rivals(simulation, rank)));
+    notes
+}
+
 /// What was put right before the start.
 pub fn corrections(model: &Model, simulation: &Simulation) -> Vec<String> {
     let mut notes = Vec::new();

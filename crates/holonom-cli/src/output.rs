@@ -22,9 +22,7 @@ use crate::folder::{Folder, holds};
 use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
 use crate::message::note;
-use crate::notes::{
-    corrections, doubts, locked, long_turns, rivals, rows_without_forces, shared_forces, slips, turned_bushings, unknown_measures,
-};
+use crate::notes::{doubts, long_turns, of_start, rows_without_forces, shared_forces, slips, turned_bushings, unknown_measures};
 use crate::options::Destination;
 use crate::progress::Watched;
 use crate::provenance::Provenance;
@@ -135,30 +133,22 @@ pub(crate) fn simulate_kept(
     };
     let Provenance { step, end, every, .. } = provenance;
     let name = method.name.clone();
-    let (resume, before) = match resume {
-        Some((Point { run, recorder, corrections, .. }, rows)) => (Some((run, corrections)), Some((recorder, rows))),
-        None => (None, None),
+    let (resume, corrections, before) = match resume {
+        Some((Point { run, recorder, corrections, .. }, rows)) => (Some(run), Some(corrections), Some((recorder, rows))),
+        None => (None, None, None),
     };
-    let is_new = resume.is_none();
-    let (mut simulation, mut corrections) = match resume {
-        Some((run, corrections)) => Simulation::resume(model.system.clone(), method, step, run)
-            .map(|simulation| (simulation, corrections))
+    let mut simulation = match resume {
+        Some(run) => Simulation::resume(model.system.clone(), method, step, run)
             .ok_or_else(|| Failure::usage("the checkpoint is of another model", "run from the start, without --resume"))?,
-        None => {
-            let simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
-            let corrections = corrections(model, &simulation);
-            (simulation, corrections)
-        }
+        None => Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?,
     };
     let rank = analysis::rank_of(&mut simulation);
-    if is_new {
-        corrections.extend(locked(model, &rank).or_else(|| rivals(&mut simulation, &rank)));
-    }
+    let corrections = corrections.unwrap_or_else(|| of_start(model, &mut simulation, &rank));
     // The end may be a later one than that of the run before.
     let unseen = model.unseen(simulation.method(), step, end);
-    let of_start: Vec<String> = slips(loaded).chain(corrections.clone()).chain(unseen).collect();
+    let before_it: Vec<String> = slips(loaded).chain(corrections.clone()).chain(unseen).collect();
     if !quiet {
-        of_start.iter().for_each(|text| say(text));
+        before_it.iter().for_each(|text| say(text));
     }
     if model.output.constraints() != Constraints::Nothing || !model.channels.efforts.is_empty() {
         model.find_reactions(&mut simulation);
@@ -199,7 +189,7 @@ pub(crate) fn simulate_kept(
         of_results.iter().for_each(|text| say(text));
     }
     value["provenance"] = serde_json::to_value(&provenance).expect("a provenance is plain data");
-    value["notes"] = of_start.into_iter().chain(of_results).collect();
+    value["notes"] = before_it.into_iter().chain(of_results).collect();
     let last = Point::of(&simulation, &watched.recorder, &corrections);
     let before_end = watched.before_end.take().filter(|_| !last.run.goes_on_unbroken());
     let recording = watched.finish();

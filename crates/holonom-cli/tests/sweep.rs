@@ -325,6 +325,29 @@ fn parameters_that_nothing_uses_are_named() {
     assert!(!told("--vary parameters.idle=1,2 --quiet").contains("nothing uses"));
 }
 
+/// So are notes that a run begins with: of a force that its steps do not see, of velocities that constraints change, and of the model with its numbers.
+#[test]
+fn what_runs_begin_with_is_in_the_table() {
+    let folder = folder();
+    let text = "plane = \"xy\"\ngravity = [0, 0]\n[parameters]\nf = 1\nv = 0\nlimit = 1\n\
+                [body.slider]\nmass = 2\ninertia = 1\nposition = [0, 0]\nvelocity = [0, \"v\"]\n\
+                [joint.guide]\ntype = \"prismatic\"\nbetween = [\"ground\", \"slider\"]\naxis = [1, 0]\n\
+                [force.shaker]\ntype = \"effort\"\njoint = \"guide\"\neffort = \"10*cos(2*pi*f*t)\"\n\
+                [force.buffer]\ntype = \"stop\"\njoint = \"guide\"\nupper = \"limit\"\nstiffness = 1e3\n\
+                [simulation]\nend = 0.5\nstep = 0.01\n";
+    fs::write(folder.path().join("shaken.toml"), text).unwrap();
+    for (key, expected) in [
+        ("f=1,100", "force.shaker.effort: steps of 0.01 s do not see what this does"),
+        ("v=0,1", "to meet the constraints, start velocities were changed: `slider` by 1 m/s"),
+        ("limit=1,-1", "force.buffer.upper: `guide.displacement` starts at 0, above its limit -1"),
+    ] {
+        holonom(&folder, &format!("sweep shaken.toml --vary parameters.{key} --no-report --out a --force"));
+        let (header, rows) = cells(&table(&folder, "a"));
+        let notes = column(&header, &rows, "notes");
+        assert!(!notes[0].contains(expected) && notes[1].contains(expected), "{key}: {notes:?}");
+    }
+}
+
 /// What is not sure of the runs of a sweep is in its table, and with slips on the screen, in the JSON and in the report: a contact of π √(m/k) = 4.44 ms that
 /// steps of 8 ms see once, and those of 0.5 ms nine times.
 #[test]

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use holonom::analysis;
 use holonom::linalg::Plans;
 use holonom::model::{Model, Value};
 use holonom::record::Constraints;
@@ -15,7 +16,7 @@ use super::vary::Setting;
 use super::watch::{Columns, Watch};
 use crate::failure::Failure;
 use crate::load;
-use crate::notes::doubts;
+use crate::notes::{doubts, of_start};
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,6 +113,10 @@ impl Runner<'_> {
     fn simulate(&self, model: &Model) -> Result<Option<Outcome>, Failure> {
         let Task { method, step, end } = Task::new(model, self.method)?;
         let mut simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
+        let rank = analysis::rank_of(&mut simulation);
+        let mut notes = model.notes.clone();
+        notes.extend(of_start(model, &mut simulation, &rank));
+        notes.extend(model.unseen(simulation.method(), step, end));
         if self.columns.forces {
             model.find_reactions(&mut simulation);
         }
@@ -124,7 +129,7 @@ impl Runner<'_> {
             model.find_reactions(&mut simulation);
         }
         let figures = Some(figures(&simulation, watched.watch.values(&simulation)));
-        let notes = doubts(&simulation, status == Status::Completed).collect();
+        notes.extend(doubts(&simulation, status == Status::Completed));
         Ok(Some(match status {
             Status::Completed => Outcome { ending: Ending::Completed, stopped_at: None, reason: String::new(), notes, figures },
             Status::Stopped { at, reason } => Outcome { ending: Ending::Stopped, stopped_at: Some(at), reason, notes, figures },
