@@ -29,6 +29,9 @@ pub(super) const STIFFER: f64 = 1e3;
 const KNOWN: f64 = 1e-3;
 const NOISE: f64 = 1e-5;
 
+/// By what share of themselves velocities are off the rows that no round-off makes.
+const ASTRAY: f64 = 1e-10;
+
 /// Share of the multipliers that a pass adds where they grow without end, and what rows may be missed by, over the accelerations, where redundant
 /// ones differ from the others by what they are written with.
 const GROWS: f64 = 0.01;
@@ -83,19 +86,15 @@ pub(super) fn react(matrix: &mut impl LinearSystem, open: f64, system: &System, 
 fn react_at_level(matrix: &mut impl LinearSystem, open: f64, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
     let pushed = work.begin_pass(system, t);
     let leaves = matrix.factor(RHO, work)?;
+    // Rows of what spins fast ask for far too much along velocities that are off them a little, and redundant ones, which ask for the same along
+    // velocities that meet them all, for different forces, without bounds.
+    let strays = work.strays(system, t);
+    let is_on_rows = strays > ASTRAY && follow_rows(matrix, strays, system, t, work)?;
     let mut end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
-    if end != End::Met {
-        // Redundant rows ask for the same along velocities that meet them all, and for different forces, without bounds, along others.
-        let strays = work.strays(system, t);
-        work.kept_v.copy_from_slice(&work.end.v);
-        meet_rates(matrix, system, t, work)?;
-        let moved = work.end.v.iter().zip(&work.kept_v).fold(0.0, |m: f64, (v, before)| m.max((v - before).abs()));
-        if moved <= FOLLOWS * strays * largest(&work.kept_v) {
-            let pushed = work.begin_pass(system, t);
-            work.lambda.fill(0.0);
-            end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
-        }
-        work.end.v.copy_from_slice(&work.kept_v);
+    if end != End::Met && !is_on_rows && follow_rows(matrix, strays, system, t, work)? {
+        work.a[..system.coordinates()].fill(0.0);
+        work.lambda.fill(0.0);
+        end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
     }
     if end != End::Slow {
         return Ok(is_met(end, system, t, work));
@@ -130,6 +129,21 @@ fn is_met(end: End, system: &System, t: f64, work: &mut Workspace) -> bool {
     let strays = work.strays(system, t);
     let [missed, of_all, of_velocities] = work.misses(system, t);
     (end == End::Grows || strays > NOISE) && missed <= (MISSED * of_all).max(FOLLOWS * strays * of_velocities)
+}
+
+/// Samples the rows along the velocities nearest to those at the end, which are off the rows by the share `strays`, that meet them; forces stay as
+/// they are. Says whether there are such: beside a singular position they may be too far away.
+fn follow_rows(matrix: &mut impl LinearSystem, strays: f64, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
+    work.kept_v.copy_from_slice(&work.end.v);
+    meet_rates(matrix, system, t, work)?;
+    let moved = work.end.v.iter().zip(&work.kept_v).fold(0.0, |m: f64, (v, before)| m.max((v - before).abs()));
+    let are_near = moved <= FOLLOWS * strays * largest(&work.kept_v);
+    if are_near {
+        work.sampled.v.copy_from_slice(&work.end.v);
+        work.weigh_levels_at_rest(system, t, 1.0);
+    }
+    work.end.v.copy_from_slice(&work.kept_v);
+    Ok(are_near)
 }
 
 /// Moves the velocities at the end onto the rows, with the factors at hand.
