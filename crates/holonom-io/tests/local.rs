@@ -69,7 +69,7 @@ fn local_is_of_bodies_and_components() {
         ("local(c, b.vx)", "no place `c`"),
         ("local(b)", "takes a body and a component"),
         ("local(b, b)", "is no component along an axis"),
-        ("local(p, p.vx)", "p.q"),
+        ("local(p, p.vx)", "`p` is none"),
         ("local(b, b.qx)", "is no component along an axis"),
     ] {
         let message = refused(value);

@@ -196,11 +196,18 @@ impl Parser<'_> {
         let named = self.named(2, &format!("`{name}` takes a body and a component of a vector"), example)?;
         let [(body, of_body), (component, of_vector)] = &named[..] else { unreachable!("two were asked for") };
         self.is_place(body, &axes[..1]).map_err(|mistake| Mistake { character: *of_body, ..mistake })?;
-        if let (3, Err(mistake)) = (axes.len(), self.names.variable(&super::indexed(&format!("{body}.qw"), self.scope)?))
-            && !mistake.known
-        {
-            let message = "`local` in space needs the orientation of a body, which forces and events do not know: only measures may ask so";
-            return Err(Mistake::new(start, message, IN_BODY_AXES));
+        let orientation = super::indexed(&format!("{body}.{}", if axes.len() == 3 { "qw" } else { "angle" }), self.scope)?;
+        match self.names.variable(&orientation) {
+            Ok(None) => {
+                let message = format!("`local` is along the axes of a body, and `{body}` is none");
+                return Err(Mistake::new(*of_body, message, format!("write {example}")));
+            }
+            Err(mistake) if axes.len() == 3 && !mistake.known => {
+                let message =
+                    "`local` in space needs the orientation of a body, which forces and events do not know: only measures may ask so";
+                return Err(Mistake::new(start, message, IN_BODY_AXES));
+            }
+            _ => (),
         }
         // A quaternion is no vector.
         let axis = component.chars().last().filter(|_| !component.contains(".q")).and_then(|letter| axes.find(letter));
