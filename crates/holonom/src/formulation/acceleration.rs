@@ -11,9 +11,10 @@ use super::independence::{independence, independent};
 use super::iteration::Multipliers;
 use super::kkt::Block;
 use super::newton::Newton;
-use super::passes::{LinearSystem, ROUNDED, STIFFER, meet, pass, react};
+use super::passes::{LinearSystem, Purpose, STIFFER, Sure, meet, pass, react};
 use super::rank::RHO;
 use super::workspace::Workspace;
+use crate::linalg::Solver;
 use crate::system::System;
 
 impl Newton {
@@ -50,12 +51,20 @@ impl Newton {
     /// may belong to no motion.
     pub fn react(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
         system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
-        self.react_as_evaluated(system, t, work)
+        work.sampled.copy_from(&work.end);
+        let is_known = react(self, Purpose::Start, system, t, work)?;
+        work.add_reactions(system);
+        Ok(is_known)
     }
 
-    /// The same where the workspace has the evaluation at the end position.
-    pub fn react_as_evaluated(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
-        react(self, ROUNDED, system, t, work)
+    /// The same to be shown, where the workspace has the evaluation at the end position.
+    pub fn show_reactions(&mut self, sure: Option<&Sure>, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
+        react(self, Purpose::Show(sure), system, t, work)
+    }
+
+    /// What rows must add to be sure, by what they add at the evaluation of the end, which is that of the start.
+    pub fn sure(&mut self, system: &System, work: &Workspace) -> Option<Sure> {
+        Sure::of(self, system, work)
     }
 
     /// Accelerations and multipliers at the end position and velocity by the formulation itself, which must be one that
@@ -77,6 +86,7 @@ impl Newton {
         self.delta.fill(1.0 / alpha);
         self.assemble_inertia(work);
         self.factor(&work.scales)?;
+        work.sampled.copy_from(&work.end);
         work.begin_pass(system, t);
         pass(self, system, work)?;
         work.add_reactions(system);
@@ -88,7 +98,8 @@ impl Newton {
         let n = system.coordinates();
         system.constraint_values(&work.end.at, t, &mut work.phi);
         work.lambda.iter_mut().zip(&work.phi).for_each(|(lambda, phi)| *lambda = alpha * phi);
-        work.sample_applied(system, t);
+        work.sampled.copy_from(&work.end);
+        work.sum_applied_anew(system, t);
         self.kkt.clear();
         self.kkt.start_with_mass(1.0);
         self.kkt.write_sum(Block(0, 0));
@@ -110,7 +121,20 @@ impl LinearSystem for Newton {
         self.delta.iter_mut().for_each(|delta| *delta *= RHO / rho);
         self.assemble_inertia(work);
         Self::factor(self, &work.scales)?;
-        Ok(self.rank.proximal_leaves())
+        Ok(self.rank.proximal_leaves(rho))
+    }
+
+    fn solver(&self) -> &Solver {
+        &self.kkt.solver
+    }
+
+    fn shares(&self, work: &Workspace) -> impl Iterator<Item = f64> {
+        let pivots = (0..self.delta.len()).map(|row| self.kkt.solver.pivot(self.kkt.multiplier(row, 0)) - self.delta[row]);
+        pivots.zip(&work.scales.softness).map(|(pivot, softness)| pivot / softness)
+    }
+
+    fn is_even(&self, work: &Workspace) -> bool {
+        !work.scales.are_light
     }
 
     fn unknowns(&mut self) -> &mut [f64] {
@@ -119,6 +143,11 @@ impl LinearSystem for Newton {
 
     fn solve(&mut self, _: &System, _: &Workspace) -> Result<(), Failure> {
         Self::solve(self)
+    }
+
+    fn accelerates(&mut self, system: &System, work: &Workspace) -> f64 {
+        let (forces, rows) = self.unknowns.split_at(system.coordinates());
+        work.accelerates(system, forces).max(work.scaled(rows))
     }
 }
 

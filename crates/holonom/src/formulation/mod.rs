@@ -45,6 +45,7 @@ pub use iteration::{ITERATIONS, Iteration, Multipliers, SolveSettings, predict, 
 pub use kkt::{ALL, Block, Kkt, LawFactors};
 pub use level::Level;
 pub use newton::Newton;
+pub use passes::Sure;
 pub use rank::{RHO, Rank};
 pub use scales::Scales;
 pub use stabilized::Stabilized;

@@ -2,10 +2,11 @@
 //! is found is looked at twice (methods §17).
 
 use super::failure::Failure;
+use super::independence::independent;
 use super::level::Level;
 use super::rank::RHO;
 use super::workspace::Workspace;
-use crate::linalg::largest;
+use crate::linalg::{Solver, largest};
 use crate::system::System;
 
 /// Passes with a proximal δ; the first starts from the multipliers at hand and leaves δ of what they miss, the others are
@@ -43,58 +44,122 @@ const FOLLOWS: f64 = 100.0;
 
 /// Passes end where the next would change less than this share of accelerations and multipliers: of those that a step goes on with, whose errors add
 /// up, and of those that are shown.
-pub(super) const ROUNDED: f64 = 0.1 * f64::EPSILON;
-pub(super) const SHOWN: f64 = 1e-12;
+const ROUNDED: f64 = 0.1 * f64::EPSILON;
+const SHOWN: f64 = 1e-12;
+
+/// ρ of hardly any δ, with which one solution is all there is where every row adds much to those before it.
+const SPARING: f64 = 1e20;
+
+/// How many times what counts as independent that is: accelerations are known then.
+const SURER: f64 = 10.0;
+
+/// In long chains rows add less from the start. They are as sure where they add no less than this share of it.
+const AS_AT_START: f64 = 0.01;
+
+/// What a solution may miss, over the accelerations that forces make, where it is round-off of sums of some forces; what rows add that is no more.
+const ROUND_OFF: f64 = 128.0 * f64::EPSILON;
+
+/// What accelerations and multipliers are for.
+#[derive(Clone, Copy)]
+pub(super) enum Purpose<'a> {
+    /// A motion begins with them.
+    Start,
+    /// They are shown.
+    Show(Option<&'a Sure>),
+}
+
+/// What each row must add to those before it to be far from redundant (r), over what it would add alone.
+pub struct Sure(Vec<f64>);
+
+impl Sure {
+    /// By what rows add at the evaluation of the end, which is that of the start. None where one follows from others there, or hardly differs.
+    pub(super) fn of(matrix: &mut impl LinearSystem, system: &System, work: &Workspace) -> Option<Self> {
+        matrix.factor(SPARING, work).ok()?;
+        let shares: Vec<f64> = matrix.shares(work).collect();
+        let least = (SURER * independent(system.coordinates())).max(ROUND_OFF);
+        shares
+            .iter()
+            .all(|share| *share > least)
+            .then(|| Self(shares.iter().map(|share| (SURER * independent(1)).min(AS_AT_START * share)).collect()))
+    }
+}
 
 /// The matrix of the system.
 pub(super) trait LinearSystem {
     /// Factors it at the evaluation of the end with the proximal δ = (G M⁻¹ Gᵀ)/ρ. Hands back what share of the multipliers a solution may leave.
     fn factor(&mut self, rho: f64, work: &Workspace) -> Result<f64, Failure>;
 
+    /// Its factors.
+    fn solver(&self) -> &Solver;
+
+    /// What the rows that have unknowns of it add to those before them where it was last factored in order, over what they would add alone.
+    fn shares(&self, work: &Workspace) -> impl Iterator<Item = f64>;
+
+    /// Whether no part is light beside what holds it: a solution misses about as little of each.
+    fn is_even(&self, work: &Workspace) -> bool;
+
     /// A right side of coordinates (n) and rows (r), or its solution.
     fn unknowns(&mut self) -> &mut [f64];
 
     /// Replaces the right side in the unknowns by the solution.
     fn solve(&mut self, system: &System, work: &Workspace) -> Result<(), Failure>;
+
+    /// The largest acceleration, m/s², that the right side in the unknowns is of what it acts on.
+    fn accelerates(&mut self, system: &System, work: &Workspace) -> f64;
 }
 
 /// Solves the system until δ no longer matters. Says whether accelerations are known: at a singular position none may meet all rows.
 pub(super) fn meet(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
+    work.sampled.copy_from(&work.end);
     let pushed = work.begin_pass(system, t);
     let leaves = matrix.factor(RHO, work)?;
-    let mut end = passes(matrix, Passes { leaves, pushed, most: MOST, open: ROUNDED }, system, work)?;
+    let mut end = passes(matrix, Passes { leaves, pushed, most: MOST, purpose: Purpose::Start }, system, work)?;
     if end == End::Slow {
         let leaves = matrix.factor(STIFFER * RHO, work)?;
-        end = passes(matrix, Passes { leaves, pushed, most: MOST, open: ROUNDED }, system, work)?;
+        end = passes(matrix, Passes { leaves, pushed, most: MOST, purpose: Purpose::Start }, system, work)?;
     }
     work.add_reactions(system);
     Ok(is_met(end, system, t, work))
 }
 
-/// The same for forces that are to be trusted, of which passes may leave the share `open`. Near a singular position accelerations are known where they
+/// The same for forces that are to be trusted. Near a singular position accelerations are known where they
 /// are the same, but for little, at another place that meets the rows as well as numbers can, with the velocities that belong to it.
-pub(super) fn react(matrix: &mut impl LinearSystem, open: f64, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
+pub(super) fn react(
+    matrix: &mut impl LinearSystem,
+    purpose: Purpose<'_>,
+    system: &System,
+    t: f64,
+    work: &mut Workspace,
+) -> Result<bool, Failure> {
     let level = std::mem::replace(&mut work.level, Level::ACCELERATION);
-    let outcome = react_at_level(matrix, open, system, t, work);
-    if outcome.is_ok() {
-        work.add_reactions(system);
-    }
+    let outcome = react_at_level(matrix, purpose, system, t, work);
     work.level = level;
     outcome
 }
 
-fn react_at_level(matrix: &mut impl LinearSystem, open: f64, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
+fn react_at_level(
+    matrix: &mut impl LinearSystem,
+    purpose: Purpose<'_>,
+    system: &System,
+    t: f64,
+    work: &mut Workspace,
+) -> Result<bool, Failure> {
     let pushed = work.begin_pass(system, t);
-    let leaves = matrix.factor(RHO, work)?;
     // Rows of what spins fast ask for far too much along velocities that are off them a little, and redundant ones, which ask for the same along
     // velocities that meet them all, for different forces, without bounds.
     let strays = work.strays(system, t);
+    if let Purpose::Show(Some(sure)) = purpose
+        && solves_at_once(matrix, sure, [pushed, strays], system, t, work)
+    {
+        return Ok(true);
+    }
+    let leaves = matrix.factor(RHO, work)?;
     let is_on_rows = strays > ASTRAY && follow_rows(matrix, strays, system, t, work)?;
-    let mut end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
+    let mut end = passes(matrix, Passes { leaves, pushed, most: PASSES, purpose }, system, work)?;
     if end != End::Met && !is_on_rows && follow_rows(matrix, strays, system, t, work)? {
         work.a[..system.coordinates()].fill(0.0);
         work.lambda.fill(0.0);
-        end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
+        end = passes(matrix, Passes { leaves, pushed, most: PASSES, purpose }, system, work)?;
     }
     if end != End::Slow {
         return Ok(is_met(end, system, t, work));
@@ -110,7 +175,7 @@ fn react_at_level(matrix: &mut impl LinearSystem, open: f64, system: &System, t:
     let mut solve = |work: &mut Workspace| {
         let pushed = work.begin_pass(system, t);
         work.lambda.fill(0.0);
-        passes(matrix, Passes { leaves, pushed, most: MOST, open: ROUNDED }, system, work)
+        passes(matrix, Passes { leaves, pushed, most: MOST, purpose: Purpose::Start }, system, work)
     };
     solve(work)?;
     let others = work.a[..n].to_vec();
@@ -119,6 +184,30 @@ fn react_at_level(matrix: &mut impl LinearSystem, open: f64, system: &System, t:
     let differs = work.a[..n].iter().zip(&others).fold(0.0, |m: f64, (a, other)| m.max((a - other).abs()));
     let is_sure = differs <= KNOWN * largest(&work.a[..n]).max(pushed) || work.strays(system, t) > NOISE;
     Ok(is_met(end, system, t, work) && is_sure)
+}
+
+/// Solves the system with hardly any δ, where it is known what forces push with and by what share velocities are off the rows. Whether no row is near
+/// to redundant, and what is missed is round-off; where not, nothing is found.
+fn solves_at_once(
+    matrix: &mut impl LinearSystem,
+    sure: &Sure,
+    [pushed, strays]: [f64; 2],
+    system: &System,
+    t: f64,
+    work: &mut Workspace,
+) -> bool {
+    let is_in_order = matrix.factor(SPARING, work).is_ok() && !matrix.solver().has_exchanged();
+    if !is_in_order || !matrix.shares(work).zip(&sure.0).all(|(share, least)| share >= *least) {
+        return false;
+    }
+    let is_followed = strays <= ASTRAY || follow_rows(matrix, strays, system, t, work).is_ok();
+    let of = Passes { leaves: 0.0, pushed, most: PASSES, purpose: Purpose::Show(Some(sure)) };
+    let is_solved = is_followed && passes(matrix, of, system, work) == Ok(End::Met);
+    if !is_solved {
+        work.a[..system.coordinates()].fill(0.0);
+        work.lambda.fill(0.0);
+    }
+    is_solved
 }
 
 /// Whether accelerations are known where passes ended so.
@@ -131,7 +220,7 @@ fn is_met(end: End, system: &System, t: f64, work: &mut Workspace) -> bool {
     (end == End::Grows || strays > NOISE) && missed <= (MISSED * of_all).max(FOLLOWS * strays * of_velocities)
 }
 
-/// Samples the rows along the velocities nearest to those at the end, which are off the rows by the share `strays`, that meet them; forces stay as
+/// Takes the rows along the velocities nearest to those at the end, which are off the rows by the share `strays`, that meet them; forces stay as
 /// they are. Says whether there are such: beside a singular position they may be too far away.
 fn follow_rows(matrix: &mut impl LinearSystem, strays: f64, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
     work.kept_v.copy_from_slice(&work.end.v);
@@ -139,8 +228,7 @@ fn follow_rows(matrix: &mut impl LinearSystem, strays: f64, system: &System, t: 
     let moved = work.end.v.iter().zip(&work.kept_v).fold(0.0, |m: f64, (v, before)| m.max((v - before).abs()));
     let are_near = moved <= FOLLOWS * strays * largest(&work.kept_v);
     if are_near {
-        work.sampled.v.copy_from_slice(&work.end.v);
-        work.weigh_levels_at_rest(system, t, 1.0);
+        work.weigh_end_at_rest(system, t);
     }
     work.end.v.copy_from_slice(&work.kept_v);
     Ok(are_near)
@@ -177,29 +265,41 @@ enum End {
 
 /// Passes with the factors at hand.
 #[derive(Clone, Copy)]
-struct Passes {
+struct Passes<'a> {
     /// What share of the multipliers a solution leaves.
     leaves: f64,
     /// How fast forces but those of the rows would make what they push most, m/s²: what is little beside it is round-off where nothing moves.
     pushed: f64,
     /// How many there may be.
     most: usize,
-    /// What share of accelerations and multipliers may be left open.
-    open: f64,
+    purpose: Purpose<'a>,
 }
 
-fn passes(matrix: &mut impl LinearSystem, of: Passes, system: &System, work: &mut Workspace) -> Result<End, Failure> {
+fn passes(matrix: &mut impl LinearSystem, of: Passes<'_>, system: &System, work: &mut Workspace) -> Result<End, Failure> {
+    let natural = of.pushed.max(work.of_motion());
+    let open = if let Purpose::Start = of.purpose { ROUNDED } else { SHOWN };
+    // What hardly moves is not to be known better than what forces and motion make, but where rows hardly hold it.
+    let least = if of.leaves == 0.0 { natural } else { 0.0 };
     let mut before = [f64::INFINITY; 2];
     for count in 1..=of.most {
         let [taken, whole] = pass(matrix, system, work)?;
-        if (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(of.leaves) <= of.open * whole[k]) {
+        let sizes = [whole[0].max(least), whole[1]];
+        let is_met = match of.leaves == 0.0 && count == 1 {
+            true if !matrix.is_even(work) => false,
+            true => {
+                work.sum_reactions(system, matrix.unknowns());
+                matrix.accelerates(system, work) <= ROUND_OFF * sizes[0]
+            }
+            false => (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(of.leaves) <= open * sizes[k]),
+        };
+        if is_met {
             return Ok(End::Met);
         }
         let share = taken[1] / before[1];
         before = taken;
         if count % PASSES == 0 {
             let is_slow = share.is_nan() || share >= SLOWEST;
-            let matters = [whole[0].max(of.pushed).max(work.of_motion()), whole[1]];
+            let matters = [whole[0].max(natural), whole[1]];
             if (0..2).any(|k| taken[k] <= MATTERS * matters[k]) {
                 return Ok(if is_slow && taken[1] >= GROWS * whole[1] { End::Grows } else { End::Met });
             }
@@ -230,14 +330,23 @@ pub(super) fn pass(matrix: &mut impl LinearSystem, system: &System, work: &mut W
 }
 
 impl Workspace {
-    /// Samples forces and rows at the end, without accelerations. Hands back how fast the forces would make the node that they push most, m/s²,
+    /// Sums forces and rows at the end, without accelerations. Hands back how fast the forces would make the node that they push most, m/s²,
     /// where light ones weigh as what holds them.
     pub(super) fn begin_pass(&mut self, system: &System, t: f64) -> f64 {
-        self.sample_applied(system, t);
         self.a[..system.coordinates()].fill(0.0);
+        // The end is looked at in the place of the sampled state.
+        std::mem::swap(&mut self.sampled, &mut self.end);
+        self.sum_applied_anew(system, t);
+        std::mem::swap(&mut self.sampled, &mut self.end);
+        self.weigh_end_at_rest(system, t);
+        self.accelerates(system, &self.forces.sum)
+    }
+
+    /// Leaves the rows at the end, without accelerations, in `phi`.
+    fn weigh_end_at_rest(&mut self, system: &System, t: f64) {
+        std::mem::swap(&mut self.sampled, &mut self.end);
         self.weigh_levels_at_rest(system, t, 1.0);
-        let nodes = self.forces.sum.chunks_exact(system.dim).zip(&self.scales.held);
-        nodes.map(|(force, held)| held * largest(force)).fold(0.0, f64::max)
+        std::mem::swap(&mut self.sampled, &mut self.end);
     }
 
     /// Leaves the violation of the rows, and as much more or less as rounding leaves of places, in `rows`.
@@ -251,6 +360,12 @@ impl Workspace {
         }
     }
 
+    /// How fast forces would make the node that they push most, m/s², where light ones weigh as what holds them.
+    pub(super) fn accelerates(&self, system: &System, forces: &[f64]) -> f64 {
+        let nodes = forces.chunks_exact(system.dim).zip(&self.scales.held);
+        nodes.map(|(force, held)| held * largest(force)).fold(0.0, f64::max)
+    }
+
     /// Size of the accelerations that motion asks for, v²/L, m/s²: what is little beside it is round-off where nothing pushes.
     fn of_motion(&self) -> f64 {
         largest(&self.end.v).powi(2) / self.scales.length
@@ -259,14 +374,14 @@ impl Workspace {
     /// By how much the accelerations miss the rows, the size of both, and of what velocities have part in it.
     fn misses(&mut self, system: &System, t: f64) -> [f64; 3] {
         let of_motion = self.of_motion();
-        let Self { phi, rows, a, sampled, .. } = self;
+        let Self { phi, rows, a, end, .. } = self;
         rows.copy_from_slice(phi);
-        system.slots.add_along(system.dim, 1.0, &sampled.at.gradient, a, rows);
+        system.slots.add_along(system.dim, 1.0, &end.at.gradient, a, rows);
         let missed = self.scaled(&self.rows);
         let of_all = self.scaled(&self.phi) + largest(&self.a[..system.coordinates()]) + of_motion;
-        let Self { phi, rows, sampled, turned, kept_v: at_rest, .. } = self;
+        let Self { phi, rows, end, turned, kept_v: at_rest, .. } = self;
         at_rest.fill(0.0);
-        system.constraint_curvatures(&sampled.at, &sampled.x, at_rest, t, &mut turned.half, rows);
+        system.constraint_curvatures(&end.at, &end.x, at_rest, t, &mut turned.half, rows);
         rows.iter_mut().zip(phi).for_each(|(row, phi)| *row = *phi - *row);
         [missed, of_all, self.scaled(&self.rows) + of_motion]
     }
@@ -277,21 +392,26 @@ impl Workspace {
         (self.scaled(&self.rows) / largest(&self.end.v)).max(0.0)
     }
 
-    /// Leaves minus M a + f + Gᵀλ and minus the rows, `phi` and what the accelerations add to it, in the unknowns, where the forces f were
-    /// sampled without λ.
+    /// Leaves minus M a + f + Gᵀλ at the end and minus the rows, `phi` and what the accelerations add to it, in the unknowns, where the forces f
+    /// are without λ.
     pub(super) fn sum_reactions(&mut self, system: &System, unknowns: &mut [f64]) {
-        let Self { full, forces, sampled, .. } = self;
+        let Self { full, forces, end, .. } = self;
         let (accelerated, rows) = unknowns.split_at_mut(system.coordinates());
         full.copy_from_slice(&forces.sum);
-        system.slots.add_forces(system.dim, &self.lambda, &sampled.at.gradient, full);
+        system.slots.add_forces(system.dim, &self.lambda, &end.at.gradient, full);
+        rows.iter_mut().zip(&self.phi).for_each(|(row, phi)| *row = -phi);
+        // The first pass begins without accelerations.
+        if self.a.iter().all(|a| *a == 0.0) {
+            accelerated.iter_mut().zip(full).for_each(|(sum, force)| *sum = -*force);
+            return;
+        }
         system.mass.times(system.dim, &self.a, accelerated);
         accelerated.iter_mut().zip(full).for_each(|(sum, force)| *sum = -(*sum + *force));
-        rows.iter_mut().zip(&self.phi).for_each(|(row, phi)| *row = -phi);
-        system.slots.add_along(system.dim, -self.level.acceleration, &sampled.at.gradient, &self.a, rows);
+        system.slots.add_along(system.dim, -self.level.acceleration, &end.at.gradient, &self.a, rows);
     }
 
-    /// Adds Gᵀλ to the forces sampled without it.
+    /// Adds Gᵀλ to the forces without it.
     pub(super) fn add_reactions(&mut self, system: &System) {
-        system.slots.add_forces(system.dim, &self.lambda, &self.sampled.at.gradient, &mut self.forces.sum);
+        system.slots.add_forces(system.dim, &self.lambda, &self.end.at.gradient, &mut self.forces.sum);
     }
 }

@@ -61,17 +61,17 @@ impl Rank {
 
     /// Share of what rows hold that an iteration with proximal terms may leave.
     pub(super) fn leaves(&self) -> f64 {
-        if self.spares_regular { 0.0 } else { self.rho_leaves() }
+        if self.spares_regular { 0.0 } else { self.rho_leaves(RHO) }
     }
 
-    /// Share of what the multipliers miss that a solution with the [proximal](Newton::proximal) δ may leave.
-    pub(super) fn proximal_leaves(&self) -> f64 {
-        if self.redundant == Some(0) { self.rho_leaves() } else { 1.0 }
+    /// Share of what the multipliers miss that a solution with δ of this ρ may leave.
+    pub(super) fn proximal_leaves(&self, rho: f64) -> f64 {
+        if self.redundant == Some(0) { self.rho_leaves(rho) } else { 1.0 }
     }
 
-    /// Share of what the weakest row holds that ρ = [`RHO`] leaves.
-    fn rho_leaves(&self) -> f64 {
-        (1.0 / (RHO * self.weakest)).min(1.0)
+    /// Share of what the weakest row holds that δ of this ρ leaves.
+    fn rho_leaves(&self, rho: f64) -> f64 {
+        (1.0 / (rho * self.weakest)).min(1.0)
     }
 
     /// Becomes the same without any allocation.

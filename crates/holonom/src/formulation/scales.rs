@@ -8,7 +8,7 @@ use crate::system::{Quantity, System};
 
 /// A node is light when its mass, with all others yielding, is below this share of the heaviest of its mechanism. What its rows add is then
 /// lost beside what heavier nodes add: the rows enter its part of the matrix (methods §13).
-const LIGHT: f64 = 1e-4;
+pub(super) const LIGHT: f64 = 1e-4;
 
 /// Smallest share of what a light node counts as that its own mass may be.
 const LEAST_SHARE: f64 = 1e-12;

@@ -314,9 +314,9 @@ impl Workspace {
         self.sum_forces(system, t, None);
     }
 
-    /// Samples forces but those of the rows at the end, which has its evaluation.
-    pub(super) fn sample_applied(&mut self, system: &System, t: f64) {
-        self.respond_at_end(system, t);
+    /// Sums forces but those of the rows at the sampled state, which has its evaluation.
+    pub(super) fn sum_applied_anew(&mut self, system: &System, t: f64) {
+        self.respond(system, t);
         self.sum_applied(system, t, None);
     }
 

@@ -13,7 +13,7 @@ use smallvec::SmallVec;
 
 use super::failure::{Failure, Unknown};
 use super::kkt::Augmented;
-use super::passes::{LinearSystem, SHOWN, react};
+use super::passes::{LinearSystem, Purpose, Sure, react};
 use super::rank::REDUNDANT;
 use super::workspace::Workspace;
 use crate::linalg::{Singular, Solver};
@@ -57,6 +57,8 @@ struct Outer {
     row: u32,
     unknown: u32,
     diagonal: u32,
+    /// G M⁻¹ Gᵀ of the row where its bodies are free, as the start has them, or what counts in place of that.
+    alone: f64,
 }
 
 /// The matrix, planned once. What a body or a row has is in one list for all of them, as it is read one after the other: far more of it than fits
@@ -75,6 +77,8 @@ pub struct Twists {
     touched: Vec<[Option<u32>; 2]>,
     outer: Vec<Outer>,
     augmented: Vec<Augmented>,
+    /// Whether no body is light.
+    is_even: bool,
     solver: Solver,
     /// From the first point of its body to each node, or along it (D × free nodes), m.
     arms: Vec<f64>,
@@ -84,14 +88,21 @@ pub struct Twists {
     inner: Vec<f64>,
     inertial: Vec<f64>,
     reduced: Vec<f64>,
+    /// What a number of the right side is multiplied by to be an acceleration of what it acts on, of the ends of directions where it turns them.
+    agility: Vec<f64>,
     unknowns: Vec<f64>,
 }
 
 impl Twists {
     /// Accelerations and multipliers at the end position and velocity of a workspace that has the evaluation there, as
-    /// [`Newton::react_as_evaluated`](super::Newton::react_as_evaluated) finds them; multipliers of the rows that keep bodies rigid stay zero.
-    pub fn react(&mut self, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
-        react(self, SHOWN, system, t, work)
+    /// [`Newton::show_reactions`](super::Newton::show_reactions) finds them; multipliers of the rows that keep bodies rigid stay zero.
+    pub fn show_reactions(&mut self, sure: Option<&Sure>, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
+        react(self, Purpose::Show(sure), system, t, work)
+    }
+
+    /// What rows between bodies must add to be sure, by what they add at the evaluation of the end, which is that of the start.
+    pub fn sure(&mut self, system: &System, work: &Workspace) -> Option<Sure> {
+        Sure::of(self, system, work)
     }
 
     /// The node or row whose pivot is none, where its numbers are such.
@@ -112,22 +123,17 @@ impl Twists {
 impl LinearSystem for Twists {
     fn factor(&mut self, rho: f64, work: &Workspace) -> Result<f64, Failure> {
         let dim = self.dim;
+        self.place(&work.end.x)?;
+        self.gather(&work.end.at.gradient);
         let values = self.solver.values_mut();
         values.fill(0.0);
         let (mut masses, size) = (&self.masses[..], dim + turns(dim));
-        for (body, places) in self.bodies.iter_mut().zip(self.places.chunks_exact(size * size)) {
-            let first = body.node(0) * dim;
-            for k in 1..body.count {
-                let node = body.node(k);
-                let from = if self.motions[node].moves.is_some() { &work.end.x[first..first + dim] } else { &[0.0; 3][..dim] };
-                (0..dim).for_each(|c| self.arms[node * dim + c] = work.end.x[node * dim + c] - from[c]);
-            }
-            body.reciprocal = body.products(dim, &self.arms).try_inverse().ok_or(Failure::Singular(Unknown::Node(body.node(1))))?;
+        for (body, places) in self.bodies.iter().zip(self.places.chunks_exact(size * size)) {
             let (mass, others) = masses.split_at(body.count.pow(2));
             let block = body.inertia(dim, mass, &self.motions, &self.arms);
             masses = others;
-            for (k, &place) in places.iter().enumerate() {
-                values[place as usize] += block[k / size][k % size];
+            for (places, line) in places.chunks_exact(size).zip(&block) {
+                places.iter().zip(line).for_each(|(&place, number)| values[place as usize] += number);
             }
         }
         for Lone { mass, places } in &self.lone {
@@ -137,18 +143,6 @@ impl LinearSystem for Twists {
             if mass.s != 0.0 {
                 values[places[1] as usize] -= mass.s;
                 values[places[2] as usize] += mass.s;
-            }
-        }
-        self.gradients.fill([0.0; 3]);
-        for (&RowSlot { slot, node, .. }, touches) in self.slots.iter().zip(&self.touched) {
-            let (slot, node) = (slot as usize, node as usize);
-            let gradient = &work.end.at.gradient[slot * dim..(slot + 1) * dim];
-            if let Some(touch) = touches[0] {
-                (0..dim).for_each(|c| self.gradients[touch as usize][c] += gradient[c]);
-            }
-            if let Some(touch) = touches[1] {
-                let moment = turned(&self.arms[node * dim..(node + 1) * dim], gradient);
-                (0..3).for_each(|c| self.gradients[touch as usize][c] += moment[c]);
             }
         }
         for (touch, gradient) in self.touches.iter().zip(&self.gradients) {
@@ -166,21 +160,96 @@ impl LinearSystem for Twists {
         Ok(if weakest > REDUNDANT { (1.0 / (rho * weakest)).min(1.0) } else { 1.0 })
     }
 
+    fn solver(&self) -> &Solver {
+        &self.solver
+    }
+
+    fn shares(&self, _: &Workspace) -> impl Iterator<Item = f64> {
+        self.outer.iter().map(|outer| self.solver.pivot(outer.unknown as usize) / outer.alone)
+    }
+
+    fn is_even(&self, _: &Workspace) -> bool {
+        self.is_even
+    }
+
     fn unknowns(&mut self) -> &mut [f64] {
         &mut self.unknowns
     }
 
     fn solve(&mut self, system: &System, work: &Workspace) -> Result<(), Failure> {
+        self.reduce(system, work);
+        self.augmented.iter().for_each(|row| row.pull(&mut self.reduced));
+        self.solver.solve(&mut self.reduced);
+        if !self.reduced.iter().all(|u| u.is_finite()) {
+            return Err(Failure::NotFinite);
+        }
+        self.expand();
+        Ok(())
+    }
+
+    fn accelerates(&mut self, _: &System, work: &Workspace) -> f64 {
+        self.inertial.fill(0.0);
+        self.sum_wrenches();
+        let coordinates = self.reduced.iter().zip(&self.agility).fold(0.0, |m: f64, (number, agility)| m.max((number * agility).abs()));
+        coordinates.max(work.scaled(&self.unknowns[self.motions.len() * self.dim..]))
+    }
+}
+
+impl Twists {
+    /// Takes over the positions `x` of all nodes.
+    fn place(&mut self, x: &[f64]) -> Result<(), Failure> {
         let dim = self.dim;
-        let Self { motions, bodies, slots, outer, augmented, solver, arms, inner, inertial, reduced, unknowns, .. } = self;
-        let (forces, rows) = unknowns.split_at_mut(motions.len() * dim);
-        bodies.iter().for_each(|body| body.keep_rigid(dim, arms, rows, inner));
-        system.mass.times(dim, inner, inertial);
+        for body in &mut self.bodies {
+            body.set_arms(dim, &self.motions, x, &mut self.arms);
+            body.reciprocal = body.products(dim, &self.arms).try_inverse().ok_or(Failure::Singular(Unknown::Node(body.node(1))))?;
+        }
+        Ok(())
+    }
+
+    /// Takes over the gradients of the rows between bodies.
+    fn gather(&mut self, gradients: &[f64]) {
+        match self.dim {
+            2 => self.gather_in::<2>(gradients),
+            _ => self.gather_in::<3>(gradients),
+        }
+    }
+
+    fn gather_in<const D: usize>(&mut self, gradients: &[f64]) {
+        let (arms, gradients) = (self.arms.as_chunks::<D>().0, gradients.as_chunks::<D>().0);
+        self.gradients.fill([0.0; 3]);
+        for (&RowSlot { slot, node, .. }, touches) in self.slots.iter().zip(&self.touched) {
+            let gradient = &gradients[slot as usize];
+            if let Some(touch) = touches[0] {
+                self.gradients[touch as usize].iter_mut().zip(gradient).for_each(|(sum, g)| *sum += g);
+            }
+            if let Some(touch) = touches[1] {
+                let moment = turned(&arms[node as usize], gradient);
+                self.gradients[touch as usize].iter_mut().zip(&moment).for_each(|(sum, m)| *sum += m);
+            }
+        }
+    }
+
+    /// Brings the right side in the unknowns to that of the matrix.
+    fn reduce(&mut self, system: &System, work: &Workspace) {
+        let (dim, coordinates) = (self.dim, self.motions.len() * self.dim);
+        let rows = &mut self.unknowns[coordinates..];
+        self.bodies.iter().for_each(|body| body.keep_rigid(dim, &self.arms, rows, &mut self.inner));
+        system.mass.times(dim, &self.inner, &mut self.inertial);
+        self.sum_wrenches();
+        let rows = &mut self.unknowns[coordinates..];
+        add_along_rows(dim, &self.slots, -1.0, &work.end.at.gradient, &self.inner, rows);
+        self.outer.iter().for_each(|outer| self.reduced[outer.unknown as usize] = rows[outer.row as usize]);
+    }
+
+    /// Brings the forces in the unknowns, without what c takes of them, to those on bodies and lone nodes.
+    fn sum_wrenches(&mut self) {
+        let Self { dim, motions, arms, inertial, reduced, unknowns, .. } = self;
+        let dim = *dim;
         reduced.fill(0.0);
         for (node, motion) in motions.iter().enumerate() {
             let place = node * dim..(node + 1) * dim;
             let mut force = [0.0; 3];
-            place.clone().enumerate().for_each(|(c, k)| force[c] = forces[k] - inertial[k]);
+            place.clone().enumerate().for_each(|(c, k)| force[c] = unknowns[k] - inertial[k]);
             if let Some(first) = motion.moves {
                 (0..dim).for_each(|c| reduced[first as usize + c] += force[c]);
             }
@@ -189,13 +258,13 @@ impl LinearSystem for Twists {
                 reduced[first as usize..].iter_mut().zip(&moment[..turns(dim)]).for_each(|(sum, m)| *sum += m);
             }
         }
-        add_along_rows(dim, slots, -1.0, &work.end.at.gradient, inner, rows);
-        outer.iter().for_each(|outer| reduced[outer.unknown as usize] = rows[outer.row as usize]);
-        augmented.iter().for_each(|row| row.pull(reduced));
-        solver.solve(reduced);
-        if !reduced.iter().all(|u| u.is_finite()) {
-            return Err(Failure::NotFinite);
-        }
+    }
+
+    /// Brings the solution of the matrix back to the unknowns.
+    fn expand(&mut self) {
+        let dim = self.dim;
+        let Self { motions, outer, arms, inner, reduced, unknowns, .. } = self;
+        let (forces, rows) = unknowns.split_at_mut(motions.len() * dim);
         for (node, motion) in motions.iter().enumerate() {
             for c in 0..dim {
                 forces[node * dim + c] = inner[node * dim + c] + motion.moves.map_or(0.0, |first| reduced[first as usize + c]);
@@ -207,7 +276,6 @@ impl LinearSystem for Twists {
         }
         rows.fill(0.0);
         outer.iter().for_each(|outer| rows[outer.row as usize] = reduced[outer.unknown as usize]);
-        Ok(())
     }
 }
 
@@ -216,27 +284,37 @@ impl Body {
         self.nodes[k] as usize
     }
 
+    /// Sets the arms of its nodes at the positions `x` of all nodes.
+    fn set_arms(&self, dim: usize, motions: &[Motion], x: &[f64], arms: &mut [f64]) {
+        let first = self.node(0) * dim;
+        for k in 1..self.count {
+            let node = self.node(k);
+            let from = if motions[node].moves.is_some() { &x[first..first + dim] } else { &[0.0; 3][..dim] };
+            (0..dim).for_each(|c| arms[node * dim + c] = x[node * dim + c] - from[c]);
+        }
+    }
+
     /// BᵀM B of the blocks of its mass matrix, by the velocity of the first point, then the angular velocity.
     fn inertia(&self, dim: usize, mass: &[MassBlock], motions: &[Motion], arms: &[f64]) -> [[f64; 6]; 6] {
         let arm = |k: usize| self.arm(k, dim, arms);
         // Mass, first moments and second ones.
         let (mut all, mut first, mut second) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
         let count = self.count;
-        for (k, block) in mass.iter().enumerate() {
-            let (a, b) = (k / count, k % count);
-            if motions[self.node(a)].moves.is_some() {
-                all += if motions[self.node(b)].moves.is_some() { block.m } else { 0.0 };
-                (0..dim).for_each(|c| first[c] += block.m * arm(b)[c]);
+        for (a, row) in mass.chunks_exact(count).enumerate() {
+            let (mut carried, moves) = ([0.0; 3], motions[self.node(a)].moves.is_some());
+            for (b, block) in row.iter().enumerate() {
+                (0..dim).for_each(|c| carried[c] += block.m * arm(b)[c]);
                 if dim == 2 {
-                    first[0] -= block.s * arm(b)[1];
-                    first[1] += block.s * arm(b)[0];
+                    carried[0] -= block.s * arm(b)[1];
+                    carried[1] += block.s * arm(b)[0];
                 }
+                all += if moves && motions[self.node(b)].moves.is_some() { block.m } else { 0.0 };
             }
-            for c in 0..dim {
-                (0..dim).for_each(|d| second[c][d] += block.m * arm(a)[c] * arm(b)[d]);
+            if moves {
+                (0..dim).for_each(|c| first[c] += carried[c]);
             }
-            if dim == 2 {
-                second[0][0] += block.s * (arm(a)[1] * arm(b)[0] - arm(a)[0] * arm(b)[1]);
+            for (line, arm) in second.iter_mut().zip(arm(a)) {
+                (0..dim).for_each(|d| line[d] += arm * carried[d]);
             }
         }
         let trace = second[0][0] + second[1][1] + second[2][2];

@@ -212,6 +212,24 @@ impl Workspace {
         }
     }
 
+    /// Gives back the room of what steps need beside the forces of rows at the end: it can take none after that.
+    pub(crate) fn leave_steps(&mut self) {
+        let Self { start, sampled, d, prediction, turned, forces, phi_start, estimate, inertial, sizes, .. } = self;
+        *sampled = Moment { x: Vec::new(), v: Vec::new(), at: Evaluation::default() };
+        // Angles at the end are counted from those at the start.
+        *start = Moment {
+            at: Evaluation { functions: std::mem::take(&mut start.at.functions), ..Evaluation::default() },
+            x: Vec::new(),
+            v: Vec::new(),
+        };
+        let steps = [&mut prediction.drift, &mut prediction.offset, &mut prediction.a_change, &mut prediction.lambda_change];
+        let unused = [d, phi_start, inertial, sizes, &mut turned.v, &mut turned.a, &mut turned.rows, &mut estimate.q, &mut estimate.v];
+        steps.into_iter().chain(unused).for_each(|numbers| *numbers = Vec::new());
+        if !forces.dissipative {
+            forces.motion = Vec::new();
+        }
+    }
+
     /// Puts the end position of the free nodes where the increment `d` has it, and where a stage looks at them the sampled
     /// position and velocity too. Those of the known nodes are the integrator's to set.
     pub fn place(&mut self, stage: &Stage) {

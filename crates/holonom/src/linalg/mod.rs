@@ -119,6 +119,11 @@ impl Solver {
         self.lu.solve(b);
     }
 
+    /// Whether rows changed places when it was last factored: pivots of others than they came from tell little of them.
+    pub fn has_exchanged(&self) -> bool {
+        self.lu.has_exchanged()
+    }
+
     /// Size of the pivot met at a row of the matrix.
     pub fn pivot(&self, row: usize) -> f64 {
         self.lu.pivot(row).0

@@ -121,6 +121,11 @@ impl Multifrontal {
         self.arch.dispatch(Solve { plan: &self.plan, parts: &self.parts, numbers: &mut self.numbers, b });
     }
 
+    /// Whether rows of any front changed places.
+    pub(super) fn has_exchanged(&self) -> bool {
+        self.numbers.exchanged.contains(&true)
+    }
+
     /// Size of the pivot met at a row of the matrix, and whether it was dropped.
     pub(super) fn pivot(&self, row: usize) -> (f64, bool) {
         let size = 1.0 / self.numbers.reciprocal.as_flattened()[self.plan.place[row] as usize].abs();

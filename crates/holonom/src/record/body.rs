@@ -1,6 +1,7 @@
 //! How a body is turned, by its nodes.
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use smallvec::SmallVec;
 
 use crate::system::{Term, place_of, rate_of};
 
@@ -33,7 +34,7 @@ impl RecordedBody {
         let of = |terms: &[Term]| {
             (Vector3::from(place_of(terms, x, dim)), Vector3::from(rate_of(terms, v, dim)), Vector3::from(rate_of(terms, a, dim)))
         };
-        let directions: Vec<_> = self.directions.iter().map(|(_, terms)| of(terms)).collect();
+        let directions: SmallVec<[_; 3]> = self.directions.iter().map(|(_, terms)| of(terms)).collect();
         match directions[..] {
             [(e, _, bend)] => e.cross(&bend),
             [(e, e_rate, e_bend), (f, f_rate, f_bend)] => {
@@ -57,9 +58,9 @@ impl RecordedBody {
 
     /// Orientation and angular velocity in space.
     pub(super) fn turned(&self, x: &[f64], v: &[f64]) -> (UnitQuaternion<f64>, Vector3<f64>) {
-        let world: Vec<Vector3<f64>> = self.directions.iter().map(|(_, terms)| place_of(terms, x, 3).into()).collect();
-        let rates: Vec<Vector3<f64>> = self.directions.iter().map(|(_, terms)| rate_of(terms, v, 3).into()).collect();
-        let local: Vec<Vector3<f64>> = self.directions.iter().map(|&(local, _)| local.into()).collect();
+        let world: SmallVec<[Vector3<f64>; 3]> = self.directions.iter().map(|(_, terms)| place_of(terms, x, 3).into()).collect();
+        let rates: SmallVec<[Vector3<f64>; 3]> = self.directions.iter().map(|(_, terms)| rate_of(terms, v, 3).into()).collect();
+        let local: SmallVec<[Vector3<f64>; 3]> = self.directions.iter().map(|&(local, _)| local.into()).collect();
         match world[..] {
             [axis] => {
                 // Of a rod the turn about itself is not known: the shortest from the start.

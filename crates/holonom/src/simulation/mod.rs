@@ -50,7 +50,7 @@ pub use words::MethodError;
 
 use std::sync::Arc;
 
-use crate::formulation::{Independence, Newton, Workspace, independent};
+use crate::formulation::{Independence, Newton, Sure, Workspace, independent};
 use crate::integrator::Integrator;
 use crate::system::{Evaluation, GaugeValues, System};
 use checkpoint::{Grid, Hints};
@@ -149,6 +149,8 @@ pub struct Simulation {
     reactions: Option<Reactions>,
     /// What finds them where the system itself does not tell all of them.
     apart: Option<Box<reactions::Elsewhere>>,
+    /// What its own rows must add to be sure, once it was found.
+    sure: Option<Option<Sure>>,
     /// What was known after the last step that was taken.
     hints: Hints,
     /// Events so far.
@@ -266,6 +268,7 @@ impl Simulation {
             gauges,
             reactions: None,
             apart: None,
+            sure: None,
             happenings: Vec::new(),
             watched: None,
             samples: Vec::new(),

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::{Method, Simulation, State};
-use crate::formulation::{Newton, Twists, Workspace};
+use crate::formulation::{Newton, Sure, Twists, Workspace};
 use crate::system::{Evaluation, NodeId, Quantity, Sense, System, Term, place_of, rate_of};
 
 /// Forces of the constraints at a state, of the order of its positions and velocities.
@@ -85,6 +85,7 @@ pub(super) struct Elsewhere {
     /// Places of the angles whose turns are counted, there and in the system that moves.
     counted: Vec<[Range<usize>; 2]>,
     matrix: Matrix,
+    sure: Option<Sure>,
     work: Workspace,
 }
 
@@ -96,21 +97,28 @@ enum Matrix {
 
 impl Elsewhere {
     fn new(apart: Apart, own: &System, method: &Method) -> Self {
-        let work = Workspace::new(&apart.system);
-        let matrix = match Twists::new(&apart.system, &work.scales, &apart.bodies) {
+        let mut work = Workspace::new(&apart.system);
+        let mut matrix = match Twists::new(&apart.system, &work.scales, &apart.bodies) {
             Some(twists) => Matrix::Twists(Box::new(twists)),
             None => Matrix::Nodes(Box::new(Newton::new(&apart.system, &work.scales, method.settings))),
         };
+        work.end.x.copy_from_slice(&work.start.x);
+        work.end.at.copy_from(&work.start.at);
+        let sure = match &mut matrix {
+            Matrix::Twists(twists) => twists.sure(&apart.system, &work),
+            Matrix::Nodes(newton) => newton.sure(&apart.system, &work),
+        };
+        work.leave_steps();
         let (mine, mut theirs) = (counted(&apart.system), counted(own));
         let alike = mine.into_iter().filter_map(|(of, mine)| Some((mine, theirs.remove(&of)?)));
         let alike = alike.filter(|(mine, theirs)| mine.len() == theirs.len());
         let pairs = alike.flat_map(|(mine, theirs)| mine.into_iter().zip(theirs).map(|(mine, theirs)| [mine, theirs]));
-        Self { counted: pairs.filter(|[mine, theirs]| mine.len() == theirs.len()).collect(), work, matrix, apart }
+        Self { counted: pairs.filter(|[mine, theirs]| mine.len() == theirs.len()).collect(), sure, work, matrix, apart }
     }
 
     /// Puts its nodes where those of `own` are and finds the forces.
     fn react(&mut self, own: &System, state: &State, v: &[f64], angles: &Evaluation, reactions: &mut Reactions) {
-        let Self { apart: Apart { system, nodes, .. }, counted, matrix, work } = self;
+        let Self { apart: Apart { system, nodes, .. }, counted, matrix, sure, work } = self;
         let (dim, x) = (system.dim, own.in_world(&state.x));
         for (k, terms) in nodes.iter().enumerate() {
             let origin = if system.is_point[k] { system.origin } else { [0.0; 3] };
@@ -125,12 +133,12 @@ impl Elsewhere {
             work.start.at.functions.angle[mine.clone()].copy_from_slice(&angles.functions.angle[theirs.clone()]);
         }
         work.inputs.copy_from_slice(&state.inputs);
-        system.evaluate_again(&work.end.x, state.t, &mut work.start.at);
-        work.end.at.copy_from(&work.start.at);
+        system.evaluate(&work.end.x, state.t, &work.start.at, &mut work.end.at);
+        work.start.at.functions.angle.copy_from_slice(&work.end.at.functions.angle);
         work.lambda.fill(0.0);
         let outcome = match matrix {
-            Matrix::Twists(twists) => twists.react(system, state.t, work),
-            Matrix::Nodes(newton) => newton.react_as_evaluated(system, state.t, work),
+            Matrix::Twists(twists) => twists.show_reactions(sure.as_ref(), system, state.t, work),
+            Matrix::Nodes(newton) => newton.show_reactions(sure.as_ref(), system, state.t, work),
         };
         reactions.take(system, outcome == Ok(true), work);
     }
@@ -188,7 +196,7 @@ impl Simulation {
     /// The system whose forces of the constraints are found, its values and gradients at the present state.
     pub(crate) fn reacting(&self) -> (&System, &Evaluation) {
         match &self.apart {
-            Some(elsewhere) => (&elsewhere.apart.system, &elsewhere.work.start.at),
+            Some(elsewhere) => (&elsewhere.apart.system, &elsewhere.work.end.at),
             None => (&self.system, &self.work.start.at),
         }
     }
@@ -230,17 +238,23 @@ impl Simulation {
         }
         let (system, newton, work, state) = (&*self.system, &mut self.newton, &mut self.work, &self.state);
         let counters = (newton.iterations, newton.factorizations);
+        // A penalty's force is its own; that of every other formulation errs, and the constraints' is meant.
+        let is_own = self.method.formulation.soft;
+        if !is_own && self.sure.is_none() {
+            work.end.x.copy_from_slice(&system.start_position);
+            system.evaluate(&work.end.x, 0.0, &work.start.at, &mut work.end.at);
+            self.sure = Some(newton.sure(system, work));
+        }
         work.end.x.copy_from_slice(&state.x);
         work.end.v.copy_from_slice(&self.shown_v);
         work.a.copy_from_slice(&state.a);
         work.lambda.fill(0.0);
         system.place_known(state.t, &mut work.end.x, &mut work.end.v, &mut work.a);
-        // A penalty's force is its own; that of every other formulation errs, and the constraints' is meant.
-        let outcome = match self.method.formulation.soft {
+        let outcome = match is_own {
             true => newton.accelerate(system, state.t, work),
             false => {
                 work.end.at.copy_from(&work.start.at);
-                newton.react_as_evaluated(system, state.t, work)
+                newton.show_reactions(self.sure.as_ref().and_then(Option::as_ref), system, state.t, work)
             }
         };
         reactions.take(system, outcome == Ok(true), work);

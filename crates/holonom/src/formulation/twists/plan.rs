@@ -3,10 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Matrix6, Vector6};
+use smallvec::SmallVec;
 
-use super::{Augmented, Body, Lone, Motion, Outer, Twists, turns};
-use crate::formulation::scales::Scales;
+use super::{Augmented, Body, Lone, Motion, Outer, Twists, turned, turns};
+use crate::formulation::scales::{LIGHT, Scales};
 use crate::linalg::{Plan, Solver, fill_reducing_order};
 use crate::system::{MassBlock, NodeId, Quantity, RowSlot, System};
 
@@ -142,8 +143,9 @@ impl Twists {
             (0..dim as u32).flat_map(move |c| (0..dim as u32).map(move |d| (a + c, b + d)))
         };
         let own: Vec<Vec<u32>> = carriers.iter().map(|carrier| carrier.clone().collect()).collect();
-        let light: Vec<(usize, Vec<u32>)> =
-            rows.clone().filter(|&row| scales.has_light[row]).map(|row| (row, coordinates_of(row))).collect();
+        let mobility = Mobility::new(system, scales, &bodies, &masses, &numbering, rows.clone());
+        let is_light = |row: &usize| scales.has_light[*row] && mobility.of_rows[row - inner_rows].is_none();
+        let light: Vec<(usize, Vec<u32>)> = rows.clone().filter(is_light).map(|row| (row, coordinates_of(row))).collect();
         let mut entries: Vec<(u32, u32)> = own.iter().chain(light.iter().map(|(_, own)| own)).flat_map(|own| square(own)).collect();
         entries.extend(lone.iter().flat_map(|&(a, b, _)| block(a, b)));
         for &(row, first) in &of_touches {
@@ -157,6 +159,10 @@ impl Twists {
         let at = |(row, column): (u32, u32)| places.position(row as usize, column as usize);
         let beside = |q: u32, row: usize| [at((q, multiplier(row))), at((multiplier(row), q))];
         let diagonal = |row: usize| at((multiplier(row), multiplier(row)));
+        let outer = |(row, alone): (usize, &Option<f64>)| {
+            let alone = alone.unwrap_or(scales.softness[row]);
+            Outer { row: row as u32, unknown: multiplier(row), diagonal: diagonal(row), alone }
+        };
         let augmented = |(row, own): &(usize, Vec<u32>)| Augmented {
             weight: 1.0 / scales.softness[*row],
             row: multiplier(*row),
@@ -167,13 +173,14 @@ impl Twists {
         };
         let mut twists = Self {
             dim,
+            is_even: mobility.is_even,
             augmented: light.iter().map(augmented).collect(),
             touches: of_touches.iter().map(|&(row, first)| all_of(first).map(|q| beside(q, row)).collect()).collect(),
             lone: lone.iter().map(|&(a, b, mass)| Lone { mass, places: block(a, b).map(at).collect() }).collect(),
             places: own[..bodies.len()].iter().flat_map(|own| square(own)).map(at).collect(),
             bodies,
             masses,
-            outer: rows.map(|row| Outer { row: row as u32, unknown: multiplier(row), diagonal: diagonal(row) }).collect(),
+            outer: rows.zip(&mobility.of_rows).map(outer).collect(),
             gradients: vec![[0.0; 3]; of_touches.len()],
             slots,
             touched: touches_of,
@@ -182,35 +189,129 @@ impl Twists {
             inner: vec![0.0; system.nodes() * dim],
             inertial: vec![0.0; free * dim],
             reduced: vec![0.0; size],
+            agility: vec![0.0; *coordinates as usize],
             unknowns: vec![0.0; system.coordinates() + system.constraints()],
             motions: numbering.motions,
         };
-        twists.set_units(system, scales);
+        twists.set_units(system, scales, &mobility);
         Some(twists)
     }
 
-    /// Rows of the matrix are compared by the roots of masses and of moments of inertia, and of what multipliers move.
-    fn set_units(&mut self, system: &System, scales: &Scales) {
+    /// Rows of the matrix are compared by the roots of masses and of moments of inertia, and of what multipliers move. Sets what makes an acceleration
+    /// of a number, too.
+    fn set_units(&mut self, system: &System, scales: &Scales, mobility: &Mobility) {
         let mut units = vec![f64::INFINITY; self.reduced.len()];
-        let mut lower = |first: u32, count: usize, unit: f64| {
-            units[first as usize..][..count].iter_mut().for_each(|own| *own = own.min(unit));
+        let agility = &mut self.agility;
+        let mut lower = |first: u32, count: usize, unit: f64, length: f64| {
+            for own in first as usize..first as usize + count {
+                if unit < units[own] {
+                    (units[own], agility[own]) = (unit, unit * unit * length);
+                }
+            }
         };
         let x = |node: usize| &system.start_position[node * self.dim..(node + 1) * self.dim];
         for (motion, held) in self.motions.iter().zip(&scales.held) {
             if let Some(first) = motion.moves {
-                lower(first, self.dim, held.sqrt());
+                lower(first, self.dim, held.sqrt(), 1.0);
             }
         }
-        for body in &self.bodies {
+        for (body, own) in self.bodies.iter().zip(&mobility.of_turns) {
             for node in (1..body.count).map(|k| body.node(k)) {
                 let Motion { moves, turns: Some(first) } = self.motions[node] else { continue };
                 let from = if moves.is_some() { x(body.node(0)) } else { &[0.0; 3][..self.dim] };
                 let length = x(node).iter().zip(from).map(|(x, from)| (x - from).powi(2)).sum::<f64>().sqrt();
-                lower(first, turns(self.dim), scales.held[node].sqrt() / length);
+                lower(first, turns(self.dim), own.map_or(scales.held[node].sqrt() / length, f64::sqrt), length);
             }
         }
-        self.outer.iter().for_each(|outer| units[outer.unknown as usize] = 1.0 / scales.softness[outer.row as usize].sqrt());
+        self.outer.iter().for_each(|outer| units[outer.unknown as usize] = 1.0 / outer.alone.sqrt());
         self.solver.set_units(&units);
+    }
+}
+
+/// How far bodies and rows give way, 1 over inertia, where none of the bodies is light. One is light that rows move, or that turns, far more easily
+/// than what is beside it: the pivots of its rows are differences of numbers that far apart, as methods §13 has it of nodes.
+struct Mobility {
+    /// Of turns of each body, 1/(kg·m²).
+    of_turns: Vec<Option<f64>>,
+    /// G M⁻¹ Gᵀ of each row between bodies where these are free.
+    of_rows: Vec<Option<f64>>,
+    /// Whether no body is light.
+    is_even: bool,
+}
+
+/// Of what moves as one: the gradient of a row by its motion, and how far it moves.
+struct Moved {
+    carrier: usize,
+    gradient: Vector6<f64>,
+    mobility: f64,
+}
+
+impl Mobility {
+    fn new(system: &System, scales: &Scales, bodies: &[Body], masses: &[MassBlock], numbering: &Numbering, rows: Range<usize>) -> Self {
+        let (dim, x, Numbering { motions, carriers, carrier_of, .. }) = (system.dim, &system.start_position, numbering);
+        let mut at = system.evaluation();
+        system.evaluate_again(x, 0.0, &mut at);
+        let mut arms = vec![0.0; system.free * dim];
+        let is_held = |node: usize| scales.held[node] * system.mass.diagonal(node) < 0.5;
+        let mut is_light = vec![false; carriers.len()];
+        (0..system.free).filter(|&node| motions[node].moves.is_some()).for_each(|node| is_light[carrier_of[node]] |= is_held(node));
+        let (mut inverses, mut inertias, mut others) = (Vec::new(), Vec::new(), masses);
+        for (body, is_light) in bodies.iter().zip(&mut is_light) {
+            body.set_arms(dim, motions, x, &mut arms);
+            let (mass, rest) = others.split_at(body.count.pow(2));
+            others = rest;
+            let block = body.inertia(dim, mass, motions, &arms);
+            let size = dim + turns(dim);
+            let matrix = Matrix6::from_fn(|i, j| if i.max(j) < size { block[i][j] } else { f64::from(u8::from(i == j)) });
+            let inverse = matrix.try_inverse();
+            *is_light |= inverse.is_none();
+            inverses.push(inverse.unwrap_or_default());
+            inertias.push([block[0][0], (dim..size).map(|k| block[k][k]).sum()]);
+        }
+        let moved_by = |row: usize| {
+            let mut moved = SmallVec::<[Moved; 4]>::new();
+            for slot in system.slots.rows[row].clone() {
+                let node = system.slots.nodes[slot] as usize;
+                let Some(&carrier) = carrier_of.get(node) else { continue };
+                let gradient = &at.gradient[slot * dim..(slot + 1) * dim];
+                let k = moved.iter().position(|moved| moved.carrier == carrier).unwrap_or_else(|| {
+                    moved.push(Moved { carrier, gradient: Vector6::zeros(), mobility: 0.0 });
+                    moved.len() - 1
+                });
+                let sum = &mut moved[k].gradient;
+                if motions[node].moves.is_some() {
+                    (0..dim).for_each(|c| sum[c] += gradient[c]);
+                }
+                if motions[node].turns.is_some() {
+                    let moment = turned(&arms[node * dim..(node + 1) * dim], gradient);
+                    (0..turns(dim)).for_each(|c| sum[dim + c] += moment[c]);
+                }
+                if carrier >= bodies.len() {
+                    moved[k].mobility = sum.norm_squared() * scales.held[node];
+                }
+            }
+            for moved in moved.iter_mut().filter(|moved| moved.carrier < bodies.len()) {
+                moved.mobility = moved.gradient.dot(&(inverses[moved.carrier] * moved.gradient));
+            }
+            moved
+        };
+        for row in rows.clone() {
+            let moved = moved_by(row);
+            for of in moved.iter().filter(|of| of.carrier < bodies.len()) {
+                let [mass, inertia] = inertias[of.carrier];
+                let square = |range: Range<usize>| range.map(|c| of.gradient[c].powi(2)).sum::<f64>();
+                let plain = square(0..dim) / mass + square(dim..6) / inertia;
+                let beside = moved.iter().filter(|other| other.carrier != of.carrier).map(|other| other.mobility);
+                is_light[of.carrier] |= beside.fold(plain, f64::min) < LIGHT * of.mobility;
+            }
+        }
+        let of_row = |row: usize| {
+            let moved = moved_by(row);
+            let is_plain = moved.iter().all(|of| !is_light[of.carrier] && of.mobility > 0.0);
+            is_plain.then(|| moved.iter().map(|of| of.mobility).sum()).filter(|sum: &f64| *sum > 0.0 && sum.is_finite())
+        };
+        let of_turns = inertias.iter().zip(&is_light).map(|([_, inertia], is_light)| (!is_light).then(|| turns(dim) as f64 / inertia));
+        Self { of_turns: of_turns.collect(), of_rows: rows.map(of_row).collect(), is_even: !is_light.contains(&true) }
     }
 }
 
