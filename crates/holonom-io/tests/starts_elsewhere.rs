@@ -280,6 +280,28 @@ fn a_start_says_what_it_moves_that_nothing_ties() {
     }
 }
 
+/// What the joints that are named take along is no choice of theirs, and cannot be named with 0: of a crank with its slider, on which a pendulum hangs,
+/// and of a screw's nut the note tells what else is free.
+#[test]
+fn a_start_does_not_say_what_must_follow() {
+    let slider = "plane = \"xy\"\n[body.crank]\nmass = 1\ninertia = 0.1\nposition = [0.5, 0]\n[body.slider]\nmass = 1\ninertia = 0.1\nposition = [3, 0]\n\
+                  [body.bob]\nmass = 1\ninertia = 0.1\nposition = [3, -1]\n\
+                  [joint.main]\ntype = \"revolute\"\nbetween = [\"ground\", \"crank\"]\nat = [0, 0]\n\
+                  [joint.guide]\ntype = \"prismatic\"\nbetween = [\"ground\", \"slider\"]\naxis = [1, 0]\n\
+                  [joint.rod]\ntype = \"distance\"\nbetween = [\"crank\", \"slider\"]\nat = [[1, 0], [3, 0]]\n\
+                  [joint.pivot]\ntype = \"revolute\"\nbetween = [\"slider\", \"bob\"]\nat = [3, 0]\n[start.main]\nangle = 0.5\nangle_rate = 2\n";
+    let screw = "gravity = [0, 0, 0]\n[body.arm]\nmass = 1\ninertia = [1, 1, 1]\nposition = [0.5, 0, 0]\n[body.nut]\nmass = 1\ninertia = [1, 1, 1]\n\
+                 position = [1, 0, 0]\n[joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"arm\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n\
+                 [joint.spindle]\ntype = \"screw\"\nbetween = [\"arm\", \"nut\"]\nat = [1, 0, 0]\naxis = [0, 0, 1]\npitch = 0.5\n\
+                 [start.spindle]\nangle = 1.0\nangle_rate = 1.0\n";
+    for (text, free) in [(slider, "`pivot.angle` is 0.16"), (screw, "`hinge.angle` is -0.")] {
+        let notes = common::model(text).notes;
+        let [note] = &notes[..] else { panic!("{notes:?}") };
+        let told = note.split("of the mass: ").nth(1).unwrap_or_default();
+        assert!(told.starts_with(free) && told.contains("rad (name") && !told.contains("more"), "{note}");
+    }
+}
+
 /// Where the joints that are named leave nothing free the others follow, and there is nothing to say of it.
 #[test]
 fn a_start_that_leaves_nothing_free_is_not_noted() {

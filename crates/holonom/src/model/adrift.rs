@@ -1,10 +1,13 @@
 //! What a start moves that it does not name: joints that the named ones leave free, and what no joint ties to the ground.
 
+use std::cell::LazyCell;
+
 use super::assembly::Assembly;
 use super::bodies::nodes::Member;
 use super::bodies::short;
 use super::geometry::{norm, subtract};
-use super::start::Target;
+use super::start::{Target, leading};
+use crate::simulation::Places;
 use crate::system::{GaugeValues, System, SystemBuilder, Term, place_of};
 
 /// Most bodies or coordinates that are named.
@@ -12,6 +15,9 @@ const NAMED: usize = 3;
 
 /// What bodies move by less than, over the size of the mechanism, and turn by, rad, without a word; of rates it is a share of the largest.
 const ADRIFT: f64 = 1e-6;
+
+/// Of the golden ratio, whose multiples fall everywhere between whole numbers.
+const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// Says how bodies that no joint ties to the ground were moved to a start where coordinates are given: they only move as little as they can.
 pub(super) fn moved(assembly: &Assembly<'_>) -> Option<String> {
@@ -56,6 +62,32 @@ pub(super) fn measured(builder: &SystemBuilder) -> (System, GaugeValues) {
     (system, values)
 }
 
+/// Which coordinates of joints may still go on where those of some targets do not: a push of all nodes, as far as the rows let them, moves
+/// these.
+fn left_free<'t>(builder: &SystemBuilder, targets: impl Iterator<Item = &'t Target>) -> Option<Vec<bool>> {
+    let held: Vec<(&Target, f64)> = targets.filter(|target| target.row.is_none()).map(|target| (target, 0.0)).collect();
+    let led = leading(builder, &held);
+    let size = builder.size();
+    let rates = |pushed: f64| {
+        let mut led = led.clone();
+        // Of all sizes and signs, as that of neighbours may be what moves a coordinate.
+        let push: Vec<f64> = (0..led.position().len()).map(|k| pushed * ((k as f64 * GOLDEN).fract() - 0.5)).collect();
+        led.set_velocity(&push);
+        let mut places = Places::new(led.build()).ok()?;
+        let x = places.system().start_position().to_vec();
+        places.put(&x).ok()?;
+        let v = places.velocities().ok()?.to_vec();
+        let (system, mut measured) = (places.system(), places.system().gauge_values());
+        system.measure(&x, &v, &mut measured);
+        let scaled = measured.rate.iter().enumerate().map(|(k, rate)| if system.is_angle(k) { size * rate } else { *rate });
+        Some(scaled.collect::<Vec<f64>>())
+    };
+    let (at_rest, pushed) = (rates(0.0)?, rates(size)?);
+    let share: Vec<f64> = at_rest.iter().zip(pushed).map(|(before, after)| (after - before).abs()).collect();
+    let most = share.iter().fold(0.0, |most: f64, share| most.max(*share));
+    Some(share.iter().map(|share| *share > ADRIFT * most).collect())
+}
+
 /// Says how joints were moved that the start does not name, though the named ones would let them stay: as little as they can be, which is seldom
 /// nothing.
 pub(super) fn followed(assembly: &Assembly<'_>, targets: &[Target], before: &GaugeValues) -> Option<String> {
@@ -63,14 +95,20 @@ pub(super) fn followed(assembly: &Assembly<'_>, targets: &[Target], before: &Gau
     let size = |k: usize| if system.is_angle(k) { 1.0 } else { assembly.builder.size() };
     let quicker = |k: usize| (after.rate[k] - before.rate[k]).abs() / size(k);
     let quickest = (0..after.rate.len()).map(quicker).fold(0.0, f64::max);
+    let free = |is_given: fn(&Target) -> bool| {
+        LazyCell::new(move || left_free(&assembly.builder, targets.iter().filter(|target| is_given(target))))
+    };
+    let (may_be_elsewhere, may_be_quick) = (free(Target::is_placed), free(Target::is_rated));
+    let is_free = |free: &Option<Vec<bool>>, k: usize| free.as_ref().is_none_or(|free| free[k]);
     let moved = system.gauges().iter().enumerate().filter_map(|(k, name)| {
         let target = targets.iter().find(|target| target.name() == *name);
         let unit = if system.is_angle(k) { "rad" } else { "m" };
         let (value, rate) = (after.value[k], after.rate[k]);
-        let is_elsewhere = target.is_none_or(|target| !target.is_placed()) && value.abs() > ADRIFT * size(k);
+        let is_elsewhere =
+            target.is_none_or(|target| !target.is_placed()) && value.abs() > ADRIFT * size(k) && is_free(&may_be_elsewhere, k);
         // Where something is driven, rates follow from that.
         let is_led = system.is_driven() || target.is_some_and(Target::is_rated);
-        let is_quick = !is_led && quicker(k) > ADRIFT * quickest;
+        let is_quick = !is_led && quicker(k) > ADRIFT * quickest && is_free(&may_be_quick, k);
         match (is_elsewhere, is_quick) {
             (true, _) => Some(format!("`{name}` is {} {unit}", short(value))),
             (false, true) => Some(format!("`{name}_rate` is {} {unit}/s", short(rate))),

@@ -199,6 +199,22 @@ impl Signal for Rising {
     }
 }
 
+/// With rows by which coordinates go on from where they are at rates.
+pub(super) fn leading(builder: &SystemBuilder, rates: &[(&Target, f64)]) -> SystemBuilder {
+    let mut led = builder.clone();
+    let first = led.rows();
+    rates.iter().for_each(|(target, _)| _ = target.add_row(&mut led));
+    // What the new rows are at zero targets are the coordinates as they are counted there.
+    let here = led.clone().build();
+    let (mut at, mut values) = (here.evaluation(), vec![0.0; here.constraints()]);
+    here.evaluate_again(here.start_position(), 0.0, &mut at);
+    here.constraint_values(&at, 0.0, &mut values);
+    for (k, (_, rate)) in rates.iter().enumerate() {
+        led.retarget(first + k, Arc::new(Rising([values[first + k], *rate])));
+    }
+    led
+}
+
 /// Gives the nodes the velocities at which coordinates have their rates and all constraints are met, with as little as possible of a change
 /// of those that are written, in the metric of the mass. Says whether the rates leave anything free.
 fn set_off(builder: &mut SystemBuilder, targets: &[Target]) -> Result<bool, (String, &'static str)> {
@@ -210,17 +226,8 @@ fn set_off(builder: &mut SystemBuilder, targets: &[Target]) -> Result<bool, (Str
         let message = format!("`{}.{}` is driven: its drive says how fast it is", coordinate.joint, coordinate.name);
         return Err((message, "remove the rate, or the drive"));
     }
-    let mut led = builder.clone();
-    let first = led.rows();
-    rated.iter().for_each(|(target, _)| _ = target.add_row(&mut led));
-    // What the new rows are at zero targets are the coordinates as they are counted there.
+    let led = leading(builder, &rated);
     let here = led.clone().build();
-    let (mut at, mut values) = (here.evaluation(), vec![0.0; here.constraints()]);
-    here.evaluate_again(here.start_position(), 0.0, &mut at);
-    here.constraint_values(&at, 0.0, &mut values);
-    for (k, (_, rate)) in rated.iter().enumerate() {
-        led.retarget(first + k, Arc::new(Rising([values[first + k], *rate])));
-    }
     let mut places = Places::new(led.build());
     let velocities = places.as_mut().ok().and_then(|places| {
         places.put(here.start_position()).ok()?;
