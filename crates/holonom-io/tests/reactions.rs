@@ -327,3 +327,28 @@ fn forces_of_another_system_are_not_taken_for_those_of_joints() {
     model.find_reactions(&mut simulation);
     assert!(model.reaction(&simulation, "two").is_some());
 }
+
+/// Hinges of a long chain that hangs at rest bear the weights below, of equal links and of ones a million times lighter between others; a step later, too.
+#[test]
+fn hinges_of_a_chain_at_rest_bear_what_hangs_on_them() {
+    for (count, masses) in [(300, [2.0, 2.0]), (60, [2.0, 2e-6])] {
+        let text = format!(
+            "gravity = [0, 0, -9.81]\n[body.b]\nrepeat = \"i = 1 to {count}\"\nmass = \"{} + {}*mod(i, 2)\"\nshape = {{ box = [0.1, 0.1, 0.5] }}\n\
+             position = [0, 0, \"0.25 - 0.5*i\"]\n[joint.first]\ntype = \"revolute\"\nbetween = [\"ground\", \"b[1]\"]\nat = [0, 0, 0]\naxis = [0, 1, 0]\n\
+             [joint.h]\nrepeat = \"i = 2 to {count}\"\ntype = \"revolute\"\nbetween = [\"b[i-1]\", \"b[i]\"]\nat = [0, 0, \"0.5 - 0.5*i\"]\naxis = [0, 1, 0]\n",
+            masses[1],
+            masses[0] - masses[1]
+        );
+        let (_, recording) = common::run_every(&common::model_with_forces(&text), "conserving-ggl", 1e-3, 1e-3, 1);
+        let weight = |link: usize| 9.81 * if link % 2 == 1 { masses[0] } else { masses[1] };
+        let all: f64 = (1..=count).map(weight).sum();
+        for link in 1..=count {
+            let name = if link == 1 { "first.fz".to_string() } else { format!("h[{link}].fz") };
+            let below: f64 = (link..=count).map(weight).sum();
+            for force in recording.column(&name).unwrap() {
+                // Round-off of the sum.
+                assert!((force - below).abs() < 1e-13 * all, "{masses:?} kg, {name}: {force} N, and {below} N below");
+            }
+        }
+    }
+}
