@@ -148,13 +148,15 @@ fn react_at_level(
     // Rows of what spins fast ask for far too much along velocities that are off them a little, and redundant ones, which ask for the same along
     // velocities that meet them all, for different forces, without bounds.
     let strays = work.strays(system, t);
+    // Of what is at rest velocities are round-off.
+    let astray = Some(strays).filter(|strays| *strays > ASTRAY && strays * work.of_motion() > ROUNDED * pushed);
     if let Purpose::Show(Some(sure)) = purpose
-        && solves_at_once(matrix, sure, [pushed, strays], system, t, work)
+        && solves_at_once(matrix, sure, (pushed, astray), system, t, work)
     {
         return Ok(true);
     }
     let leaves = matrix.factor(RHO, work)?;
-    let is_on_rows = strays > ASTRAY && follow_rows(matrix, strays, system, t, work)?;
+    let is_on_rows = astray.is_some() && follow_rows(matrix, strays, system, t, work)?;
     let mut end = passes(matrix, Passes { leaves, pushed, most: PASSES, purpose }, system, work)?;
     if end != End::Met && !is_on_rows && follow_rows(matrix, strays, system, t, work)? {
         work.a[..system.coordinates()].fill(0.0);
@@ -186,12 +188,12 @@ fn react_at_level(
     Ok(is_met(end, system, t, work) && is_sure)
 }
 
-/// Solves the system with hardly any δ, where it is known what forces push with and by what share velocities are off the rows. Whether no row is near
+/// Solves the system with hardly any δ, where it is known what forces push with, and by what share velocities are off the rows if they are. Whether no row is near
 /// to redundant, and what is missed is round-off; where not, nothing is found.
 fn solves_at_once(
     matrix: &mut impl LinearSystem,
     sure: &Sure,
-    [pushed, strays]: [f64; 2],
+    (pushed, astray): (f64, Option<f64>),
     system: &System,
     t: f64,
     work: &mut Workspace,
@@ -200,7 +202,7 @@ fn solves_at_once(
     if !is_in_order || !matrix.shares(work).zip(&sure.0).all(|(share, least)| share >= *least) {
         return false;
     }
-    let is_followed = strays <= ASTRAY || follow_rows(matrix, strays, system, t, work).is_ok();
+    let is_followed = astray.is_none_or(|strays| follow_rows(matrix, strays, system, t, work).is_ok());
     let of = Passes { leaves: 0.0, pushed, most: PASSES, purpose: Purpose::Show(Some(sure)) };
     let is_solved = is_followed && passes(matrix, of, system, work) == Ok(End::Met);
     if !is_solved {
