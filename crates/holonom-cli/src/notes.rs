@@ -223,10 +223,15 @@ pub fn long_turns(model: &Model, method: &Method, recording: &Recording) -> Opti
     let times = recording.column("t")?;
     let lag = |name: &String| {
         let (angles, rates) = (recording.column(name)?, recording.column(&format!("{name}_rate"))?);
-        let came = angles.last()? - angles.first()?;
-        let is_spin = came.abs() > std::f64::consts::TAU && rates.iter().all(|rate| rate * came >= 0.0);
-        let spans = times.windows(2).zip(rates.windows(2)).map(|(t, rate)| 0.5 * (t[1] - t[0]) * (rate[0] + rate[1]));
-        is_spin.then(|| 1.0 - came / spans.sum::<f64>())
+        // Of the longest way without a turn back: how far it came, and by its rate.
+        let (mut way, mut longest) = ([0.0; 2], [0.0_f64; 2]);
+        for ((t, angle), rate) in times.windows(2).zip(angles.windows(2)).zip(rates.windows(2)) {
+            let span = 0.5 * (t[1] - t[0]) * (rate[0] + rate[1]);
+            let turns_back = rate[0] * rate[1] < 0.0 || way[1] * span < 0.0;
+            way = if turns_back { [0.0; 2] } else { [way[0] + angle[1] - angle[0], way[1] + span] };
+            longest = if way[0].abs() > longest[0].abs() { way } else { longest };
+        }
+        (longest[0].abs() > std::f64::consts::TAU).then(|| 1.0 - longest[0] / longest[1])
     };
     let lags = model.system.gauges().iter().filter(|gauge| gauge.ends_with("angle")).filter_map(|gauge| Some((gauge, lag(gauge)?)));
     let (name, lag) = lags.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;

@@ -422,6 +422,9 @@ fn long_steps_are_told() {
     // RATTLE turns by asin ωh, 0.6435 for 0.6.
     let turns = "note: `axle.angle` comes on by 7 % more than its rate says: a method of order 2 leads";
     assert!(notes("--method rattle").contains(turns), "{}", notes("--method rattle"));
+    // So does what turns back on its way: from 600 rad/s to −600 rad/s.
+    fs::write(folder.path().join("top.toml"), rotor("[force.motor]\ntype = \"effort\"\njoint = \"axle\"\neffort = -240\n")).unwrap();
+    assert!(notes("").contains("`axle.angle` comes on by") && !notes("--step 1e-4").contains("comes on by"), "{}", notes(""));
     let free = "[body.top]\nmass = 1\ninertia = [0.01, 0.006, 0.006]\nposition = [0, 0, 0]\nangular_velocity = [600, 1, 0]\n\
                 [simulation]\nend = 0.05\nstep = 1e-3\n";
     fs::write(folder.path().join("top.toml"), free).unwrap();
