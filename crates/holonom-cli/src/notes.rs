@@ -6,7 +6,7 @@ use holonom::analysis::{self, Rank, Undetermined};
 use holonom::formulation::Multipliers;
 use holonom::model::{Model, StartChange};
 use holonom::record::{Channels, RecordedJoint, Recording};
-use holonom::simulation::{Method, Simulation, Start};
+use holonom::simulation::{Simulation, Start};
 
 use crate::load::Loaded;
 use crate::message::{listed, unused_parameters};
@@ -214,9 +214,13 @@ pub fn turned_bushings(model: &Model, recording: &Recording) -> Option<String> {
 /// Share of itself by which a rotation lags or leads from which on that is said.
 const LAG: f64 = 0.01;
 
+/// Angle a step, rad, below which no method of order 2 lags or leads by that much: what differs then is how few rows are recorded.
+const SLOW: f64 = 0.2;
+
 /// That steps are long for what spins: schemes of order 2 turn it by a twelfth of the cube of the angle too little in each (methods §8.1), and RATTLE
 /// by a sixth of that too much, so that angles come on by less or more than their rates say.
-pub fn long_turns(model: &Model, method: &Method, recording: &Recording) -> Option<String> {
+pub fn long_turns(model: &Model, simulation: &Simulation, recording: &Recording) -> Option<String> {
+    let (method, step) = (simulation.method(), simulation.nominal_step());
     if method.accuracy.is_some() || method.order() > 2 {
         return None;
     }
@@ -231,7 +235,8 @@ pub fn long_turns(model: &Model, method: &Method, recording: &Recording) -> Opti
             way = if turns_back { [0.0; 2] } else { [way[0] + angle[1] - angle[0], way[1] + span] };
             longest = if way[0].abs() > longest[0].abs() { way } else { longest };
         }
-        (longest[0].abs() > std::f64::consts::TAU).then(|| 1.0 - longest[0] / longest[1])
+        let is_spin = longest[0].abs() > std::f64::consts::TAU && rates.iter().any(|rate| rate.abs() * step > SLOW);
+        is_spin.then(|| 1.0 - longest[0] / longest[1])
     };
     let lags = model.system.gauges().iter().filter(|gauge| gauge.ends_with("angle")).filter_map(|gauge| Some((gauge, lag(gauge)?)));
     let (name, lag) = lags.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
