@@ -4,7 +4,8 @@
     python3 benches/counts/run.py [--only NAME]
 
 Every example of the gallery runs at its own step and method, mechanisms of the benches at 1 ms. Instructions are counted by
-valgrind over two lengths of a run; their difference over the difference in steps is what a step takes, without start and end.
+valgrind (3.20 or later: 3.19 does not know all that compilers write for vectors) over two lengths of a run; their difference
+over the difference in steps is what a step takes, without start and end.
 Results are written as JSON; `cargo xtask performance` puts them into the chapter.
 """
 
