@@ -50,7 +50,7 @@ pub struct Outcome {
     pub stopped_at: Option<f64>,
     /// Why it did not complete; empty where it did.
     pub reason: String,
-    /// What is not sure of its results.
+    /// What is said of its model, its start and its results.
     pub notes: Vec<String>,
     /// Nothing where the run was refused.
     pub figures: Option<Figures>,

@@ -90,7 +90,7 @@ impl Study {
         self.columns.asked.iter().filter_map(told).collect()
     }
 
-    /// What is said of it beside the results: slips, and of all runs of a table what they lack and what is not sure of them.
+    /// What is said of it beside the results: slips, and of all runs of a table what they lack and what is said of them.
     pub fn notes(&self, table: &Table) -> Vec<String> {
         self.slips().into_iter().chain(self.of_runs(table)).collect()
     }

@@ -113,10 +113,10 @@ pub(super) fn meet(matrix: &mut impl LinearSystem, system: &System, t: f64, work
     work.sampled.copy_from(&work.end);
     let pushed = work.begin_pass(system, t);
     let leaves = matrix.factor(RHO, work)?;
-    let mut end = passes(matrix, Passes { leaves, pushed, most: MOST, purpose: Purpose::Start }, system, work)?;
+    let mut end = passes(matrix, Passes { leaves, pushed, most: MOST, open: ROUNDED }, system, work)?;
     if end == End::Slow {
         let leaves = matrix.factor(STIFFER * RHO, work)?;
-        end = passes(matrix, Passes { leaves, pushed, most: MOST, purpose: Purpose::Start }, system, work)?;
+        end = passes(matrix, Passes { leaves, pushed, most: MOST, open: ROUNDED }, system, work)?;
     }
     work.add_reactions(system);
     Ok(is_met(end, system, t, work))
@@ -155,13 +155,14 @@ fn react_at_level(
     {
         return Ok(true);
     }
+    let open = if let Purpose::Start = purpose { ROUNDED } else { SHOWN };
     let leaves = matrix.factor(RHO, work)?;
     let is_on_rows = astray.is_some() && follow_rows(matrix, strays, system, t, work)?;
-    let mut end = passes(matrix, Passes { leaves, pushed, most: PASSES, purpose }, system, work)?;
+    let mut end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
     if end != End::Met && !is_on_rows && follow_rows(matrix, strays, system, t, work)? {
         work.a[..system.coordinates()].fill(0.0);
         work.lambda.fill(0.0);
-        end = passes(matrix, Passes { leaves, pushed, most: PASSES, purpose }, system, work)?;
+        end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
     }
     if end != End::Slow {
         return Ok(is_met(end, system, t, work));
@@ -177,7 +178,7 @@ fn react_at_level(
     let mut solve = |work: &mut Workspace| {
         let pushed = work.begin_pass(system, t);
         work.lambda.fill(0.0);
-        passes(matrix, Passes { leaves, pushed, most: MOST, purpose: Purpose::Start }, system, work)
+        passes(matrix, Passes { leaves, pushed, most: MOST, open: ROUNDED }, system, work)
     };
     solve(work)?;
     let others = work.a[..n].to_vec();
@@ -188,8 +189,8 @@ fn react_at_level(
     Ok(is_met(end, system, t, work) && is_sure)
 }
 
-/// Solves the system with hardly any δ, where it is known what forces push with, and by what share velocities are off the rows if they are. Whether no row is near
-/// to redundant, and what is missed is round-off; where not, nothing is found.
+/// Solves the system with hardly any δ. `pushed` is how fast forces make what they push most, m/s², and `astray` the share that velocities are off the
+/// rows by, where they are. Says whether no row is near to redundant and what is missed is round-off; where not, nothing is found.
 fn solves_at_once(
     matrix: &mut impl LinearSystem,
     sure: &Sure,
@@ -203,7 +204,7 @@ fn solves_at_once(
         return false;
     }
     let is_followed = astray.is_none_or(|strays| follow_rows(matrix, strays, system, t, work).is_ok());
-    let of = Passes { leaves: 0.0, pushed, most: PASSES, purpose: Purpose::Show(Some(sure)) };
+    let of = Passes { leaves: 0.0, pushed, most: PASSES, open: SHOWN };
     let is_solved = is_followed && passes(matrix, of, system, work) == Ok(End::Met);
     if !is_solved {
         work.a[..system.coordinates()].fill(0.0);
@@ -267,32 +268,33 @@ enum End {
 
 /// Passes with the factors at hand.
 #[derive(Clone, Copy)]
-struct Passes<'a> {
+struct Passes {
     /// What share of the multipliers a solution leaves.
     leaves: f64,
     /// How fast forces but those of the rows would make what they push most, m/s²: what is little beside it is round-off where nothing moves.
     pushed: f64,
     /// How many there may be.
     most: usize,
-    purpose: Purpose<'a>,
+    /// What share of accelerations and multipliers may be left open.
+    open: f64,
 }
 
-fn passes(matrix: &mut impl LinearSystem, of: Passes<'_>, system: &System, work: &mut Workspace) -> Result<End, Failure> {
+fn passes(matrix: &mut impl LinearSystem, of: Passes, system: &System, work: &mut Workspace) -> Result<End, Failure> {
     let natural = of.pushed.max(work.of_motion());
-    let open = if let Purpose::Start = of.purpose { ROUNDED } else { SHOWN };
     // What hardly moves is not to be known better than what forces and motion make, but where rows hardly hold it.
     let least = if of.leaves == 0.0 { natural } else { 0.0 };
     let mut before = [f64::INFINITY; 2];
     for count in 1..=of.most {
         let [taken, whole] = pass(matrix, system, work)?;
         let sizes = [whole[0].max(least), whole[1]];
-        let is_met = match of.leaves == 0.0 && count == 1 {
-            true if !matrix.is_even(work) => false,
-            true => {
+        let is_met = if of.leaves == 0.0 && count == 1 {
+            // There is none before it to compare with: its residual tells, where no part is light.
+            matrix.is_even(work) && {
                 work.sum_reactions(system, matrix.unknowns());
                 matrix.accelerates(system, work) <= ROUND_OFF * sizes[0]
             }
-            false => (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(of.leaves) <= open * sizes[k]),
+        } else {
+            (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(of.leaves) <= of.open * sizes[k])
         };
         if is_met {
             return Ok(End::Met);

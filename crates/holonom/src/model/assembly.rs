@@ -1,6 +1,6 @@
 //! What the readers of points, bars, constraints and forces build on: the system so far, and the points by name.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 use super::bodies::RigidBody;
@@ -99,7 +99,7 @@ pub struct Assembly<'a> {
     /// Position of each body in the list, by name.
     pub(in crate::model) body_names: HashMap<String, usize>,
     /// Position of each bar in the list, by name, and the ends of those that are built.
-    pub(in crate::model) bar_names: HashMap<String, usize>,
+    pub(in crate::model) bar_names: BTreeMap<String, usize>,
     pub(in crate::model) bar_ends: Vec<Option<[End; 2]>>,
     /// Places of each body that something holds, in its axes, for the picture.
     pub(in crate::model) body_places: Vec<Vec<Vec3>>,
@@ -172,7 +172,7 @@ impl<'a> Assembly<'a> {
             body_names: bodies.iter().enumerate().map(|(k, body)| (body.name.clone(), k)).collect(),
             bodies,
             frames: Vec::new(),
-            bar_names: HashMap::new(),
+            bar_names: BTreeMap::new(),
             bar_ends: Vec::new(),
             joints: Vec::new(),
             joint_names: HashMap::new(),

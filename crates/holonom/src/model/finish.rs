@@ -111,8 +111,9 @@ fn channels(assembly: &Assembly<'_>) -> Channels {
     let of_joints: Vec<Option<RecordedJoint>> = joints.iter().map(|joint| recorded_joint(assembly, joint)).collect();
     // Numbers among the joints that are recorded.
     let number = |count: &mut usize, joint: &Option<RecordedJoint>| {
+        let own = *count;
         *count += usize::from(joint.is_some());
-        Some(count.saturating_sub(1))
+        Some(own)
     };
     let numbers: Vec<usize> = of_joints.iter().scan(0, number).collect();
     let transmissions = assembly

@@ -166,7 +166,7 @@ fn first_missed(course: &Course, bends: &[f64], looks: &[[f64; 2]], most: usize,
     let slope = (last - begin) / end;
     let beside = |t: f64, value: f64| (value - begin - slope * t).abs();
     let far = |seen: &Seen| {
-        let [from, to] = seen.times(step);
+        let [from, to] = Seen::times(seen.number, step);
         beside(from, seen.ends[0]).max(beside(to, seen.ends[1])).max(beside(0.5 * (from + to), seen.mean))
     };
     let mut reach = 0.0_f64;
@@ -205,14 +205,14 @@ impl Seen {
         Self { number: self.number, ends: [self.ends[0], next.ends[1]], mean: both(|seen| seen.mean), taken: both(|seen| seen.taken) }
     }
 
-    /// When the step begins and ends, s.
-    fn times(&self, step: f64) -> [f64; 2] {
-        [self.number, self.number + 1].map(|k| k as f64 * step)
+    /// When a step of this number begins and ends, s.
+    fn times(number: usize, step: f64) -> [f64; 2] {
+        [number, number + 1].map(|k| k as f64 * step)
     }
 
     /// A step, with its mean as near as `near`, or as the share `MEAN` of how far the function goes in it.
     fn of(course: &Course, bends: &[f64], looks: &[[f64; 2]], step: f64, number: usize, near: f64) -> Self {
-        let [from, to] = [number, number + 1].map(|k| k as f64 * step);
+        let [from, to] = Self::times(number, step);
         let inside = &bends[bends.partition_point(|t| *t <= from)..bends.partition_point(|t| *t < to)];
         let mut places: Vec<f64> = DIVISIONS.iter().map(|share| from + share * (to - from)).chain(inside.iter().copied()).collect();
         places.sort_by(f64::total_cmp);
