@@ -183,6 +183,20 @@ fn strayed(simulation: &Simulation) -> Option<String> {
     Some(format!("positions were up to {} m off `{name}`, {} % of the mechanism's size: {cure}", short(way), short(100.0 * share)))
 }
 
+/// Share of the largest velocity from which on it is said that velocities are off their constraints.
+const SLIPPED: f64 = 0.01;
+
+/// That velocities were far off a constraint: by methods that hold positions only.
+fn slipped(simulation: &Simulation) -> Option<String> {
+    let (name, off, share) = simulation.slipped().filter(|(_, _, share)| *share > SLIPPED)?;
+    Some(format!(
+        "velocities were up to {} m/s off `{name}`, {:.0} % of the largest: rates, energies and work are as far off (a shorter step, or conserving-ggl \
+         or radau, which hold velocities as well)",
+        short(off),
+        100.0 * share
+    ))
+}
+
 /// Sine of 45°, beyond which the moment of a bushing falls.
 const STEEPEST: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
@@ -252,7 +266,12 @@ pub fn long_turns(model: &Model, simulation: &Simulation, recording: &Recording)
 /// What is not sure of the results of a run, as far as the simulation itself knows at its end.
 pub fn doubts(simulation: &Simulation, completed: bool) -> impl Iterator<Item = String> {
     let of_energy = lost_energy(simulation).into_iter().chain(unsure_work(simulation)).filter(move |_| completed);
-    of_energy.chain(strayed(simulation)).chain(in_parts(simulation)).chain(brief_forces(simulation)).chain(many_steps(simulation))
+    of_energy
+        .chain(strayed(simulation))
+        .chain(slipped(simulation))
+        .chain(in_parts(simulation))
+        .chain(brief_forces(simulation))
+        .chain(many_steps(simulation))
 }
 
 /// What looks like a slip, and what was put right before the start.

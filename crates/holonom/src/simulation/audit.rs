@@ -8,6 +8,7 @@ use super::{Method, Promise, State};
 use crate::energy;
 use crate::formulation::{Level, Multipliers, Newton, Sampling, Workspace};
 use crate::integrator::{Step, Work};
+use crate::linalg::largest;
 use crate::system::System;
 
 /// Share of energies and works up to which their changes are round-off.
@@ -57,6 +58,8 @@ pub struct Audit {
     violation: ViolationSummary,
     /// Rows that positions were off, where the method does not promise Φ = 0.
     strays: Option<Strays>,
+    /// Rows that velocities were off, where it does not promise Φ̇ = 0, and the largest velocity so far, m/s.
+    slips: Option<(Strays, f64)>,
     total_iterations: u64,
     taken: u64,
     factorizations: u64,
@@ -128,6 +131,7 @@ impl Audit {
             projection_total: 0.0,
             violation: ViolationSummary::default(),
             strays: (!method.promises().contains(&Promise::Position)).then(Default::default),
+            slips: (!method.promises().contains(&Promise::Velocity)).then(Default::default),
             total_iterations: 0,
             taken: 0,
             factorizations: 0,
@@ -210,6 +214,10 @@ impl Audit {
         own.acceleration = own.acceleration.max(other.acceleration);
         if let (Some(own), Some(other)) = (&mut self.strays, &shown.strays) {
             own.follow(other);
+        }
+        if let (Some((own, fastest)), Some((other, before))) = (&mut self.slips, &shown.slips) {
+            own.follow(other);
+            *fastest = fastest.max(*before);
         }
     }
 
@@ -310,6 +318,10 @@ impl Audit {
         }
         work.rate_violation(system, target);
         self.phi_dot = norm(&work.rows);
+        if let Some((slips, fastest)) = &mut self.slips {
+            slips.look(&work.rows, &work.scales.gradient);
+            *fastest = fastest.max(largest(&work.end.v));
+        }
     }
 
     /// Books what a projection of velocities did, which were `before`; whether it was the full one in the metric of the mass.
@@ -346,11 +358,19 @@ impl Audit {
         if let Some(strays) = &mut self.strays {
             strays.keep();
         }
+        if let Some((slips, _)) = &mut self.slips {
+            slips.keep();
+        }
     }
 
     /// The row that positions were farthest off so far, where the method does not promise to hold them.
     pub(super) fn farthest(&self) -> Option<Stray> {
         self.strays.map(|strays| strays.farthest)
+    }
+
+    /// The row that velocities were farthest off so far, where the method does not promise to hold them, and the largest of all velocities, m/s.
+    pub(super) fn slipped(&self) -> Option<(Stray, f64)> {
+        self.slips.map(|(slips, fastest)| (slips.farthest, fastest))
     }
 
     /// Has a nominal step that was taken in parts begin where the audit `first` was.

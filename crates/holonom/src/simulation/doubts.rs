@@ -1,5 +1,5 @@
 //! What the energy balance does not show: work of forces without a potential that steps are too long for, forces that act for a few steps only, and
-//! positions off rows that a method does not hold.
+//! positions and velocities off rows that a method does not hold.
 
 use serde::{Deserialize, Serialize};
 
@@ -29,7 +29,7 @@ impl UnsureWork {
     }
 }
 
-/// A row and how far positions are off it, m.
+/// A row and how far positions are off it, m, or velocities, m/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Stray {
     pub row: usize,
@@ -42,7 +42,7 @@ impl Stray {
     }
 }
 
-/// The row that positions were farthest off at the end of a nominal step, and that of the last step, which may be part of one.
+/// The row that positions or velocities were farthest off at the end of a nominal step, and that of the last step, which may be part of one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Strays {
     pub farthest: Stray,
@@ -50,9 +50,9 @@ pub(super) struct Strays {
 }
 
 impl Strays {
-    /// Looks at the rows `phi` after a step, which are |Φ_k| over the size of their gradients off, m.
-    pub fn look(&mut self, phi: &[f64], gradient: &[f64]) {
-        let ways = phi.iter().zip(gradient).map(|(phi, gradient)| phi.abs() / gradient).enumerate();
+    /// Looks at the rows Φ or Φ̇ after a step, which are |Φ_k| over the size of their gradients off, m, or |Φ̇_k|, m/s.
+    pub fn look(&mut self, rows: &[f64], gradient: &[f64]) {
+        let ways = rows.iter().zip(gradient).map(|(off, gradient)| off.abs() / gradient).enumerate();
         self.last = ways.map(|(row, way)| Stray { row, way }).fold(Stray::default(), Stray::farther);
     }
 

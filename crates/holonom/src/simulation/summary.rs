@@ -162,6 +162,14 @@ impl Simulation {
         Some((self.system.row_names().get(row)?.as_str(), way, way / self.work.scales.length))
     }
 
+    /// The constraint that velocities were farthest off so far, by how much, m/s, and which share of the largest velocity that is; nothing where the
+    /// method holds them, and where the mechanism stands about still.
+    pub fn slipped(&self) -> Option<(&str, f64, f64)> {
+        let (Stray { row, way: off }, fastest) = self.audit.slipped()?;
+        let moves = fastest * self.state.t.abs() > STILL * self.work.scales.length;
+        moves.then_some((self.system.row_names().get(row)?.as_str(), off, off / fastest))
+    }
+
     /// What the method has made of the energy so far, below zero where it has lost it, and all there was to move, J; nothing made where the
     /// mechanism stands about still, or that is round-off.
     pub fn made_energy(&self) -> [f64; 2] {
