@@ -88,11 +88,11 @@ impl Newton {
     }
 
     /// Share of the first increment that is counted as left where rows have proximal terms [by rank](Newton::proximal_by_rank). Where nothing
-    /// but rows with constant second derivatives bends, new factors leave its share of the shortest of them, over the root of what the weakest
-    /// adds to the others, and the share `multipliers` of their steps.
+    /// but rows with constant second derivatives bends, new factors leave its share of the shortest of them, and the share `multipliers` of their
+    /// steps. Where a row hardly adds to the others, positions are off by more, but by no more than rounded rows make of them.
     pub(super) fn rest_of_first(&self, increment: f64, multipliers: f64, work: &Workspace) -> f64 {
         match (self.rank.is_full(), work.are_rows_quadratic()) {
-            (true, true) => SAME_SIGN * (increment / (work.scales.shortest * self.rank.weakest.sqrt())).max(multipliers),
+            (true, true) => SAME_SIGN * (increment / work.scales.shortest).max(multipliers),
             (true, false) => 1.0,
             // The multipliers began at zero, and δ leaves a share of them that no increment shows.
             (false, _) => f64::INFINITY,
