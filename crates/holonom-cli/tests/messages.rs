@@ -254,6 +254,43 @@ fn velocities_far_off_their_rows_are_noted() {
     assert!(status == Some(0) && !text.contains("velocities were"), "{text}");
 }
 
+/// A run that no step is short enough for says why: a spring whose ends pass each other, or a flat parallelogram, whose many links are all in line.
+#[test]
+fn why_no_step_is_short_enough_is_told() {
+    let spring = "[point.o]\nposition = [0, 0, 0]\nfixed = true\n[body.m]\nmass = 1\ninertia = [0.1, 0.1, 0.1]\nposition = [1, 0, 0]\n\
+                  velocity = [-9, 0, 0]\n[joint.line]\ntype = \"prismatic\"\nbetween = [\"ground\", \"m\"]\nat = [1, 0, 0]\naxis = [1, 0, 0]\n\
+                  [force.s]\ntype = \"spring\"\nbetween = [\"o\", \"m\"]\nstiffness = 100\nrest_length = 0.5\n\
+                  [simulation]\nend = 1\nstep = 0.01\naccuracy = 1e-6\n";
+    for method in ["radau", "ode/dopri5"] {
+        let text = format!("{spring}method = \"{method}\"\n");
+        says(
+            &text,
+            &["no step is short enough", "; the force of `s` turns round at once there, as that of a spring does whose ends pass"],
+            3,
+        );
+    }
+    // The spring's energy is kept all the same, and the length along an axis has a sign.
+    says(spring, &["completed"], 0);
+    let along = spring.replace("rest_length", "along = [1, 0, 0]\nrest_length");
+    says(&format!("{along}method = \"radau\"\n"), &["completed"], 0);
+    let mut flat = String::from("plane = \"xy\"\n[body.c]\nmass = 1\ninertia = 0.1\nposition = [2.5, 0]\nvelocity = [0, 6]\n");
+    for i in 0..4 {
+        flat += &format!(
+            "[body.l{i}]\nmass = 1\ninertia = 0.1\nposition = [{i}.5, 0]\nvelocity = [0, 3]\nangular_velocity = 6\n\
+             [joint.g{i}]\ntype = \"revolute\"\nbetween = [\"ground\", \"l{i}\"]\nat = [{i}, 0]\n\
+             [joint.t{i}]\ntype = \"revolute\"\nbetween = [\"l{i}\", \"c\"]\nat = [{}, 0]\n",
+            i + 1
+        );
+    }
+    flat += "[simulation]\nend = 1\nstep = 0.01\naccuracy = 1e-9\n";
+    says(
+        &flat,
+        &["no step is short enough", "; it is near a singular position, where rows hardly differ", "(ask for less, or take radau)"],
+        3,
+    );
+    says(&format!("{flat}method = \"radau\"\n"), &["completed"], 0);
+}
+
 /// A slider of 2 kg that runs at 1.5 m/s into a stop of 1e6 N/m is in contact for π √(m/k) = 4.44 ms, in any units.
 fn impact(step: f64, second: f64, rest: &str) -> String {
     format!(

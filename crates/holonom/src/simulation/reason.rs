@@ -8,6 +8,9 @@ use crate::formulation::{Failure, Independence, Workspace};
 /// A row that is missed by less than this share of the mechanism's size is not to blame for a step that fails.
 const BLAMED: f64 = 1e-10;
 
+/// A row that adds less to the others, squared and over its own size, is near to one that follows from them.
+const NEAR_SINGULAR: f64 = 1e-5;
+
 impl Simulation {
     /// Why a run stopped, in words.
     pub(super) fn reason(&mut self, failure: Failure) -> String {
@@ -28,9 +31,8 @@ impl Simulation {
             return format!("the force of `{force}` {what} at t = {t:.6} s");
         }
         let mut what = format!("{} at t = {t:.6} s{row}", failure.describe(&self.system));
-        if failure == Failure::TooSmall && is_rough(&self.method) {
-            what += "; this method leaves velocities off the constraints, and by how much they are off differs from step to step, which hides the errors of short \
-                     steps (take radau or ggl/bdf, which hold them)";
+        if failure == Failure::TooSmall {
+            what += &self.why_too_small();
         }
         // What rows are to blame for no force is.
         let of_steps = matches!(failure, Failure::NotConverged { .. } | Failure::Crawling { .. });
@@ -70,6 +72,38 @@ impl Simulation {
         system.evaluate(&work.end.x, state.t + step, &work.start.at, &mut work.end.at);
         let (row, what) = system.corner([&work.start.at, &work.end.at])?;
         Some(Failure::Corner { row, what })
+    }
+
+    /// Why no step is short enough for the accuracy, as far as that is known, and what to do.
+    fn why_too_small(&mut self) -> String {
+        let less = if self.method.integrator.name == "radau" { "ask for less" } else { "ask for less, or take radau" };
+        if let Some(force) = self.reversing_force() {
+            return format!(
+                "; the force of `{force}` turns round at once there, as that of a spring does whose ends pass each other: keep them apart, or give it `along`, \
+                 with which its length has a sign"
+            );
+        }
+        if self.is_near_singular() {
+            return format!(
+                "; it is near a singular position, where rows hardly differ from others and little errors of steps become large ({less})"
+            );
+        }
+        match is_rough(&self.method) {
+            true => "; this method leaves velocities off the constraints, and by how much they are off differs from step to step, which hides the errors of \
+                     short steps (take radau or ggl/bdf, which hold them)"
+                .into(),
+            false => format!(" ({less})"),
+        }
+    }
+
+    /// Whether a row adds next to nothing to the others here, which adds more at the start or as the mechanism goes on.
+    fn is_near_singular(&self) -> bool {
+        let (system, state, step) = (&*self.system, &self.state, self.nominal_step());
+        let mut independence = Independence::new(system);
+        let ahead: Vec<f64> = state.x.iter().zip(&state.v).map(|(x, v)| x + step * v).collect();
+        let elsewhere = [&system.start_position, &ahead].map(|x| independence.count_redundant(system, x, state.t));
+        independence.count_redundant(system, &state.x, state.t);
+        independence.weakest(elsewhere[0].min(elsewhere[1])) < NEAR_SINGULAR
     }
 
     /// That redundant rows may not agree, where there are any.

@@ -1,9 +1,18 @@
-//! Forces that turn round within so small a speed that steps jump across it, as friction that is smoothed too little.
+//! Forces that turn round within so small a speed that steps jump across it, as friction that is smoothed too little, or within so small a
+//! way that no step is short enough for it, as a spring whose ends pass each other.
 
 use super::Simulation;
+use crate::system::{Local, Look, gather};
 
 /// How many times faster something moves, by what it comes on in a step, than the speed within which such a force turns round.
 const SHARP: f64 = 100.0;
+
+/// Share of a nominal step within which a force turns round that is looked for, and that by which it must have done so to count.
+const NEAR: f64 = 1e-3;
+const AT_ONCE: f64 = 1e-7;
+
+/// Share of what it was that a force has as it turns round at once: one that goes through zero has none.
+const KEPT: f64 = 0.5;
 
 impl Simulation {
     /// The force, by name, that turns round within the smallest share of the speed it acts at, and that speed, m/s or rad/s.
@@ -25,5 +34,45 @@ impl Simulation {
             moving.iter().find_map(within).map(|(within, speed)| (&law.name, within, speed / within))
         });
         sharpest.max_by(|a, b| a.2.total_cmp(&b.2)).map(|(name, within, _)| (name.as_str(), within))
+    }
+
+    /// The force, by name, whose power turns round at once as the mechanism goes on at its present velocities.
+    pub(super) fn reversing_force(&mut self) -> Option<&str> {
+        let (step, laws) = (self.nominal_step(), self.system.laws.len());
+        let before = self.powers(0.0);
+        let after = self.powers(NEAR * step);
+        let reverses = |this: &mut Self, k: usize| {
+            let (mut from, mut to) = ((0.0, before[k]), (NEAR * step, after[k]));
+            while from.1 * to.1 < 0.0 && to.0 - from.0 > AT_ONCE * step {
+                let middle = 0.5 * (from.0 + to.0);
+                let power = this.powers(middle)[k];
+                *(if power * from.1 > 0.0 { &mut from } else { &mut to }) = (middle, power);
+            }
+            from.1 * to.1 < 0.0 && from.1.abs().min(to.1.abs()) > KEPT * before[k].abs()
+        };
+        let k = (0..before.len()).find(|&k| before[k] * after[k] < 0.0 && reverses(self, k))?;
+        let system = &self.system;
+        Some(if k < laws { &system.laws[k].name } else { &system.loads[k - laws].name })
+    }
+
+    /// The power of each law and load that a mechanism would take from, or have of, W, were it farther by so much time at its present velocities.
+    fn powers(&mut self, ahead: f64) -> Vec<f64> {
+        let Self { system, state, work, .. } = self;
+        let (t, end) = (state.t + ahead, &mut work.end);
+        end.x.iter_mut().zip(state.x.iter().zip(&state.v)).for_each(|(end, (x, v))| *end = x + ahead * v);
+        end.v.copy_from_slice(&state.v);
+        system.place_known(t, &mut end.x, &mut end.v, &mut work.a);
+        system.evaluate(&end.x, t, &work.start.at, &mut end.at);
+        let of_laws = system.laws.iter().map(|law| {
+            let (rates, out) = system.respond(law, &end.at, &end.v, t);
+            rates.iter().zip(&out.force).map(|(rate, force)| -rate * force).sum()
+        });
+        let look = Look { x: &end.x, v: &end.v, t, at: &end.at, inputs: &state.inputs, span: None };
+        let of_loads = system.loads.iter().map(|load| {
+            let mut force = Local::from_elem(0.0, load.nodes.len() * system.dim);
+            system.load_forces(load, look, &mut force);
+            gather(system.dim, &load.nodes, &end.v).iter().zip(&force).map(|(v, force)| v * force).sum()
+        });
+        of_laws.chain(of_loads).collect()
     }
 }
