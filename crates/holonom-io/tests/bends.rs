@@ -375,6 +375,39 @@ fn several_bends_at_one_time_are_passed() {
     }
 }
 
+/// Two cylinders of an engine fire a turn apart, by one table that is the same again after every turn: both have their corners at the same places but for
+/// rounding, as have the two ends of the table. The speed follows from the work of the table, which is that of a polygon.
+#[test]
+fn corners_of_two_periodic_tables_at_one_place_are_passed() {
+    let knots = [3.0, 1.0, 2.0, -1.0, 3.0];
+    let work_to = |place: f64| {
+        let (turns, place) = (place.div_euclid(4.0), place.rem_euclid(4.0));
+        let until = |place: f64| -> f64 {
+            let of_piece = |k: usize| {
+                let share = (place - k as f64).clamp(0.0, 1.0);
+                share * (knots[k] + 0.5 * share * (knots[k + 1] - knots[k]))
+            };
+            (0..4).map(of_piece).sum()
+        };
+        turns * until(4.0) + until(place)
+    };
+    let table = "[table.gas]\npoints = [[0, 3], [1, 1], [2, 2], [3, -1], [4, 3]]\noutside = \"periodic\"\n";
+    for place in [0.1, 0.2, 1.0 / 3.0, 0.6981311111111111, 0.7] {
+        for turn in [4, 8] {
+            let other = format!("[force.second]\ntype = \"effort\"\njoint = \"rail\"\neffort = \"gas(q + {})\"\n", place + f64::from(turn));
+            let force = format!("type = \"effort\"\njoint = \"rail\"\neffort = \"gas(q + {place})\"");
+            let text = block(0.0, 1.3, &force) + &other + table;
+            for (method, accuracy) in
+                [("radau", 1e-7), ("ggl/bdf", 1e-6), ("conserving-ggl", 1e-5), ("ode/dopri5", 1e-8), ("ode/dop853", 1e-6)]
+            {
+                let [q, rate] = last(&text, method, accuracy, 0.1, 3.0, ["rail.displacement", "rail.displacement_rate"]);
+                let expected = (1.3 * 1.3 + 4.0 * (work_to(place + q) - work_to(place))).sqrt();
+                assert!((rate - expected).abs() <= 10.0 * accuracy * expected, "{place}, {method}: {rate} m/s, not {expected}");
+            }
+        }
+    }
+}
+
 /// A slide is knocked to and fro within a fifth of a second in the course of 200 s, and a mass hangs on it by a spring: what is left of its motion is an integral of
 /// the knock with a sine. Steps by accuracy are far longer before it.
 #[test]

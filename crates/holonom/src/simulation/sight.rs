@@ -151,10 +151,14 @@ impl Sight {
     }
 
     /// Counts a bend that is reached at the beginning of a step of length `step` (s) as passed, and all that are the same. Says whether it had been
-    /// reached: what passes it comes back.
+    /// reached: what passes it comes back. One that is the same but for rounding may have been reached alone, and has not come back with it.
     pub fn pass(&mut self, bend: usize, step: f64, system: &System) -> bool {
         let comes_back = self.reached[bend];
-        self.same(bend, step, system).into_iter().for_each(|k| self.turn(k, -self.corners[k]));
+        for k in self.same(bend, step, system) {
+            if self.reached[k] == comes_back {
+                self.turn(k, -self.corners[k]);
+            }
+        }
         comes_back
     }
 
