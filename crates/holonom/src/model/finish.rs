@@ -11,7 +11,7 @@ use crate::system::Place;
 
 /// Puts together what has been read without a fault.
 pub(super) fn finish(
-    assembly: Assembly<'_>,
+    mut assembly: Assembly<'_>,
     title: String,
     settings: Settings,
     output: Output,
@@ -19,6 +19,7 @@ pub(super) fn finish(
     over_time: Vec<OverTime>,
 ) -> Model {
     let notes = assembly.sink.notes();
+    assembly.doubt_forces();
     let channels = channels(&assembly);
     let Assembly {
         mut builder,

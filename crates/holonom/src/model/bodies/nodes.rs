@@ -349,18 +349,23 @@ fn is_independent(spanned: &[Vec3], edge: Vec3) -> bool {
     norm(rest(spanned, edge)) > INDEPENDENT * norm(edge)
 }
 
+/// What tells a node or a place from others.
+pub type PlaceCode = [u64; 3];
+
+pub fn code_of(place: Place) -> PlaceCode {
+    match place {
+        // No finite place has these bits.
+        Place::Node(node) => [u64::MAX, 0, node.index() as u64],
+        Place::Fixed(x) => x.map(f64::to_bits),
+    }
+}
+
 /// The nodes that an edge is made of, whichever way it goes.
-type EdgeCode = [[u64; 3]; 2];
+type EdgeCode = [PlaceCode; 2];
 
 fn code(terms: &[Term]) -> EdgeCode {
     let mut nodes = [[u64::MAX; 3]; 2];
-    for (code, term) in nodes.iter_mut().zip(terms) {
-        *code = match term.place {
-            // No finite place has these bits.
-            Place::Node(node) => [u64::MAX, 0, node.index() as u64],
-            Place::Fixed(x) => x.map(f64::to_bits),
-        };
-    }
+    nodes.iter_mut().zip(terms).for_each(|(code, term)| *code = code_of(term.place));
     nodes.sort_unstable();
     nodes
 }

@@ -40,7 +40,8 @@ pub struct JointInfo {
     pub coordinates: Vec<Coordinate>,
     /// Its rows among those of the system.
     pub rows: std::ops::Range<usize>,
-    /// Whether nodes that its sides share stand for some of its rows, so that these rows' forces are not known.
+    /// Whether nodes that its sides share stand for some of its rows, or nodes that bodies share past a joint take part of what its rows bear, so that
+    /// their forces are not known.
     pub is_shared: bool,
 }
 
