@@ -314,7 +314,6 @@ impl Kkt {
         right: &[f64],
         motion: &[f64],
     ) {
-        let dim = self.dim;
         for (hessian, force) in self.pattern.law_hessian[law].iter().zip(&response.force) {
             let weight = factors.force * force;
             for &(pair, c) in &hessian.isotropic {
@@ -324,12 +323,32 @@ impl Kkt {
                 turn.add(weight, &mut self.full_sum);
             }
         }
-        for k in 0..self.law_outer[law].len() {
-            let OuterTerm { slot: [s, t], argument: [i, j], pair } = self.law_outer[law][k];
-            let (i, j, s, t) = (i as usize, j as usize, s as usize * dim, t as usize * dim);
+        match self.dim {
+            2 => self.add_outer_in::<2>(block, law, response, factors, [left, right, motion]),
+            _ => self.add_outer_in::<3>(block, law, response, factors, [left, right, motion]),
+        }
+    }
+
+    fn add_outer_in<const D: usize>(
+        &mut self,
+        Block(i, j): Block,
+        law: usize,
+        response: &Response,
+        factors: LawFactors,
+        slots: [&[f64]; 3],
+    ) {
+        let [left, right, motion] = slots.map(|slots| slots.as_chunks::<D>().0);
+        let Self { solver, pattern, .. } = self;
+        let (values, blocks, combination) = (solver.values_mut(), pattern.fields * pattern.fields, i * pattern.fields + j);
+        for &OuterTerm { slot: [s, t], argument: [i, j], pair } in &pattern.law_outer[law] {
+            let (i, j, s, t) = (i as usize, j as usize, s as usize, t as usize);
             let stiffness = factors.value * response.by_value[i][j] + factors.rate * response.by_rate[i][j];
             let turning = factors.motion * response.by_rate[i][j];
-            self.add_full(block, pair, |c, d| left[s + c] * (stiffness * right[t + d] + turning * motion[t + d]), dim);
+            let by: [f64; D] = std::array::from_fn(|d| stiffness * right[t][d] + turning * motion[t][d]);
+            let first = (pattern.full_index[pair as usize] as usize * blocks + combination) * D;
+            for (positions, left) in pattern.full.as_chunks::<D>().0[first..first + D].iter().zip(left[s]) {
+                positions.iter().zip(by).for_each(|(&position, by)| values[position as usize] += left * by);
+            }
         }
     }
 
