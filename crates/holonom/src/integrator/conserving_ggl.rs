@@ -82,7 +82,7 @@ impl Integrator for ConservingGgl {
         memory.gamma.remember(follows, |row| both.gamma[row], |row| work.scales.reach[row].powi(2));
         let mut extra_work = 0.0;
         work.settle(system, &stage);
-        if work.is_worked_on() {
+        if system.is_driven() {
             both.turn(system, &stage, work);
             extra_work = both.work(system, &stage, work);
         }

@@ -14,7 +14,7 @@ mod rattle;
 mod runge_kutta;
 mod table;
 
-use crate::formulation::{Failure, Newton, RowsAt, Stage, Workspace};
+use crate::formulation::{Failure, Newton, RowsAt, Sampling, Stage, Workspace};
 use crate::system::System;
 
 pub(crate) use history::{Differences, MOTION, MULTIPLIERS, extrapolate, is_same_length};
@@ -61,6 +61,14 @@ pub struct Step {
     pub work: Work,
     /// Where the workspace has an estimate of the local errors: the order in use, and that of the estimate.
     pub estimate: Option<[u8; 2]>,
+}
+
+impl Step {
+    /// Whether the end was evaluated where it is, at the time `t` (s), as [`Workspace::settle`] does between positions.
+    pub(crate) fn has_settled_at(&self, t: f64, system: &System, work: &Workspace) -> bool {
+        let is_between = self.stage.sampling == Sampling::Between && matches!(self.work, Work::Between(_));
+        is_between && work.is_worked_on() && (self.stage.end() == t || system.custom.is_empty())
+    }
 }
 
 /// Where the work that is done on the system in a step is to be read from.

@@ -136,7 +136,9 @@ impl Simulation {
         for i in 0..system.coordinates() {
             work.end.x[i] = work.start.x[i] + work.d[i];
         }
-        system.evaluate(&work.end.x, target, &work.start.at, &mut work.end.at);
+        if !taken.has_settled_at(target, system, work) {
+            system.evaluate(&work.end.x, target, &work.start.at, &mut work.end.at);
+        }
         method.projection.place(system, target, step, &mut self.newton, work)?;
         if work.estimate.allowed > 0.0 && matches!(taken.stage.sampling, Sampling::Between | Sampling::Middle) {
             work.compare_forces(system, &taken.stage, target);
