@@ -58,6 +58,8 @@ struct BodyLoad {
     /// Those of the body that takes the reaction.
     other: Vec<Sum>,
     formulas: Vec<Program>,
+    /// Whether the formulas are numbers.
+    is_constant: bool,
     is_torque: bool,
     in_body_axes: bool,
 }
@@ -77,8 +79,8 @@ impl BodyLoad {
 
     /// The formulas at a state.
     fn given<N: AnyNumber>(&self, x: &[N], v: &[N], t: N) -> [N; 3] {
-        let variables = self.variables(x, v, t);
         let mut given = [N::from(0.0); 3];
+        let variables = if self.is_constant { SmallVec::new() } else { self.variables(x, v, t) };
         given.iter_mut().zip(&self.formulas).for_each(|(given, formula)| *given = formula.evaluate(&variables));
         given
     }
@@ -94,14 +96,14 @@ impl BodyLoad {
 
     /// The force or torque in the axes of the model; a torque in the plane last.
     fn exerted<N: AnyNumber>(&self, x: &[N], v: &[N], t: N) -> [N; 3] {
-        let (dim, zero) = (self.dim, N::from(0.0));
-        let mut axes = [[zero; 3]; 3];
-        axes.iter_mut().zip(&self.axes).for_each(|(axis, sum)| *axis = sum.at(x, dim, 1.0));
-        let axes = &axes[..self.axes.len()];
-        let given = self.given(x, v, t);
+        let (dim, zero, given) = (self.dim, N::from(0.0), self.given(x, v, t));
         match (dim, self.is_torque) {
             (2, true) => [zero, zero, given[0]],
-            _ if self.in_body_axes => self.in_world(given, axes),
+            _ if self.in_body_axes => {
+                let mut axes = [[zero; 3]; 3];
+                axes.iter_mut().zip(&self.axes).for_each(|(axis, sum)| *axis = sum.at(x, dim, 1.0));
+                self.in_world(given, &axes)
+            }
             _ => given,
         }
     }
@@ -206,7 +208,8 @@ pub(super) fn add(assembly: &mut Assembly<'_>, entry: &Entry<'_>, given: Given<'
     let other = given.other.map_or(Vec::new(), axes);
     finite(entry, key, &given.at, &formulas, &readings)?;
     let reading = readings.reading.clone();
-    let load = Arc::new(BodyLoad { dim, readings, point, axes: own, other, formulas, is_torque, in_body_axes });
+    let is_constant = formulas.iter().all(|formula| formula.as_constant().is_some());
+    let load = Arc::new(BodyLoad { dim, readings, point, axes: own, other, formulas, is_constant, is_torque, in_body_axes });
     assembly.builder.load_reading(entry.name, reading, Arc::new(Differentiated(load.clone())));
     assembly.draw_load(entry, &given.at);
     assembly.show(Shows::Load { is_moment: is_torque, exerts: load });
