@@ -1,6 +1,8 @@
 //! What equal steps do not see of forces and motions that are formulas or tables of time: what happens within a step, and what is nearly the same in
 //! every step, as 100 Hz are in steps of 0.01 s.
 
+use smallvec::SmallVec;
+
 use super::bodies::short;
 use super::expression::{Program, TimeProgram};
 use super::spline::Spline;
@@ -26,6 +28,9 @@ const LOOK: f64 = 1e-3;
 
 /// Where a step is divided first: not evenly, so that nothing has the same period.
 const DIVISIONS: [f64; 6] = [0.0, 0.137, 0.382, 0.55, 0.791, 1.0];
+
+/// Places in a step that are not put on the heap.
+const PLACES: usize = 8;
 
 /// Share of how far a function goes in the run that the mean over a step may be missed by.
 const MISSED: f64 = 0.1;
@@ -156,11 +161,15 @@ impl Model {
 fn first_missed(course: &Course, bends: &[f64], looks: &[[f64; 2]], most: usize, [step, end]: [f64; 2]) -> Option<Missed> {
     let count = (end / step * (1.0 - ROUNDED)).ceil().max(1.0) as usize;
     let spread = |all: usize| (0..most.min(all)).map(move |k| (k as f64 * all as f64 / most.min(all) as f64) as usize);
-    let bending = spread(bends.len()).map(|k| (bends[k] / step) as usize);
-    let mut numbers: Vec<usize> = spread(count).chain(bending).flat_map(|k| [k.saturating_sub(1), k, k + 1]).collect();
-    numbers.retain(|k| *k < count);
-    numbers.sort_unstable();
-    numbers.dedup();
+    let mut numbers: Vec<usize> = Vec::new();
+    if count <= most {
+        numbers.extend(0..count);
+    } else {
+        let bending = spread(bends.len()).map(|k| (bends[k] / step) as usize);
+        numbers.extend(spread(count).chain(bending).flat_map(|k| [k.saturating_sub(1), k, k + 1]).filter(|k| *k < count));
+        numbers.sort_unstable();
+        numbers.dedup();
+    }
     // How far it goes beside the straight line through its ends: a motion may go on for ever.
     let [begin, last] = [0.0, end].map(|t| course.at(t));
     let slope = (last - begin) / end;
@@ -172,7 +181,7 @@ fn first_missed(course: &Course, bends: &[f64], looks: &[[f64; 2]], most: usize,
     let mut reach = 0.0_f64;
     let mut steps: Vec<Seen> = Vec::with_capacity(numbers.len());
     for number in numbers {
-        let seen = Seen::of(course, bends, looks, step, number, LOOK * reach);
+        let seen = Seen::of(course, bends, looks, step, number, LOOK * reach, steps.last());
         let far = far(&seen);
         reach = if far.is_finite() { reach.max(far) } else { reach };
         steps.push(seen);
@@ -191,7 +200,7 @@ fn first_missed(course: &Course, bends: &[f64], looks: &[[f64; 2]], most: usize,
     // What happens beside the end of a step is seen by both or by none.
     let pairs = || steps.windows(2).filter(|pair| pair[1].number == pair[0].number + 1).map(|pair| pair[0].joined(&pair[1]));
     let (seen, length) = alone.or_else(|| pairs().find(|seen| is_missed(seen, 2.0 * step)).map(|seen| (seen, 2.0 * step)))?;
-    let exactly = |number| Seen::of(course, bends, looks, step, number, 0.0);
+    let exactly = |number| Seen::of(course, bends, looks, step, number, 0.0, None);
     let told = if length > step { exactly(seen.number).joined(&exactly(seen.number + 1)) } else { exactly(seen.number) };
     let begin = seen.number as f64 * step;
     let known = |value: f64| if value.abs() < SMALL * reach { 0.0 } else { value };
@@ -210,16 +219,20 @@ impl Seen {
         [number, number + 1].map(|k| k as f64 * step)
     }
 
-    /// A step, with its mean as near as `near`, or as the share `MEAN` of how far the function goes in it.
-    fn of(course: &Course, bends: &[f64], looks: &[[f64; 2]], step: f64, number: usize, near: f64) -> Self {
+    /// A step, with its mean as near as `near`, or as the share `MEAN` of how far the function goes in it; `last` is the step seen last.
+    fn of(course: &Course, bends: &[f64], looks: &[[f64; 2]], step: f64, number: usize, near: f64, last: Option<&Self>) -> Self {
         let [from, to] = Self::times(number, step);
+        let known = last.filter(|last| last.number + 1 == number).map(|last| last.ends[1]);
         let inside = &bends[bends.partition_point(|t| *t <= from)..bends.partition_point(|t| *t < to)];
-        let mut places: Vec<f64> = DIVISIONS.iter().map(|share| from + share * (to - from)).chain(inside.iter().copied()).collect();
+        let mut places: SmallVec<[f64; PLACES]> =
+            DIVISIONS.iter().map(|share| from + share * (to - from)).chain(inside.iter().copied()).collect();
         places.sort_by(f64::total_cmp);
         places.dedup();
-        let values: Vec<f64> = places.iter().map(|t| course.at(*t)).collect();
+        let first = known.unwrap_or_else(|| course.at(places[0]));
+        let values: SmallVec<[f64; PLACES]> = std::iter::once(first).chain(places[1..].iter().map(|t| course.at(*t))).collect();
         let pairs = places.windows(2).zip(values.windows(2));
-        let pieces: Vec<Piece> = pairs.map(|(ends, values)| Piece::new(course, [ends[0], ends[1]], [values[0], values[1]])).collect();
+        let pieces: SmallVec<[Piece; PLACES]> =
+            pairs.map(|(ends, values)| Piece::new(course, [ends[0], ends[1]], [values[0], values[1]])).collect();
         // What jumps at an end has one value there.
         let ends = [values[0], values[values.len() - 1]];
         let at = |share: f64| match share {

@@ -34,6 +34,9 @@ pub use names::{Names, Nothing};
 /// Numbers at once, while an expression is evaluated, that are not put on the heap.
 const NUMBERS: usize = 32;
 
+/// Numbers at once of most expressions: room for more takes longer to make than these take to evaluate.
+const FEW: usize = 8;
+
 /// Whether formulas of what a mechanism does have a function of this name, but for those that a model has of its own.
 pub fn is_formula_function(name: &str) -> bool {
     let functions = functions::FUNCTIONS.iter().map(|(known, ..)| *known);
@@ -269,7 +272,15 @@ impl Program {
 
     /// The value. With `TELLS` operations on one number and on two are shown with these, and whether the second is constant.
     fn run<'a, N: Number, const TELLS: bool>(&'a self, variables: &[N], mut show: impl FnMut(&'a Op, [f64; 2], bool)) -> N {
-        let mut numbers: SmallVec<[N; NUMBERS]> = SmallVec::from_elem(N::from(0.0), self.room);
+        let (mut few, mut many);
+        let zero = N::from(0.0);
+        let numbers: &mut [N] = if self.room <= FEW {
+            few = [zero; FEW];
+            &mut few
+        } else {
+            many = SmallVec::<[N; NUMBERS]>::from_elem(zero, self.room);
+            &mut many
+        };
         let (cells, stack) = numbers.split_at_mut(self.kept.len());
         let mut top = 0;
         for (k, op) in self.ops.iter().enumerate() {
