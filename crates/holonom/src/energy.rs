@@ -138,7 +138,8 @@ pub(crate) fn unsure_work(system: &System, stage: &Stage, work: &Workspace) -> (
         // A law that is damped at the end of the step has another power at its start.
         if law.law.may_supply() && !work.forces.is_late(k) {
             let power = [(&work.start, t[0]), (&work.end, t[1])].map(|(end, t)| {
-                let (rates, own) = system.respond(law, &end.at, &end.v, t);
+                let mut own = Response::default();
+                let rates = system.respond(law, &end.at, &end.v, t, &mut own);
                 -own.force.iter().zip(&rates).map(|(force, rate)| force * rate).sum::<f64>()
             });
             differ(number, work_of_law(system, law, response, stage, work), power);

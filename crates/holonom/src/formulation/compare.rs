@@ -3,7 +3,7 @@
 use super::stage::Stage;
 use super::workspace::Workspace;
 use crate::linalg::largest;
-use crate::system::{LoadEntry, Local, Look, System};
+use crate::system::{LoadEntry, Local, Look, Response, System};
 
 impl Workspace {
     /// Compares the loads of a step between positions, and the laws that may have peaks, with the mean of those at its ends, `t` (s) the later:
@@ -37,8 +37,10 @@ impl Workspace {
         let mut most = 0.0_f64;
         for (law, used) in system.peaked_laws().map(|k| (&system.laws[k], &self.forces.responses[k])) {
             let [start, end] = [(&self.start, stage.start), (&self.end, t)].map(|(end, t)| {
-                let (_, own) = system.respond(law, &end.at, &end.v, t);
-                system.by_invariants(law, own, &end.at, &end.at, &end.v)
+                let mut response = Response::default();
+                system.respond(law, &end.at, &end.v, t, &mut response);
+                system.by_invariants(law, &mut response, &end.at, &end.at, &end.v);
+                response
             });
             for (k, &id) in law.invariants.iter().enumerate() {
                 let off = (0.5 * (start.force[k] + end.force[k]) - used.force[k]).abs();

@@ -53,12 +53,10 @@ impl Damping {
         self.late > 0.0
     }
 
-    /// Forces of a law between two positions, at the mean rate of the step or later, by values at its end.
-    pub(super) fn respond(&self, law: &dyn Law, reach: Reach<'_>) -> Response {
-        let mut out = Response::default();
+    /// Forces of a law between two positions, at the mean rate of the step or later, by values at its end. `out` arrives zeroed.
+    pub(super) fn respond(&self, law: &dyn Law, reach: Reach<'_>, out: &mut Response) {
         if self.late == 0.0 {
-            law.between(reach, &mut out);
-            return out;
+            return law.between(reach, out);
         }
         let Reach { from, to, step, middle } = reach;
         let (mut value, mut rate) = ([0.0; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS]);
@@ -67,14 +65,13 @@ impl Damping {
             // 2 Δx/h − ẋ₀ is the rate at the end.
             rate[i] = (1.0 + self.late) * (to[i] - from[i]) / step - self.late * self.rate[i];
         }
-        law.at(&value[..from.len()], &rate[..from.len()], middle, &mut out);
+        law.at(&value[..from.len()], &rate[..from.len()], middle, out);
         for i in 0..from.len() {
             for j in 0..from.len() {
                 out.by_value[i][j] = 0.5 * out.by_value[i][j] + (1.0 + self.late) / step * out.by_rate[i][j];
                 out.by_rate[i][j] = 0.0;
             }
         }
-        out
     }
 }
 

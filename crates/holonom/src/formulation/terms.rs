@@ -127,9 +127,10 @@ impl Workspace {
                     *rate = system.along(&system.slots_of(quantity), &system.slots.nodes, &sampled.at, &sampled.v);
                 }
             }
-            let (m, mut own) = (law.arguments.len(), Response::default());
-            law.law.at(&value[..m], &rate[..m], t, &mut own);
-            *response = system.by_invariants(law, own, &sampled.at, &sampled.at, &sampled.v);
+            let m = law.arguments.len();
+            *response = Response::default();
+            law.law.at(&value[..m], &rate[..m], t, response);
+            system.by_invariants(law, response, &sampled.at, &sampled.at, &sampled.v);
         }
     }
 
@@ -140,8 +141,9 @@ impl Workspace {
             let (from, to) = (system.arguments(law, &start.at), system.arguments(law, &end.at));
             let m = law.arguments.len();
             let reach = Reach { from: &from[..m], to: &to[..m], step: stage.step, middle: stage.time() };
-            let own = damping.respond(law.law.as_ref(), reach);
-            *response = system.by_invariants(law, own, &sampled.at, &end.at, &sampled.v);
+            *response = Response::default();
+            damping.respond(law.law.as_ref(), reach, response);
+            system.by_invariants(law, response, &sampled.at, &end.at, &sampled.v);
         }
     }
 

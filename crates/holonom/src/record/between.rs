@@ -105,7 +105,7 @@ impl Between {
         }
         let mut row = std::mem::take(&mut self.row);
         row.clear();
-        force::append(forces, simulation, &mut row);
+        force::append(forces, simulation, false, &mut row);
         self.see(&row, simulation.state().t);
         self.row = row;
     }

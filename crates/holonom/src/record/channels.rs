@@ -227,7 +227,7 @@ impl Channels {
     /// Appends the columns of what forces do, and of drives where the simulation finds forces.
     pub(super) fn forces(&self, simulation: &Simulation, row: &mut Vec<f64>) {
         if !self.forces.is_empty() {
-            force::append(&self.forces, simulation, row);
+            force::append(&self.forces, simulation, true, row);
         }
         let t = simulation.state().t;
         for effort in &self.told().efforts {

@@ -3,6 +3,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use super::heading::{Heading, Units};
 use crate::simulation::Simulation;
 use crate::system::{FunctionId, LawEntry, LoadEntry, Look, MAX_ARGUMENTS, Quantity, Response, Sense, System, Term, place_of};
@@ -88,12 +90,16 @@ pub trait Exerts: Send + Sync {
 struct At<'a> {
     system: &'a System,
     look: Look<'a>,
+    /// Whether their power is wanted.
+    with_power: bool,
 }
 
 impl At<'_> {
-    /// Rates of the arguments of a law, and what it responds with.
-    fn response(&self, law: &LawEntry) -> ([f64; MAX_ARGUMENTS], Response) {
-        self.system.respond(law, self.look.at, self.look.v, self.look.t)
+    /// Rates of the arguments of a law, and its forces along them.
+    fn response(&self, law: &LawEntry) -> [[f64; MAX_ARGUMENTS]; 2] {
+        let mut out = Response::default();
+        let rates = self.system.respond(law, self.look.at, self.look.v, self.look.t, &mut out);
+        [rates, out.force]
     }
 
     fn rate(&self, quantity: Quantity) -> f64 {
@@ -106,10 +112,10 @@ impl At<'_> {
 
     /// What a load exerts on each number that it reads, and what it does, W.
     fn exerted(&self, load: &LoadEntry) -> (Vec<f64>, f64) {
-        let [x, v] = self.system.read(&load.reading, self.look);
+        let [x, v] = &self.system.read(&load.reading, self.look);
         let mut force = vec![0.0; x.len()];
-        load.load.force(&x, &v, self.look.t, &mut force);
-        let power = force.iter().zip(&v).map(|(force, v)| force * v).sum();
+        load.load.force(x, v, self.look.t, &mut force);
+        let power = force.iter().zip(v).map(|(force, v)| force * v).sum();
         (force, power)
     }
 
@@ -203,19 +209,19 @@ impl RecordedForce {
 
     fn values(&self, at: &At<'_>, dim: usize, row: &mut Vec<f64>) {
         let (laws, loads) = (&at.system.laws[self.laws.clone()], &at.system.loads[self.loads.clone()]);
-        let responses: Vec<_> = laws.iter().map(|law| at.response(law)).collect();
+        let responses: SmallVec<[_; 2]> = laws.iter().map(|law| at.response(law)).collect();
         match &self.shows {
             Shows::Power => (),
             Shows::Tension { quantities, lengths } => {
                 let of = |quantity: &Quantity| [at.value(*quantity), at.rate(*quantity)];
                 let force = |k: usize| {
                     let of_loads = loads.iter().map(|load| at.along(load, quantities[k]));
-                    responses.iter().map(|(_, response)| response.force[k]).sum::<f64>() - of_loads.sum::<f64>()
+                    responses.iter().map(|[_, force]| force[k]).sum::<f64>() - of_loads.sum::<f64>()
                 };
                 match lengths {
                     Lengths::Distances { factors, fixed, drum } => {
                         let stretches = quantities[..factors.len()].iter();
-                        let each: Vec<(f64, f64)> = stretches.map(of).map(|[value, rate]| length(value, rate)).collect();
+                        let each: SmallVec<[(f64, f64); 4]> = stretches.map(of).map(|[value, rate]| length(value, rate)).collect();
                         let tension = force(0) * each[0].0 / factors[0];
                         let sum =
                             |of: &dyn Fn(&(f64, f64)) -> f64| each.iter().zip(factors).map(|(one, factor)| factor * of(one)).sum::<f64>();
@@ -234,7 +240,7 @@ impl RecordedForce {
                 let first = row.len();
                 row.extend(coordinates.iter().map(|along| {
                     let own = |law: &LawEntry| law.arguments.first() == Some(&along.coordinate.into());
-                    let efforts = laws.iter().zip(&responses).filter(|(law, _)| own(law)).map(|(_, (_, response))| -response.force[0]);
+                    let efforts = laws.iter().zip(&responses).filter(|(law, _)| own(law)).map(|(_, [_, force])| -force[0]);
                     let of_loads = loads.iter().map(|load| at.along(load, along.coordinate.into()));
                     0.0 + efforts.sum::<f64>() + of_loads.sum::<f64>()
                 }));
@@ -244,13 +250,17 @@ impl RecordedForce {
             }
             Shows::Load { is_moment, exerts } => {
                 let Some(load) = loads.first() else { return };
-                let [x, v] = at.system.read(&load.reading, at.look);
-                let exerted = exerts.exerted(&x, &v, at.look.t);
+                let [x, v] = &at.system.read(&load.reading, at.look);
+                let exerted = exerts.exerted(x, v, at.look.t);
                 row.extend_from_slice(if dim == 2 && *is_moment { &exerted[2..] } else { &exerted[..dim] });
             }
         }
-        let of_law = |(law, (rates, response)): (&LawEntry, &([f64; MAX_ARGUMENTS], Response))| -> f64 {
-            (0..law.arguments.len()).map(|k| -response.force[k] * rates[k]).sum()
+        if !at.with_power {
+            row.push(f64::NAN);
+            return;
+        }
+        let of_law = |(law, [rates, force]): (&LawEntry, &[[f64; MAX_ARGUMENTS]; 2])| -> f64 {
+            (0..law.arguments.len()).map(|k| -force[k] * rates[k]).sum()
         };
         let of_laws: f64 = laws.iter().zip(&responses).map(of_law).sum();
         let of_loads: f64 = loads.iter().map(|load| at.exerted(load).1).sum();
@@ -288,10 +298,10 @@ fn length(half_square: f64, rate: f64) -> (f64, f64) {
     (length, rate / length)
 }
 
-/// Appends what forces do at the present state.
-pub(super) fn append(forces: &[RecordedForce], simulation: &Simulation, row: &mut Vec<f64>) {
+/// Appends what forces do at the present state; their power is no number unless it is wanted.
+pub(super) fn append(forces: &[RecordedForce], simulation: &Simulation, with_power: bool, row: &mut Vec<f64>) {
     let (system, state) = (simulation.system(), simulation.state());
     let look = Look { x: &state.x, v: simulation.velocities(), t: state.t, at: simulation.evaluation(), inputs: &state.inputs, span: None };
-    let at = At { system, look };
+    let at = At { system, look, with_power };
     forces.iter().for_each(|force| force.values(&at, system.dim, row));
 }

@@ -1,7 +1,7 @@
 //! Forces that have no value where a mechanism goes, as a formula is outside its domain or a table outside its range, or no slope.
 
 use super::Simulation;
-use crate::system::{LawEntry, LoadEntry, Local, Look, System};
+use crate::system::{LawEntry, LoadEntry, Local, Look, Response, System};
 
 /// How far ahead of the present state is looked, in nominal steps.
 const AHEAD: [f64; 6] = [0.0, 0.1, 0.5, 1.0, 2.0, 4.0];
@@ -38,7 +38,8 @@ impl Simulation {
 fn without<'a>(lack: Lack, system: &'a System, look: Look<'_>) -> Option<&'a str> {
     let are_finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
     let is_law_without = |law: &&LawEntry| {
-        let (values, (rates, out)) = (system.arguments(law, look.at), system.respond(law, look.at, look.v, look.t));
+        let (values, mut out) = (system.arguments(law, look.at), Response::default());
+        let rates = system.respond(law, look.at, look.v, look.t, &mut out);
         let is_there = match lack {
             Lack::Value => are_finite(&out.force),
             Lack::Slope => are_finite(out.by_value.as_flattened()) && are_finite(out.by_rate.as_flattened()),
@@ -53,9 +54,9 @@ fn without<'a>(lack: Lack, system: &'a System, look: Look<'_>) -> Option<&'a str
             !are_finite(&out)
         }
         Lack::Slope => {
-            let [x, v] = system.read(&load.reading, look);
+            let [x, v] = &system.read(&load.reading, look);
             let [mut by_position, mut by_velocity] = [vec![0.0; x.len() * x.len()], vec![0.0; x.len() * x.len()]];
-            load.load.tangent(&x, &v, look.t, &mut by_position, &mut by_velocity);
+            load.load.tangent(x, v, look.t, &mut by_position, &mut by_velocity);
             !are_finite(&by_position) || !are_finite(&by_velocity)
         }
     };

@@ -2,7 +2,7 @@
 //! way that no step is short enough for it, as a spring whose ends pass each other.
 
 use super::Simulation;
-use crate::system::{Local, Look, gather};
+use crate::system::{Local, Look, Response, gather};
 
 /// How many times faster something moves, by what it comes on in a step, than the speed within which such a force turns round.
 const SHARP: f64 = 100.0;
@@ -25,9 +25,11 @@ impl Simulation {
         let moving = [speeds(&|v, _| v), speeds(&|v, a| v + step * a)];
         let rest = speeds(&|_, _| 0.0);
         let sharpest = system.laws.iter().filter_map(|law| {
-            let (_, slope) = system.respond(law, &work.end.at, &rest, state.t);
+            let mut slope = Response::default();
+            system.respond(law, &work.end.at, &rest, state.t, &mut slope);
             let within = |v: &Vec<f64>| {
-                let (rates, out) = system.respond(law, &work.end.at, v, state.t);
+                let mut out = Response::default();
+                let rates = system.respond(law, &work.end.at, v, state.t, &mut out);
                 let of_argument = |k: usize| (out.force[k].abs() / slope.by_rate[k][k].abs(), rates[k].abs());
                 (0..law.arguments.len()).map(of_argument).find(|(within, speed)| *within > 0.0 && *speed > SHARP * within)
             };
@@ -64,7 +66,8 @@ impl Simulation {
         system.place_known(t, &mut end.x, &mut end.v, &mut work.a);
         system.evaluate(&end.x, t, &work.start.at, &mut end.at);
         let of_laws = system.laws.iter().map(|law| {
-            let (rates, out) = system.respond(law, &end.at, &end.v, t);
+            let mut out = Response::default();
+            let rates = system.respond(law, &end.at, &end.v, t, &mut out);
             rates.iter().zip(&out.force).map(|(rate, force)| -rate * force).sum()
         });
         let look = Look { x: &end.x, v: &end.v, t, at: &end.at, inputs: &state.inputs, span: None };

@@ -196,7 +196,8 @@ impl System {
         let power = |force: &[f64], rates: &[f64]| force.iter().zip(rates).map(|(force, rate)| force * rate).sum();
         self.bending.switching.iter().map(move |&number| match self.bent(number) {
             Bent::Law(law) => {
-                let (rates, own) = self.respond(law, look.at, look.v, look.t);
+                let mut own = Response::default();
+                let rates = self.respond(law, look.at, look.v, look.t, &mut own);
                 let force = &own.force[..law.arguments.len()];
                 [size(force), power(force, &rates)]
             }
@@ -224,9 +225,9 @@ impl System {
             seen.rates.extend_from_slice(&rates[..law.arguments.len()]);
         }
         for load in self.bending.loads.iter().map(|k| &self.loads[*k]) {
-            let [x, v] = self.read(&load.reading, look);
-            seen.values.extend_from_slice(&x);
-            seen.rates.extend_from_slice(&v);
+            let [x, v] = &self.read(&load.reading, look);
+            seen.values.extend_from_slice(x);
+            seen.rates.extend_from_slice(v);
         }
         seen
     }

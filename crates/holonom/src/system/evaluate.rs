@@ -184,7 +184,7 @@ impl System {
     pub(crate) fn rates(&self, of: &[InvariantId], at: &Evaluation, v: &[f64]) -> [f64; MAX_ARGUMENTS] {
         let mut rates = [0.0; MAX_ARGUMENTS];
         for (rate, &id) in rates.iter_mut().zip(of) {
-            *rate = self.along(&self.invariants.slots_of(id), self.invariants.slot_nodes(), at, v);
+            *rate = self.along(&self.invariants.slots_of(id), &self.slots.nodes, at, v);
         }
         rates
     }
@@ -330,9 +330,7 @@ pub(crate) type Local = SmallVec<[f64; SIZE]>;
 
 /// The coordinates of some nodes.
 pub(crate) fn gather(dim: usize, nodes: &[NodeId], x: &[f64]) -> Local {
-    let mut local = Local::with_capacity(nodes.len() * dim);
-    nodes.iter().for_each(|node| local.extend_from_slice(&x[node.index() * dim..(node.index() + 1) * dim]));
-    local
+    nodes.iter().flat_map(|node| &x[node.index() * dim..(node.index() + 1) * dim]).copied().collect()
 }
 
 /// The paper's β (15): where on the way from one position to the other a row's gradient times the way is its rise.

@@ -65,8 +65,8 @@ impl LoadEntry {
 impl System {
     /// The numbers that are read, with their rates.
     pub(crate) fn read(&self, reading: &Reading, look: Look<'_>) -> [Local; 2] {
-        let mut x = gather(self.dim, &reading.nodes, look.x);
-        let mut v = gather(self.dim, &reading.nodes, look.v);
+        let mut read = [gather(self.dim, &reading.nodes, look.x), gather(self.dim, &reading.nodes, look.v)];
+        let [x, v] = &mut read;
         for (x, _) in x.chunks_exact_mut(self.dim).zip(&reading.nodes).filter(|(_, node)| self.is_point[node.index()]) {
             x.iter_mut().zip(self.origin).for_each(|(x, origin)| *x += origin);
         }
@@ -85,20 +85,20 @@ impl System {
             x.push(value);
             v.push(rate);
         }
-        [x, v]
+        read
     }
 
     /// Forces of a load on all of its nodes (D a node), N.
     pub(crate) fn load_forces(&self, load: &LoadEntry, look: Look<'_>, out: &mut [f64]) {
-        let [x, v] = self.read(&load.reading, look);
+        let [x, v] = &self.read(&load.reading, look);
         let own = load.reading.nodes.len() * self.dim;
         out.fill(0.0);
         if load.reading.senses.is_empty() {
-            load.load.force(&x, &v, look.t, out);
+            load.load.force(x, v, look.t, out);
             return;
         }
         let mut force = Local::from_elem(0.0, x.len());
-        load.load.force(&x, &v, look.t, &mut force);
+        load.load.force(x, v, look.t, &mut force);
         out[..own].copy_from_slice(&force[..own]);
         self.spread_senses(load, &look.at.gradient, |line, sense, slope| line[0] += force[own + sense] * slope, out, 1);
     }
@@ -133,9 +133,9 @@ impl System {
         let (by_position, by_velocity) = outer.split_at_mut(k * k);
         by_position.fill(0.0);
         by_velocity.fill(0.0);
-        let [x, v] = self.read(&load.reading, look);
+        let [x, v] = &self.read(&load.reading, look);
         if load.reading.senses.is_empty() {
-            load.load.tangent(&x, &v, look.t, by_position, by_velocity);
+            load.load.tangent(x, v, look.t, by_position, by_velocity);
             return;
         }
         let (dim, w, own) = (self.dim, x.len(), load.reading.nodes.len() * self.dim);
@@ -143,7 +143,7 @@ impl System {
         inner.fill(0.0);
         let (by_x, inner) = inner.split_at_mut(w * w);
         let (by_v, inner) = inner.split_at_mut(w * w);
-        load.load.tangent(&x, &v, look.t, by_x, by_v);
+        load.load.tangent(x, v, look.t, by_x, by_v);
         // What is read by the nodes: w lines of k numbers, by positions, of the rates by positions, of the rates by velocities.
         let (read, exerted) = inner.split_at_mut(3 * w * k);
         for i in 0..own {
@@ -186,7 +186,7 @@ impl System {
             self.spread_senses(load, &look.at.gradient, add, out, k);
         }
         let mut force = Local::from_elem(0.0, w);
-        load.load.force(&x, &v, look.t, &mut force);
+        load.load.force(x, v, look.t, &mut force);
         let by_position = &mut room[..k * k];
         for (sense, force) in load.reading.senses.iter().zip(&force[own..]).filter(|(_, force)| **force != 0.0) {
             if let Sense::Quantity(quantity) = sense {

@@ -19,24 +19,24 @@ impl System {
         [self.arguments(law, at), rates]
     }
 
-    /// Rates of the arguments of a law, and what it responds with by these, at a state with the velocities `v` and the time `t`.
-    pub(crate) fn respond(&self, law: &LawEntry, at: &Evaluation, v: &[f64], t: f64) -> ([f64; MAX_ARGUMENTS], Response) {
-        let [values, rates] = self.arguments_and_rates(law, at, v);
-        let (m, mut response) = (law.arguments.len(), Response::default());
-        law.law.at(&values[..m], &rates[..m], t, &mut response);
-        (rates, response)
+    /// Rates of the arguments of a law at a state with the velocities `v` and the time `t`. What it responds with by these goes to `out`, which
+    /// arrives zeroed.
+    pub(crate) fn respond(&self, law: &LawEntry, at: &Evaluation, v: &[f64], t: f64, out: &mut Response) -> [f64; MAX_ARGUMENTS] {
+        let ([values, rates], m) = (self.arguments_and_rates(law, at, v), law.arguments.len());
+        law.law.at(&values[..m], &rates[..m], t, out);
+        rates
     }
 
-    /// A response by the invariants of a law, one after the other, from `own` by its arguments. `at` is where the
+    /// Turns what a law responds with by its arguments into what it is by its invariants, one after the other. `at` is where the
     /// forces' gradients are, `end` where the values are that the forces depend on, `v` the velocities there.
     ///
     /// With J = ∂(arguments)/∂(invariants): f_π = Jᵀf and its derivative by invariants Jᵀ f_x J + f·∂J/∂π, and where f
     /// depends on rates ẋ = Jπ̇ also Jᵀ f_ẋ ∂(Jπ̇)/∂π.
-    pub(crate) fn by_invariants(&self, law: &LawEntry, own: Response, at: &Evaluation, end: &Evaluation, v: &[f64]) -> Response {
+    pub(crate) fn by_invariants(&self, law: &LawEntry, out: &mut Response, at: &Evaluation, end: &Evaluation, v: &[f64]) {
         if law.arguments.len() == law.invariants.len() && law.arguments.iter().all(|argument| matches!(argument, Quantity::Invariant(_))) {
-            return own;
+            return;
         }
-        let (mut out, m) = (Response::default(), law.arguments.len());
+        let (own, m) = (std::mem::take(out), law.arguments.len());
         // J at both places, and ∂(Jπ̇)/∂π.
         let [mut left, mut right, mut turned] = [[[0.0; MAX_ARGUMENTS]; MAX_ARGUMENTS]; 3];
         let mut first = 0;
@@ -73,6 +73,5 @@ impl System {
                 }
             }
         }
-        out
     }
 }
