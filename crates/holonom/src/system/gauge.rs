@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Followed;
 use super::part::Part;
-use super::{FunctionValues, Functions, Invariants, System, SystemBuilder, Term};
+use super::{FunctionValues, Functions, InvariantId, Invariants, System, SystemBuilder, Term};
 
 /// A joint coordinate, before it is a quantity of a system.
 #[derive(Clone)]
@@ -175,10 +175,24 @@ impl System {
         }
         invariants.evaluate(x, &mut out.invariants, &mut out.gradient);
         functions.evaluate(&out.invariants, &mut out.functions);
-        for k in 0..names.len() {
-            let local = &out.functions.local[k];
-            out.value[k] = local.value;
-            out.rate[k] = functions.base_of(k).iter().zip(&local.gradient).map(|(&id, g)| g * self.slope(&out.gradient, id, v)).sum();
+        match self.dim {
+            2 => self.rate_gauges::<2>(v, out),
+            _ => self.rate_gauges::<3>(v, out),
+        }
+    }
+
+    /// Takes values and rates over from the evaluated functions.
+    fn rate_gauges<const D: usize>(&self, v: &[f64], out: &mut GaugeValues) {
+        let Gauges { invariants, functions, .. } = &self.gauges;
+        let (v, gradient) = (v.as_chunks::<D>().0, out.gradient.as_chunks::<D>().0);
+        let slope = |id: InvariantId| {
+            let of_slot = |s: usize| (0..D).map(|c| gradient[s][c] * v[invariants.node_of(s) as usize][c]).sum::<f64>();
+            invariants.slots_of(id).fold(0.0, |sum, s| sum + of_slot(s))
+        };
+        let values = out.value.iter_mut().zip(&mut out.rate).zip(&out.functions.local);
+        for (k, ((value, rate), local)) in values.enumerate() {
+            *value = local.value;
+            *rate = functions.base_of(k).iter().zip(&local.gradient).map(|(&id, g)| g * slope(id)).sum();
         }
     }
 
@@ -191,15 +205,5 @@ impl System {
         };
         let angles = (0..self.gauges.names.len()).filter(|&k| self.gauges.is_angle[k]);
         angles.map(turn).max_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
-    fn slope(&self, gradient: &[f64], id: super::InvariantId, v: &[f64]) -> f64 {
-        let (invariants, dim) = (&self.gauges.invariants, self.dim);
-        let mut sum = 0.0;
-        for s in invariants.slots_of(id) {
-            let node = invariants.slot_nodes()[s] as usize * dim;
-            sum += (0..dim).map(|c| gradient[s * dim + c] * v[node + c]).sum::<f64>();
-        }
-        sum
     }
 }

@@ -27,6 +27,12 @@ struct Sum {
     constant: u32,
 }
 
+impl Sum {
+    fn slots(&self) -> std::ops::Range<usize> {
+        self.start as usize..self.end as usize
+    }
+}
+
 #[derive(Clone, Debug)]
 struct Invariant {
     product: Product,
@@ -43,9 +49,16 @@ pub struct Invariants {
     items: Vec<Invariant>,
     /// Constants of the sums and e of the products, zero first: most sums have no constant.
     vectors: Vec<[f64; 3]>,
-    term_node: Vec<u32>,
-    /// Factors of the nodes and, in the plane, of their quarter turns.
-    term_factors: Vec<[f64; 2]>,
+    summands: Vec<Summand>,
+}
+
+/// A node of a sum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Summand {
+    node: u32,
+    factor: f64,
+    /// Factor of its quarter turn in the plane.
+    turn: f64,
 }
 
 /// The normal of the plane of a planar model.
@@ -75,7 +88,7 @@ fn whole(sum: f64) -> f64 {
 
 impl Invariants {
     pub(crate) fn new(dim: usize) -> Self {
-        Self { dim, items: Vec::new(), vectors: vec![[0.0; 3]], term_node: Vec::new(), term_factors: Vec::new() }
+        Self { dim, items: Vec::new(), vectors: vec![[0.0; 3]], summands: Vec::new() }
     }
 
     pub(crate) fn square(&mut self, u: &[Term]) -> InvariantId {
@@ -101,14 +114,11 @@ impl Invariants {
     }
 
     fn sum(&mut self, terms: &[Term]) -> Sum {
-        let start = self.term_node.len() as u32;
+        let start = self.summands.len() as u32;
         let mut constant = [0.0; 3];
         for &Term { place, factor, turn } in terms {
             match place {
-                Place::Node(node) => {
-                    self.term_node.push(node.0);
-                    self.term_factors.push([factor, turn]);
-                }
+                Place::Node(node) => self.summands.push(Summand { node: node.0, factor, turn }),
                 Place::Fixed(x) => {
                     for c in 0..self.dim {
                         constant[c] += factor * x[c];
@@ -118,7 +128,7 @@ impl Invariants {
                 }
             }
         }
-        Sum { start, end: self.term_node.len() as u32, constant: self.vector(constant) }
+        Sum { start, end: self.summands.len() as u32, constant: self.vector(constant) }
     }
 
     /// Length of the shortest sum of nodes that is not nothing, and of the longest that moves with all points (one flag a node) over
@@ -126,8 +136,8 @@ impl Invariants {
     pub(crate) fn lengths(&self, is_point: &[bool], x: &[f64]) -> [f64; 2] {
         let sums = self.items.iter().flat_map(|item| [item.u, item.w]).filter(|sum| sum.start < sum.end);
         let length = |sum: Sum| match self.dim {
-            2 => self.sum_at::<2>(&sum, 1.0, x.as_chunks().0).iter().map(|c| c * c).sum::<f64>().sqrt(),
-            _ => self.sum_at::<3>(&sum, 1.0, x.as_chunks().0).iter().map(|c| c * c).sum::<f64>().sqrt(),
+            2 => self.sum_at::<2>(&sum, self.summands_of(&sum), 1.0, x.as_chunks().0).iter().map(|c| c * c).sum::<f64>().sqrt(),
+            _ => self.sum_at::<3>(&sum, self.summands_of(&sum), 1.0, x.as_chunks().0).iter().map(|c| c * c).sum::<f64>().sqrt(),
         };
         sums.fold([f64::INFINITY, 0.0], |[shortest, longest], sum| {
             let (length, [factor, turn]) = (length(sum), self.of_points(&sum, is_point));
@@ -139,8 +149,8 @@ impl Invariants {
 
     /// What a sum moves by when all points move by one.
     fn of_points(&self, sum: &Sum, is_point: &[bool]) -> [f64; 2] {
-        let slots = (sum.start as usize..sum.end as usize).filter(|&s| is_point[self.term_node[s] as usize]);
-        slots.fold([0.0; 2], |[f, g], s| [f + self.term_factors[s][0], g + self.term_factors[s][1]]).map(whole)
+        let of_points = self.summands_of(sum).iter().filter(|own| is_point[own.node as usize]);
+        of_points.fold([0.0; 2], |[f, g], own| [f + own.factor, g + own.turn]).map(whole)
     }
 
     /// Has the points among the nodes (one flag a node) counted from another origin: what the sums are stays as it is.
@@ -163,11 +173,12 @@ impl Invariants {
     }
 
     fn are_equal(&self, sum: &Sum, other: &Sum) -> bool {
-        let terms = |sum: &Sum| {
-            let slots = sum.start as usize..sum.end as usize;
-            (&self.term_node[slots.clone()], &self.term_factors[slots], &self.vectors[sum.constant as usize])
-        };
-        terms(sum) == terms(other)
+        let parts = |sum: &Sum| (self.summands_of(sum), &self.vectors[sum.constant as usize]);
+        parts(sum) == parts(other)
+    }
+
+    fn summands_of(&self, sum: &Sum) -> &[Summand] {
+        &self.summands[sum.slots()]
     }
 
     /// The number of a vector, which is taken in if it is another than the last and not zero.
@@ -195,12 +206,12 @@ impl Invariants {
 
     /// Number of slots of all invariants together.
     pub(crate) fn slots(&self) -> usize {
-        self.term_node.len()
+        self.summands.len()
     }
 
-    /// The node of each slot.
-    pub(crate) fn slot_nodes(&self) -> &[u32] {
-        &self.term_node
+    /// The node of a slot.
+    pub(crate) fn node_of(&self, slot: usize) -> u32 {
+        self.summands[slot].node
     }
 
     /// The slots of one invariant.
@@ -214,7 +225,6 @@ impl Invariants {
     /// With factors f + gJ, J the quarter turn of the plane, a block is f_a f_b + g_a g_b + (f_a g_b − f_b g_a) J.
     pub(crate) fn hessian(&self, id: InvariantId) -> Vec<(u32, u32, HessianBlock)> {
         let item = &self.items[id.0 as usize];
-        let terms = |sum: &Sum| (sum.start as usize..sum.end as usize).map(|s| (self.term_node[s], self.term_factors[s]));
         let mut blocks = Vec::new();
         let mut push = |a: u32, b: u32, isotropic: f64, skew: f64, e: [f64; 3]| {
             if isotropic != 0.0 {
@@ -227,9 +237,9 @@ impl Invariants {
         // J is minus the skew matrix of the plane's normal.
         let product = |[f, g]: [f64; 2], [p, q]: [f64; 2]| (f * p + g * q, g * p - f * q);
         let right = if item.product == Product::Square { &item.u } else { &item.w };
-        for (a, u) in terms(&item.u) {
-            for (b, w) in terms(right) {
-                let (along, across) = product(u, w);
+        for &Summand { node: a, factor, turn } in self.summands_of(&item.u) {
+            for own in self.summands_of(right) {
+                let (b, (along, across)) = (own.node, product([factor, turn], [own.factor, own.turn]));
                 match item.product {
                     Product::Square => push(a, b, along, across, NORMAL),
                     Product::Dot => {
@@ -267,11 +277,12 @@ impl Invariants {
 
     #[inline(always)]
     fn value_in<const D: usize>(&self, item: &Invariant, constants: f64, x: &[[f64; D]]) -> f64 {
-        let u = self.sum_at(&item.u, constants, x);
+        let sum = |sum: &Sum| self.sum_at(sum, self.summands_of(sum), constants, x);
+        let u = sum(&item.u);
         match item.product {
             Product::Square => 0.5 * dot(&u, &u),
-            Product::Dot => dot(&u, &self.sum_at(&item.w, constants, x)),
-            Product::Cross(e) => dot(&u, &cross(&self.sum_at(&item.w, constants, x), &self.vectors[e as usize])),
+            Product::Dot => dot(&u, &sum(&item.w)),
+            Product::Cross(e) => dot(&u, &cross(&sum(&item.w), &self.vectors[e as usize])),
         }
     }
 
@@ -297,42 +308,40 @@ impl Invariants {
         let (x, gradient) = (x.as_chunks::<D>().0, gradient.as_chunks_mut::<D>().0);
         let [mut u, mut w] = [[0.0; D]; 2];
         for (item, value) in self.items.iter().zip(value) {
+            let in_u = self.summands_of(&item.u);
             if !item.repeats {
-                u = self.sum_at(&item.u, constants, x);
-                if item.product != Product::Square {
-                    w = self.sum_at(&item.w, constants, x);
-                }
+                u = self.sum_at(&item.u, in_u, constants, x);
             }
-            match item.product {
-                Product::Square => {
-                    *value = 0.5 * dot(&u, &u);
-                    self.spread(&item.u, &u, gradient);
-                }
-                Product::Dot => {
-                    *value = dot(&u, &w);
-                    self.spread(&item.u, &w, gradient);
-                    self.spread(&item.w, &u, gradient);
-                }
+            if item.product == Product::Square {
+                *value = 0.5 * dot(&u, &u);
+                spread(in_u, &u, &mut gradient[item.u.slots()]);
+                continue;
+            }
+            let in_w = self.summands_of(&item.w);
+            if !item.repeats {
+                w = self.sum_at(&item.w, in_w, constants, x);
+            }
+            let [by_u, by_w] = match item.product {
                 Product::Cross(e) => {
                     let e = &self.vectors[e as usize];
-                    let right = cross(&w, e);
-                    *value = dot(&u, &right);
-                    self.spread(&item.u, &right, gradient);
-                    self.spread(&item.w, &cross(&u, e).map(|c| -c), gradient);
+                    [cross(&w, e), cross(&u, e).map(|c| -c)]
                 }
-            }
+                _ => [w, u],
+            };
+            *value = dot(&u, &by_u);
+            spread(in_u, &by_u, &mut gradient[item.u.slots()]);
+            spread(in_w, &by_w, &mut gradient[item.w.slots()]);
         }
     }
 
-    /// One of the sums of an invariant, with `constants` times its constant.
+    /// One of the sums of an invariant, of these summands, with `constants` times its constant.
     #[inline(always)]
-    fn sum_at<const D: usize>(&self, sum: &Sum, constants: f64, x: &[[f64; D]]) -> [f64; D] {
-        let slots = sum.start as usize..sum.end as usize;
+    fn sum_at<const D: usize>(&self, sum: &Sum, summands: &[Summand], constants: f64, x: &[[f64; D]]) -> [f64; D] {
         let mut out = match sum.constant {
             0 => [0.0; D],
             k => std::array::from_fn(|c| constants * self.vectors[k as usize][c]),
         };
-        for (&node, &[factor, turn]) in self.term_node[slots.clone()].iter().zip(&self.term_factors[slots]) {
+        for &Summand { node, factor, turn } in summands {
             let x = &x[node as usize];
             (0..D).for_each(|c| out[c] += factor * x[c]);
             if D == 2 {
@@ -342,17 +351,16 @@ impl Invariants {
         }
         out
     }
+}
 
-    /// The gradients of a product by the nodes of one of its sums, from that by the sum.
-    #[inline]
-    fn spread<const D: usize>(&self, sum: &Sum, by_sum: &[f64; D], gradient: &mut [[f64; D]]) {
-        let slots = sum.start as usize..sum.end as usize;
-        for (slot, &[factor, turn]) in gradient[slots.clone()].iter_mut().zip(&self.term_factors[slots]) {
-            *slot = by_sum.map(|c| factor * c);
-            if D == 2 {
-                slot[0] += turn * by_sum[1];
-                slot[1] -= turn * by_sum[0];
-            }
+/// The gradients of a product by the nodes of one of its sums, from that by the sum.
+#[inline]
+fn spread<const D: usize>(summands: &[Summand], by_sum: &[f64; D], gradient: &mut [[f64; D]]) {
+    for (slot, &Summand { factor, turn, .. }) in gradient.iter_mut().zip(summands) {
+        *slot = by_sum.map(|c| factor * c);
+        if D == 2 {
+            slot[0] += turn * by_sum[1];
+            slot[1] -= turn * by_sum[0];
         }
     }
 }
@@ -406,7 +414,8 @@ mod tests {
         for (k, &id) in all.iter().enumerate() {
             assert_eq!(value[k], invariants.value_of(id, &x), "value of {k}");
             let slots = invariants.slots_of(id);
-            let along = super::super::along(3, &invariants.slot_nodes()[slots.clone()], &gradient[3 * slots.start..3 * slots.end], &v);
+            let nodes: Vec<u32> = slots.clone().map(|slot| invariants.node_of(slot)).collect();
+            let along = super::super::along(3, &nodes, &gradient[3 * slots.start..3 * slots.end], &v);
             let expected = 0.5 * (invariants.value_of(id, &moved(1.0)) - invariants.value_of(id, &moved(-1.0)));
             assert!((along - expected).abs() <= 1e-14, "gradient of {k}: {along} instead of {expected}");
         }

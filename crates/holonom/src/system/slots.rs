@@ -44,9 +44,8 @@ pub(crate) struct Slots {
 
 impl Slots {
     pub fn new(system: &System) -> Self {
-        let of_invariants = system.invariants.slot_nodes();
-        let of_functions = system.functions.sources().map(|s| of_invariants[s]);
-        let mut nodes: Vec<u32> = of_invariants.iter().copied().chain(of_functions).collect();
+        let sources = (0..system.invariants.slots()).chain(system.functions.sources());
+        let mut nodes: Vec<u32> = sources.map(|s| system.invariants.node_of(s)).collect();
         let mut rows: Vec<_> = system.rows.iter().map(|row| system.slots_of(row.quantity)).collect();
         for entry in &system.custom {
             for _ in 0..entry.rows.rows() {

@@ -382,7 +382,7 @@ impl SystemBuilder {
         for sense in &reading.senses {
             let Sense::Quantity(quantity) = *sense else { continue };
             for s in self.base(quantity).into_iter().flat_map(|id| self.invariants.slots_of(id)) {
-                let node = NodeId(self.invariants.slot_nodes()[s]);
+                let node = NodeId(self.invariants.node_of(s));
                 if !nodes.contains(&node) {
                     nodes.push(node);
                 }
