@@ -4,6 +4,7 @@
 //! `functions.rs`; names are variables, indices of `repeat`, and `[parameters]`. Where an expression is of what a mechanism does,
 //! names have dots, as `hinge.angle`, and stand in single quotes where they have other signs: `'left-strut.force'`.
 
+mod bound;
 mod call;
 mod cells;
 mod curve;
@@ -302,6 +303,17 @@ impl Program {
                 }
                 Op::Keep(cell) => {
                     cells[*cell] = stack[top - 1];
+                    continue;
+                }
+                // Most operations are these, which have nothing to tell.
+                Op::Add | Op::Sub | Op::Mul => {
+                    top -= 1;
+                    let (x, y) = (stack[top - 1], stack[top]);
+                    stack[top - 1] = match op {
+                        Op::Add => x + y,
+                        Op::Sub => x - y,
+                        _ => x * y,
+                    };
                     continue;
                 }
                 _ => {}

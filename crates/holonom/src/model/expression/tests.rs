@@ -399,3 +399,26 @@ fn parts_of_time_are_the_largest_that_read_nothing_else() {
         assert_eq!(parse(text, &["x", "t"]).parts_of_time(1), known, "{text}");
     }
 }
+
+/// The bound is no less than what is found anywhere, and not many times as much; where a formula has corners or poles there is none.
+#[test]
+fn bends_of_formulas_of_time_are_bounded() {
+    let parse = |text: &str| Program::parse(text, &["t"], &Scope::default()).unwrap();
+    for (text, loose) in [
+        ("3", 1.0),
+        ("7*t - 2", 1.0),
+        ("-4*t^2 + 5*t", 1.0),
+        ("2*sin(30*t)", 1.01),
+        ("t*cos(3*t)", 1.5),
+        ("sin(2*t)^3/5", 2.0),
+        ("sqrt(1 - (0.1*sin(10*t))^2)", 2.5),
+    ] {
+        let program = parse(text);
+        let bends = (0..=1000).map(|k| program.evaluate(&[Dual2_64::new(2e-3 * f64::from(k), 1.0, 0.0)]).v2.abs());
+        let (most, bound) = (bends.fold(0.0, f64::max), program.largest_bend(2.0).unwrap());
+        assert!(most <= bound * (1.0 + 1e-12) && bound <= loose * most, "{text}: {bound} for {most}");
+    }
+    for text in ["abs(t - 1)", "step(t - 1)", "exp(-t)", "1/(t - 1)", "sqrt(t)", "sin(1e200*t)"] {
+        assert_eq!(parse(text).largest_bend(2.0), None, "{text}");
+    }
+}
