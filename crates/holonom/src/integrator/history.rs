@@ -27,6 +27,9 @@ pub fn extrapolate<const N: usize>(
     latest: impl Fn(usize) -> f64,
     weight: impl Fn(usize) -> f64,
 ) {
+    if change.is_empty() {
+        return;
+    }
     if !follows {
         differences.fill([0.0; N]);
         change.fill(0.0);

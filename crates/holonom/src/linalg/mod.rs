@@ -139,11 +139,16 @@ impl Solver {
 pub fn largest(values: &[f64]) -> f64 {
     let larger = |m: f64, x: f64| if x.abs() > m { x.abs() } else { m };
     let (blocks, rest) = values.as_chunks::<4>();
+    let most = rest.iter().fold(0.0, |m, &x| larger(m, x));
+    // The numbers of a node are fewer.
+    if blocks.is_empty() {
+        return most;
+    }
     let mut sizes = [0.0; 4];
     for block in blocks {
         sizes = std::array::from_fn(|k| larger(sizes[k], block[k]));
     }
-    sizes.iter().chain(rest).fold(0.0, |m, &x| larger(m, x))
+    sizes.iter().fold(most, |m, &x| larger(m, x))
 }
 
 #[cfg(test)]

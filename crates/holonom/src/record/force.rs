@@ -221,11 +221,10 @@ impl RecordedForce {
                 match lengths {
                     Lengths::Distances { factors, fixed, drum } => {
                         let stretches = quantities[..factors.len()].iter();
-                        let each: SmallVec<[(f64, f64); 4]> = stretches.map(of).map(|[value, rate]| length(value, rate)).collect();
-                        let tension = force(0) * each[0].0 / factors[0];
-                        let sum =
-                            |of: &dyn Fn(&(f64, f64)) -> f64| each.iter().zip(factors).map(|(one, factor)| factor * of(one)).sum::<f64>();
-                        row.extend([fixed + sum(&|one| one.0), sum(&|one| one.1), tension]);
+                        let each: SmallVec<[[f64; 2]; 4]> = stretches.map(of).map(length).collect();
+                        let tension = force(0) * each[0][0] / factors[0];
+                        let sum = |k: usize| each.iter().zip(factors).map(|(one, factor)| factor * one[k]).sum::<f64>();
+                        row.extend([fixed + sum(0), sum(1), tension]);
                         row.extend(drum.as_ref().map(|_| 0.0 - force(factors.len())));
                     }
                     Lengths::Along => {
@@ -291,11 +290,11 @@ fn moments([first, second]: &[Vec<Vec<Term>>; 2], x: &[f64], efforts: &mut [f64]
 const SHORTEST: f64 = 1e-9;
 
 /// A length and its rate, from half its square and the rate of that.
-fn length(half_square: f64, rate: f64) -> (f64, f64) {
+fn length([half_square, rate]: [f64; 2]) -> [f64; 2] {
     let length = (2.0 * half_square).sqrt();
     // Also taken when rounding has made the square negative.
     let length = if length > SHORTEST { length } else { SHORTEST };
-    (length, rate / length)
+    [length, rate / length]
 }
 
 /// Appends what forces do at the present state; their power is no number unless it is wanted.

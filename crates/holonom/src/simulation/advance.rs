@@ -160,9 +160,11 @@ impl Simulation {
         self.judge.dampers(system, [self.state.t, target], step, &audit, work)?;
         // A part that takes the nominal step out of its bound can be taken again.
         self.judge.whole(step, &audit, of_places, work)?;
-        self.next_gauges.copy_from(&self.gauges);
-        system.measure(&work.end.x, &work.end.v, &mut self.next_gauges);
-        self.judge.turns(system, step, &self.gauges, &self.next_gauges)?;
+        if !system.gauges().is_empty() {
+            self.next_gauges.copy_from(&self.gauges);
+            system.measure(&work.end.x, &work.end.v, &mut self.next_gauges);
+            self.judge.turns(system, step, &self.gauges, &self.next_gauges)?;
+        }
         self.judge.take(step, of_places);
         self.commit(audit, step, target);
         Ok(taken)

@@ -32,6 +32,9 @@ pub enum Promise {
     Acceleration,
 }
 
+/// How many there are.
+const PROMISES: usize = Promise::Acceleration as usize + 1;
+
 impl Promise {
     /// What is kept, in words.
     pub fn words(self) -> &'static str {
@@ -118,7 +121,8 @@ const TOLERANCES: f64 = 16.0;
 
 /// Holds steps to what a method promises.
 pub(super) struct Judge {
-    promises: Vec<Promise>,
+    /// Whether each promise is one of them.
+    promises: [bool; PROMISES],
     /// Whether there are dampers, and the method may turn round what they stop: those that keep the energy take their rates later.
     looks_at_dampers: bool,
     /// Tolerance of the iteration, over the size of the mechanism.
@@ -156,11 +160,13 @@ impl Judge {
         let farthest = if method.subdivide { FARTHEST } else { PI };
         let (stiffest, shortest) = (0.0, f64::INFINITY);
         let tolerance = TOLERANCES * tolerance;
-        Self { promises, looks_at_dampers, tolerance, mass, weight, farthest, stiffest, shortest, independence: None }
+        let mut kept = [false; PROMISES];
+        promises.iter().for_each(|promise| kept[*promise as usize] = true);
+        Self { promises: kept, looks_at_dampers, tolerance, mass, weight, farthest, stiffest, shortest, independence: None }
     }
 
     fn promises(&self, promise: Promise) -> bool {
-        self.promises.contains(&promise)
+        self.promises[promise as usize]
     }
 
     /// Whether the method promises anything of the energy.
@@ -206,6 +212,9 @@ impl Judge {
     /// Looks after a nominal step of length `h` (s) at what energy nothing supplied. Shorter steps would only add more slowly to it.
     /// `known` is what was there to move farther on, where the step is inside a longer one.
     pub(super) fn supply(&self, h: f64, known: f64, after: &Audit, work: &Workspace) -> Result<(), Failure> {
+        if !self.promises(Promise::SuppliedEnergy) {
+            return Ok(());
+        }
         let [excess, supply] = after.supply();
         let supply = supply.max(known);
         let moved = STILL * work.scales.length / h.abs();
@@ -213,7 +222,7 @@ impl Judge {
         // What sets off in this step has its energy of forces that may have jumped at its end, where their work is not seen: the next step shows it.
         let sets_off = work.is_worked_on() && after.kinetic_at_start_of_step() <= nothing;
         // What is no number is no energy.
-        match !self.promises(Promise::SuppliedEnergy) || excess <= SUPPLY * supply + nothing || (sets_off && excess.is_finite()) {
+        match excess <= SUPPLY * supply + nothing || (sets_off && excess.is_finite()) {
             true => Ok(()),
             false => Err(Failure::Unsupplied { excess, supply }),
         }
