@@ -9,9 +9,9 @@
 use super::failure::Failure;
 use super::independence::{independence, independent};
 use super::iteration::Multipliers;
-use super::kkt::Block;
 use super::newton::Newton;
 use super::passes::{LinearSystem, Purpose, STIFFER, Sure, meet, pass, react};
+use super::pattern::Block;
 use super::rank::RHO;
 use super::workspace::Workspace;
 use crate::linalg::Solver;

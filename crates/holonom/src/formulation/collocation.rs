@@ -15,9 +15,10 @@ mod equations;
 
 use super::failure::Failure;
 use super::iteration::SolveSettings;
-use super::kkt::{ALL, Block, Kkt, OWN_STAGE, TWO_LEVELS};
+use super::kkt::Kkt;
 use super::level::Level;
 use super::newton::{Newton, iterate};
+use super::pattern::{ALL, Block, OWN_STAGE, TWO_LEVELS};
 use super::scales::Scales;
 use super::stage::{RowsAt, Sampling, Stage};
 use super::velocity_rows::Source;

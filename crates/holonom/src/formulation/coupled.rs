@@ -9,8 +9,9 @@
 //! P is what γ' pulls with in the first equation; rows and columns of a node or row follow one another.
 
 use super::failure::Failure;
-use super::kkt::{Block, Kkt, TWO_LEVELS};
+use super::kkt::Kkt;
 use super::newton::Newton;
+use super::pattern::{Block, TWO_LEVELS};
 use super::scales::Scales;
 use super::stabilized::Stabilized;
 use super::stage::Stage;

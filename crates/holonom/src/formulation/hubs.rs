@@ -5,7 +5,7 @@
 //! no other place moves as a whole: rows that its motions as a rigid body can satisfy one by one have a pivot before
 //! the hub comes, whatever its masses and wherever it is (methods §13).
 
-use super::kkt::Pattern;
+use super::pattern::Pattern;
 use crate::system::{Evaluation, System};
 
 /// Neighbours from which on a node is a hub: fewer make dense rows that cost little.

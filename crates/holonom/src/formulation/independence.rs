@@ -2,7 +2,8 @@
 
 use std::borrow::BorrowMut;
 
-use super::kkt::{ALL, Block, Kkt};
+use super::kkt::Kkt;
+use super::pattern::{ALL, Block};
 use super::scales::Scales;
 use crate::system::{Evaluation, System};
 

@@ -4,19 +4,15 @@
 //! Blocks of the first kind are node × node, and mostly multiples of the unit matrix: their factors are summed first
 //! (one number a pair of nodes) and then written to the matrix.
 
-use std::ops::{Deref, Range};
+use std::ops::Deref;
 use std::sync::Arc;
 
+use super::augmented::Augmented;
 use super::failure::{Failure, Unknown};
+use super::pattern::{Block, Coupling, NONE, OuterTerm, Pattern};
 use super::scales::Scales;
-use crate::linalg::{Plan, Singular, Solver};
-use crate::system::{MAX_ARGUMENTS, Mass, Response, Slots, System, cross, skew};
-
-pub(super) const NONE: u32 = u32::MAX;
-
-/// A block of the matrix: the field of its rows and the field of its columns.
-#[derive(Clone, Copy, Debug)]
-pub struct Block(pub usize, pub usize);
+use crate::linalg::{Singular, Solver};
+use crate::system::{Mass, Response, System, cross, skew};
 
 /// Factors of the four parts of a law's tangent: by f itself, by values, by rates, and by the motion of rates.
 #[derive(Clone, Copy, Debug)]
@@ -29,81 +25,6 @@ pub struct LawFactors {
     pub rate: f64,
     /// Of ∂f/∂π̇, as gradients turn with the motion.
     pub motion: f64,
-}
-
-/// One term of the tangent of a law: ∇π_i (∂f_i/∂·) ∇π_jᵀ for a pair of slots.
-pub(super) struct OuterTerm {
-    pub slot: [u32; 2],
-    pub argument: [u8; 2],
-    pub pair: u32,
-}
-
-/// A skew block of second derivatives, w ↦ w × e: which of the pairs with full blocks, and e (in the plane its normal's part).
-#[derive(Clone, Copy)]
-pub(super) struct Turn {
-    pub full: u32,
-    pub axis: [f64; 3],
-}
-
-impl Turn {
-    fn add(&self, factor: f64, sums: &mut [[f64; 3]]) {
-        let sum = &mut sums[self.full as usize];
-        (0..3).for_each(|c| sum[c] += factor * self.axis[c]);
-    }
-}
-
-/// Constant second derivatives of an invariant, free nodes only.
-#[derive(Default)]
-pub(super) struct Hessian {
-    pub isotropic: Vec<(u32, f64)>,
-    pub skew: Vec<Turn>,
-}
-
-/// Which fields of coordinates (second argument) and of rows (third) share a block of the matrix; first comes the number
-/// of fields.
-pub type Coupling = fn(usize, usize, usize) -> bool;
-
-/// One stage without velocities, or several stages each with all rows.
-pub const ALL: Coupling = |_, _, _| true;
-
-/// Rows of a stage and coordinates of the same stage.
-pub(super) const OWN_STAGE: Coupling = |_, node, row| node == row;
-
-/// The first half of the fields are positions of the stages, the second half velocities. Position rows do not react on
-/// velocities.
-pub(super) const TWO_LEVELS: Coupling =
-    |fields, node, row| node % (fields / 2) == row % (fields / 2) && (node < fields / 2 || row >= fields / 2);
-
-/// Which nodes and rows share a block of the matrix, and where its entries are: the same for all matrices of a kind.
-pub struct Pattern {
-    pub(super) plan: Plan,
-    pub(super) dim: usize,
-    pub(super) fields: usize,
-    pub(super) free: usize,
-    pub(super) coupling: Coupling,
-    /// The system's slots.
-    pub(super) slots: Arc<Slots>,
-    /// The nodes of each pair.
-    pub(super) pair_nodes: Vec<[u32; 2]>,
-    /// The pairs with full blocks.
-    pub(super) full_pairs: Vec<u32>,
-    pub(super) own_pair: Vec<u32>,
-    pub(super) diagonal: Vec<u32>,
-    pub(super) full_index: Vec<u32>,
-    pub(super) full: Vec<u32>,
-    /// Second derivatives of all rows: row, pair and factor, and row and skew block.
-    pub(super) row_isotropic: Vec<(u32, u32, f64)>,
-    pub(super) row_skew: Vec<(u32, Turn)>,
-    pub(super) law_hessian: Vec<Vec<Hessian>>,
-    pub(super) law_outer: Vec<Vec<OuterTerm>>,
-    pub(super) load_pairs: Vec<Vec<u32>>,
-    pub(super) custom_pairs: Vec<Vec<u32>>,
-    /// For columns and for rows, for each block: number of a slot's component and its place in the matrix.
-    pub(super) row_entries: Vec<Vec<[u32; 2]>>,
-    pub(super) row_diagonal: Vec<u32>,
-    /// For each row, and at the end, the first of its second derivatives that are multiples of the unit matrix, and the first
-    /// of its entries with one field.
-    pub(super) row_first: Vec<[u32; 2]>,
 }
 
 /// The planned matrix.
@@ -125,79 +46,6 @@ impl Deref for Kkt {
 
     fn deref(&self) -> &Pattern {
         &self.pattern
-    }
-}
-
-/// A row whose square is added to the part of the coordinates, A + ḠᵀWG: the paper's penalty, which leaves the solution where
-/// it is and makes A regular where nodes have hardly any mass (methods §13).
-#[derive(Clone)]
-pub(super) struct Augmented {
-    /// W, kg over the square of the row's unit.
-    pub weight: f64,
-    /// Place of the row's multiplier, and of its entry on the diagonal.
-    pub row: u32,
-    pub diagonal: u32,
-    /// Coordinates of its nodes, each with the place of its entries in the row's column and in the row.
-    pub entries: Vec<[u32; 3]>,
-    /// The places of all pairs of these coordinates.
-    pub pairs: Vec<u32>,
-    /// The entries in the row's column when the matrix was last factored; none where the row is soft.
-    pub column: Vec<f64>,
-}
-
-/// A row whose δ times W is more than this is not augmented: the solution would be another.
-const SOFT: f64 = 1e-6;
-
-impl Augmented {
-    /// Adds the square to the part of the coordinates.
-    pub(super) fn add(&mut self, values: &mut [f64]) {
-        let is_soft = -values[self.diagonal as usize] * self.weight > SOFT;
-        for (kept, [_, column, _]) in self.column.iter_mut().zip(&self.entries) {
-            *kept = if is_soft { 0.0 } else { values[*column as usize] };
-        }
-        for (pairs, column) in self.pairs.chunks_exact(self.entries.len()).zip(&self.column) {
-            for (&pair, [_, _, row]) in pairs.iter().zip(&self.entries) {
-                values[pair as usize] += self.weight * column * values[*row as usize];
-            }
-        }
-    }
-
-    /// Adds to a right side what leaves the solution where it is.
-    pub(super) fn pull(&self, b: &mut [f64]) {
-        let pull = self.weight * b[self.row as usize];
-        self.entries.iter().zip(&self.column).for_each(|([q, ..], column)| b[*q as usize] += pull * column);
-    }
-}
-
-impl Pattern {
-    /// Number of unknowns.
-    pub fn size(&self) -> usize {
-        self.fields * (self.free * self.dim + self.slots.rows.len())
-    }
-
-    /// Place of a coordinate among the unknowns.
-    pub fn coordinate(&self, node: usize, field: usize, component: usize) -> usize {
-        (node * self.fields + field) * self.dim + component
-    }
-
-    /// Place of a multiplier among the unknowns.
-    pub fn multiplier(&self, row: usize, field: usize) -> usize {
-        self.fields * self.free * self.dim + row * self.fields + field
-    }
-
-    /// Where the gradient of a row is among those of all slots.
-    pub(super) fn gradient_of(&self, row: usize) -> Range<usize> {
-        let Range { start, end } = self.slots.rows[row];
-        start * self.dim..end * self.dim
-    }
-
-    pub(super) fn is_free(&self, slot: usize) -> bool {
-        (self.slots.nodes[slot] as usize) < self.free
-    }
-
-    /// Whether the rows of one field and the coordinates of another have entries in common.
-    pub(super) fn are_coupled(&self, node_field: usize, row_field: usize) -> bool {
-        (self.coupling)(self.fields, node_field, row_field)
     }
 }
 
@@ -287,19 +135,6 @@ impl Kkt {
         }
     }
 
-    #[inline]
-    fn add_full(&mut self, Block(i, j): Block, pair: u32, value: impl Fn(usize, usize) -> f64, dim: usize) {
-        let combination = i * self.fields + j;
-        let Self { solver, pattern, .. } = self;
-        let first = (pattern.full_index[pair as usize] as usize * pattern.fields * pattern.fields + combination) * dim * dim;
-        let values = solver.values_mut();
-        for c in 0..dim {
-            for d in 0..dim {
-                values[pattern.full[first + c * dim + d] as usize] += value(c, d);
-            }
-        }
-    }
-
     /// Adds the tangent of a law: f_i H_i, and ∇π_i (∂f_i/∂π_j ∇π_j + ∂f_i/∂π̇_j ∇π̇_j)ᵀ, each with its factor. The left
     /// gradients are those of the force, the right ones those of the values it depends on; `motion` has the slots of
     /// H v, through which π̇ depends on positions.
@@ -329,24 +164,16 @@ impl Kkt {
         }
     }
 
-    fn add_outer_in<const D: usize>(
-        &mut self,
-        Block(i, j): Block,
-        law: usize,
-        response: &Response,
-        factors: LawFactors,
-        slots: [&[f64]; 3],
-    ) {
+    fn add_outer_in<const D: usize>(&mut self, block: Block, law: usize, response: &Response, factors: LawFactors, slots: [&[f64]; 3]) {
         let [left, right, motion] = slots.map(|slots| slots.as_chunks::<D>().0);
         let Self { solver, pattern, .. } = self;
-        let (values, blocks, combination) = (solver.values_mut(), pattern.fields * pattern.fields, i * pattern.fields + j);
+        let values = solver.values_mut();
         for &OuterTerm { slot: [s, t], argument: [i, j], pair } in &pattern.law_outer[law] {
             let (i, j, s, t) = (i as usize, j as usize, s as usize, t as usize);
             let stiffness = factors.value * response.by_value[i][j] + factors.rate * response.by_rate[i][j];
             let turning = factors.motion * response.by_rate[i][j];
             let by: [f64; D] = std::array::from_fn(|d| stiffness * right[t][d] + turning * motion[t][d]);
-            let first = (pattern.full_index[pair as usize] as usize * blocks + combination) * D;
-            for (positions, left) in pattern.full.as_chunks::<D>().0[first..first + D].iter().zip(left[s]) {
+            for (positions, left) in pattern.full_block::<D>(block, pair).iter().zip(left[s]) {
                 positions.iter().zip(by).for_each(|(&position, by)| values[position as usize] += left * by);
             }
         }
@@ -354,22 +181,31 @@ impl Kkt {
 
     /// Adds a dense tangent (k × k over the load's nodes, row-major) times `factor`.
     pub fn add_load(&mut self, block: Block, load: usize, tangent: &[f64], factor: f64) {
-        let pattern = self.pattern.clone();
-        self.add_group(block, &pattern.load_pairs[load], tangent, factor);
+        self.add_group(block, |pattern| &pattern.load_pairs[load], tangent, factor);
     }
 
     /// Adds the second derivatives (k × k over the nodes of a custom entry, row-major) times `factor`.
     pub fn add_custom(&mut self, block: Block, entry: usize, hessian: &[f64], factor: f64) {
-        let pattern = self.pattern.clone();
-        self.add_group(block, &pattern.custom_pairs[entry], hessian, factor);
+        self.add_group(block, |pattern| &pattern.custom_pairs[entry], hessian, factor);
     }
 
-    fn add_group(&mut self, block: Block, pairs: &[u32], matrix: &[f64], factor: f64) {
-        let (dim, nodes) = (self.dim, pairs.len().isqrt());
+    fn add_group(&mut self, block: Block, pairs: impl Fn(&Pattern) -> &[u32], matrix: &[f64], factor: f64) {
+        match self.dim {
+            2 => self.add_group_in::<2>(block, pairs, matrix, factor),
+            _ => self.add_group_in::<3>(block, pairs, matrix, factor),
+        }
+    }
+
+    fn add_group_in<const D: usize>(&mut self, block: Block, pairs: impl Fn(&Pattern) -> &[u32], matrix: &[f64], factor: f64) {
+        let Self { solver, pattern, .. } = self;
+        let (values, pairs, matrix) = (solver.values_mut(), pairs(pattern), matrix.as_chunks::<D>().0);
+        let nodes = pairs.len().isqrt();
         for (k, &pair) in pairs.iter().enumerate().filter(|&(_, &pair)| pair != NONE) {
             let (a, b) = (k / nodes, k % nodes);
-            let width = nodes * dim;
-            self.add_full(block, pair, |c, d| factor * matrix[(a * dim + c) * width + b * dim + d], dim);
+            for (c, positions) in pattern.full_block::<D>(block, pair).iter().enumerate() {
+                let line = &matrix[(a * D + c) * nodes + b];
+                positions.iter().zip(line).for_each(|(&position, entry)| values[position as usize] += factor * entry);
+            }
         }
     }
 
@@ -505,6 +341,3 @@ impl Kkt {
         })
     }
 }
-
-// Six arguments fit the byte that numbers them.
-const _: () = assert!(MAX_ARGUMENTS < 256);

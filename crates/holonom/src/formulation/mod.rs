@@ -9,6 +9,7 @@
 //! the paper's loops and the exact Newton iteration differ only in δ and in what becomes of λ.
 
 mod acceleration;
+mod augmented;
 mod collocation;
 mod compare;
 mod coupled;
@@ -23,6 +24,7 @@ mod kkt;
 mod level;
 mod newton;
 mod passes;
+mod pattern;
 mod plan;
 mod rank;
 mod round_off;
@@ -42,10 +44,11 @@ pub use failure::{Failure, Unknown};
 pub(crate) use independence::extent;
 pub use independence::{Independence, VANISHED, independence, independent, natural_sizes};
 pub use iteration::{ITERATIONS, Iteration, Multipliers, SolveSettings, predict, solve};
-pub use kkt::{ALL, Block, Kkt, LawFactors};
+pub use kkt::{Kkt, LawFactors};
 pub use level::Level;
 pub use newton::Newton;
 pub use passes::Sure;
+pub use pattern::{ALL, Block};
 pub use rank::{RHO, Rank};
 pub use scales::Scales;
 pub use stabilized::Stabilized;

@@ -4,7 +4,8 @@ use super::dampers::Fit;
 use super::failure::Failure;
 use super::iteration::SolveSettings;
 use super::kept::Kept;
-use super::kkt::{ALL, Kkt};
+use super::kkt::Kkt;
+use super::pattern::ALL;
 use super::rank::Rank;
 use super::scales::Scales;
 use super::workspace::Workspace;
@@ -89,7 +90,7 @@ impl Newton {
 
     /// Share of the first increment that is counted as left where rows have proximal terms [by rank](Newton::proximal_by_rank). Where nothing
     /// but rows with constant second derivatives bends, new factors leave its share of the shortest of them, and the share `multipliers` of their
-    /// steps. Where a row hardly adds to the others, positions are off by more, but by no more than rounded rows make of them.
+    /// steps. Where a row hardly adds to the others, what is left moves positions by much, but so does what rounds the rows.
     pub(super) fn rest_of_first(&self, increment: f64, multipliers: f64, work: &Workspace) -> f64 {
         match (self.rank.is_full(), work.are_rows_quadratic()) {
             (true, true) => SAME_SIGN * (increment / work.scales.shortest).max(multipliers),

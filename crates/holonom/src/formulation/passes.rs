@@ -56,8 +56,11 @@ const SURER: f64 = 10.0;
 /// In long chains rows add less from the start. They are as sure where they add no less than this share of it.
 const AS_AT_START: f64 = 0.01;
 
-/// What a solution may miss, over the accelerations that forces make, where it is round-off of sums of some forces; what rows add that is no more.
+/// What rows may add that is round-off of sums of some terms.
 const ROUND_OFF: f64 = 128.0 * f64::EPSILON;
+
+/// What the one solution that is all there is may miss, over the accelerations that forces make: in a long chain what links miss adds up.
+const MISSES: f64 = 16.0 * f64::EPSILON;
 
 /// What accelerations and multipliers are for.
 #[derive(Clone, Copy)]
@@ -291,7 +294,7 @@ fn passes(matrix: &mut impl LinearSystem, of: Passes, system: &System, work: &mu
             // There is none before it to compare with: its residual tells, where no part is light.
             matrix.is_even(work) && {
                 work.sum_reactions(system, matrix.unknowns());
-                matrix.accelerates(system, work) <= ROUND_OFF * sizes[0]
+                matrix.accelerates(system, work) <= MISSES * sizes[0]
             }
         } else {
             (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(of.leaves) <= of.open * sizes[k])

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use super::augmented::Augmented;
 use super::hubs::early_rows;
-use super::kkt::{Augmented, Coupling, Hessian, NONE, OuterTerm, Pattern, Turn};
+use super::pattern::{Coupling, Hessian, NONE, OuterTerm, Pattern, Turn};
 use crate::linalg::{Places, Plan, Plans, fill_reducing_order};
 use crate::system::{HessianBlock, InvariantId, NodeId, Quantity, Row, System};
 

@@ -14,8 +14,9 @@
 use super::coupled::Coupled;
 use super::failure::Failure;
 use super::iteration::{Multipliers, OneStage, predict, restart};
-use super::kkt::{Block, Kkt};
+use super::kkt::Kkt;
 use super::newton::{Change, Equations, Newton, RESTARTS, attempt, iterate};
+use super::pattern::Block;
 use super::round_off::are_forces_round_off;
 use super::stage::Stage;
 use super::sweep::Sweeps;

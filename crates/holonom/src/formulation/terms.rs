@@ -1,7 +1,8 @@
 //! The terms of a stage: rows, laws, loads and inertia, their residual and their tangent.
 
-use super::kkt::{Block, Kkt, LawFactors};
+use super::kkt::{Kkt, LawFactors};
 use super::level::Level;
+use super::pattern::Block;
 use super::stage::{RowsAt, Sampling, Stage};
 use super::workspace::{Moment, Workspace};
 use crate::system::{Between, Direction, LoadEntry, Look, MAX_ARGUMENTS, Quantity, Reach, Response, Slopes, System, gather, scatter};

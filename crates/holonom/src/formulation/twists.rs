@@ -11,8 +11,8 @@
 use nalgebra::Matrix3;
 use smallvec::SmallVec;
 
+use super::augmented::Augmented;
 use super::failure::{Failure, Unknown};
-use super::kkt::Augmented;
 use super::passes::{LinearSystem, Purpose, Sure, react};
 use super::rank::REDUNDANT;
 use super::workspace::Workspace;

@@ -20,15 +20,7 @@ impl Simulation {
         let Self { system, state, work, .. } = self;
         let system: &System = system;
         let mut find = |lack: Lack| {
-            AHEAD.iter().find_map(|ahead| {
-                let (t, end) = (state.t + ahead * step, &mut work.end);
-                end.x.iter_mut().zip(state.x.iter().zip(&state.v)).for_each(|(end, (x, v))| *end = x + ahead * step * v);
-                end.v.copy_from_slice(&state.v);
-                system.place_known(t, &mut end.x, &mut end.v, &mut work.a);
-                system.evaluate(&end.x, t, &work.start.at, &mut end.at);
-                let look = Look { x: &end.x, v: &end.v, t, at: &end.at, inputs: &state.inputs, span: None };
-                without(lack, system, look).map(|name| (name, lack))
-            })
+            AHEAD.iter().find_map(|ahead| without(lack, system, state.look_ahead(ahead * step, system, work)).map(|name| (name, lack)))
         };
         find(Lack::Value).or_else(|| find(Lack::Slope))
     }

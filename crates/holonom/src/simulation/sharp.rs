@@ -2,7 +2,7 @@
 //! way that no step is short enough for it, as a spring whose ends pass each other.
 
 use super::Simulation;
-use crate::system::{Local, Look, Response, gather};
+use crate::system::Response;
 
 /// How many times faster something moves, by what it comes on in a step, than the speed within which such a force turns round.
 const SHARP: f64 = 100.0;
@@ -57,25 +57,9 @@ impl Simulation {
         Some(if k < laws { &system.laws[k].name } else { &system.loads[k - laws].name })
     }
 
-    /// The power of each law and load that a mechanism would take from, or have of, W, were it farther by so much time at its present velocities.
+    /// The power of each law and load if the mechanism were farther by so much time at its present velocities, W.
     fn powers(&mut self, ahead: f64) -> Vec<f64> {
         let Self { system, state, work, .. } = self;
-        let (t, end) = (state.t + ahead, &mut work.end);
-        end.x.iter_mut().zip(state.x.iter().zip(&state.v)).for_each(|(end, (x, v))| *end = x + ahead * v);
-        end.v.copy_from_slice(&state.v);
-        system.place_known(t, &mut end.x, &mut end.v, &mut work.a);
-        system.evaluate(&end.x, t, &work.start.at, &mut end.at);
-        let of_laws = system.laws.iter().map(|law| {
-            let mut out = Response::default();
-            let rates = system.respond(law, &end.at, &end.v, t, &mut out);
-            rates.iter().zip(&out.force).map(|(rate, force)| -rate * force).sum()
-        });
-        let look = Look { x: &end.x, v: &end.v, t, at: &end.at, inputs: &state.inputs, span: None };
-        let of_loads = system.loads.iter().map(|load| {
-            let mut force = Local::from_elem(0.0, load.nodes.len() * system.dim);
-            system.load_forces(load, look, &mut force);
-            gather(system.dim, &load.nodes, &end.v).iter().zip(&force).map(|(v, force)| v * force).sum()
-        });
-        of_laws.chain(of_loads).collect()
+        system.powers(state.look_ahead(ahead, system, work)).collect()
     }
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::formulation::Workspace;
 use crate::integrator::{Differences, MOTION, MULTIPLIERS, extrapolate, is_same_length};
-use crate::system::System;
+use crate::system::{Look, System};
 
 /// Numbers of a moment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -112,6 +112,16 @@ impl State {
         work.memory.copy_from_slice(&self.memory);
         work.inputs.copy_from_slice(&self.inputs);
         work.start.at.functions.angle.copy_from_slice(&self.angle);
+    }
+
+    /// The mechanism as it would be later by so much time, s, at its present velocities, at the end in a workspace.
+    pub(super) fn look_ahead<'a>(&'a self, by: f64, system: &System, work: &'a mut Workspace) -> Look<'a> {
+        let (t, end) = (self.t + by, &mut work.end);
+        end.x.iter_mut().zip(self.x.iter().zip(&self.v)).for_each(|(end, (x, v))| *end = x + by * v);
+        end.v.copy_from_slice(&self.v);
+        system.place_known(t, &mut end.x, &mut end.v, &mut work.a);
+        system.evaluate(&end.x, t, &work.start.at, &mut end.at);
+        Look { x: &end.x, v: &end.v, t, at: &end.at, inputs: &self.inputs, span: None }
     }
 
     /// Remembers how accelerations, `a` at the end, and multipliers changed in a step, for the prediction of the next.

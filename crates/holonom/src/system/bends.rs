@@ -39,7 +39,7 @@ pub(crate) struct Bends {
 /// Two numbers that nobody writes into a model.
 const PLACES: [f64; 2] = [0.577_215_664_901_532_9, 0.915_965_594_177_219];
 
-/// A law or a load whose force bends.
+/// A law or a load, the force of which may bend.
 #[derive(Clone, Copy)]
 pub(super) enum Bent<'a> {
     Law(&'a LawEntry),
@@ -192,9 +192,19 @@ impl System {
 
     /// The sizes of these forces at a state, and the power that they have there, W.
     pub(crate) fn acting(&self, look: Look<'_>) -> impl Iterator<Item = [f64; 2]> {
+        self.bending.switching.iter().map(move |&number| self.acts(self.bent(number), look))
+    }
+
+    /// The power of each law and then of each load at a state, W: of a law what it takes, of a load what it gives.
+    pub(crate) fn powers(&self, look: Look<'_>) -> impl Iterator<Item = f64> {
+        let all = self.laws.iter().map(Bent::Law).chain(self.loads.iter().map(Bent::Load));
+        all.map(move |force| self.acts(force, look)[1])
+    }
+
+    fn acts(&self, force: Bent<'_>, look: Look<'_>) -> [f64; 2] {
         let size = |force: &[f64]| force.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
         let power = |force: &[f64], rates: &[f64]| force.iter().zip(rates).map(|(force, rate)| force * rate).sum();
-        self.bending.switching.iter().map(move |&number| match self.bent(number) {
+        match force {
             Bent::Law(law) => {
                 let mut own = Response::default();
                 let rates = self.respond(law, look.at, look.v, look.t, &mut own);
@@ -208,7 +218,7 @@ impl System {
                 let power = parts.map(|(force, node)| power(force, &look.v[node.index() * self.dim..])).sum();
                 [size(&force), power]
             }
-        })
+        }
     }
 
     /// The laws that may have peaks, by their numbers.
