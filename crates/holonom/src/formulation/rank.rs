@@ -25,18 +25,27 @@ pub(super) const REDUNDANT: f64 = 1e-9;
 /// Smaller pivots, over the rows' own stiffness, are round-off in rows with hardly any δ.
 const ROUND_OFF: f64 = 100.0 * f64::EPSILON;
 
+/// What rounding makes of the pivots of a chain's last rows, over their own stiffness and for each coordinate of the chain. A regular row that adds
+/// less than [`WEAK`] times that is weak: its pivot may be anything as small, and has a δ that rules over it. Only chains of thousands have any.
+const ROUNDED: f64 = 0.01 * f64::EPSILON;
+const WEAK: f64 = 100.0;
+const RULING: f64 = 3.0;
+
 /// What the last factorisations said of the rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rank {
     /// Rows whose pivot was no redundant one's (r).
     regular: Vec<bool>,
+    /// Those of them that are weak, ascending.
+    weak: Vec<usize>,
     /// How many they leave, if any were counted, and whether that has changed then.
     redundant: Option<usize>,
     changes: bool,
     /// Attempts to come that are near a singular position.
     singular: u32,
-    /// What a row with hardly any proximal term must add to be regular.
+    /// What a row with hardly any proximal term must add to be regular, and what rounding makes of that.
     least: f64,
+    rounded: f64,
     /// Whether rows that were regular have hardly any proximal term in this attempt.
     pub(super) spares_regular: bool,
     /// The least that a regular row adds to those before it, over what it would add alone.
@@ -46,7 +55,17 @@ pub struct Rank {
 impl Rank {
     pub(super) fn new(rows: usize, coordinates: usize) -> Self {
         let least = independent(coordinates).max(ROUND_OFF);
-        Self { regular: vec![false; rows], redundant: None, changes: false, singular: 0, least, spares_regular: false, weakest: 1.0 }
+        Self {
+            regular: vec![false; rows],
+            weak: Vec::new(),
+            redundant: None,
+            changes: false,
+            singular: 0,
+            least,
+            rounded: ROUNDED * coordinates as f64,
+            spares_regular: false,
+            weakest: 1.0,
+        }
     }
 
     /// Whether a row was no redundant one when last factored.
@@ -74,10 +93,11 @@ impl Rank {
         (1.0 / (rho * self.weakest)).min(1.0)
     }
 
-    /// Becomes the same without any allocation.
+    /// Becomes the same, without any allocation where no row is weak.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { regular, redundant, changes, singular, least: _, spares_regular, weakest } = other;
+        let Self { regular, weak, redundant, changes, singular, least: _, rounded: _, spares_regular, weakest } = other;
         self.regular.copy_from_slice(regular);
+        self.weak.clone_from(weak);
         (self.redundant, self.changes, self.singular) = (*redundant, *changes, *singular);
         (self.spares_regular, self.weakest) = (*spares_regular, *weakest);
     }
@@ -86,17 +106,23 @@ impl Rank {
     pub(super) fn classify(&mut self, outcome: &Result<(), Failure>, kkt: &Kkt, delta: &[f64], scales: &Scales) {
         if outcome.is_err() {
             self.regular.fill(false);
+            self.weak.clear();
             return;
         }
         let mut redundant = 0;
         self.weakest = 1.0;
+        let (before, weak) = (std::mem::take(&mut self.weak), WEAK * self.rounded);
         for (row, regular) in self.regular.iter_mut().enumerate() {
             let softness = scales.softness[row];
             let share = (kkt.solver.pivot(kkt.multiplier(row, 0)) - delta[row]) / softness;
             let is_spared = delta[row] < 0.5 * softness / RHO;
-            *regular = share > if is_spared { self.least } else { REDUNDANT };
+            let stays_weak = is_spared && share < weak && before.binary_search(&row).is_ok();
+            *regular = stays_weak || share > if is_spared { self.least } else { REDUNDANT };
             if *regular {
-                self.weakest = self.weakest.min(share);
+                self.weakest = self.weakest.min(share.max(self.rounded));
+                if share < weak {
+                    self.weak.push(row);
+                }
             } else {
                 redundant += 1;
             }
@@ -133,6 +159,7 @@ impl Newton {
         }
         let part = SPARE * rank.least;
         self.delta.iter_mut().zip(&scales.softness).for_each(|(delta, softness)| *delta = part * softness);
+        rank.weak.iter().for_each(|&row| self.delta[row] = RULING * rank.rounded * scales.softness[row]);
     }
 
     /// Hardly any δ for the rows that are regular, and ρ = [`RHO`] for the others.
