@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 
 use super::assembly::{Assembly, GROUND};
 use super::entry::Entry;
-use super::expression::{Mistake, Names, Program, Scope, indexed, names_in};
+use super::expression::{self, Mistake, Names, Program, Scope, indexed, names_in};
 use super::fields::Number;
 use super::geometry::unit;
 use super::measure::like;
@@ -345,6 +345,14 @@ impl Names for Reader<'_, '_> {
         let measures = &self.assembly.signals.measures;
         if !measures.contains_key(name) {
             return Ok(None);
+        }
+        // Its own formula means the number by this name, and would seem to read itself.
+        if let Some(what) = expression::number_called(name) {
+            return Err(Mistake::new(
+                0,
+                format!("`{name}` is a {what} of every expression, and a measure"),
+                "give the measure another name",
+            ));
         }
         // Each after all it reads, without recursion: a chain of measures may be long.
         let mut open = vec![name.to_string()];
