@@ -10,9 +10,10 @@ use super::failure::Failure;
 use super::independence::{independence, independent};
 use super::iteration::Multipliers;
 use super::newton::Newton;
-use super::passes::{LinearSystem, Purpose, STIFFER, Sure, meet, pass, react};
+use super::passes::{LinearSystem, Purpose, STIFFER, meet, pass, react};
 use super::pattern::Block;
 use super::rank::RHO;
+use super::standing::Sure;
 use super::workspace::Workspace;
 use crate::linalg::Solver;
 use crate::system::System;
@@ -128,7 +129,7 @@ impl LinearSystem for Newton {
         &self.kkt.solver
     }
 
-    fn shares(&self, work: &Workspace) -> impl Iterator<Item = f64> {
+    fn shares(&self, _: f64, work: &Workspace) -> impl Iterator<Item = f64> {
         let pivots = (0..self.delta.len()).map(|row| self.kkt.solver.pivot(self.kkt.multiplier(row, 0)) - self.delta[row]);
         pivots.zip(&work.scales.softness).map(|(pivot, softness)| pivot / softness)
     }

@@ -2,9 +2,9 @@
 //! is found is looked at twice (methods §17).
 
 use super::failure::Failure;
-use super::independence::independent;
 use super::level::Level;
-use super::rank::RHO;
+use super::rank::{REDUNDANT, RHO};
+use super::standing::{CLEAR, Standing, Sure, few, standing};
 use super::workspace::Workspace;
 use crate::linalg::{Solver, largest};
 use crate::system::System;
@@ -30,7 +30,7 @@ pub(super) const STIFFER: f64 = 1e3;
 const KNOWN: f64 = 1e-3;
 const NOISE: f64 = 1e-5;
 
-/// By what share of themselves velocities are off the rows that no round-off makes.
+/// By what share of themselves velocities, and of the size of the mechanism places, are off the rows that no round-off makes.
 const ASTRAY: f64 = 1e-10;
 
 /// Share of the multipliers that a pass adds where they grow without end, and what rows may be missed by, over the accelerations, where redundant
@@ -47,18 +47,6 @@ const FOLLOWS: f64 = 100.0;
 const ROUNDED: f64 = 0.1 * f64::EPSILON;
 const SHOWN: f64 = 1e-12;
 
-/// ρ of hardly any δ, with which one solution is all there is where every row adds much to those before it.
-const SPARING: f64 = 1e20;
-
-/// How many times what counts as independent that is: accelerations are known then.
-const SURER: f64 = 10.0;
-
-/// In long chains rows add less from the start. They are as sure where they add no less than this share of it.
-const AS_AT_START: f64 = 0.01;
-
-/// What rows may add that is round-off of sums of some terms.
-const ROUND_OFF: f64 = 128.0 * f64::EPSILON;
-
 /// What the one solution that is all there is may miss, over the accelerations that forces make: in a long chain what links miss adds up.
 const MISSES: f64 = 16.0 * f64::EPSILON;
 
@@ -71,22 +59,6 @@ pub(super) enum Purpose<'a> {
     Show(Option<&'a Sure>),
 }
 
-/// What each row must add to those before it to be far from redundant (r), over what it would add alone.
-pub struct Sure(Vec<f64>);
-
-impl Sure {
-    /// By what rows add at the evaluation of the end, which is that of the start. None where one follows from others there, or hardly differs.
-    pub(super) fn of(matrix: &mut impl LinearSystem, system: &System, work: &Workspace) -> Option<Self> {
-        matrix.factor(SPARING, work).ok()?;
-        let shares: Vec<f64> = matrix.shares(work).collect();
-        let least = (SURER * independent(system.coordinates())).max(ROUND_OFF);
-        shares
-            .iter()
-            .all(|share| *share > least)
-            .then(|| Self(shares.iter().map(|share| (SURER * independent(1)).min(AS_AT_START * share)).collect()))
-    }
-}
-
 /// The matrix of the system.
 pub(super) trait LinearSystem {
     /// Factors it at the evaluation of the end with the proximal δ = (G M⁻¹ Gᵀ)/ρ. Hands back what share of the multipliers a solution may leave.
@@ -95,8 +67,9 @@ pub(super) trait LinearSystem {
     /// Its factors.
     fn solver(&self) -> &Solver;
 
-    /// What the rows that have unknowns of it add to those before them where it was last factored in order, over what they would add alone.
-    fn shares(&self, work: &Workspace) -> impl Iterator<Item = f64>;
+    /// What the rows that have unknowns of it add to those before them where it was last factored in order, with the δ of this ρ, over what they would
+    /// add alone.
+    fn shares(&self, rho: f64, work: &Workspace) -> impl Iterator<Item = f64>;
 
     /// Whether no part is light beside what holds it: a solution misses about as little of each.
     fn is_even(&self, work: &Workspace) -> bool;
@@ -147,19 +120,35 @@ fn react_at_level(
     t: f64,
     work: &mut Workspace,
 ) -> Result<bool, Failure> {
+    if let Purpose::Show(None | Some(Sure::Redundant(_))) = purpose {
+        meet_rows(matrix, system, t, work)?;
+    }
     let pushed = work.begin_pass(system, t);
     // Rows of what spins fast ask for far too much along velocities that are off them a little, and redundant ones, which ask for the same along
     // velocities that meet them all, for different forces, without bounds.
     let strays = work.strays(system, t);
     // Of what is at rest velocities are round-off.
     let astray = Some(strays).filter(|strays| *strays > ASTRAY && strays * work.of_motion() > ROUNDED * pushed);
-    if let Purpose::Show(Some(sure)) = purpose
-        && solves_at_once(matrix, sure, (pushed, astray), system, t, work)
-    {
-        return Ok(true);
+    let standing = match purpose {
+        Purpose::Show(Some(Sure::Independent(least))) => standing(least, matrix, work),
+        _ => Standing::Unknown,
+    };
+    match standing {
+        Standing::Sure if solves_at_once(matrix, (pushed, astray), system, t, work) => return Ok(true),
+        Standing::Singular => return Ok(false),
+        _ => {}
     }
+    let mut is_near = standing == Standing::Near;
     let open = if let Purpose::Start = purpose { ROUNDED } else { SHOWN };
     let leaves = matrix.factor(RHO, work)?;
+    if let Purpose::Show(Some(Sure::Redundant(at_start))) = purpose
+        && !matrix.solver().has_exchanged()
+    {
+        if few(REDUNDANT, matrix, work) > *at_start {
+            return Ok(false);
+        }
+        is_near = few(CLEAR, matrix, work) > *at_start;
+    }
     let is_on_rows = astray.is_some() && follow_rows(matrix, strays, system, t, work)?;
     let mut end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
     if end != End::Met && !is_on_rows && follow_rows(matrix, strays, system, t, work)? {
@@ -167,10 +156,12 @@ fn react_at_level(
         work.lambda.fill(0.0);
         end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
     }
-    if end != End::Slow {
+    if end != End::Slow && !is_near {
         return Ok(is_met(end, system, t, work));
     }
-    let leaves = matrix.factor(STIFFER * RHO, work)?;
+    // What redundant rows make of round-off would be more than what is looked for.
+    let is_stiffer = end == End::Slow || standing == Standing::Near;
+    let leaves = matrix.factor(if is_stiffer { STIFFER * RHO } else { RHO }, work)?;
     let n = system.coordinates();
     let (x, v, at) = (work.end.x.clone(), work.end.v.clone(), work.end.at.clone());
     work.miss_by_rounding(system, t);
@@ -180,32 +171,35 @@ fn react_at_level(
     meet_rates(matrix, system, t, work)?;
     let mut solve = |work: &mut Workspace| {
         let pushed = work.begin_pass(system, t);
+        if is_near && astray.is_some() {
+            follow_rows(matrix, strays, system, t, work)?;
+        }
         work.lambda.fill(0.0);
         passes(matrix, Passes { leaves, pushed, most: MOST, open: ROUNDED }, system, work)
     };
     solve(work)?;
-    let others = work.a[..n].to_vec();
+    let (others, other_forces) = (work.a[..n].to_vec(), work.lambda.clone());
     (work.end.x, work.end.v, work.end.at) = (x, v, at);
     let end = solve(work)?;
     let differs = work.a[..n].iter().zip(&others).fold(0.0, |m: f64, (a, other)| m.max((a - other).abs()));
     let is_sure = differs <= KNOWN * largest(&work.a[..n]).max(pushed) || work.strays(system, t) > NOISE;
-    Ok(is_met(end, system, t, work) && is_sure)
+    // Large forces elsewhere hide what accelerations differ by; those of the rows that hardly hold show it.
+    let pairs = work.lambda.iter().zip(&other_forces);
+    let are_forces_sure = !is_near
+        || work.scaled_multipliers(pairs.map(|(force, other)| force - other))
+            <= KNOWN * work.scaled_multipliers(work.lambda.iter().copied());
+    Ok(is_met(end, system, t, work) && is_sure && are_forces_sure)
 }
 
-/// Solves the system with hardly any δ. `pushed` is how fast forces make what they push most, m/s², and `astray` the share that velocities are off the
-/// rows by, where they are. Says whether no row is near to redundant and what is missed is round-off; where not, nothing is found.
+/// Solves the system with the factors at hand, which have hardly any δ. `pushed` is how fast forces make what they push most, m/s², and `astray` the
+/// share that velocities are off the rows by, where they are. Says whether what is missed is round-off; where not, nothing is found.
 fn solves_at_once(
     matrix: &mut impl LinearSystem,
-    sure: &Sure,
     (pushed, astray): (f64, Option<f64>),
     system: &System,
     t: f64,
     work: &mut Workspace,
 ) -> bool {
-    let is_in_order = matrix.factor(SPARING, work).is_ok() && !matrix.solver().has_exchanged();
-    if !is_in_order || !matrix.shares(work).zip(&sure.0).all(|(share, least)| share >= *least) {
-        return false;
-    }
     let is_followed = astray.is_none_or(|strays| follow_rows(matrix, strays, system, t, work).is_ok());
     let of = Passes { leaves: 0.0, pushed, most: PASSES, open: SHOWN };
     let is_solved = is_followed && passes(matrix, of, system, work) == Ok(End::Met);
@@ -238,6 +232,23 @@ fn follow_rows(matrix: &mut impl LinearSystem, strays: f64, system: &System, t: 
     }
     work.end.v.copy_from_slice(&work.kept_v);
     Ok(are_near)
+}
+
+/// Moves places at the end that are off the rows onto them: there alone redundant rows ask for the same. Beside them they ask for forces without bounds,
+/// and methods that let places drift, or hold them by springs, are there.
+fn meet_rows(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
+    for _ in 0..PASSES {
+        let Workspace { end, rows, .. } = &mut *work;
+        system.constraint_values(&end.at, t, rows);
+        if work.scaled(&work.rows) <= ASTRAY * work.scales.length {
+            return Ok(());
+        }
+        matrix.factor(RHO, work)?;
+        let change = correction(matrix, system, work)?;
+        work.end.x.iter_mut().zip(change).for_each(|(x, change)| *x += change);
+        system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
+    }
+    Ok(())
 }
 
 /// Moves the velocities at the end onto the rows, with the factors at hand.

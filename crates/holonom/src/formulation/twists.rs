@@ -13,8 +13,9 @@ use smallvec::SmallVec;
 
 use super::augmented::Augmented;
 use super::failure::{Failure, Unknown};
-use super::passes::{LinearSystem, Purpose, Sure, react};
+use super::passes::{LinearSystem, Purpose, react};
 use super::rank::REDUNDANT;
+use super::standing::Sure;
 use super::workspace::Workspace;
 use crate::linalg::{Singular, Solver};
 use crate::system::{MassBlock, RowSlot, System, add_along_rows, cross};
@@ -164,8 +165,9 @@ impl LinearSystem for Twists {
         &self.solver
     }
 
-    fn shares(&self, _: &Workspace) -> impl Iterator<Item = f64> {
-        self.outer.iter().map(|outer| self.solver.pivot(outer.unknown as usize) / outer.alone)
+    fn shares(&self, rho: f64, work: &Workspace) -> impl Iterator<Item = f64> {
+        let delta = move |outer: &Outer| work.scales.softness[outer.row as usize] / rho;
+        self.outer.iter().map(move |outer| (self.solver.pivot(outer.unknown as usize) - delta(outer)) / outer.alone)
     }
 
     fn is_even(&self, _: &Workspace) -> bool {
