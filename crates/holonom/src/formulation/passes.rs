@@ -130,7 +130,7 @@ fn react_at_level(
     // Of what is at rest velocities are round-off.
     let astray = Some(strays).filter(|strays| *strays > ASTRAY && strays * work.of_motion() > ROUNDED * pushed);
     let standing = match purpose {
-        Purpose::Show(Some(Sure::Independent(least))) => standing(least, matrix, work),
+        Purpose::Show(Some(Sure::Independent(at_start))) => standing(at_start, matrix, work),
         _ => Standing::Unknown,
     };
     match standing {
@@ -201,7 +201,7 @@ fn solves_at_once(
     work: &mut Workspace,
 ) -> bool {
     let is_followed = astray.is_none_or(|strays| follow_rows(matrix, strays, system, t, work).is_ok());
-    let of = Passes { leaves: 0.0, pushed, most: PASSES, open: SHOWN };
+    let of = Passes { leaves: 0.0, pushed, most: MOST, open: SHOWN };
     let is_solved = is_followed && passes(matrix, of, system, work) == Ok(End::Met);
     if !is_solved {
         work.a[..system.coordinates()].fill(0.0);

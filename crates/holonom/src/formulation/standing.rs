@@ -26,10 +26,18 @@ const ROUND_OFF: f64 = 128.0 * f64::EPSILON;
 
 /// What the rows of a mechanism add to those before them at its start (r), by which it is told whether it stands near a singular position.
 pub enum Sure {
-    /// What each must add to be far from redundant, over what it would add alone, where all are independent.
-    Independent(Vec<f64>),
+    /// All are independent.
+    Independent(Shares),
     /// How many add nothing, and all others much.
     Redundant(usize),
+}
+
+/// What independent rows add.
+pub struct Shares {
+    /// What each must add to be far from redundant, over what it would add alone.
+    least: Vec<f64>,
+    /// Whether rows changed places where that was found. Pivots then tell of rows together: where they become dependent, one of them becomes nothing.
+    has_exchanged: bool,
 }
 
 impl Sure {
@@ -39,7 +47,8 @@ impl Sure {
         let shares: Vec<f64> = matrix.shares(SPARING, work).collect();
         let least = (SURER * independent(system.coordinates())).max(ROUND_OFF);
         if shares.iter().all(|share| *share > least) {
-            return Some(Self::Independent(shares.iter().map(|share| (SURER * independent(1)).min(AS_AT_START * share)).collect()));
+            let least = shares.iter().map(|share| (SURER * independent(1)).min(AS_AT_START * share)).collect();
+            return Some(Self::Independent(Shares { least, has_exchanged: matrix.solver().has_exchanged() }));
         }
         matrix.factor(RHO, work).ok()?;
         let is_clear = !matrix.solver().has_exchanged() && matrix.shares(RHO, work).all(|share| !(REDUNDANT..CLEAR).contains(&share));
@@ -47,14 +56,17 @@ impl Sure {
     }
 }
 
-/// Where a mechanism stands at the evaluation of the end whose rows are sure by what they must add. The factors have hardly any δ then.
-pub(super) fn standing(least: &[f64], matrix: &mut impl LinearSystem, work: &Workspace) -> Standing {
-    if matrix.factor(SPARING, work).is_err() || matrix.solver().has_exchanged() {
+/// Where a mechanism stands at the evaluation of the end whose rows were independent at the start. The factors have hardly any δ then.
+pub(super) fn standing(at_start: &Shares, matrix: &mut impl LinearSystem, work: &Workspace) -> Standing {
+    if matrix.factor(SPARING, work).is_err() {
         return Standing::Unknown;
     }
-    let worst = matrix.shares(SPARING, work).zip(least).map(|(share, least)| share / least).fold(f64::INFINITY, f64::min);
+    let has_exchanged = matrix.solver().has_exchanged();
+    let worst = matrix.shares(SPARING, work).zip(&at_start.least).map(|(share, least)| share / least).fold(f64::INFINITY, f64::min);
     match worst {
+        _ if has_exchanged && !at_start.has_exchanged => Standing::Unknown,
         _ if worst >= 1.0 => Standing::Sure,
+        _ if has_exchanged => Standing::Unknown,
         _ if worst >= ADDS_NOTHING => Standing::Near,
         _ => Standing::Singular,
     }
@@ -75,6 +87,6 @@ pub(super) enum Standing {
     /// At a singular position, as far as numbers tell: a row adds nothing that has added something at the start, and neither its force nor the
     /// acceleration that it holds follows from places and velocities.
     Singular,
-    /// Rows have changed places.
+    /// Rows have changed places, and pivots do not tell.
     Unknown,
 }
