@@ -4,7 +4,7 @@
 use super::failure::Failure;
 use super::level::Level;
 use super::rank::{REDUNDANT, RHO};
-use super::standing::{CLEAR, Standing, Sure, few, standing};
+use super::standing::{CLEAR, ROUND_OFF, Standing, Sure, few, standing};
 use super::workspace::Workspace;
 use crate::linalg::{Solver, largest};
 use crate::system::System;
@@ -123,12 +123,15 @@ fn react_at_level(
     if let Purpose::Show(None | Some(Sure::Redundant(_))) = purpose {
         meet_rows(matrix, system, t, work)?;
     }
-    let pushed = work.begin_pass(system, t);
+    let pushed = work.sum_at_rest(system, t);
     // Rows of what spins fast ask for far too much along velocities that are off them a little, and redundant ones, which ask for the same along
     // velocities that meet them all, for different forces, without bounds.
     let strays = work.strays(system, t);
     // Of what is at rest velocities are round-off.
     let astray = Some(strays).filter(|strays| *strays > ASTRAY && strays * work.of_motion() > ROUNDED * pushed);
+    if astray.is_none() {
+        work.weigh_end_at_rest(system, t);
+    }
     let standing = match purpose {
         Purpose::Show(Some(Sure::Independent(at_start))) => standing(at_start, matrix, work),
         _ => Standing::Unknown,
@@ -149,9 +152,9 @@ fn react_at_level(
         }
         is_near = few(CLEAR, matrix, work) > *at_start;
     }
-    let is_on_rows = astray.is_some() && follow_rows(matrix, strays, system, t, work)?;
+    let is_on_rows = astray.is_some() && follow_rows(matrix, [strays, 0.0], system, t, work)?;
     let mut end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
-    if end != End::Met && !is_on_rows && follow_rows(matrix, strays, system, t, work)? {
+    if end != End::Met && !is_on_rows && follow_rows(matrix, [strays, 0.0], system, t, work)? {
         work.a[..system.coordinates()].fill(0.0);
         work.lambda.fill(0.0);
         end = passes(matrix, Passes { leaves, pushed, most: PASSES, open }, system, work)?;
@@ -168,11 +171,11 @@ fn react_at_level(
     let change = correction(matrix, system, work)?;
     work.end.x.iter_mut().zip(change).for_each(|(x, change)| *x += change);
     system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
-    meet_rates(matrix, system, t, work)?;
+    meet_rates(matrix, 0.0, system, t, work)?;
     let mut solve = |work: &mut Workspace| {
         let pushed = work.begin_pass(system, t);
         if is_near && astray.is_some() {
-            follow_rows(matrix, strays, system, t, work)?;
+            follow_rows(matrix, [strays, 0.0], system, t, work)?;
         }
         work.lambda.fill(0.0);
         passes(matrix, Passes { leaves, pushed, most: MOST, open: ROUNDED }, system, work)
@@ -200,7 +203,7 @@ fn solves_at_once(
     t: f64,
     work: &mut Workspace,
 ) -> bool {
-    let is_followed = astray.is_none_or(|strays| follow_rows(matrix, strays, system, t, work).is_ok());
+    let is_followed = astray.is_none_or(|strays| follow_rows(matrix, [strays, ROUND_OFF], system, t, work).is_ok());
     let of = Passes { leaves: 0.0, pushed, most: MOST, open: SHOWN };
     let is_solved = is_followed && passes(matrix, of, system, work) == Ok(End::Met);
     if !is_solved {
@@ -220,16 +223,24 @@ fn is_met(end: End, system: &System, t: f64, work: &mut Workspace) -> bool {
     (end == End::Grows || strays > NOISE) && missed <= (MISSED * of_all).max(FOLLOWS * strays * of_velocities)
 }
 
-/// Takes the rows along the velocities nearest to those at the end, which are off the rows by the share `strays`, that meet them; forces stay as
-/// they are. Says whether there are such: beside a singular position they may be too far away.
-fn follow_rows(matrix: &mut impl LinearSystem, strays: f64, system: &System, t: f64, work: &mut Workspace) -> Result<bool, Failure> {
+/// Takes the rows along the velocities nearest to those at the end, which are off the rows by the share `strays`, that meet them but for the share
+/// `open`; forces stay as they are. Says whether there are such: beside a singular position they may be too far away, and rows are taken along
+/// the velocities as they are.
+fn follow_rows(
+    matrix: &mut impl LinearSystem,
+    [strays, open]: [f64; 2],
+    system: &System,
+    t: f64,
+    work: &mut Workspace,
+) -> Result<bool, Failure> {
     work.kept_v.copy_from_slice(&work.end.v);
-    meet_rates(matrix, system, t, work)?;
+    meet_rates(matrix, open, system, t, work)?;
     let moved = work.end.v.iter().zip(&work.kept_v).fold(0.0, |m: f64, (v, before)| m.max((v - before).abs()));
     let are_near = moved <= FOLLOWS * strays * largest(&work.kept_v);
-    if are_near {
-        work.weigh_end_at_rest(system, t);
+    if !are_near {
+        work.end.v.copy_from_slice(&work.kept_v);
     }
+    work.weigh_end_at_rest(system, t);
     work.end.v.copy_from_slice(&work.kept_v);
     Ok(are_near)
 }
@@ -251,10 +262,12 @@ fn meet_rows(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut
     Ok(())
 }
 
-/// Moves the velocities at the end onto the rows, with the factors at hand.
-fn meet_rates(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
+/// Moves the velocities at the end onto the rows, with the factors at hand, until they are off them by no more than the share `open`.
+fn meet_rates(matrix: &mut impl LinearSystem, open: f64, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
     for _ in 0..PASSES {
-        work.rate_violation(system, t);
+        if work.strays(system, t) <= open {
+            break;
+        }
         let change = correction(matrix, system, work)?;
         work.end.v.iter_mut().zip(change).for_each(|(v, change)| *v += change);
     }
@@ -351,12 +364,17 @@ impl Workspace {
     /// Sums forces and rows at the end, without accelerations. Hands back how fast the forces would make the node that they push most, m/s²,
     /// where light ones weigh as what holds them.
     pub(super) fn begin_pass(&mut self, system: &System, t: f64) -> f64 {
+        self.weigh_end_at_rest(system, t);
+        self.sum_at_rest(system, t)
+    }
+
+    /// The same without the rows.
+    fn sum_at_rest(&mut self, system: &System, t: f64) -> f64 {
         self.a[..system.coordinates()].fill(0.0);
         // The end is looked at in the place of the sampled state.
         std::mem::swap(&mut self.sampled, &mut self.end);
         self.sum_applied_anew(system, t);
         std::mem::swap(&mut self.sampled, &mut self.end);
-        self.weigh_end_at_rest(system, t);
         self.accelerates(system, &self.forces.sum)
     }
 

@@ -22,7 +22,7 @@ const ADDS_NOTHING: f64 = 1e-5;
 pub(super) const CLEAR: f64 = 100.0 * REDUNDANT;
 
 /// What rows may add that is round-off of sums of some terms.
-const ROUND_OFF: f64 = 128.0 * f64::EPSILON;
+pub(super) const ROUND_OFF: f64 = 128.0 * f64::EPSILON;
 
 /// What the rows of a mechanism add to those before them at its start (r), by which it is told whether it stands near a singular position.
 pub enum Sure {

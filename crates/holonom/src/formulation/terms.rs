@@ -120,6 +120,12 @@ impl Workspace {
         if forces.dissipative {
             system.turn(&sampled.at, &sampled.x, Direction::velocity(&sampled.v), t, &mut turned.half, &mut forces.motion);
         }
+        self.respond_without_motion(system, t);
+    }
+
+    /// The same without H v, which tangents alone need.
+    fn respond_without_motion(&mut self, system: &System, t: f64) {
+        let Self { sampled, forces, .. } = self;
         for (law, response) in system.laws.iter().zip(&mut forces.responses) {
             let value = system.arguments(law, &sampled.at);
             let mut rate = [0.0; MAX_ARGUMENTS];
@@ -317,9 +323,9 @@ impl Workspace {
         self.sum_forces(system, t, None);
     }
 
-    /// Sums forces but those of the rows at the sampled state, which has its evaluation.
+    /// Sums forces but those of the rows at the sampled state, which has its evaluation, where no tangent is asked for.
     pub(super) fn sum_applied_anew(&mut self, system: &System, t: f64) {
-        self.respond(system, t);
+        self.respond_without_motion(system, t);
         self.sum_applied(system, t, None);
     }
 

@@ -222,12 +222,10 @@ impl Workspace {
             x: Vec::new(),
             v: Vec::new(),
         };
-        let steps = [&mut prediction.drift, &mut prediction.offset, &mut prediction.a_change, &mut prediction.lambda_change];
-        let unused = [d, phi_start, inertial, sizes, &mut turned.v, &mut turned.a, &mut turned.rows, &mut estimate.q, &mut estimate.v];
-        steps.into_iter().chain(unused).for_each(|numbers| *numbers = Vec::new());
-        if !forces.dissipative {
-            forces.motion = Vec::new();
-        }
+        let of_steps = [&mut prediction.drift, &mut prediction.offset, &mut prediction.a_change, &mut prediction.lambda_change];
+        let of_tangents = [&mut forces.motion, &mut turned.v, &mut turned.a, &mut turned.rows];
+        let others = [d, phi_start, inertial, sizes, &mut estimate.q, &mut estimate.v];
+        of_steps.into_iter().chain(of_tangents).chain(others).for_each(|numbers| *numbers = Vec::new());
     }
 
     /// Puts the end position of the free nodes where the increment `d` has it, and where a stage looks at them the sampled
