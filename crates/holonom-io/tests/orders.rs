@@ -87,7 +87,7 @@ fn run(model: &Model, choice: &Choice, steps: u32, end: f64) -> Option<Samples> 
         if simulation.steps() > 0 && simulation.steps().is_multiple_of(u64::from(steps / SAMPLES)) {
             samples[0].extend_from_slice(&simulation.state().x[..n]);
             samples[1].extend_from_slice(&simulation.velocities()[..n]);
-            samples[2].extend_from_slice(&simulation.reactions().expect("they were asked for").force[..n]);
+            samples[2].extend_from_slice(&simulation.constraint_forces().expect("they were asked for")[..n]);
         }
         Verdict::GoOn
     });

@@ -23,7 +23,7 @@ fn error(choice: &Choice, step: f64) -> f64 {
     let mut simulation = Simulation::new(system.clone(), Method::resolve(choice).unwrap(), step).unwrap();
     assert_eq!(simulation.run(2.0, &mut |_: &Simulation| Verdict::GoOn), Status::Completed);
     simulation.find_reactions();
-    let found = &simulation.reactions().unwrap().force;
+    let found = simulation.constraint_forces().unwrap();
     found.iter().zip(forces()).map(|(found, force)| (found - force).abs()).fold(0.0, f64::max)
 }
 

@@ -151,12 +151,3 @@ impl LinearSystem for Newton {
         work.accelerates(system, forces).max(work.scaled(rows))
     }
 }
-
-impl Workspace {
-    /// Forces of the rows on all nodes, −Gᵀλ (D × nodes), N, at the evaluation of the end.
-    pub fn constraint_forces(&self, system: &System, force: &mut [f64]) {
-        force.fill(0.0);
-        system.slots.add_forces(system.dim, &self.lambda, &self.end.at.gradient, force);
-        force.iter_mut().for_each(|force| *force = -*force);
-    }
-}

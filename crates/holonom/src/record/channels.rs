@@ -354,11 +354,11 @@ impl Channels {
 
     /// Appends the columns of the multipliers, and of what the constraints exert on points.
     pub(super) fn multipliers(&self, simulation: &Simulation, row: &mut Vec<f64>) {
-        let Some(reactions) = simulation.reactions() else { return };
+        let (Some(reactions), Some(force)) = (simulation.reactions(), simulation.constraint_forces()) else { return };
         let dim = self.axes.len();
         row.extend_from_slice(&reactions.lambda);
         for node in self.told().points.iter().filter_map(node) {
-            row.extend_from_slice(&reactions.force[node.index() * dim..(node.index() + 1) * dim]);
+            row.extend_from_slice(&force[node.index() * dim..(node.index() + 1) * dim]);
         }
     }
 }

@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 use super::{Method, Simulation, State};
 use crate::formulation::{Newton, Sure, Twists, Workspace};
@@ -20,9 +21,6 @@ pub struct Reactions {
     /// Accelerations of all nodes (D × nodes), m/s².
     #[serde(with = "super::any_number")]
     pub a: Vec<f64>,
-    /// Forces of the constraints on the nodes, −Gᵀλ (D × nodes), N. Redundant rows leave λ undetermined, not these.
-    #[serde(with = "super::any_number")]
-    pub force: Vec<f64>,
 }
 
 /// The same mechanism as that of a system in which bodies share nodes, with nodes of its own for each body: what the shared ones stand
@@ -140,24 +138,27 @@ impl Elsewhere {
             Matrix::Twists(twists) => twists.show_reactions(sure.as_ref(), system, state.t, work),
             Matrix::Nodes(newton) => newton.show_reactions(sure.as_ref(), system, state.t, work),
         };
-        reactions.take(system, outcome == Ok(true), work);
+        reactions.take(outcome == Ok(true), work);
     }
 }
 
 impl Reactions {
     fn new(system: &System) -> Self {
         let (r, all) = (system.constraints(), system.nodes() * system.dim);
-        Self { lambda: vec![0.0; r], a: vec![0.0; all], force: vec![0.0; all] }
+        Self { lambda: vec![0.0; r], a: vec![0.0; all] }
     }
 
-    fn take(&mut self, system: &System, are_known: bool, work: &mut Workspace) {
+    fn take(&mut self, are_known: bool, work: &Workspace) {
         if !are_known {
-            work.lambda.fill(f64::NAN);
-            work.a.fill(f64::NAN);
+            return self.forget();
         }
         self.lambda.copy_from_slice(&work.lambda);
         self.a.copy_from_slice(&work.a);
-        work.constraint_forces(system, &mut self.force);
+    }
+
+    fn forget(&mut self) {
+        self.lambda.fill(f64::NAN);
+        self.a.fill(f64::NAN);
     }
 }
 
@@ -216,6 +217,17 @@ impl Simulation {
         self.reacting().0.in_world(self.reacting_x())
     }
 
+    /// Forces of the constraints on the nodes of the [reacting](Simulation::reacting_positions) system, −Gᵀλ (D × nodes), N, at the present state.
+    /// Redundant rows leave λ undetermined, not these. `None` unless they were asked for.
+    pub fn constraint_forces(&self) -> Option<Vec<f64>> {
+        let Reactions { lambda, a } = self.reactions.as_ref()?;
+        let (system, at) = self.reacting();
+        let mut force = vec![0.0; a.len()];
+        system.slots.add_forces(system.dim, lambda, &at.gradient, &mut force);
+        force.iter_mut().for_each(|force| *force = -*force);
+        Some(force)
+    }
+
     /// Force (3) and moment about a place (3) of some rows on some nodes, points or directions, at the present state, N
     /// and N·m. `None` unless forces of the constraints were asked for.
     pub fn wrench(&self, rows: Range<usize>, nodes: &[(NodeId, bool)], about: [f64; 3]) -> Option<([f64; 3], [f64; 3])> {
@@ -233,8 +245,7 @@ impl Simulation {
         }
         if reactions.lambda.len() != self.system.constraints() {
             // A resumed run of which nobody has said where its forces are found.
-            [&mut reactions.lambda, &mut reactions.a, &mut reactions.force].into_iter().for_each(|numbers| numbers.fill(f64::NAN));
-            return;
+            return reactions.forget();
         }
         let (system, newton, work, state) = (&*self.system, &mut self.newton, &mut self.work, &self.state);
         let counters = (newton.iterations, newton.factorizations);
@@ -257,7 +268,7 @@ impl Simulation {
                 newton.show_reactions(self.sure.as_ref().and_then(Option::as_ref), system, state.t, work)
             }
         };
-        reactions.take(system, outcome == Ok(true), work);
+        reactions.take(outcome == Ok(true), work);
         // The next step is the same as if nobody had looked.
         self.hints.restore(&mut self.newton, &mut *self.integrator);
         (self.newton.iterations, self.newton.factorizations) = counters;
@@ -275,20 +286,23 @@ pub(crate) fn wrench(
     about: [f64; 3],
     x: &[f64],
 ) -> ([f64; 3], [f64; 3]) {
-    let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+    let (dim, mut pushes) = (system.dim, SmallVec::<[[f64; 3]; 4]>::from_elem([0.0; 3], nodes.len()));
     for row in rows {
         for s in system.slots.rows[row].clone() {
-            let Some(&(node, is_point)) = nodes.iter().find(|(node, _)| node.index() == system.slots.nodes[s] as usize) else { continue };
-            let (mut push, mut arm) = ([0.0; 3], [0.0; 3]);
-            for c in 0..system.dim {
-                push[c] = -lambda[row] * gradient[s * system.dim + c];
-                arm[c] = x[node.index() * system.dim + c] - if is_point { about[c] } else { 0.0 };
-            }
-            for c in 0..3 {
-                let (i, j) = ((c + 1) % 3, (c + 2) % 3);
-                force[c] += if is_point { push[c] } else { 0.0 };
-                moment[c] += arm[i] * push[j] - arm[j] * push[i];
-            }
+            let of = system.slots.nodes[s] as usize;
+            let Some(own) = nodes.iter().position(|(node, _)| node.index() == of) else { continue };
+            let gradient = &gradient[s * dim..(s + 1) * dim];
+            pushes[own].iter_mut().zip(gradient).for_each(|(push, g)| *push -= lambda[row] * g);
+        }
+    }
+    let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+    for (&(node, is_point), push) in nodes.iter().zip(&pushes) {
+        let mut arm = [0.0; 3];
+        (0..dim).for_each(|c| arm[c] = x[node.index() * dim + c] - if is_point { about[c] } else { 0.0 });
+        for c in 0..3 {
+            let (i, j) = ((c + 1) % 3, (c + 2) % 3);
+            force[c] += if is_point { push[c] } else { 0.0 };
+            moment[c] += arm[i] * push[j] - arm[j] * push[i];
         }
     }
     (force, moment)
