@@ -123,35 +123,11 @@ impl Twists {
 
 impl LinearSystem for Twists {
     fn factor(&mut self, rho: f64, work: &Workspace) -> Result<f64, Failure> {
-        let dim = self.dim;
-        self.place(&work.end.x)?;
-        self.gather(&work.end.at.gradient);
+        match self.dim {
+            2 => self.write_in::<2>(work)?,
+            _ => self.write_in::<3>(work)?,
+        }
         let values = self.solver.values_mut();
-        values.fill(0.0);
-        let (mut masses, size) = (&self.masses[..], dim + turns(dim));
-        for (body, places) in self.bodies.iter().zip(self.places.chunks_exact(size * size)) {
-            let (mass, others) = masses.split_at(body.count.pow(2));
-            let block = body.inertia(dim, mass, &self.motions, &self.arms);
-            masses = others;
-            for (places, line) in places.chunks_exact(size).zip(&block) {
-                places.iter().zip(line).for_each(|(&place, number)| values[place as usize] += number);
-            }
-        }
-        for Lone { mass, places } in &self.lone {
-            for c in 0..dim {
-                values[places[c * dim + c] as usize] += mass.m;
-            }
-            if mass.s != 0.0 {
-                values[places[1] as usize] -= mass.s;
-                values[places[2] as usize] += mass.s;
-            }
-        }
-        for (touch, gradient) in self.touches.iter().zip(&self.gradients) {
-            for ([column, row], g) in touch.iter().zip(gradient) {
-                values[*column as usize] += g;
-                values[*row as usize] += g;
-            }
-        }
         let softness = &work.scales.softness;
         self.outer.iter().for_each(|outer| values[outer.diagonal as usize] -= softness[outer.row as usize] / rho);
         self.augmented.iter_mut().for_each(|row| row.add(values));
@@ -179,101 +155,126 @@ impl LinearSystem for Twists {
     }
 
     fn solve(&mut self, system: &System, work: &Workspace) -> Result<(), Failure> {
-        self.reduce(system, work);
-        self.augmented.iter().for_each(|row| row.pull(&mut self.reduced));
-        self.solver.solve(&mut self.reduced);
-        if !self.reduced.iter().all(|u| u.is_finite()) {
-            return Err(Failure::NotFinite);
+        match self.dim {
+            2 => self.solve_in::<2>(system, work),
+            _ => self.solve_in::<3>(system, work),
         }
-        self.expand();
-        Ok(())
     }
 
     fn accelerates(&mut self, _: &System, work: &Workspace) -> f64 {
         self.inertial.fill(0.0);
-        self.sum_wrenches();
+        match self.dim {
+            2 => self.sum_wrenches::<2>(),
+            _ => self.sum_wrenches::<3>(),
+        }
         let coordinates = self.reduced.iter().zip(&self.agility).fold(0.0, |m: f64, (number, agility)| m.max((number * agility).abs()));
         coordinates.max(work.scaled(&self.unknowns[self.motions.len() * self.dim..]))
     }
 }
 
 impl Twists {
-    /// Takes over the positions `x` of all nodes.
-    fn place(&mut self, x: &[f64]) -> Result<(), Failure> {
-        let dim = self.dim;
+    /// Writes the matrix without δ at the evaluation of the end.
+    fn write_in<const D: usize>(&mut self, work: &Workspace) -> Result<(), Failure> {
         for body in &mut self.bodies {
-            body.set_arms(dim, &self.motions, x, &mut self.arms);
-            body.reciprocal = body.products(dim, &self.arms).try_inverse().ok_or(Failure::Singular(Unknown::Node(body.node(1))))?;
+            body.set_arms::<D>(&self.motions, &work.end.x, &mut self.arms);
+            body.reciprocal = body.products::<D>(&self.arms).try_inverse().ok_or(Failure::Singular(Unknown::Node(body.node(1))))?;
+        }
+        self.gather::<D>(&work.end.at.gradient);
+        let values = self.solver.values_mut();
+        values.fill(0.0);
+        let (mut masses, size) = (&self.masses[..], D + turns(D));
+        for (body, places) in self.bodies.iter().zip(self.places.chunks_exact(size * size)) {
+            let (mass, others) = masses.split_at(body.count.pow(2));
+            let block = body.inertia::<D>(mass, &self.motions, &self.arms);
+            masses = others;
+            for (places, line) in places.chunks_exact(size).zip(&block) {
+                places.iter().zip(line).for_each(|(&place, number)| values[place as usize] += number);
+            }
+        }
+        for Lone { mass, places } in &self.lone {
+            for c in 0..D {
+                values[places[c * D + c] as usize] += mass.m;
+            }
+            if mass.s != 0.0 {
+                values[places[1] as usize] -= mass.s;
+                values[places[2] as usize] += mass.s;
+            }
+        }
+        for (touch, gradient) in self.touches.iter().zip(&self.gradients) {
+            for ([column, row], g) in touch.iter().zip(gradient) {
+                values[*column as usize] += g;
+                values[*row as usize] += g;
+            }
         }
         Ok(())
     }
 
     /// Takes over the gradients of the rows between bodies.
-    fn gather(&mut self, gradients: &[f64]) {
-        match self.dim {
-            2 => self.gather_in::<2>(gradients),
-            _ => self.gather_in::<3>(gradients),
-        }
-    }
-
-    fn gather_in<const D: usize>(&mut self, gradients: &[f64]) {
+    fn gather<const D: usize>(&mut self, gradients: &[f64]) {
         let (arms, gradients) = (self.arms.as_chunks::<D>().0, gradients.as_chunks::<D>().0);
         self.gradients.fill([0.0; 3]);
         for (&RowSlot { slot, node, .. }, touches) in self.slots.iter().zip(&self.touched) {
             let gradient = &gradients[slot as usize];
             if let Some(touch) = touches[0] {
-                self.gradients[touch as usize].iter_mut().zip(gradient).for_each(|(sum, g)| *sum += g);
+                add(&mut self.gradients[touch as usize], gradient);
             }
             if let Some(touch) = touches[1] {
-                let moment = turned(&arms[node as usize], gradient);
-                self.gradients[touch as usize].iter_mut().zip(&moment).for_each(|(sum, m)| *sum += m);
+                add(&mut self.gradients[touch as usize], &turned(&arms[node as usize], gradient));
             }
         }
     }
 
+    fn solve_in<const D: usize>(&mut self, system: &System, work: &Workspace) -> Result<(), Failure> {
+        self.reduce::<D>(system, work);
+        self.augmented.iter().for_each(|row| row.pull(&mut self.reduced));
+        self.solver.solve(&mut self.reduced);
+        if !self.reduced.iter().all(|u| u.is_finite()) {
+            return Err(Failure::NotFinite);
+        }
+        self.expand::<D>();
+        Ok(())
+    }
+
     /// Brings the right side in the unknowns to that of the matrix.
-    fn reduce(&mut self, system: &System, work: &Workspace) {
-        let (dim, coordinates) = (self.dim, self.motions.len() * self.dim);
+    fn reduce<const D: usize>(&mut self, system: &System, work: &Workspace) {
+        let coordinates = self.motions.len() * D;
         let rows = &mut self.unknowns[coordinates..];
-        self.bodies.iter().for_each(|body| body.keep_rigid(dim, &self.arms, rows, &mut self.inner));
-        system.mass.times(dim, &self.inner, &mut self.inertial);
-        self.sum_wrenches();
+        self.bodies.iter().for_each(|body| body.keep_rigid::<D>(&self.arms, rows, &mut self.inner));
+        system.mass.times(D, &self.inner, &mut self.inertial);
+        self.sum_wrenches::<D>();
         let rows = &mut self.unknowns[coordinates..];
-        add_along_rows(dim, &self.slots, -1.0, &work.end.at.gradient, &self.inner, rows);
+        add_along_rows(D, &self.slots, -1.0, &work.end.at.gradient, &self.inner, rows);
         self.outer.iter().for_each(|outer| self.reduced[outer.unknown as usize] = rows[outer.row as usize]);
     }
 
     /// Brings the forces in the unknowns, without what c takes of them, to those on bodies and lone nodes.
-    fn sum_wrenches(&mut self) {
-        let Self { dim, motions, arms, inertial, reduced, unknowns, .. } = self;
-        let dim = *dim;
+    fn sum_wrenches<const D: usize>(&mut self) {
+        let Self { motions, arms, inertial, reduced, unknowns, .. } = self;
+        let [arms, inertial, unknowns] = [&arms[..], &inertial[..], &unknowns[..]].map(|numbers| numbers.as_chunks::<D>().0);
         reduced.fill(0.0);
-        for (node, motion) in motions.iter().enumerate() {
-            let place = node * dim..(node + 1) * dim;
-            let mut force = [0.0; 3];
-            place.clone().enumerate().for_each(|(c, k)| force[c] = unknowns[k] - inertial[k]);
+        for (((motion, arm), force), inertial) in motions.iter().zip(arms).zip(unknowns).zip(inertial) {
+            let force: [f64; D] = std::array::from_fn(|c| force[c] - inertial[c]);
             if let Some(first) = motion.moves {
-                (0..dim).for_each(|c| reduced[first as usize + c] += force[c]);
+                add(&mut reduced[first as usize..][..D], &force);
             }
             if let Some(first) = motion.turns {
-                let moment = turned(&arms[place], &force[..dim]);
-                reduced[first as usize..].iter_mut().zip(&moment[..turns(dim)]).for_each(|(sum, m)| *sum += m);
+                add(&mut reduced[first as usize..][..turns(D)], &turned(arm, &force));
             }
         }
     }
 
     /// Brings the solution of the matrix back to the unknowns.
-    fn expand(&mut self) {
-        let dim = self.dim;
+    fn expand<const D: usize>(&mut self) {
         let Self { motions, outer, arms, inner, reduced, unknowns, .. } = self;
-        let (forces, rows) = unknowns.split_at_mut(motions.len() * dim);
-        for (node, motion) in motions.iter().enumerate() {
-            for c in 0..dim {
-                forces[node * dim + c] = inner[node * dim + c] + motion.moves.map_or(0.0, |first| reduced[first as usize + c]);
+        let (forces, rows) = unknowns.split_at_mut(motions.len() * D);
+        let [arms, inner] = [&arms[..], &inner[..]].map(|numbers| numbers.as_chunks::<D>().0);
+        for (((motion, arm), inner), force) in motions.iter().zip(arms).zip(inner).zip(forces.as_chunks_mut::<D>().0) {
+            *force = *inner;
+            if let Some(first) = motion.moves {
+                add(force, &reduced[first as usize..][..D]);
             }
             if let Some(first) = motion.turns {
-                let rate = carried(&reduced[first as usize..][..turns(dim)], &arms[node * dim..(node + 1) * dim]);
-                (0..dim).for_each(|c| forces[node * dim + c] += rate[c]);
+                add(force, &carried(&reduced[first as usize..][..turns(D)], arm));
             }
         }
         rows.fill(0.0);
@@ -287,42 +288,52 @@ impl Body {
     }
 
     /// Sets the arms of its nodes at the positions `x` of all nodes.
-    fn set_arms(&self, dim: usize, motions: &[Motion], x: &[f64], arms: &mut [f64]) {
-        let first = self.node(0) * dim;
+    fn set_arms<const D: usize>(&self, motions: &[Motion], x: &[f64], arms: &mut [f64]) {
+        let (x, arms) = (x.as_chunks::<D>().0, arms.as_chunks_mut::<D>().0);
         for k in 1..self.count {
             let node = self.node(k);
-            let from = if motions[node].moves.is_some() { &x[first..first + dim] } else { &[0.0; 3][..dim] };
-            (0..dim).for_each(|c| arms[node * dim + c] = x[node * dim + c] - from[c]);
+            let from = if motions[node].moves.is_some() { x[self.node(0)] } else { [0.0; D] };
+            arms[node] = std::array::from_fn(|c| x[node][c] - from[c]);
         }
     }
 
+    /// The inertia at the positions `x` of all nodes, of which it sets its arms.
+    fn inertia_at<const D: usize>(&self, mass: &[MassBlock], motions: &[Motion], x: &[f64], arms: &mut [f64]) -> [[f64; 6]; 6] {
+        self.set_arms::<D>(motions, x, arms);
+        self.inertia::<D>(mass, motions, arms)
+    }
+
     /// BᵀM B of the blocks of its mass matrix, by the velocity of the first point, then the angular velocity.
-    fn inertia(&self, dim: usize, mass: &[MassBlock], motions: &[Motion], arms: &[f64]) -> [[f64; 6]; 6] {
-        let arm = |k: usize| self.arm(k, dim, arms);
+    fn inertia<const D: usize>(&self, mass: &[MassBlock], motions: &[Motion], arms: &[f64]) -> [[f64; 6]; 6] {
+        let arms = self.arms::<D>(arms);
+        let moves: [bool; 4] = std::array::from_fn(|k| k < self.count && motions[self.node(k)].moves.is_some());
         // Mass, first moments and second ones.
         let (mut all, mut first, mut second) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
-        let count = self.count;
-        for (a, row) in mass.chunks_exact(count).enumerate() {
-            let (mut carried, moves) = ([0.0; 3], motions[self.node(a)].moves.is_some());
-            for (b, block) in row.iter().enumerate() {
-                (0..dim).for_each(|c| carried[c] += block.m * arm(b)[c]);
-                if dim == 2 {
-                    carried[0] -= block.s * arm(b)[1];
-                    carried[1] += block.s * arm(b)[0];
+        for (a, row) in mass.chunks_exact(self.count).enumerate() {
+            let mut carried = [0.0; D];
+            for ((block, arm), moves_too) in row.iter().zip(&arms).zip(&moves) {
+                for c in 0..D {
+                    carried[c] += block.m * arm[c];
                 }
-                all += if moves && motions[self.node(b)].moves.is_some() { block.m } else { 0.0 };
+                if D == 2 {
+                    carried[0] -= block.s * arm[1];
+                    carried[1] += block.s * arm[0];
+                }
+                all += if moves[a] && *moves_too { block.m } else { 0.0 };
             }
-            if moves {
-                (0..dim).for_each(|c| first[c] += carried[c]);
+            if moves[a] {
+                add(&mut first, &carried);
             }
-            for (line, arm) in second.iter_mut().zip(arm(a)) {
-                (0..dim).for_each(|d| line[d] += arm * carried[d]);
+            for (line, arm) in second.iter_mut().zip(&arms[a]) {
+                for d in 0..D {
+                    line[d] += arm * carried[d];
+                }
             }
         }
         let trace = second[0][0] + second[1][1] + second[2][2];
         let mut matrix = [[0.0; 6]; 6];
-        (0..dim).for_each(|c| matrix[c][c] = all);
-        if dim == 2 {
+        (0..D).for_each(|c| matrix[c][c] = all);
+        if D == 2 {
             [matrix[0][2], matrix[1][2]] = [-first[1], first[0]];
             matrix[2] = [-first[1], first[0], trace, 0.0, 0.0, 0.0];
             return matrix;
@@ -334,24 +345,24 @@ impl Body {
             (matrix[j][3 + i], matrix[3 + i][j]) = (-first[c], -first[c]);
             for d in 0..3 {
                 // A rod does not turn about itself as far as its nodes show it.
-                matrix[3 + c][3 + d] = if c == d { trace } else { 0.0 } - if count > 2 { second[c][d] } else { 0.0 };
+                matrix[3 + c][3 + d] = if c == d { trace } else { 0.0 } - if self.count > 2 { second[c][d] } else { 0.0 };
             }
         }
         matrix
     }
 
-    /// The arm of a node of it, and its edges, the arms of all but the first.
-    fn arm<'a>(&self, k: usize, dim: usize, arms: &'a [f64]) -> &'a [f64] {
-        &arms[self.node(k) * dim..(self.node(k) + 1) * dim]
+    /// The arms of its nodes, of which all but the first are its edges; zeros where it has fewer.
+    fn arms<const D: usize>(&self, arms: &[f64]) -> [[f64; D]; 4] {
+        let arms = arms.as_chunks::<D>().0;
+        std::array::from_fn(|k| if k < self.count { arms[self.node(k)] } else { [0.0; D] })
     }
 
     /// Products of its edges, and 1 where there are fewer than three.
-    fn products(&self, dim: usize, arms: &[f64]) -> Matrix3<f64> {
-        let mut products = Matrix3::identity();
-        for i in 1..self.count {
-            for j in 1..self.count {
-                let pairs = self.arm(i, dim, arms).iter().zip(self.arm(j, dim, arms));
-                products[(i - 1, j - 1)] = pairs.map(|(a, b)| a * b).sum();
+    fn products<const D: usize>(&self, arms: &[f64]) -> Matrix3<f64> {
+        let ([_, edges @ ..], mut products) = (self.arms::<D>(arms), Matrix3::identity());
+        for i in 0..self.count - 1 {
+            for j in 0..self.count - 1 {
+                products[(i, j)] = edges[i].iter().zip(&edges[j]).map(|(a, b)| a * b).sum();
             }
         }
         products
@@ -359,32 +370,43 @@ impl Body {
 
     /// The motion of its edges that changes their products by what stands at the rows which keep it rigid: half of that along the edges that are
     /// reciprocal to them.
-    fn keep_rigid(&self, dim: usize, arms: &[f64], rows: &[f64], motion: &mut [f64]) {
-        let edges = self.count - 1;
+    fn keep_rigid<const D: usize>(&self, arms: &[f64], rows: &[f64], motion: &mut [f64]) {
+        let ([_, edges @ ..], motion) = (self.arms::<D>(arms), motion.as_chunks_mut::<D>().0);
         let (mut row, mut change) = (self.inner as usize, Matrix3::zeros());
-        for i in 0..edges {
-            for j in i..edges {
+        for i in 0..self.count - 1 {
+            for j in i..self.count - 1 {
                 let asked = if i == j { rows[row] } else { 0.5 * rows[row] };
                 (change[(i, j)], change[(j, i)]) = (asked, asked);
                 row += 1;
             }
         }
         let shares = change * self.reciprocal;
-        for i in 0..edges {
-            let out = self.node(i + 1) * dim;
-            for c in 0..dim {
-                motion[out + c] = (0..edges).map(|j| shares[(i, j)] * self.arm(j + 1, dim, arms)[c]).sum();
+        for i in 0..self.count - 1 {
+            let mut sum = [0.0; D];
+            for (j, edge) in edges.iter().enumerate() {
+                for c in 0..D {
+                    sum[c] += shares[(i, j)] * edge[c];
+                }
             }
+            motion[self.node(i + 1)] = sum;
         }
     }
 }
 
+/// Adds numbers to the first of others.
+#[inline]
+fn add(sum: &mut [f64], numbers: &[f64]) {
+    sum.iter_mut().zip(numbers).for_each(|(sum, number)| *sum += number);
+}
+
 /// Numbers of an angular velocity.
+#[inline]
 fn turns(dim: usize) -> usize {
     if dim == 2 { 1 } else { 3 }
 }
 
 /// The moment of a force with an arm; in the plane its first component.
+#[inline]
 fn turned(arm: &[f64], force: &[f64]) -> [f64; 3] {
     match (arm, force) {
         (&[x, y], &[fx, fy]) => [x * fy - y * fx, 0.0, 0.0],
@@ -394,6 +416,7 @@ fn turned(arm: &[f64], force: &[f64]) -> [f64; 3] {
 }
 
 /// The velocity of an arm that turns.
+#[inline]
 fn carried(rate: &[f64], arm: &[f64]) -> [f64; 3] {
     match (rate, arm) {
         (&[w], &[x, y]) => [-w * y, w * x, 0.0],

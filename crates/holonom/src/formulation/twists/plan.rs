@@ -257,10 +257,12 @@ impl Mobility {
         (0..system.free).filter(|&node| motions[node].moves.is_some()).for_each(|node| is_light[carrier_of[node]] |= is_held(node));
         let (mut inverses, mut inertias, mut others) = (Vec::new(), Vec::new(), masses);
         for (body, is_light) in bodies.iter().zip(&mut is_light) {
-            body.set_arms(dim, motions, x, &mut arms);
             let (mass, rest) = others.split_at(body.count.pow(2));
             others = rest;
-            let block = body.inertia(dim, mass, motions, &arms);
+            let block = match dim {
+                2 => body.inertia_at::<2>(mass, motions, x, &mut arms),
+                _ => body.inertia_at::<3>(mass, motions, x, &mut arms),
+            };
             let size = dim + turns(dim);
             let matrix = Matrix6::from_fn(|i, j| if i.max(j) < size { block[i][j] } else { f64::from(u8::from(i == j)) });
             let inverse = matrix.try_inverse();
