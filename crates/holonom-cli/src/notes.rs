@@ -56,35 +56,43 @@ pub fn open_columns(free: &Undetermined<'_>, channels: &Channels, world: &[f64],
 /// Measures that have no value in some rows.
 pub fn unknown_measures(model: &Model, recording: &Recording) -> Vec<String> {
     let rows = recording.rows();
-    let count = |name: &String| recording.column(name).map_or(0, |values| values.iter().filter(|value| !value.is_finite()).count());
-    let of_measures = model.channels.measures.iter().map(|measure| (&measure.name, count(&measure.name)));
-    let without = of_measures.filter(|(_, count)| *count > 0);
-    without
-        .map(|(name, count)| {
-            format!("the measure `{name}` has no finite value in {count} of {rows} rows: a formula is outside its domain there")
-        })
-        .collect()
+    let unforced = unforced_rows(model, recording);
+    let noted = |name: &String| {
+        let unknown: Vec<usize> =
+            recording.column(name)?.iter().enumerate().filter(|(_, value)| !value.is_finite()).map(|(row, _)| row).collect();
+        let first = unknown.first()?;
+        let why = if unforced.contains(first) {
+            "what it reads has none in the first of them, as no forces of joints and no accelerations are known there"
+        } else {
+            "a formula is outside its domain there"
+        };
+        Some(format!("the measure `{name}` has no finite value in {} of {rows} rows: {why}", unknown.len()))
+    };
+    model.channels.measures.iter().filter_map(|measure| noted(&measure.name)).collect()
+}
+
+/// Rows without forces of joints and drives, but for those in which other forces have no value, either, which is why.
+fn unforced_rows(model: &Model, recording: &Recording) -> Vec<usize> {
+    let told = model.channels.told();
+    let of_joints = told.joints.first().map(|joint| format!("{}.f{}", joint.name, &model.axes[..1]));
+    let of_drives = told.efforts.first().map(|effort| format!("{}.effort", effort.name));
+    let name = of_joints.or(of_drives).or(told.rods.first().map(|rod| format!("{}.force", rod.name)));
+    let Some(column) = name.and_then(|name| recording.column(&name)) else { return Vec::new() };
+    let names = model.channels.forces.iter().flat_map(|force| force.acts(model.axes)).flatten();
+    let forces: Vec<&[f64]> = names.filter_map(|name| recording.column(&name)).collect();
+    let lacks_force = |row: usize| forces.iter().any(|values| values[row].is_nan());
+    column.iter().enumerate().filter(|(row, force)| force.is_nan() && !lacks_force(*row)).map(|(row, _)| row).collect()
 }
 
 /// That rows have no forces of joints, as the position is singular there.
 pub fn rows_without_forces(model: &Model, recording: &Recording) -> Option<String> {
-    let told = model.channels.told();
-    let of_joints = told.joints.first().map(|joint| format!("{}.f{}", joint.name, &model.axes[..1]));
-    let of_drives = told.efforts.first().map(|effort| format!("{}.effort", effort.name));
-    let name = of_joints.or(of_drives).or(told.rods.first().map(|rod| format!("{}.force", rod.name)))?;
-    let times = recording.column("t")?;
-    // Where a force has no value, that is why.
-    let names = model.channels.forces.iter().flat_map(|force| force.acts(model.axes)).flatten();
-    let forces: Vec<&[f64]> = names.filter_map(|name| recording.column(&name)).collect();
-    let lacks_force = |row: usize| forces.iter().any(|values| values[row].is_nan());
-    let unknown = recording.column(&name)?.iter().enumerate().filter(|(row, force)| force.is_nan() && !lacks_force(*row));
-    let times: Vec<f64> = unknown.map(|(row, _)| times[row]).collect();
-    let first = times.first()?;
-    let rows = if times.len() == 1 { "one row has".into() } else { format!("{} rows have", times.len()) };
-    (times.len() < recording.rows()).then(|| {
+    let unforced = unforced_rows(model, recording);
+    let first = recording.column("t")?[*unforced.first()?];
+    let rows = if unforced.len() == 1 { "one row has".into() } else { format!("{} rows have", unforced.len()) };
+    (unforced.len() < recording.rows()).then(|| {
         format!(
-            "{rows} no accelerations and no forces of joints and drives, first at {} s: at a singular position none keep all constraints",
-            short(*first)
+            "{rows} no accelerations and no forces of joints and drives, first at {} s: at a singular position they do not follow from places and velocities",
+            short(first)
         )
     })
 }

@@ -466,3 +466,29 @@ fn events_are_told_by_their_names() {
     let beside = prints(&folder, "compare swing.toml --variant simulation.step=0.02 --no-report", 0);
     assert!(beside.contains("ended at 9.9 s by the event `over`"), "{beside}");
 }
+
+#[test]
+fn a_row_at_a_dead_centre_has_no_forces_and_says_so() {
+    let folder = folder();
+    // A ram goes to where both links stretch at 1 s, and back.
+    let model = "plane = \"xz\"\n[parameters]\nc = \"cos(10*deg)\"\ns = \"sin(10*deg)\"\n\
+                 [body.upper]\nmass = 20\nshape = { rod = 0.4 }\nposition = [\"0.2*s\", \"-0.2*c\"]\norientation = { angle = \"10*deg - pi/2\" }\n\
+                 [body.lower]\nmass = 20\nshape = { rod = 0.4 }\nposition = [\"0.2*s\", \"-0.6*c\"]\norientation = { angle = \"-10*deg - pi/2\" }\n\
+                 [body.ram]\nmass = 150\ninertia = 4\nposition = [0, \"-0.8*c\"]\n\
+                 [joint.head]\ntype = \"revolute\"\nbetween = [\"ground\", \"upper\"]\nat = [0, 0]\n\
+                 [joint.knee]\ntype = \"revolute\"\nbetween = [\"upper\", \"lower\"]\nat = [\"0.4*s\", \"-0.4*c\"]\n\
+                 [joint.wrist]\ntype = \"revolute\"\nbetween = [\"lower\", \"ram\"]\nat = \"ram\"\n\
+                 [joint.guide]\ntype = \"prismatic\"\nbetween = [\"ground\", \"ram\"]\naxis = [0, -1]\n\
+                 [drive.screw]\ntype = \"displacement\"\njoint = \"guide\"\nprofile = \"0.4*(1 - c)*(1 - cos(pi*t))\"\n\
+                 [force.work]\ntype = \"effort\"\njoint = \"guide\"\neffort = -1e6\n\
+                 [measure.root]\nvalue = \"sqrt(upper.z + 0.15)\"\n[measure.pin]\nvalue = \"wrist.fz\"\n";
+    fs::write(folder.path().join("press.toml"), model).unwrap();
+    let notes = on_one_line(&text(&holonom(&folder, "run press.toml --method radau --step 0.01 --end 2 --no-report --out a").stderr));
+    for note in [
+        "note: one row has no accelerations and no forces of joints and drives, first at 1 s: at a singular position they do not follow",
+        "note: the measure `pin` has no finite value in 1 of 201 rows: what it reads has none in the first of them",
+        "note: the measure `root` has no finite value in 201 of 201 rows: a formula is outside its domain there",
+    ] {
+        assert!(notes.contains(note), "{note}\n{notes}");
+    }
+}
