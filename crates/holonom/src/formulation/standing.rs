@@ -36,8 +36,8 @@ pub enum Sure {
 pub struct Shares {
     /// What each must add to be far from redundant, over what it would add alone.
     least: Vec<f64>,
-    /// Whether rows changed places where that was found. Pivots then tell of rows together: where they become dependent, one of them becomes nothing.
-    has_exchanged: bool,
+    /// Where rows changed places when that was found, all pivots: which of them becomes nothing where rows become dependent is open then.
+    pivots: Vec<f64>,
 }
 
 impl Sure {
@@ -48,7 +48,8 @@ impl Sure {
         let least = (SURER * independent(system.coordinates())).max(ROUND_OFF);
         if shares.iter().all(|share| *share > least) {
             let least = shares.iter().map(|share| (SURER * independent(1)).min(AS_AT_START * share)).collect();
-            return Some(Self::Independent(Shares { least, has_exchanged: matrix.solver().has_exchanged() }));
+            let pivots = if matrix.solver().has_exchanged() { matrix.solver().pivots().collect() } else { Vec::new() };
+            return Some(Self::Independent(Shares { least, pivots }));
         }
         matrix.factor(RHO, work).ok()?;
         let is_clear = !matrix.solver().has_exchanged() && matrix.shares(RHO, work).all(|share| !(REDUNDANT..CLEAR).contains(&share));
@@ -61,12 +62,12 @@ pub(super) fn standing(at_start: &Shares, matrix: &mut impl LinearSystem, work: 
     if matrix.factor(SPARING, work).is_err() {
         return Standing::Unknown;
     }
-    let has_exchanged = matrix.solver().has_exchanged();
     let worst = matrix.shares(SPARING, work).zip(&at_start.least).map(|(share, least)| share / least).fold(f64::INFINITY, f64::min);
+    let (exchanges, before) = (matrix.solver().has_exchanged(), &at_start.pivots);
+    let are_as_at_start = || matrix.solver().pivots().zip(before).all(|(pivot, before)| pivot >= AS_AT_START * before);
     match worst {
-        _ if has_exchanged && !at_start.has_exchanged => Standing::Unknown,
-        _ if worst >= 1.0 => Standing::Sure,
-        _ if has_exchanged => Standing::Unknown,
+        _ if worst >= 1.0 && (!exchanges || (!before.is_empty() && are_as_at_start())) => Standing::Sure,
+        _ if exchanges || !before.is_empty() => Standing::Unknown,
         _ if worst >= ADDS_NOTHING => Standing::Near,
         _ => Standing::Singular,
     }

@@ -129,6 +129,11 @@ impl Solver {
         self.lu.pivot(row).0
     }
 
+    /// Sizes of all pivots, in an order of their own.
+    pub fn pivots(&self) -> impl Iterator<Item = f64> {
+        self.lu.pivots()
+    }
+
     /// Whether the pivot of a row of the matrix was dropped.
     pub fn is_dropped(&self, row: usize) -> bool {
         self.lu.pivot(row).1

@@ -126,6 +126,11 @@ impl Multifrontal {
         self.numbers.exchanged.contains(&true)
     }
 
+    /// Sizes of all pivots in the order of elimination, with those that fill up blocks.
+    pub(super) fn pivots(&self) -> impl Iterator<Item = f64> {
+        self.numbers.reciprocal.as_flattened().iter().map(|reciprocal| 1.0 / reciprocal.abs())
+    }
+
     /// Size of the pivot met at a row of the matrix, and whether it was dropped.
     pub(super) fn pivot(&self, row: usize) -> (f64, bool) {
         let size = 1.0 / self.numbers.reciprocal.as_flattened()[self.plan.place[row] as usize].abs();
