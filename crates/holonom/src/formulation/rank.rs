@@ -109,23 +109,24 @@ impl Rank {
             self.weak.clear();
             return;
         }
+        let share = |row: usize| (kkt.solver.pivot(kkt.multiplier(row, 0)) - delta[row]) / scales.softness[row];
         let mut redundant = 0;
         self.weakest = 1.0;
-        let (before, weak) = (std::mem::take(&mut self.weak), WEAK * self.rounded);
         for (row, regular) in self.regular.iter_mut().enumerate() {
-            let softness = scales.softness[row];
-            let share = (kkt.solver.pivot(kkt.multiplier(row, 0)) - delta[row]) / softness;
-            let is_spared = delta[row] < 0.5 * softness / RHO;
-            let stays_weak = is_spared && share < weak && before.binary_search(&row).is_ok();
-            *regular = stays_weak || share > if is_spared { self.least } else { REDUNDANT };
+            let share = share(row);
+            let is_spared = delta[row] < 0.5 * scales.softness[row] / RHO;
+            *regular = share > if is_spared { self.least } else { REDUNDANT } || (is_spared && self.weak.binary_search(&row).is_ok());
             if *regular {
-                self.weakest = self.weakest.min(share.max(self.rounded));
-                if share < weak {
-                    self.weak.push(row);
-                }
+                self.weakest = self.weakest.min(share);
             } else {
                 redundant += 1;
             }
+        }
+        self.weak.clear();
+        if self.weakest < WEAK * self.rounded {
+            let weak = (0..self.regular.len()).filter(|&row| self.regular[row] && share(row) < WEAK * self.rounded);
+            self.weak.extend(weak);
+            self.weakest = self.weakest.max(self.rounded);
         }
         self.changes = self.redundant.replace(redundant).is_some_and(|before| before != redundant);
         if self.changes {
