@@ -65,11 +65,14 @@ pub(super) fn standing(at_start: &Shares, matrix: &mut impl LinearSystem, work: 
     let worst = matrix.shares(SPARING, work).zip(&at_start.least).map(|(share, least)| share / least).fold(f64::INFINITY, f64::min);
     let (exchanges, before) = (matrix.solver().has_exchanged(), &at_start.pivots);
     let are_as_at_start = || matrix.solver().pivots().zip(before).all(|(pivot, before)| pivot >= AS_AT_START * before);
-    match worst {
-        _ if worst >= 1.0 && (!exchanges || (!before.is_empty() && are_as_at_start())) => Standing::Sure,
-        _ if exchanges || !before.is_empty() => Standing::Unknown,
-        _ if worst >= ADDS_NOTHING => Standing::Near,
-        _ => Standing::Singular,
+    if worst >= 1.0 && (!exchanges || (!before.is_empty() && are_as_at_start())) {
+        Standing::Sure
+    } else if exchanges || !before.is_empty() {
+        Standing::Unknown
+    } else if worst >= ADDS_NOTHING {
+        Standing::Near
+    } else {
+        Standing::Singular
     }
 }
 
