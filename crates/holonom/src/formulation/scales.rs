@@ -44,6 +44,8 @@ pub struct Scales {
     pub has_light: Vec<bool>,
     /// Whether any has.
     pub are_light: bool,
+    /// Whether a light node is a point: it moves by itself, where a direction of a slender rod goes where rows hold it.
+    pub are_points_light: bool,
     /// Size of each row of G M⁻¹ Gᵀ with the masses of `held` (r), 1/kg in the row's units.
     pub softness: Vec<f64>,
     /// Length of each row's gradient (r), 1 in the row's units over m.
@@ -74,6 +76,7 @@ impl Scales {
             massless: (0..free).map(|node| if own[node] <= LEAST_SHARE * around[node] { around[node] } else { 0.0 }).collect(),
             has_light: vec![false; rows],
             are_light: false,
+            are_points_light: (0..free).any(|node| system.is_point[node] && is_light(node)),
             softness: vec![0.0; rows],
             gradient: vec![0.0; rows],
             reach: vec![0.0; rows],

@@ -294,9 +294,9 @@ impl Workspace {
         }
     }
 
-    /// Whether rows are all that bends, each with constant second derivatives, and no part is light.
+    /// Whether rows are all that bends, each with constant second derivatives, and no point is light.
     pub(super) fn are_rows_quadratic(&self) -> bool {
-        self.only_gradients && !self.scales.are_light
+        self.only_gradients && !self.scales.are_points_light
     }
 
     /// The tangent at the multipliers that are expected.
