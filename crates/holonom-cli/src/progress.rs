@@ -24,6 +24,7 @@ pub struct Watched<'a, 'f> {
     /// What was put right before the start, in words.
     corrections: Vec<String>,
     bar: ProgressBar,
+    is_shown: bool,
     step: f64,
     end: f64,
     next_shown: Instant,
@@ -35,7 +36,8 @@ impl<'a, 'f> Watched<'a, 'f> {
     pub fn new(recorder: Recorder<'a>, step: f64, end: f64, quiet: bool, interrupted: Arc<AtomicBool>) -> Self {
         let bar = bar(1000, "{bar:30} {percent:>3} %  {eta} left  {msg}", quiet);
         let next_shown = Instant::now() + SHOWN;
-        Self { recorder, before_end: None, keeper: None, corrections: Vec::new(), bar, step, end, next_shown, interrupted }
+        let is_shown = !bar.is_hidden();
+        Self { recorder, before_end: None, keeper: None, corrections: Vec::new(), bar, is_shown, step, end, next_shown, interrupted }
     }
 
     /// The same run, saved while it goes on, with what was put right before its start.
@@ -74,7 +76,7 @@ impl Observer for Watched<'_, '_> {
                 self.before_end = Some(point);
             }
         }
-        if !self.bar.is_hidden() && Instant::now() >= self.next_shown {
+        if self.is_shown && Instant::now() >= self.next_shown {
             self.show(simulation);
             self.next_shown = Instant::now() + SHOWN;
         }

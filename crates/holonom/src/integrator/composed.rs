@@ -55,8 +55,8 @@ struct Memory<'a> {
 
 impl<'a> Memory<'a> {
     fn of(system: &System, memory: &'a mut [f64]) -> Self {
-        let (acceleration, rest) = memory.split_at_mut(History::<MOTION>::SIZE * system.coordinates());
-        let (lambda, inner) = rest.split_at_mut(History::<MULTIPLIERS>::SIZE * system.constraints());
+        let (acceleration, rest) = memory.split_at_mut(History::<MOTION>::size(system.coordinates()));
+        let (lambda, inner) = rest.split_at_mut(History::<MULTIPLIERS>::size(system.constraints()));
         Self { acceleration: History::of(acceleration), lambda: History::of(lambda), inner }
     }
 }
@@ -76,7 +76,7 @@ impl Composed {
 impl Integrator for Composed {
     fn memory(&self, system: &System) -> usize {
         1 + self.shares.len()
-            * (History::<MOTION>::SIZE * system.coordinates() + History::<MULTIPLIERS>::SIZE * system.constraints() + self.memory.len())
+            * (History::<MOTION>::size(system.coordinates()) + History::<MULTIPLIERS>::size(system.constraints()) + self.memory.len())
     }
 
     fn step(&mut self, system: &System, start: f64, h: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {

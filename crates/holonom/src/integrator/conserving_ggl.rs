@@ -31,14 +31,14 @@ struct Memory<'a> {
 impl<'a> Memory<'a> {
     fn of(system: &System, memory: &'a mut [f64]) -> Self {
         let ([step, coupled], rest) = memory.split_first_chunk_mut().expect("there is room for a step");
-        let (gamma, slip) = rest.split_at_mut(History::<MULTIPLIERS>::SIZE * system.constraints());
+        let (gamma, slip) = rest.split_at_mut(History::<MULTIPLIERS>::size(system.constraints()));
         Self { step, coupled, gamma: History::of(gamma), slip: History::of(slip) }
     }
 }
 
 impl Integrator for ConservingGgl {
     fn memory(&self, system: &System) -> usize {
-        2 + History::<MULTIPLIERS>::SIZE * system.constraints() + History::<MOTION>::SIZE * system.coordinates()
+        2 + History::<MULTIPLIERS>::size(system.constraints()) + History::<MOTION>::size(system.coordinates())
     }
 
     fn step(&mut self, system: &System, start: f64, step: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {

@@ -17,7 +17,7 @@ mod table;
 use crate::formulation::{Failure, Newton, RowsAt, Sampling, Stage, Workspace};
 use crate::system::System;
 
-pub(crate) use history::{Differences, MOTION, MULTIPLIERS, extrapolate, is_same_length};
+pub(crate) use history::{Differences, MOTION, MULTIPLIERS, Squares, extrapolate, is_same_length};
 pub use table::{Entry, Estimate, INTEGRATORS};
 
 /// Time stepping from the start values in a workspace (position, velocity, acceleration, λ) to its end values.

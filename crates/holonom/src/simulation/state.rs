@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::formulation::Workspace;
-use crate::integrator::{Differences, MOTION, MULTIPLIERS, extrapolate, is_same_length};
+use crate::integrator::{Differences, MOTION, MULTIPLIERS, Squares, extrapolate, is_same_length};
 use crate::system::{Look, System};
 
 /// Numbers of a moment.
@@ -24,11 +24,15 @@ pub struct State {
     pub a_change: Vec<f64>,
     /// Backward differences of the accelerations up to the last step (D × nodes), m/s², zero in the same cases.
     pub a_differences: Vec<Differences<MOTION>>,
+    /// Their squares.
+    pub a_squares: Squares<MOTION>,
     /// Predicted change of the multipliers in the next step (r), zero in the same cases. Only a tangent is built with it: what
     /// redundant rows leave undetermined of the multipliers would run away.
     pub lambda_change: Vec<f64>,
     /// Backward differences of the multipliers up to the last step (r), zero in the same cases.
     pub lambda_differences: Vec<Differences<MULTIPLIERS>>,
+    /// Their squares, each times that of its row's reach.
+    pub lambda_squares: Squares<MULTIPLIERS>,
     /// Length of the last step, s.
     pub last_step: f64,
     /// What the integrator keeps from step to step.
@@ -53,8 +57,10 @@ impl State {
             lambda: work.lambda.clone(),
             a_change: vec![0.0; work.a.len()],
             a_differences: vec![Differences::default(); work.a.len()],
+            a_squares: Squares::default(),
             lambda_change: vec![0.0; work.lambda.len()],
             lambda_differences: vec![Differences::default(); work.lambda.len()],
+            lambda_squares: Squares::default(),
             last_step: 0.0,
             memory: work.memory.clone(),
             angle: work.start.at.functions.angle.clone(),
@@ -84,6 +90,7 @@ impl State {
     /// Takes over another state of the same run, without allocating.
     pub(super) fn copy_from(&mut self, other: &Self) {
         (self.t, self.last_step) = (other.t, other.last_step);
+        (self.a_squares, self.lambda_squares) = (other.a_squares, other.lambda_squares);
         self.a_differences.copy_from_slice(&other.a_differences);
         self.lambda_differences.copy_from_slice(&other.lambda_differences);
         let accelerations = [(&mut self.a, &other.a), (&mut self.a_change, &other.a_change)];
@@ -127,9 +134,9 @@ impl State {
     /// Remembers how accelerations, `a` at the end, and multipliers changed in a step, for the prediction of the next.
     pub(super) fn remember(&mut self, step: f64, a: &[f64], work: &Workspace) {
         let follows = is_same_length(step, self.last_step);
-        extrapolate(&mut self.a_differences, &mut self.a_change, follows, |k| a[k] - self.a[k], |_| 1.0);
+        extrapolate(&mut self.a_differences, &mut self.a_squares, &mut self.a_change, follows, |k| a[k] - self.a[k], |_| 1.0);
         let (lambda, reach) = (|k: usize| work.lambda[k] - self.lambda[k], |k: usize| work.scales.reach[k].powi(2));
-        extrapolate(&mut self.lambda_differences, &mut self.lambda_change, follows, lambda, reach);
+        extrapolate(&mut self.lambda_differences, &mut self.lambda_squares, &mut self.lambda_change, follows, lambda, reach);
         self.last_step = step;
     }
 

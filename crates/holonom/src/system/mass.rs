@@ -77,7 +77,6 @@ impl Mass {
     /// y = M x over the first `nodes` nodes of `y`, `x` over all nodes, `dim` numbers a node.
     pub fn times(&self, dim: usize, x: &[f64], y: &mut [f64]) {
         match dim {
-            2 if self.turns => self.times_with_turns(x, y),
             2 => self.times_in::<2>(x, y),
             _ => self.times_in::<3>(x, y),
         }
@@ -86,26 +85,44 @@ impl Mass {
     fn times_in<const D: usize>(&self, x: &[f64], y: &mut [f64]) {
         let (x, y) = (x.as_chunks::<D>().0, y.as_chunks_mut::<D>().0);
         for (y, range) in y.iter_mut().zip(self.start.windows(2)) {
-            let range = range[0] as usize..range[1] as usize;
-            let mut sum = [0.0; D];
-            for (&b, m) in self.column[range.clone()].iter().zip(&self.value[range]) {
-                let x = &x[b as usize];
-                (0..D).for_each(|c| sum[c] += m * x[c]);
-            }
-            *y = sum;
+            *y = self.row_times(range, x);
         }
     }
 
-    fn times_with_turns(&self, x: &[f64], y: &mut [f64]) {
-        for (a, y) in y.chunks_exact_mut(2).enumerate() {
-            let mut sum = [0.0; 2];
-            for k in self.start[a] as usize..self.start[a + 1] as usize {
-                let (b, m, s) = (self.column[k] as usize * 2, self.value[k], self.turn[k]);
-                sum[0] += m * x[b] - s * x[b + 1];
-                sum[1] += m * x[b + 1] + s * x[b];
-            }
-            y.copy_from_slice(&sum);
+    /// ½ xᵀ M y over all nodes.
+    pub fn half_product(&self, dim: usize, x: &[f64], y: &[f64]) -> f64 {
+        match dim {
+            2 => self.half_product_in::<2>(x, y),
+            _ => self.half_product_in::<3>(x, y),
         }
+    }
+
+    fn half_product_in<const D: usize>(&self, x: &[f64], y: &[f64]) -> f64 {
+        let (x, y) = (x.as_chunks::<D>().0, y.as_chunks::<D>().0);
+        let mut sum = 0.0;
+        for (x, range) in x.iter().zip(self.start.windows(2)) {
+            let product = self.row_times(range, y);
+            (0..D).for_each(|c| sum += x[c] * product[c]);
+        }
+        0.5 * sum
+    }
+
+    /// The blocks from one place to another times those of `x` that belong to them.
+    #[inline(always)]
+    fn row_times<const D: usize>(&self, range: &[u32], x: &[[f64; D]]) -> [f64; D] {
+        let range = range[0] as usize..range[1] as usize;
+        let mut sum = [0.0; D];
+        for (&b, m) in self.column[range.clone()].iter().zip(&self.value[range.clone()]) {
+            let x = &x[b as usize];
+            (0..D).for_each(|c| sum[c] += m * x[c]);
+        }
+        if self.turns {
+            for (&b, s) in self.column[range.clone()].iter().zip(&self.turn[range]) {
+                let x = &x[b as usize];
+                (sum[0], sum[1]) = (sum[0] - s * x[1], sum[1] + s * x[0]);
+            }
+        }
+        sum
     }
 
     /// The same with the sizes of all numbers: what y is a sum of.
@@ -117,17 +134,5 @@ impl Mass {
                 y.iter_mut().for_each(|y| *y += (block.m.abs() + block.s.abs()) * x);
             }
         }
-    }
-
-    /// ½ xᵀ M y over all nodes.
-    pub fn half_product(&self, dim: usize, x: &[f64], y: &[f64]) -> f64 {
-        let mut sum = 0.0;
-        for a in 0..self.nodes() {
-            let x = &x[a * dim..(a + 1) * dim];
-            for (b, block) in self.row(a) {
-                sum += block.product(x, &y[b * dim..(b + 1) * dim]);
-            }
-        }
-        0.5 * sum
     }
 }
