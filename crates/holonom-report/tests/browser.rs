@@ -261,6 +261,18 @@ fn a_cart_is_followed() {
     assert!(start[1] - start[3] < -30.0, "{seen:#}");
 }
 
+/// A track is part of the machine: it is there where its car, and any symbol on it, is too small to see.
+#[test]
+fn a_track_is_drawn() {
+    let [whole, short] = [("track", 1.0), ("no-track", 1e-3)].map(|(name, turns)| {
+        let seen = open(name, &[sample::bodies::track(turns)]);
+        bodies_move(&seen, "car", 1);
+        assert_eq!(seen["faults"], Value::Array(Vec::new()), "{seen:#}");
+        seen["start"]["picture"]["different"].as_u64().unwrap()
+    });
+    assert!(whole > short + 500, "{whole} pixels with the track and {short} without");
+}
+
 #[test]
 fn numbers_out_of_all_bounds() {
     loads(&open("blown-up", &[sample::blown_up()]), 3);

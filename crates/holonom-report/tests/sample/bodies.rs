@@ -88,6 +88,23 @@ pub fn cart() -> Sample {
     sample("Cart", scene, &poses)
 }
 
+/// A small car that goes once round a circle of 20 m on a track, of which so much is there, in turns.
+pub fn track(turns: f64) -> Sample {
+    let at = |angle: f64| [20.0 * angle.cos(), 20.0 * angle.sin(), 0.0];
+    let way = std::f64::consts::TAU * turns;
+    let mut rail = joint("rail", "point-on-curve", (None, Some("car")), at(0.0), None);
+    rail.curve = (0..=100).map(|k| at(way * f64::from(k) / 100.0)).collect();
+    let scene = Scene {
+        axes: "xyz".to_owned(),
+        gravity: [0.0, 0.0, -9.81],
+        bodies: vec![body("car", Some(SceneShape::Box { size: [0.2, 0.1, 0.1] }), &[])],
+        joints: vec![rail],
+        ..Scene::default()
+    };
+    let round = |t: f64| at(std::f64::consts::TAU * t / (STEP * f64::from(ROWS - 1)));
+    sample("Track", scene, &|t| vec![(round(t), turned([0.0, 0.0, 1.0], 0.0))])
+}
+
 /// Crank, connecting rod and slider without shapes, a wheel on a universal joint, and a symbol of every other kind.
 pub fn crank_in_space() -> Sample {
     let (crank, rod) = (0.3, 0.9);

@@ -183,7 +183,8 @@ function plotOptions(chart: Chart, width: number): uPlot.Options {
     width,
     height: HEIGHT,
     legend: { show: false },
-    padding: [8, 12, 0, 0],
+    // To the right there is half of the widest label of time, as 1.0·10⁻³.
+    padding: [8, 24, 0, 0],
     focus: { alpha: FADED },
     cursor: { sync: { key: "holonom" }, dataIdx: nearestRow, y: false, points: { size: 7 } },
     scales: {

@@ -4,7 +4,7 @@ import { BufferGeometry, Color, Float32BufferAttribute, Group, LineSegments, Mes
 import type { Motion } from "../motion";
 import type { Body, Shape } from "../payload";
 import type { Theme } from "../theme";
-import { addJoints } from "./joints";
+import { addCurves, addJoints } from "./joints";
 import { commonAxes, layers } from "./layers";
 import { Materials } from "./materials";
 import type { Look } from "./looks";
@@ -54,6 +54,7 @@ export class Bodies {
     this.axes = commonAxes(motion);
     scene.bodies.forEach((body, index) => this.addBody(body, index));
     if (scene.bodies.length > 0 && this.legible) this.symbols.push(...addJoints(motion, this.pen, this.units, this.materials, this.frames, this.group));
+    this.symbols.push(...addCurves(motion, size, this.materials, this.frames, this.group));
   }
 
   update(t: number): void {

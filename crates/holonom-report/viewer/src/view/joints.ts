@@ -1,10 +1,11 @@
 // Puts the symbols of the joints on the bodies they belong to, and what stands still into the world.
 
-import { CatmullRomCurve3, Group, Mesh, Quaternion, TubeGeometry, Vector3 } from "three";
+import { Box3, CatmullRomCurve3, Group, Mesh, TubeGeometry, Vector3 } from "three";
 import { carried, type Motion } from "../motion";
-import type { Anchor, Joint, Vec3, Wheels } from "../payload";
+import type { Anchor, Joint, Wheels } from "../payload";
 import type { Frame } from "./bodies";
 import { foot } from "./foot";
+import { diagonal } from "./frame";
 import type { Materials } from "./materials";
 import { outline } from "./outline";
 import { mark } from "./pick";
@@ -23,6 +24,26 @@ export function addJoints(motion: Motion, pen: Pen, units: Map<string, number>, 
   for (const pair of wheels) builder.addWheels(pair);
   for (const { name, at } of bushings) builder.addBushing(name, at);
   return builder.groups;
+}
+
+/** Thickness of a curve over the size of the picture, and most over the curve's own. */
+const CURVE = 0.0025;
+const CURVE_OF_ITSELF = 0.02;
+
+/** The curves that points follow, as that of a track: parts of the machine, drawn also where symbols would be too small to see. */
+export function addCurves(motion: Motion, size: number, materials: Materials, frames: Map<string, Frame>, world: Group): Group[] {
+  return motion.run.scene.joints.flatMap(({ name, kind, body, curve }) => {
+    const frame = body === null ? undefined : frames.get(body);
+    if (!curve || (body !== null && !frame)) return [];
+    const points = curve.map((place) => new Vector3(...place));
+    const radius = Math.min(CURVE * size, CURVE_OF_ITSELF * diagonal(new Box3().setFromPoints(points)));
+    const group = new Group();
+    group.add(new Mesh(new TubeGeometry(new CatmullRomCurve3(points), 2 * points.length, radius, 8), materials.part("joint", frame?.index)));
+    group.position.addScaledVector(motion.across, -(frame?.depth ?? 0));
+    mark(group, { sort: "joint", kind: `${kind} joint`, name });
+    (frame?.group ?? world).add(group);
+    return [group];
+  });
 }
 
 class JointBuilder {
@@ -52,7 +73,6 @@ class JointBuilder {
     if (radius !== undefined) this.addRail(sides, radius);
     // In a plane, what is held by the slider comes in front of it.
     if (!this.isSolid(other.body)) this.hang(sliderOf(joint.kind), other, undefined, this.motion.planar ? -2 * this.pen.unit : 0);
-    if (joint.curve) this.addCurve(here, joint.curve);
     if (joint.radius !== undefined && !this.isSolid(other.body)) {
       this.hang([{ geometry: disc(joint.radius / this.pen.unit), part: "body" }], other);
     }
@@ -84,15 +104,6 @@ class JointBuilder {
     if ("body" in at) this.hang(BUSHING, { body: at.body.body, at: new Vector3(...at.body.at), axis });
     if ("fixed" in at) this.hang(BUSHING, { body: null, at: new Vector3(...at.fixed), axis });
     for (const group of this.groups.slice(before)) mark(group, { sort: "line", kind: "bushing", name });
-  }
-
-  private addCurve(here: Side, places: Vec3[]): void {
-    const { unit } = this.pen;
-    // Around the middle of the joint, in units, as all pieces are.
-    const points = places.map((place) => new Vector3(...place).sub(here.at).divideScalar(unit));
-    const geometry = new TubeGeometry(new CatmullRomCurve3(points), 2 * points.length, 0.22, 8);
-    geometry.applyQuaternion(new Quaternion().setFromUnitVectors(here.axis, Z));
-    this.hang([{ geometry, part: "joint" }], here);
   }
 
   private addDrive({ kind, name, drives }: Joint, here: Side, hub: number): void {
