@@ -319,7 +319,7 @@ pub fn start_failure(error: StartError) -> Failure {
         }
         StartError::Crowded { .. } => "take away those that only repeat what others hold already, or spread them over several bodies",
         StartError::NoNumber => "begin from a state of numbers, or from the model's start",
-        StartError::NotFinite => "a formula may be outside its domain there, or a table outside its range",
+        StartError::NotFinite { .. } => "change the formula or the table, or begin elsewhere",
         StartError::Nonholonomic { .. } => "take another formulation, such as the default",
         StartError::Step { .. } => "give a step above 0",
         _ => "move what is named there, or take away or loosen one of the constraints",

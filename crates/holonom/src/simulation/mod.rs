@@ -215,7 +215,13 @@ impl Simulation {
             work.inputs.copy_from_slice(inputs);
         }
         let mut newton = Newton::new(&system, &work.scales, method.settings);
-        let start = start::prepare(&system, &method, asked, &mut newton, &mut work)?;
+        let start = start::prepare(&system, &method, asked, &mut newton, &mut work).map_err(|error| match error {
+            StartError::NotFinite { what } => {
+                let state = State::new(asked.t, &work, system.gauge_values().counted());
+                StartError::NotFinite { what: no_value::lacking(&system, &state, &mut work, &[0.0]).unwrap_or(what) }
+            }
+            error => error,
+        })?;
         let integrator = (method.integrator.make)(&system, &newton, method.parameters);
         work.memory = vec![0.0; integrator.memory(&system)];
         let mut state = State::new(asked.t, &work, system.gauge_values().counted());

@@ -1,6 +1,7 @@
 //! Forces that have no value where a mechanism goes, as a formula is outside its domain or a table outside its range, or no slope.
 
-use super::Simulation;
+use super::{Simulation, State};
+use crate::formulation::Workspace;
 use crate::system::{LawEntry, LoadEntry, Local, Look, Response, System};
 
 /// How far ahead of the present state is looked, in nominal steps.
@@ -13,16 +14,30 @@ pub(super) enum Lack {
     Slope,
 }
 
+impl Lack {
+    /// In words.
+    fn words(self) -> &'static str {
+        match self {
+            Self::Value => "has no value there (a formula is outside its domain, or a table outside its range)",
+            Self::Slope => "has no slope there (as a root has none at zero, nor a power below 1: round it off, as sqrt(x + small))",
+        }
+    }
+}
+
+/// The force that has no value at a state, or no slope, in words.
+pub(super) fn lacking(system: &System, state: &State, work: &mut Workspace, ahead: &[f64]) -> Option<String> {
+    let mut find = |lack: Lack| {
+        let name = ahead.iter().find_map(|ahead| without(lack, system, state.look_ahead(*ahead, system, work)))?;
+        Some(format!("the force of `{name}` {}", lack.words()))
+    };
+    find(Lack::Value).or_else(|| find(Lack::Slope))
+}
+
 impl Simulation {
-    /// The force, by name, that has no finite value here, or a little later as the mechanism moves now; or else one without finite derivatives.
-    pub(super) fn force_without_value(&mut self) -> Option<(&str, Lack)> {
-        let step = self.nominal_step();
-        let Self { system, state, work, .. } = self;
-        let system: &System = system;
-        let mut find = |lack: Lack| {
-            AHEAD.iter().find_map(|ahead| without(lack, system, state.look_ahead(ahead * step, system, work)).map(|name| (name, lack)))
-        };
-        find(Lack::Value).or_else(|| find(Lack::Slope))
+    /// The force that has no finite value here, or a little later as the mechanism moves now, or else one without finite derivatives; in words.
+    pub(super) fn force_without_value(&mut self) -> Option<String> {
+        let ahead = AHEAD.map(|steps| steps * self.nominal_step());
+        lacking(&self.system, &self.state, &mut self.work, &ahead)
     }
 }
 

@@ -1,7 +1,6 @@
 //! Why a run stopped, in words.
 
 use super::Simulation;
-use super::no_value::Lack;
 use super::pilot::is_rough;
 use crate::formulation::{Failure, Independence, Workspace};
 
@@ -22,13 +21,9 @@ impl Simulation {
         let row = worst.map_or(String::new(), |(k, _)| format!("; the worst row is `{}` with {:.1e}", self.system.row_names[k], phi[k]));
         let t = self.state.t;
         if matches!(failure, Failure::NotFinite | Failure::TooSmall | Failure::JumpsBack { .. })
-            && let Some((force, lack)) = self.force_without_value()
+            && let Some(what) = self.force_without_value()
         {
-            let what = match lack {
-                Lack::Value => "has no value there (a formula is outside its domain, or a table outside its range)",
-                Lack::Slope => "has no slope there (as a root has none at zero, nor a power below 1: round it off, as sqrt(x + small))",
-            };
-            return format!("the force of `{force}` {what} at t = {t:.6} s");
+            return format!("{what} at t = {t:.6} s");
         }
         let mut what = format!("{} at t = {t:.6} s{row}", failure.describe(&self.system));
         if failure == Failure::TooSmall {

@@ -94,8 +94,11 @@ pub enum StartError {
     #[error("the accelerations at the start cannot be found: the mass matrix is singular where nothing holds it")]
     Acceleration,
     /// Forces, or their derivatives, that are not finite.
-    #[error("the accelerations at the start cannot be found: forces or their derivatives are not finite there")]
-    NotFinite,
+    #[error("the accelerations at the start cannot be found: {what}")]
+    NotFinite {
+        /// Which force has no value or no slope, where one is found.
+        what: String,
+    },
     /// A time, positions, velocities, angles or inputs of a state that are not finite.
     #[error("the state has numbers that are not finite")]
     NoNumber,
@@ -103,6 +106,10 @@ pub enum StartError {
     #[error("the state is one of another system")]
     Other,
 }
+
+/// What is said where no force is found that is to blame.
+const NOT_FINITE: &str =
+    "forces or their derivatives are not finite there (a formula may be outside its domain, or a table outside its range)";
 
 /// Violation over the size of the mechanism that counts as met: what a model file written with ten digits leaves.
 const MET: f64 = 1e-9;
@@ -274,7 +281,7 @@ pub(super) fn accelerate(system: &System, method: &Method, t: f64, newton: &mut 
         false => newton.react(system, t, work),
     };
     outcome.map_err(|failure| match failure {
-        Failure::NotFinite => StartError::NotFinite,
+        Failure::NotFinite => StartError::NotFinite { what: NOT_FINITE.into() },
         _ => StartError::Acceleration,
     })
 }
