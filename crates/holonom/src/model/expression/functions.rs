@@ -62,6 +62,9 @@ pub(super) const CONSTANTS: &[(&str, f64)] = &[("pi", std::f64::consts::PI), ("t
 pub(super) const UNITS: &[(&str, f64)] =
     &[("deg", std::f64::consts::PI / 180.0), ("mm", 1e-3), ("cm", 1e-2), ("km", 1e3), ("rpm", std::f64::consts::PI / 30.0), ("bar", 1e5)];
 
+/// Names of SI units that numbers have without saying so.
+pub(super) const SI: [&str; 10] = ["kg", "m", "s", "N", "Nm", "J", "W", "Pa", "Hz", "rad"];
+
 impl Function {
     /// The value of a function of one number.
     pub(super) fn of_one<N: Number>(self, x: N) -> N {

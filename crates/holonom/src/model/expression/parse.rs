@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::functions::{CONSTANTS, FUNCTIONS, Function, UNITS};
+use super::functions::{CONSTANTS, FUNCTIONS, Function, SI, UNITS};
 use super::lex::{Token, lex};
 use super::names::Names;
 use super::{Mistake, Op, Program, Scope, Value};
@@ -254,8 +254,12 @@ impl Parser<'_> {
         let all = || known.iter().copied().chain(of_mechanism.iter().map(String::as_str));
         // A name with a hyphen was read as a difference.
         let cut = all().find(|known| known.strip_prefix(name).is_some_and(|rest| rest.starts_with('-')));
-        let cure = match cut.or_else(|| nearest(name, all())) {
+        let near = cut.or_else(|| nearest(name, all())).filter(|near| !(SI.contains(&name) && UNITS.iter().any(|unit| unit.0 == *near)));
+        let cure = match near {
             _ if name == "π" => "write pi".into(),
+            None if SI.contains(&name) => {
+                format!("add `{name}` to [parameters], or leave it out if it is a unit: numbers are in SI units and radians")
+            }
             Some(near) if near.contains('-') => format!("did you mean '{near}'? A name with a hyphen stands in single quotes here"),
             Some(near) => format!("did you mean `{near}`?"),
             None if name.contains('.') => suggest(name, of_mechanism.iter().map(String::as_str)),

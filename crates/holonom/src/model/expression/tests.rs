@@ -64,6 +64,7 @@ fn mistakes_say_where_and_what_to_do() {
         ("30deg", 2, "write 30*deg"),
         ("sin(1.5e1 deg)", 10, "write 1.5e1*deg"),
         ("5 N", 2, "write 5; known factors are deg, mm, cm, km, rpm, bar"),
+        ("5*kg", 2, "add `kg` to [parameters], or leave it out if it is a unit"),
         ("t mm", 2, "write 2*x"),
         ("sn(t)", 0, "did you mean `sin`"),
         ("sin", 0, "needs its arguments"),
