@@ -100,7 +100,7 @@ impl Draft {
             return Err(refuse(py, "", "the model has no entries", "add a point or a body, and what holds it"));
         }
         let written = self.toml();
-        let source = Source::read(&self.name, written.as_bytes()).map_err(|text| unreadable(py, text))?;
+        let source = Source::read_all(&self.name, written.as_bytes()).map_err(|text| unreadable(py, text))?;
         Ok(source.beside(self.folder.as_deref().unwrap_or(".".as_ref())))
     }
 
@@ -406,7 +406,9 @@ impl Draft {
     pub fn of_parts(py: Python<'_>, parts: Parts) -> PyResult<Self> {
         let (name, text, changed, folder, functions, lines) = parts;
         let value = match changed.as_ref().or(text.as_ref()) {
-            Some(text) if !text.is_empty() => Source::read(&name, text.as_bytes()).map_err(|text| unreadable(py, text))?.value().clone(),
+            Some(text) if !text.is_empty() => {
+                Source::read_all(&name, text.as_bytes()).map_err(|text| unreadable(py, text))?.value().clone()
+            }
             _ => Value::Table(Table::default()),
         };
         Ok(Self { name, text, value, is_changed: changed.is_some(), folder, functions, lines })

@@ -231,6 +231,22 @@ def test_files_beside_a_model_are_found_wherever_the_program_goes(tmp_path, monk
     assert (pickle.loads(pickle.dumps(run))["p.vx"] == run["p.vx"]).all()
 
 
+def test_a_model_may_be_longer_than_a_file():
+    """A table of measured data has more numbers than the text of a model file may have letters."""
+    m = hm.Model(gravity=[0, 0, 0])
+    t = np.linspace(0, 1, 200_000)
+    push = m.table("push", points=np.stack([t, np.sin(9 * t)], axis=1))
+    m.point("p", mass=1, position=[0, 0, 0])
+    m.expression("f", point="p", force=[f"{push}(t)", 0, 0])
+    assert len(m.to_toml()) > 4 * 1024 * 1024
+    run = m.simulate(end=1, step=0.01)
+    # v = (1 − cos 9t)/9, by steps of order 2: errors of (9 h)²/24.
+    assert run["p.vx"][-1] == pytest.approx((1 - np.cos(9)) / 9, rel=1e-3)
+    assert (pickle.loads(pickle.dumps(run))["p.vx"] == run["p.vx"]).all()
+    with pytest.raises(hm.ModelError, match="larger than 4 MB"):
+        hm.loads(m.to_toml())
+
+
 def test_long_doubles_are_numbers():
     m = hm.Model(gravity=[np.longdouble(0), 0, 0])
     m.point("p", mass=np.longdouble(2), position=np.array([0.25, 0.5, 1], dtype=np.longdouble))

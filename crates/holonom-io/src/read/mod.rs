@@ -52,6 +52,18 @@ impl Source {
     /// # Errors
     /// What is wrong with it as TOML, ready to be shown: with file, line, column and cure.
     pub fn read(name: &str, bytes: &[u8]) -> Result<Self, String> {
+        if bytes.len() > LARGEST_FILE {
+            let message = format!("the file is larger than {} MB, and no model is", LARGEST_FILE / (1024 * 1024));
+            return Err(render::whole(&format!("{name}:1:1"), &message, "use repeat for arrays of points and bars"));
+        }
+        Self::read_all(name, bytes)
+    }
+
+    /// The same, however long it is: of what a program has made, and not of a file that may be anything.
+    ///
+    /// # Errors
+    /// As for a file.
+    pub fn read_all(name: &str, bytes: &[u8]) -> Result<Self, String> {
         let text = decode(name, bytes)?;
         let mut places = Places::default();
         let value = toml::parse(&text, &mut places).map_err(|error| render::syntax(name, &text, &error))?;
@@ -341,10 +353,6 @@ pub fn sha256(bytes: &[u8]) -> String {
 
 /// The text of a file, if it is one and could be a model.
 fn decode(name: &str, bytes: &[u8]) -> Result<String, String> {
-    if bytes.len() > LARGEST_FILE {
-        let message = format!("the file is larger than {} MB, and no model is", LARGEST_FILE / (1024 * 1024));
-        return Err(render::whole(&format!("{name}:1:1"), &message, "use repeat for arrays of points and bars"));
-    }
     let text = match std::str::from_utf8(bytes) {
         Ok(text) => text,
         Err(error) => {
