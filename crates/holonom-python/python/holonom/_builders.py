@@ -27,6 +27,14 @@ class Entry(str):
     section: str
     kind: str | None
 
+    # What is set of a name would change nothing in the model.
+    __slots__ = ("kind", "section")
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in Entry.__slots__:
+            raise AttributeError(f'`{self}` is the name of an entry and keeps nothing: write m.set("{self.section}.{self}.{name}", …)')
+        super().__setattr__(name, value)
+
     def __new__(cls, name: str, section: str, kind: str | None = None) -> Entry:
         entry = super().__new__(cls, name)
         entry.section = section
@@ -58,6 +66,8 @@ def text_of(path: str, given: Any) -> str:
 
 class Builders:
     """What adds entries to a model: a method for each kind."""
+
+    __slots__ = ("_draft",)
 
     _draft: _engine.Draft
 

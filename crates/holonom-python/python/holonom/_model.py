@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _analysis, _engine
 from ._builders import KEYS, Builders, Entry, line, text_of
@@ -27,6 +27,17 @@ class Model(Builders):
     """A model, with no entries at first. For each kind of joint, constraint, drive and force there is a method that adds one and gives
     its handle; entries may name others that come later. What is wrong with an entry by itself is raised at once, and all the rest when
     the model is run, with the lines of the program that made the entries."""
+
+    # What is set of a model like an attribute would change nothing in it.
+    __slots__ = ("__weakref__",)
+
+    if not TYPE_CHECKING:
+
+        def __setattr__(self, name: str, value: Any) -> None:
+            try:
+                super().__setattr__(name, value)
+            except AttributeError as error:
+                raise AttributeError(f'a model has no attribute `{name}` to set: write m.set("{name}", …) for a key of it') from error
 
     ground = "ground"
     """What never moves: its place is the origin."""
