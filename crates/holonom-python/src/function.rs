@@ -11,6 +11,7 @@ use pyo3::types::{PyFloat, PyTuple};
 use pyo3::{PyTraverseError, PyVisit};
 
 use crate::native::Native;
+use crate::value::is_complex;
 
 /// What a function has raised, and that in words.
 struct Raised {
@@ -157,6 +158,15 @@ impl Called {
     }
 }
 
+/// What a function gave as a real number, if it is one.
+fn real(given: &Bound<'_, PyAny>) -> Option<f64> {
+    match given.cast::<PyFloat>() {
+        Ok(number) => Some(number.value()),
+        Err(_) if is_complex(given) => None,
+        Err(_) => given.extract().ok(),
+    }
+}
+
 impl ExternalFunction for Called {
     fn arguments(&self) -> usize {
         self.parts.arguments()
@@ -170,12 +180,12 @@ impl ExternalFunction for Called {
         self.attempt(values, |py, values| {
             let given = self.parts.callable.bind(py).call1(self.given(py, arguments)?)?;
             if let [value] = values {
-                return match given.extract() {
-                    Ok(number) => {
+                return match real(&given) {
+                    Some(number) => {
                         *value = number;
                         Ok(())
                     }
-                    Err(_) => self.wrong(&given),
+                    None => self.wrong(&given),
                 };
             }
             if let Ok(array) = given.extract::<PyReadonlyArray1<'_, f64>>()
@@ -184,8 +194,9 @@ impl ExternalFunction for Called {
                 values.iter_mut().zip(array.as_array()).for_each(|(value, given)| *value = *given);
                 return Ok(());
             }
-            match given.extract::<Vec<f64>>() {
-                Ok(numbers) if numbers.len() == values.len() => {
+            let numbers = given.extract::<Vec<Bound<'_, PyAny>>>();
+            match numbers.map(|numbers| numbers.iter().map(real).collect::<Option<Vec<f64>>>()) {
+                Ok(Some(numbers)) if numbers.len() == values.len() => {
                     values.copy_from_slice(&numbers);
                     Ok(())
                 }

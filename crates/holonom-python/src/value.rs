@@ -46,12 +46,8 @@ impl Reading<'_> {
         {
             return self.value(path, &plain, depth + 1);
         }
-        // NumPy would leave out the imaginary part.
-        let kind = value.getattr("dtype").and_then(|dtype| dtype.getattr("kind")?.extract::<String>());
         match value.extract::<f64>() {
-            Ok(_) if kind.is_ok_and(|kind| kind == "c") => {
-                Err(refuse(format!("`{path}` is a complex number"), "give a real one, such as its .real"))
-            }
+            Ok(_) if is_complex(value) => Err(refuse(format!("`{path}` is a complex number"), "give a real one, such as its .real")),
             Ok(number) if number.is_finite() => Ok(Value::Number(number)),
             Ok(number) => Err(refuse(format!("`{path}` is {number}, and a finite number is wanted"), "see where it was computed")),
             Err(_) => {
@@ -91,6 +87,12 @@ impl Reading<'_> {
         }
         Ok(read)
     }
+}
+
+/// Whether it is a complex number of NumPy, which would leave out its imaginary part where a real one is asked for.
+pub fn is_complex(value: &Bound<'_, PyAny>) -> bool {
+    let kind = value.getattr("dtype").and_then(|dtype| dtype.getattr("kind")?.extract::<String>());
+    kind.is_ok_and(|kind| kind == "c")
 }
 
 /// The beginning of what stands for a value in Python.

@@ -151,6 +151,24 @@ def test_a_sampled_controller_is_called_once_a_sample():
     assert (held == held[:, :1]).all() and len(set(held[:, 0])) == 50
 
 
+@pytest.mark.parametrize("given", [np.complex128(1 + 2j), 1 + 2j, np.array([1 + 2j, 0]), [np.complex64(1 + 2j), 0]])
+def test_complex_numbers_are_no_numbers(given):
+    m, _, tip = pendulum()
+    count = 2 if np.ndim(given) else 1
+    force = m.function("force", lambda x: given, values=count)("tip.x")
+    m.expression("wind", point=tip, force=force if count == 2 else [force, 0])
+    with pytest.raises(hm.FunctionError, match="wanted"):
+        m.simulate(end=1, step=0.01)
+
+
+def test_complex_derivatives_are_no_derivatives():
+    m, _, tip = pendulum()
+    force = m.function("force", lambda x: -x, derivative=lambda x: -1 + 2j)("tip.x")
+    m.expression("wind", point=tip, force=[force, 0])
+    with pytest.raises(hm.FunctionError, match="complex"):
+        m.simulate(end=1, step=0.01)
+
+
 def test_a_function_that_raises_ends_the_run_and_keeps_it():
     def late(angle, t):
         if t > 0.5:

@@ -100,6 +100,9 @@ def test_a_row_is_run_again_to_the_same_numbers():
     run = study.run(1)
     assert run["ball.x"][-1] == study["ball.x"][1] == pytest.approx(1.4)
     assert run.t[-1] == 0.7 and len(run) == 8
+    # What is given beside it counts in place of what the row has.
+    other = study.run(1, method="radau", set={"parameters.v": 4}, end=0.5)
+    assert other.summary["method"]["name"] == "radau" and other["ball.x"][-1] == pytest.approx(2) and other.t[-1] == 0.5
 
 
 def test_a_study_in_a_folder_goes_on(tmp_path):

@@ -112,6 +112,16 @@ CALLS = {
     "no such input": (lambda b: hm.Simulation(b.m, step=0.01).inputs["pus"], ["`pus`", "`push`"]),
     "input is a text": (lambda b: hm.Simulation(b.m, step=0.01).inputs.__setitem__("push", "much"), ["`push`", "str", "number"]),
     "input is no number": (lambda b: hm.Simulation(b.m, step=0.01).inputs.__setitem__("push", NAN), ["`push`", "NaN", "finite"]),
+    "input is complex": (lambda b: hm.Simulation(b.m, step=0.01).inputs.update(push=np.complex128(1 + 2j)), ["`push`", "complex128"]),
+    "half a step": (lambda b: hm.Simulation(b.m, step=0.01).step(0.5), ["`count`", "whole"]),
+    # What would be set beside the model, and change nothing
+    "gravity as an attribute": (lambda b: setattr(b.m, "gravity", [0, 0, 0]), ["`gravity`", "m.set("]),
+    "mass as an attribute": (lambda b: setattr(b.door, "mass", 25), ["`door`", 'm.set("body.door.mass"']),
+    "mass with a unit": (lambda b: b.m.point("p", mass="5*kg", position=[0, 0, 0]) and b.run(), ["`kg`", "SI units"]),
+    "force without a value at the start": (
+        lambda b: b.m.expression("late", point=b.door, force=[b.m.function("none", lambda x: NAN)("door.x"), 0, 0]) and b.run(),
+        ["`late`", "no value"],
+    ),
     "no end": (lambda b: b.m.simulate(step=0.01), ["`end`", "end=10"]),
     "no step": (lambda b: b.m.simulate(end=1), ["`step`", "step=0.01"]),
     "no step of a simulation": (lambda b: hm.Simulation(b.m), ["`step`", "step=0.01"]),

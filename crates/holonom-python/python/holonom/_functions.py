@@ -127,7 +127,10 @@ class Function(str):
             return None
 
         def gradient(*arguments: Any) -> npt.NDArray[np.float64]:
-            given = np.asarray(derivative(*arguments), dtype=float)
+            given = np.asarray(derivative(*arguments))
+            if np.iscomplexobj(given):
+                raise TypeError(f"`derivative` of `{self}` gave complex numbers, and real ones are wanted")
+            given = given.astype(float, copy=False)
             if given.size != shape[0] * shape[1]:
                 raise ValueError(f"`derivative` of `{self}` gave an array of the shape {given.shape}, and {shape} is wanted")
             return np.ascontiguousarray(given.reshape(shape))

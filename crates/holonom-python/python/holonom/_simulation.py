@@ -9,6 +9,7 @@ from . import _engine
 from ._errors import needed, refuse, warn
 from ._builders import text_of
 from ._model import Model, changes_of
+from ._types import is_whole, real
 
 if TYPE_CHECKING:
     from ._live import Live
@@ -27,7 +28,7 @@ class Inputs(MutableMapping[str, float]):
 
     def __setitem__(self, name: str, value: float) -> None:
         try:
-            number = float(value)
+            number = real(value)
         except (TypeError, ValueError) as error:
             message = f"the input `{name}` is set to something of type {type(value).__name__}, and a number is wanted"
             raise refuse(str(name), message, "set it to a finite number") from error
@@ -82,7 +83,12 @@ class Simulation:
 
     def step(self, count: int = 1) -> bool:
         """Takes nominal steps and says whether the simulation goes on; `ended` has why not."""
-        return self._simulator.step(count)
+        try:
+            return self._simulator.step(count)
+        except TypeError as error:
+            if is_whole(count):
+                raise
+            raise refuse("count", f"`count` is {count!r}, and a whole number is wanted", "give how many steps it is to take: step(100)") from error
 
     @property
     def time(self) -> float:

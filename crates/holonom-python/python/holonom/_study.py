@@ -99,14 +99,15 @@ class Study:
             for row, values in zip(rows, settings)
         ]
 
-    def run(self, row: int, **keys: Any) -> Run:
-        """Makes the run of a row of the table again, with its trajectory. `keys` are those of ``simulate``."""
+    def run(self, row: int, *, method: str | None = None, set: Mapping[str, Any] | None = None, **keys: Any) -> Run:
+        """Makes the run of a row of the table again, with its trajectory. What else is given is as in ``simulate``, and counts in place of what the
+        row has."""
         row = whole("row", row, 0, "count rows from 0")
         if row >= len(self):
             raise refuse("row", f"`row` is {row}, and the study has {len(self)} rows", "count rows from 0")
         settings = self._sweep.settings(int(self.table["run"][row]))
-        changes = {**self._given["changes"], **settings}
-        return self._model.simulate(method=self._given["method"], set=changes, **keys)
+        changes = {**self._given["changes"], **settings, **changes_of({}, set)}
+        return self._model.simulate(method=self._given["method"] if method is None else method, set=changes, **keys)
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Writes the table: CSV, or Parquet where the name ends so; or the report where it ends with html."""

@@ -21,6 +21,13 @@ Rows = Union[Sequence[Numbers], npt.NDArray[Any]]
 Place = Union[str, Numbers]
 
 
+def real(given: Any) -> float:
+    """A number as a float. Of a complex one NumPy would leave out the imaginary part."""
+    if type(given) is not float and np.iscomplexobj(given):
+        raise TypeError("it is complex")
+    return float(given)
+
+
 def is_whole(given: Any) -> bool:
     """Whether it is a whole number, of Python or of NumPy."""
     return isinstance(given, (int, np.integer)) and not isinstance(given, bool)
