@@ -5,7 +5,7 @@ import pathlib
 import runpy
 
 import holonom
-from holonom import _engine
+from holonom import _builders, _engine
 
 FOLDER = pathlib.Path(__file__).parents[1]
 PACKAGE = FOLDER / "python" / "holonom"
@@ -27,6 +27,15 @@ def test_the_stub_of_the_module_names_what_it_has():
         targets = (part.target.id if isinstance(part, ast.AnnAssign) else part.name for part in node.body)
         known = {part for part in targets if not part.startswith("_")}
         assert known == {part for part in dir(getattr(_engine, name)) if not part.startswith("_")}, name
+
+
+def test_all_that_is_public_is_named_once():
+    assert len(set(holonom.__all__)) == len(holonom.__all__) and set(_builders.__all__) <= set(holonom.__all__)
+    assert all(hasattr(holonom, name) for name in holonom.__all__)
+    # As type checkers read it.
+    tree = ast.parse((PACKAGE / "__init__.py").read_text(encoding="utf-8"))
+    lists = [node.value for node in tree.body if isinstance(node, (ast.Assign, ast.AugAssign)) and isinstance(node.value, ast.List)]
+    assert [name.value for part in lists for name in part.elts] == holonom.__all__
 
 
 def test_the_package_is_typed_where_it_is_installed():

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 from ._builders import *
 from ._builders import Entry
 from ._analysis import Check, Comparison, Stability, compare
-from ._builders import __all__ as _shapes
 from ._engine import VERSION as __version__
 from ._errors import Fault, FunctionError, ModelError, ModelWarning
 from ._errors import needed as _needed
@@ -32,7 +31,8 @@ if TYPE_CHECKING:
 __all__ = ["Entry", "Fault", "Function", "FunctionError", "Model", "ModelError", "ModelWarning", "Run", "Simulation", "State", "load", "loads", "simulate"]
 __all__ += ["Check", "Comparison", "Failed", "Normal", "Stability", "Study", "Table", "Uniform"]
 __all__ += ["compare", "grid", "latin_hypercube", "random", "sobol", "sweep"]
-__all__ += _shapes
+# Type checkers read no names but those that are written here.
+__all__ += ["Box", "Capsule", "Cylinder", "Mesh", "Rod", "Sphere"]
 
 
 def __getattr__(name: str) -> Any:
