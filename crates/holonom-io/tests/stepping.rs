@@ -53,9 +53,9 @@ fn a_run_that_failed_goes_on_when_its_cause_is_mended() {
             let choice = if method == "dopri5" { "ode/dopri5" } else { method };
             let mut simulation = simulation(choice, accuracy);
             assert_eq!(simulation.step_to(0.1), Status::Completed);
-            simulation.set_input("push", -2.0);
+            assert!(simulation.set_input("push", -2.0));
             assert!(matches!(simulation.step_to(0.2), Status::Stopped { .. }), "{method}, {accuracy:?}");
-            simulation.set_input("push", 0.0);
+            assert!(simulation.set_input("push", 0.0));
             assert_eq!(simulation.step_to(0.2), Status::Completed, "{method}, {accuracy:?}");
             let mut other = self::simulation("radau", Some(1e-9));
             assert_eq!(other.step_to(0.2), Status::Completed);

@@ -2,6 +2,105 @@
 //!
 //! No files, no clock, no printing. A [`Description`] knows nothing of places in a file; faults name paths in it, and who has read
 //! the file knows where they are.
+//!
+//! Joints, constraints, drives and forces of one's own are structs as those here: their fields are the keys, a joint is a [`Joint`](joints::Joint), and all
+//! others are an [`Element`]. They go into a description by hand or, pushed to [`Kinds`], are read from files.
+//!
+//! ```
+//! use std::sync::Arc;
+//!
+//! use holonom::model::joints::{Joint, Layout, Pair, Seat, Sides};
+//! use holonom::model::{Assembly, Body, Description, Element, Entry, Keys, List, Number, Place, Read, Shape, SimulationKeys, Site, Solid, from_to};
+//! use holonom::simulation::Status;
+//! use holonom::system::{Law, Reach, Response};
+//!
+//! /// a pin: both bodies share a point, and keep its axis
+//! #[derive(Clone, Debug, PartialEq, Keys, Sides)]
+//! #[kind(name = "pin", equations = "d = 0, u_B·v_A = 0, u_B·w_A = 0", example = "")]
+//! struct Pin {
+//!     /// the two bodies, or a body and "ground"
+//!     #[key(shape = Shape::Members)]
+//!     between: List<String>,
+//!     /// where it sits at the start
+//!     #[key(unit = "m")]
+//!     at: Site,
+//!     /// its direction at the start
+//!     #[key(unit = "any", default = "needed", shape = Shape::Direction)]
+//!     axis: Option<Site>,
+//! }
+//!
+//! impl Joint for Pin {
+//!     const LAYOUT: Layout =
+//!         Layout { freedom: [Some(1), Some(1)], at: Seat::Given, directions: [1, 0], shares: [&[], &[]], takes_point: false };
+//!
+//!     fn rows(&self, pair: &mut Pair<'_, '_>) -> Read<()> {
+//!         pair.coincide();
+//!         pair.align();
+//!         pair.angle();
+//!         Ok(())
+//!     }
+//! }
+//!
+//! /// a spring whose force grows with the cube of its length: V = ½ k π², where π is half the square of the length
+//! #[derive(Clone, Debug, PartialEq, Keys)]
+//! #[kind(name = "cubic", equations = "V = k r⁴/8", example = "")]
+//! struct Cubic {
+//!     /// its ends
+//!     #[key(shape = Shape::Ends(2, 2))]
+//!     between: List<Place>,
+//!     /// k
+//!     #[key(unit = "N/m³")]
+//!     stiffness: Number,
+//! }
+//!
+//! impl Element for Cubic {
+//!     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
+//!         let [a, b] = assembly.moving_pair(entry, "between", &self.between)?;
+//!         let half_square = assembly.builder.square(&from_to(&a, &b));
+//!         let law = Quadratic { stiffness: self.stiffness.positive(entry, "stiffness")? };
+//!         assembly.builder.law(entry.name, &[half_square], Arc::new(law));
+//!         Ok(())
+//!     }
+//! }
+//!
+//! struct Quadratic {
+//!     stiffness: f64,
+//! }
+//!
+//! impl Law for Quadratic {
+//!     fn energy(&self, value: &[f64]) -> f64 {
+//!         0.5 * self.stiffness * value[0].powi(2)
+//!     }
+//!
+//!     fn conservative(&self) -> bool {
+//!         true
+//!     }
+//!
+//!     fn at(&self, value: &[f64], _rate: &[f64], _t: f64, out: &mut Response) {
+//!         out.force[0] = self.stiffness * value[0];
+//!         out.by_value[0][0] = self.stiffness;
+//!     }
+//!
+//!     // ΔV/Δπ, and its derivative by π at the end.
+//!     fn between(&self, reach: Reach<'_>, out: &mut Response) {
+//!         out.force[0] = 0.5 * self.stiffness * (reach.from[0] + reach.to[0]);
+//!         out.by_value[0][0] = 0.5 * self.stiffness;
+//!     }
+//! }
+//!
+//! let mut door = Description::new("Door");
+//! door.body("door", Body::new([0.5, 0.0, 1.0]).mass(20).shape(Solid::cuboid([1.0, 0.05, 2.0])));
+//! door.joint("hinge", Pin::new(["ground", "door"], [0.0, 0.0, 1.0]).axis([0.0, 0.0, 1.0]));
+//! door.force("spring", Cubic::new([Place::from([0.0, 1.0, 1.0]), Place::from("door")], 30));
+//! door.simulation = Some(SimulationKeys::new().step(0.01));
+//! let mut simulation = door.compile()?.simulation()?;
+//! assert_eq!(simulation.step_to(0.5), Status::Completed);
+//! let [angle, rate] = simulation.coordinate("hinge.angle").expect("the hinge is there");
+//! // What the spring has lost is in the door: π = (1 + ¼ − sin φ)/2, J = m (b² + t²)/12 + m b²/4.
+//! let v = |angle: f64| 15.0 * (0.5 * (1.25 - angle.sin())).powi(2);
+//! assert!(rate > 0.1 && (v(0.0) - v(angle) - 0.5 * 6.670833 * rate.powi(2)).abs() < 1e-5);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod bodies;
 pub mod constraints;

@@ -47,6 +47,7 @@ impl Simulation {
 
     /// Sets a number from outside, which counts from here on; says whether there is an input of that name. Set between steps, it is the same
     /// within each.
+    #[must_use = "there may be no input of that name"]
     pub fn set_input(&mut self, name: &str, value: f64) -> bool {
         let Some(at) = self.system.inputs.iter().position(|(known, _)| known == name) else { return false };
         self.set_inputs(&[(at, value)]);
