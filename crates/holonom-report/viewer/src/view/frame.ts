@@ -66,6 +66,11 @@ function placesInRow(motion: Motion, row: number): Vec3[] {
     const pose = disc && poseOf(motion, disc.body, row);
     if (pose) places.push(...ball(carried(pose, disc.at.toArray()), joint.radius));
   }
+  // Curves go with the bodies that have them, as the groove of a cam.
+  for (const { body, curve } of joints) {
+    const pose = curve && body !== null ? motion.poseInRow(body, row) : undefined;
+    if (curve && pose) places.push(...curve.map((place) => carried(pose, place).toArray()));
+  }
   return places;
 }
 

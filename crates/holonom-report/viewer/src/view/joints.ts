@@ -38,7 +38,7 @@ export function addCurves(motion: Motion, size: number, materials: Materials, fr
     const points = curve.map((place) => new Vector3(...place));
     const radius = Math.min(CURVE * size, CURVE_OF_ITSELF * diagonal(new Box3().setFromPoints(points)));
     const group = new Group();
-    group.add(new Mesh(new TubeGeometry(new CatmullRomCurve3(points), 2 * points.length, radius, 8), materials.part("joint", frame?.index)));
+    group.add(new Mesh(new TubeGeometry(new CatmullRomCurve3(points), 2 * points.length, radius, 8), materials.part("ground", frame?.index)));
     group.position.addScaledVector(motion.across, -(frame?.depth ?? 0));
     mark(group, { sort: "joint", kind: `${kind} joint`, name });
     (frame?.group ?? world).add(group);
