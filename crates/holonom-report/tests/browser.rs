@@ -179,6 +179,7 @@ fn bodies_in_a_plane() {
     loads(&seen, 3);
     bodies_move(&seen, "coupler", 6);
     assert_eq!(seen["middle"]["bodies"]["coupler"][1], 0, "the missing coordinate is 0: {seen:#}");
+    home_leads_back(&seen);
 }
 
 /// Single precision has steps of 6 cm there.
@@ -251,6 +252,7 @@ fn bodies_of_two_runs() {
 fn a_cart_is_followed() {
     let seen = open("cart", &[sample::bodies::cart()]);
     bodies_move(&seen, "cart", 2);
+    home_leads_back(&seen);
     let screen = |moment: &str| -> Vec<f64> {
         let places = seen[moment]["screen"].as_array().unwrap().iter().flat_map(|place| place.as_array().unwrap());
         places.map(|x| x.as_f64().unwrap()).collect()
@@ -303,6 +305,12 @@ fn moves(seen: &Value, end: f64) {
     assert!((time("end") - end).abs() < 1e-9 && seen["end"]["slider"] == true, "{seen:#}");
     let playing = seen["playing"].as_f64().unwrap();
     assert!(playing > 0.0 && playing < end, "playing moves time: {seen:#}");
+}
+
+/// Once at the start, after the wheel was turned, and after the view was reset.
+fn home_leads_back(seen: &Value) {
+    assert_eq!(seen["home"][0], seen["home"][2], "the view is not reset: {seen:#}");
+    assert_ne!(seen["home"][0], seen["home"][1], "the wheel does not zoom: {seen:#}");
 }
 
 fn bodies_move(seen: &Value, name: &str, count: usize) {

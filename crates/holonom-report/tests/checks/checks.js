@@ -209,6 +209,20 @@
       switches[0].click();
     }
 
+    const home = document.querySelector(".stage .home");
+    if (home) {
+      holonom.setTime(0);
+      const canvas = document.querySelector(".stage canvas");
+      const { left, top } = canvas.getBoundingClientRect();
+      const turns = [() => home.click(), () => canvas.dispatchEvent(new WheelEvent("wheel", { deltaY: -300, clientX: left + 50, clientY: top + 50, bubbles: true, cancelable: true })), () => home.click()];
+      seen.home = [];
+      for (const turn of turns) {
+        turn();
+        await frames(3);
+        seen.home.push(Object.values(holonom.bodiesAt()).map((place) => holonom.onScreen(place).map(Math.round)));
+      }
+    }
+
     const before = plots();
     await frames(3);
     const legend = document.querySelector("#legend button, button.entry");

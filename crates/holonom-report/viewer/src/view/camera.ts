@@ -45,6 +45,7 @@ export function frame(camera: Camera, view: Viewpoint, box: Box3, aspect: number
     camera.far = distance * 20;
   } else {
     camera.position.copy(sphere.center).addScaledVector(view.towards, 4 * sphere.radius);
+    camera.zoom = 1;
     camera.near = 0.01 * sphere.radius;
     camera.far = 20 * sphere.radius;
   }
