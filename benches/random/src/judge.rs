@@ -102,7 +102,7 @@ fn refusal(error: &StartError) -> &'static str {
         StartError::Step { .. } => "a step that leads nowhere",
         StartError::Crowded { .. } => "too many rows on one node",
         StartError::Acceleration => "accelerations at the start cannot be found",
-        StartError::NotFinite => "forces at the start are not finite",
+        StartError::NotFinite { .. } => "forces at the start are not finite",
         StartError::NoNumber => "a state that is not finite",
         StartError::Other => "a state of another system",
     }

@@ -90,20 +90,26 @@ pub trait Exerts: Send + Sync {
 struct At<'a> {
     system: &'a System,
     look: Look<'a>,
-    /// Whether their power is wanted.
+    /// Whether their power is wanted, and the rates that only tell that.
     with_power: bool,
 }
 
 impl At<'_> {
-    /// Rates of the arguments of a law, and its forces along them.
+    /// Rates of the arguments of a law, and its forces along them. A law with a potential does not depend on them: without power they are left out.
     fn response(&self, law: &LawEntry) -> [[f64; MAX_ARGUMENTS]; 2] {
+        let Look { at, v, t, .. } = self.look;
         let mut out = Response::default();
-        let rates = self.system.respond(law, self.look.at, self.look.v, self.look.t, &mut out);
+        if self.with_power || !law.law.conservative() {
+            return [self.system.respond(law, at, v, t, &mut out), out.force];
+        }
+        let (values, rates, m) = (self.system.arguments(law, at), [0.0; MAX_ARGUMENTS], law.arguments.len());
+        law.law.at(&values[..m], &rates[..m], t, &mut out);
         [rates, out.force]
     }
 
     fn rate(&self, quantity: Quantity) -> f64 {
-        self.system.along(&self.system.slots_of(quantity), &self.system.slots.nodes, self.look.at, self.look.v)
+        let along = || self.system.along(&self.system.slots_of(quantity), &self.system.slots.nodes, self.look.at, self.look.v);
+        if self.with_power { along() } else { f64::NAN }
     }
 
     fn value(&self, quantity: Quantity) -> f64 {
@@ -297,7 +303,7 @@ fn length([half_square, rate]: [f64; 2]) -> [f64; 2] {
     [length, rate / length]
 }
 
-/// Appends what forces do at the present state; their power is no number unless it is wanted.
+/// Appends what forces do at the present state; their power and rates of lengths are no numbers unless it is wanted.
 pub(super) fn append(forces: &[RecordedForce], simulation: &Simulation, with_power: bool, row: &mut Vec<f64>) {
     let (system, state) = (simulation.system(), simulation.state());
     let look = Look { x: &state.x, v: simulation.velocities(), t: state.t, at: simulation.evaluation(), inputs: &state.inputs, span: None };

@@ -143,11 +143,22 @@ impl Simulation {
         if work.estimate.allowed > 0.0 && matches!(taken.stage.sampling, Sampling::Between | Sampling::Middle) {
             work.compare_forces(system, &taken.stage, target);
         }
-        let mut audit = self.audit.clone();
-        let accounts = audit.integrated(system, &taken, target, work);
+        let before = self.audit.clone();
+        if let Err(failure) = self.close(&before, &taken, step, target) {
+            self.audit = before;
+            return Err(failure);
+        }
+        self.commit(step, target);
+        Ok(taken)
+    }
+
+    /// Audits and projects what is in the workspace, and has every promise looked at; the audit was `before`.
+    fn close(&mut self, before: &Audit, taken: &Step, step: f64, target: f64) -> Result<(), Failure> {
+        let (system, work, method, audit) = (&*self.system, &mut self.work, &self.method, &mut self.audit);
+        let accounts = audit.integrated(system, taken, target, work);
         self.judge.corners(system, work)?;
         self.judge.positions(system, target, work)?;
-        audit.violate_acceleration(system, method, &taken, target, work);
+        audit.violate_acceleration(system, method, taken, target, work);
         self.found_v.copy_from_slice(&work.end.v);
         self.found_a.copy_from_slice(&work.a);
         method.projection.apply(system, target, step, &mut self.newton, work)?;
@@ -156,24 +167,22 @@ impl Simulation {
         audit.closed(system, method, &self.found_a, target, &self.newton, work);
         self.judge.accelerations(step, work)?;
         let of_places = self.judge.of_places(system, work);
-        self.judge.energy(step, [&self.audit, &audit], of_places, work)?;
-        self.judge.dampers(system, [self.state.t, target], step, &audit, work)?;
+        self.judge.energy(step, [before, audit], of_places, work)?;
+        self.judge.dampers(system, [self.state.t, target], step, audit, work)?;
         // A part that takes the nominal step out of its bound can be taken again.
-        self.judge.whole(step, &audit, of_places, work)?;
+        self.judge.whole(step, audit, of_places, work)?;
         if !system.gauges().is_empty() {
             self.next_gauges.copy_from(&self.gauges);
             system.measure(&work.end.x, &work.end.v, &mut self.next_gauges);
             self.judge.turns(system, step, &self.gauges, &self.next_gauges)?;
         }
         self.judge.take(step, of_places);
-        self.commit(audit, step, target);
-        Ok(taken)
+        Ok(())
     }
 
     /// Makes the end of a step in the workspace the present state.
-    fn commit(&mut self, audit: Audit, step: f64, target: f64) {
+    fn commit(&mut self, step: f64, target: f64) {
         let work = &mut self.work;
-        self.audit = audit;
         // The paper's loops start from the paper's prediction.
         if self.method.settings.iteration == Iteration::Newton {
             self.state.remember(step, &self.found_a, work);
