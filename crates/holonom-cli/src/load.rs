@@ -322,6 +322,10 @@ pub fn start_failure(error: StartError) -> Failure {
         StartError::NotFinite { .. } => "change the formula or the table, or begin elsewhere",
         StartError::Nonholonomic { .. } => "take another formulation, such as the default",
         StartError::Step { .. } => "give a step above 0",
+        StartError::Velocity { .. } => {
+            "move what is named there, or take away or loosen one of the constraints; rows that only repeat others must do so to the last digit: write \
+             places and axes with all digits"
+        }
         _ => "move what is named there, or take away or loosen one of the constraints",
     };
     Failure::usage(error.to_string(), cure)

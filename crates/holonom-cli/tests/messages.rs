@@ -289,6 +289,30 @@ fn why_no_step_is_short_enough_is_told() {
         3,
     );
     says(&format!("{flat}method = \"radau\"\n"), &["completed"], 0);
+    // Four hinges of which two axes are a little off, so that no motion keeps them all: their rows, not the accuracy, are what to look at.
+    let four_bar = |off: f64| {
+        let mut text = String::new();
+        for (body, place, velocity) in [("a", "[0, 0, 0.5]", 0.0), ("b", "[1, 0, 1]", 0.5), ("c", "[2, 0, 0.4]", 0.0)] {
+            text += &format!("[body.{body}]\nmass = 1\ninertia = [0.1, 0.1, 0.1]\nposition = {place}\nvelocity = [{velocity}, 0, 0]\n");
+        }
+        let axes = [format!("[0, 1, {off}]"), format!("[{off}, 1, 0]"), "[0, 1, 0]".into(), "[0, 1, 0]".into()];
+        let pairs = [("ground", "a", "[0, 0, 0]"), ("a", "b", "[0, 0, 1]"), ("b", "c", "[2, 0, 1]"), ("ground", "c", "[2, 0, -0.2]")];
+        for (k, ((first, second, at), axis)) in pairs.into_iter().zip(axes).enumerate() {
+            text += &format!("[joint.j{k}]\ntype = \"revolute\"\nbetween = [\"{first}\", \"{second}\"]\nat = {at}\naxis = {axis}\n");
+        }
+        text + "[simulation]\nend = 1\nstep = 0.01\nmethod = \"radau\"\naccuracy = 1e-8\n"
+    };
+    says(
+        &four_bar(1e-6),
+        &[
+            "no step is short enough for the accuracy",
+            "1 of the equations of the constraints follow from the others (redundant)",
+            "all digits",
+        ],
+        3,
+    );
+    says(&four_bar(1e-5), &["the velocities at the start cannot meet their constraints", "write places and axes with all digits"], 2);
+    says(&four_bar(0.0), &["completed"], 0);
 }
 
 /// A slider of 2 kg that runs at 1.5 m/s into a stop of 1e6 N/m is in contact for π √(m/k) = 4.44 ms, in any units.

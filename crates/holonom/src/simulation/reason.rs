@@ -87,7 +87,7 @@ impl Simulation {
             true => "; this method leaves velocities off the constraints, and by how much they are off differs from step to step, which hides the errors of \
                      short steps (take radau or ggl/bdf, which hold them)"
                 .into(),
-            false => format!(" ({less})"),
+            false => format!(" ({less}){}", self.disagreement()),
         }
     }
 
