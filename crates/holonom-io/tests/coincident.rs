@@ -119,3 +119,20 @@ fn directions_have_any_length() {
         assert!(common::last(&recording, "bead.z").abs() < 1e-12, "{length:e}: {} m", common::last(&recording, "bead.z"));
     }
 }
+
+/// A hinge so far away that its body has no digits left beside it is refused in words, also where a direction of the body's size is 1e-201 of the way there.
+#[test]
+fn a_hinge_beyond_all_digits_is_refused() {
+    for far in [1e20, 1e200, 1e300] {
+        let text = format!(
+            "[body]\na = {{ mass = 0.4, inertia = [2e-3, 1.2e-3, 1.5e-3], position = [0, 0, 0] }}\n\
+             b = {{ mass = 0.3, inertia = [9e-4, 5e-4, 6e-4], position = [0, 0, 0], orientation = {{ axis = [1, 0, 0], angle = -1 }} }}\n\
+             c = {{ mass = 1, shape = {{ cylinder = [0.05, 0.02] }}, position = [0, 0, 0], orientation = {{ axis = [1, 0, 0], angle = -1 }} }}\n\
+             [joint]\nfar = {{ type = \"revolute\", between = [\"ground\", \"a\"], at = [{far:e}, 0, 0], axis = [0, 0, 1] }}\n\
+             near = {{ type = \"revolute\", between = [\"a\", \"b\"], at = [0, 0, 0], axis = [-1, 0, 0] }}\n\
+             spin = {{ type = \"revolute\", between = [\"b\", \"c\"], at = [0, 0, 0], axis = [0, 0.8414709848, 0.5403023059] }}\n"
+        );
+        let said = common::source(&text).model_with_forces().map(|_| ()).expect_err("no digit of the body is left");
+        assert!(said.contains("rounding decides which places are the same"), "{far:e}: {said}");
+    }
+}

@@ -155,9 +155,14 @@ fn inverse(basis: &[Basis]) -> Vec<[Factor; 4]> {
     // In units of its size: products of three lengths could vanish or overflow.
     let size = basis.iter().flat_map(relative).fold(0.0_f64, |size, c| size.max(c.abs()));
     let unit = if size > 0.0 { size } else { 1.0 };
+    // Directions beside points that are very far apart count in a length of their own, by a power of two, which rounds nothing.
+    let own = |node: &Basis| match node.is_point {
+        true => 1.0,
+        false => 2.0_f64.powi((geometry::norm(node.at).log2() - unit.log2()) as i32),
+    };
     let s = DMatrix::from_fn(4, basis.len(), |row, column| match row {
         0 => f64::from(u8::from(basis[column].is_point)),
-        _ => relative(&basis[column])[row - 1] / unit,
+        _ => relative(&basis[column])[row - 1] / unit / own(&basis[column]),
     });
     // SᵀS is well conditioned, as nodes are chosen to be far from dependent.
     let inverse = match s.is_square() {
@@ -165,7 +170,8 @@ fn inverse(basis: &[Basis]) -> Vec<[Factor; 4]> {
         false => (s.transpose() * &s).try_inverse().map(|inner| inner * s.transpose()),
     };
     let inverse = inverse.expect("the nodes of a body are independent");
-    (0..basis.len()).map(|k| std::array::from_fn(|c| [inverse[(k, c)] / if c == 0 { 1.0 } else { unit }, 0.0])).collect()
+    let row = |k: usize| std::array::from_fn(|c| [inverse[(k, c)] / own(&basis[k]) / if c == 0 { 1.0 } else { unit }, 0.0]);
+    (0..basis.len()).map(row).collect()
 }
 
 /// With two points a and b: (1 − z) a + z b and z = x/(b − a); with a point and a direction u: z = x/u.
