@@ -29,7 +29,10 @@ const FOUND: f64 = 1e-13;
 pub(super) fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize]) -> Result<bool, (String, &'static str)> {
     if builder.is_moving() {
         let message = "a velocity is written for the pose in the file, and the mechanism is moved from there".to_string();
-        return Err((message, "remove the velocities, or write the bodies where they are at the start"));
+        return Err((
+            message,
+            "remove the velocities and give rates in [start], as `angle_rate`, or write the bodies where they are at the start",
+        ));
     }
     let is_driven = builder.clone().build().is_driven();
     let mut led = Way::new(builder, targets, released, is_driven).ok_or_else(|| stuck(0.0, is_driven))?;
