@@ -126,6 +126,7 @@ CALLS = {
     "no step": (lambda b: b.m.simulate(end=1), ["`step`", "step=0.01"]),
     "no step of a simulation": (lambda b: hm.Simulation(b.m), ["`step`", "step=0.01"]),
     "set is a list": (lambda b: b.run(set=["a"]), ["`set`", "list", "dictionary"]),
+    "set has a number for a key": (lambda b: b.run(set={3: 5}), ["`set`", "3"]),
     "method is a number": (lambda b: b.run(method=3), ["`method`", "int", "text"]),
     "no model": (lambda b: hm.simulate("model.toml"), ["`model`", "str", "load"]),
     "no model to step": (lambda b: hm.Simulation("model.toml"), ["`model`", "str", "load"]),

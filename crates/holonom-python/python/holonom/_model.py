@@ -18,6 +18,9 @@ def changes_of(keys: Mapping[str, Any], changes: Mapping[str, Any] | None) -> di
     """Keys of the model with other values, from the arguments of a run."""
     if changes is not None and not isinstance(changes, Mapping):
         raise refuse("set", f"`set` is of type {type(changes).__name__}, and a dictionary is wanted", 'write set={"body.door.mass": 25}')
+    for key in changes or {}:
+        if not isinstance(key, str):
+            raise refuse("set", f"`set` has the key {key!r}, which is no text", 'write set={"body.door.mass": 25}')
     section = {key: "output" for key in KEYS["output"]}
     given = {f"{section.get(key, 'simulation')}.{key}": value for key, value in keys.items() if value is not None}
     return {**(changes or {}), **given}
