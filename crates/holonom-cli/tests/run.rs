@@ -433,6 +433,11 @@ fn long_steps_are_told() {
     let free = "[body.top]\nmass = 1\ninertia = [0.01, 0.006, 0.006]\nposition = [0, 0, 0]\nangular_velocity = [600, 1, 0]\n\
                 [simulation]\nend = 0.05\nstep = 1e-3\n";
     fs::write(folder.path().join("top.toml"), free).unwrap();
+    // A body in space that no joint has an angle of: 0.6 rad a step, of which 2 atan 0.3 = 0.583 rad come on.
+    assert!(notes("").contains("note: `top` comes on by 3 % less than its rate says"), "{}", notes(""));
+    for words in ["--step 1e-4", "--method gauss", "--every 20", "--accuracy 1e-6"] {
+        assert!(!notes(words).contains("comes on by"), "{words}: {}", notes(words));
+    }
     let lost = notes("--method radau --step 5e-3");
     assert!(lost.contains("note: the method has lost ") && lost.contains(" J that could move: shorter steps"), "{lost}");
     assert!(!notes("--method radau --accuracy 1e-6").contains("the method has"));
