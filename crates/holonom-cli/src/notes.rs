@@ -285,7 +285,8 @@ fn lag_in_space(body: &str, recording: &Recording, step: f64, is_whole: bool) ->
     let (mut came, mut due) = (0.0, 0.0);
     for k in 1..times.len() {
         let span = times[k] - times[k - 1];
-        let turn = 0.5 * span * (rate(k - 1) + rate(k));
+        // The mean of the vectors: what swings to and fro has hardly any where it turns back.
+        let turn = 0.5 * span * [wx, wy, wz].map(|w| (w[k - 1] + w[k]).powi(2)).iter().sum::<f64>().sqrt();
         if span < 1.5 * step && (is_whole || turn < std::f64::consts::PI) {
             let cosine = [qw, qx, qy, qz].map(|q| q[k - 1] * q[k]).iter().sum::<f64>().abs();
             came += 2.0 * cosine.min(1.0).acos();
