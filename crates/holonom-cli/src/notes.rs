@@ -191,14 +191,18 @@ fn strayed(simulation: &Simulation) -> Option<String> {
     Some(format!("positions were up to {} m off `{name}`, {} % of the mechanism's size: {cure}", short(way), short(100.0 * share)))
 }
 
-/// Share of the largest velocity from which on it is said that velocities are off their constraints.
+/// Share of the largest velocity from which on it is said that velocities are off their constraints: of the run, and at its end.
 const SLIPPED: f64 = 0.01;
+const SLIPS: f64 = 0.1;
 
-/// That velocities were far off a constraint: by methods that hold positions only.
+/// That velocities were far off a constraint, or are at the end: by methods that hold positions only.
 fn slipped(simulation: &Simulation) -> Option<String> {
-    let (name, off, share) = simulation.slipped().filter(|(_, _, share)| *share > SLIPPED)?;
+    let far = simulation.slipped().filter(|(_, _, share)| *share > SLIPPED).map(|slip| (slip, ["were up to", "of the largest"]));
+    let at_rest =
+        || simulation.slips().filter(|(_, _, share)| *share > SLIPS).map(|slip| (slip, ["are still", "of the largest at the end"]));
+    let ((name, off, share), [are, largest]) = far.or_else(at_rest)?;
     Some(format!(
-        "velocities were up to {} m/s off `{name}`, {:.0} % of the largest: rates, energies and work are as far off (a shorter step, or conserving-ggl \
+        "velocities {are} {} m/s off `{name}`, {:.0} % {largest}: rates, energies and work are as far off (a shorter step, or conserving-ggl \
          or radau, which hold velocities as well)",
         short(off),
         100.0 * share

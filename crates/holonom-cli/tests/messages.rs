@@ -252,6 +252,22 @@ fn velocities_far_off_their_rows_are_noted() {
     says(&chain(0.0025), &["note: velocities were up to ", " % of the largest: rates, energies and work are as far off"], 0);
     let (text, status) = run(&chain(6.25e-4));
     assert!(status == Some(0) && !text.contains("velocities were"), "{text}");
+    // A pendulum that hangs still but for what it came to swing off its rod, beside a point that was much faster.
+    let at_rest = |step: f64, end: f64| {
+        format!(
+            "plane = \"xy\"\n[point]\np = {{ mass = 1, position = [1, 0] }}\nq = {{ mass = 1, position = [5, 5], velocity = [80, 0] }}\n\
+             [constraint]\nrod = {{ type = \"distance\", between = [\"ground\", \"p\"] }}\n\
+             [force]\nweight = {{ type = \"constant\", point = \"p\", force = [0, -9.81] }}\n\
+             d = {{ type = \"spring\", between = [[2, -1], \"p\"], stiffness = 0, damping = 5 }}\n\
+             e = {{ type = \"spring\", between = [[0, 5], \"q\"], stiffness = 0, damping = 5 }}\n\
+             [simulation]\nend = {end}\nstep = {step}\nmethod = \"conserving\"\n"
+        )
+    };
+    says(&at_rest(0.14, 21.0), &["note: velocities are still 0.063", " m/s off `rod`, 100 % of the largest at the end: rates"], 0);
+    for (step, end) in [(0.14, 0.7), (0.05, 21.0)] {
+        let (text, status) = run(&at_rest(step, end));
+        assert!(status == Some(0) && !text.contains("velocities "), "{text}");
+    }
 }
 
 /// A run that no step is short enough for says why: a spring whose ends pass each other, or a flat parallelogram, whose many links are all in line.

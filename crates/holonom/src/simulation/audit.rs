@@ -368,9 +368,10 @@ impl Audit {
         self.strays.map(|strays| strays.farthest)
     }
 
-    /// The row that velocities were farthest off so far, where the method does not promise to hold them, and the largest of all velocities, m/s.
-    pub(super) fn slipped(&self) -> Option<(Stray, f64)> {
-        self.slips.map(|(slips, fastest)| (slips.farthest, fastest))
+    /// The rows that velocities were farthest off so far and in the last step, where the method does not promise to hold them, and the largest of all
+    /// velocities, m/s.
+    pub(super) fn slipped(&self) -> Option<([Stray; 2], f64)> {
+        self.slips.map(|(slips, fastest)| ([slips.farthest, slips.last], fastest))
     }
 
     /// Has a nominal step that was taken in parts begin where the audit `first` was.

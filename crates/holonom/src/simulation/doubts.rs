@@ -46,7 +46,7 @@ impl Stray {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Strays {
     pub farthest: Stray,
-    last: Stray,
+    pub last: Stray,
 }
 
 impl Strays {

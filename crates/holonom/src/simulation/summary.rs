@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::doubts::{Stray, Touch};
 use super::{Happening, Simulation};
+use crate::linalg::largest;
 
 /// Everything a run is judged by. Keys are stable; additions are allowed.
 #[derive(Clone, Debug, Serialize)]
@@ -148,6 +149,9 @@ pub struct WorkSummary {
 /// Share of its length by which a mechanism that stands about still comes on in a run.
 const STILL: f64 = 1e-6;
 
+/// Share of the largest velocity of a run that velocities off their constraints are told from at its end.
+const AT_REST: f64 = 1e-3;
+
 /// Share of the largest size of a force that is small.
 const SMALL: f64 = 0.1;
 
@@ -165,9 +169,20 @@ impl Simulation {
     /// The constraint that velocities were farthest off so far, by how much, m/s, and which share of the largest velocity that is; nothing where the
     /// method holds them, and where the mechanism stands about still.
     pub fn slipped(&self) -> Option<(&str, f64, f64)> {
-        let (Stray { row, way: off }, fastest) = self.audit.slipped()?;
+        let ([farthest, _], fastest) = self.audit.slipped()?;
+        self.slip(farthest, fastest, fastest)
+    }
+
+    /// The same of the last step and of the largest velocity after it. What comes to rest may go on to swing off its constraints, and no more
+    /// than that; nothing where that is little beside the largest velocity so far.
+    pub fn slips(&self) -> Option<(&str, f64, f64)> {
+        let ([_, last], fastest) = self.audit.slipped()?;
+        self.slip(last, largest(self.velocities()), fastest).filter(|(_, off, _)| *off > AT_REST * fastest)
+    }
+
+    fn slip(&self, Stray { row, way: off }: Stray, velocity: f64, fastest: f64) -> Option<(&str, f64, f64)> {
         let moves = fastest * self.state.t.abs() > STILL * self.work.scales.length;
-        moves.then_some((self.system.row_names().get(row)?.as_str(), off, off / fastest))
+        moves.then_some((self.system.row_names().get(row)?.as_str(), off, off / velocity))
     }
 
     /// What the method has made of the energy so far, below zero where it has lost it, and all there was to move, J; nothing made where the
