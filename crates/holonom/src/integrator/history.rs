@@ -52,7 +52,7 @@ pub fn extrapolate<const N: usize>(
         beyond += weight * difference * difference;
     }
     *squares = [now, before];
-    // A difference is that of the order above and the one before it, so products of both follow from squares of all three.
+    // A difference of the order above is d_n − d_{n−1}, so its square and those of both give the product d_n d_{n−1}, and no sum of products is needed.
     let mut shares = [0.0; N];
     let (lack, missed) = fit(now[1], 0.5 * (now[0] - before[0] - now[1]), before[0], 1.0);
     shares[0] = 1.0 - lack;
@@ -73,8 +73,8 @@ pub fn extrapolate<const N: usize>(
     }
 }
 
-/// By how much less than `most` times the numbers before goes on, within bounds beyond which errors would grow, so that least is missed; and the
-/// squares of what it misses. From the squares of what `most` times them misses, its products with them, and their squares.
+/// Continues numbers as f times those before, f from −`most` to `most`, as errors would grow beyond that, so that least is missed. Returns `most` − f and
+/// the square of what is missed. Takes, for f = `most`, that square and the product of what is missed with the numbers before, and their square.
 fn fit(missed: f64, product: f64, square: f64, most: f64) -> (f64, f64) {
     let lack = if square > 0.0 { (-product / square).clamp(0.0, 2.0 * most) } else { most };
     (lack, missed + lack * (2.0 * product + lack * square))

@@ -24,14 +24,14 @@ pub struct State {
     pub a_change: Vec<f64>,
     /// Backward differences of the accelerations up to the last step (D × nodes), m/s², zero in the same cases.
     pub a_differences: Vec<Differences<MOTION>>,
-    /// Their squares.
+    /// Squares of these, summed over the coordinates, at the last step and the one before it, m²/s⁴.
     pub a_squares: Squares<MOTION>,
     /// Predicted change of the multipliers in the next step (r), zero in the same cases. Only a tangent is built with it: what
     /// redundant rows leave undetermined of the multipliers would run away.
     pub lambda_change: Vec<f64>,
     /// Backward differences of the multipliers up to the last step (r), zero in the same cases.
     pub lambda_differences: Vec<Differences<MULTIPLIERS>>,
-    /// Their squares, each times that of its row's reach.
+    /// Squares of these, each times that of its row's reach, summed over the rows, at the last step and the one before it.
     pub lambda_squares: Squares<MULTIPLIERS>,
     /// Length of the last step, s.
     pub last_step: f64,
