@@ -15,6 +15,9 @@ use crate::system::System;
 /// than a sweep.
 const SWEPT: f64 = 1e-5;
 
+/// The same of the last iteration, over the tolerance: what is left has the same sign in step after step, and the energy would drift with it.
+const LAST: f64 = 0.02;
+
 /// Share of the mechanism that γ' must turn a node by for the curvature of its rows to count.
 const CURVED: f64 = 1e-4;
 
@@ -108,7 +111,7 @@ impl Stabilized {
             add(1.0, second, unknowns);
             self.pull(system, second);
             let left = work.farthest(system, &self.force);
-            let least = if ends { tolerance / SAME_SIGN } else { (SWEPT * whole).max(tolerance) };
+            let least = if ends { tolerance / SAME_SIGN } else { (SWEPT * whole).max(LAST * tolerance) };
             if left <= least || (newton.settings.iterations.is_some() && sweep >= FEW) {
                 return Some(left / whole);
             }
