@@ -330,9 +330,13 @@ impl Names for Reader<'_, '_> {
                 "write it by positions and velocities: what a spring pulls with is STIFFNESS*(distance(A, B) - LENGTH)",
             ));
         }
-        if name.contains('.') {
+        if let Some((_, column)) = name.rsplit_once('.') {
             let names = self.names();
-            let cure = like(name, names.iter().map(String::as_str));
+            let cure = match column {
+                "length" => "write distance(A, B) of its two ends".into(),
+                "length_rate" => "write speed(A, B) of its two ends".into(),
+                _ => like(name, names.iter().map(String::as_str)),
+            };
             // Constraints come before the coordinates of joints.
             let coordinates = if self.assembly.joints.is_empty() { "" } else { "coordinates of joints, " };
             let message = format!("`{name}` cannot be read here: positions, velocities, {coordinates}inputs and measures of these can");
