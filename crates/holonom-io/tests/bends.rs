@@ -295,6 +295,26 @@ fn a_sign_that_holds_is_named() {
     }
 }
 
+/// The same of equal steps, whose iteration goes to and fro over the jump, for efforts, forces and torques; a force that has a kink there is not named.
+#[test]
+fn a_sign_that_holds_is_named_by_equal_steps() {
+    let arm = "gravity = [0, 0, -9.81]\nplane = \"xz\"\n[body.arm]\nmass = 1\ninertia = 0.02\nposition = [0.3, 0]\n\
+               [joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"arm\"]\nat = [0, 0]\n\
+               [force.drag]\ntype = \"effort\"\njoint = \"hinge\"\neffort = \"-0.01*q_rate*abs(q_rate)\"\n";
+    for force in [
+        "type = \"effort\"\njoint = \"hinge\"\neffort = \"-0.6*sign(q_rate)\"",
+        "type = \"force\"\nbody = \"arm\"\nforce = [\"-2*sign(vx)\", \"-2*sign(vz)\"]",
+        "type = \"torque\"\nbody = \"arm\"\ntorque = \"-0.6*sign(w)\"",
+    ] {
+        for name in ["conserving-ggl", "radau"] {
+            let method = Method::resolve(&Choice::default().named(name)).unwrap();
+            let mut simulation = Simulation::new(model(&format!("{arm}[force.rub]\n{force}\n")).system, method, 5e-3).unwrap();
+            let Status::Stopped { reason, .. } = simulation.step_to(10.0) else { panic!("{name}, {force}: it went on") };
+            assert!(reason.contains("the force of `rub` jumps there") && reason.contains("tanh"), "{name}, {force}: {reason}");
+        }
+    }
+}
+
 /// A hinge that gravity pulls at and an effort by the sign of its angle holds: each method says so after a few thousand steps, also those that grow fine
 /// enough for a million of them in a hundredth of a second.
 #[test]

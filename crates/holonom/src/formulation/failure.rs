@@ -2,6 +2,9 @@
 
 use crate::system::System;
 
+/// What to write in place of a force that jumps with what it moves.
+pub(crate) const SMOOTH: &str = "friction that holds is a force of type \"friction\", or a formula with tanh(x/small) in place of sign(x)";
+
 /// Why a step was not taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Failure {
@@ -159,7 +162,7 @@ impl Failure {
             ),
             Self::TooSmall => "no step is short enough for the accuracy".into(),
             Self::JumpsBack { corner } => format!(
-                "no step is short enough for the accuracy, as the force of `{}` jumps to and fro with what it moves (friction that holds is a force of type \"friction\", or a formula with tanh(x/small) in place of sign(x))",
+                "no step is short enough for the accuracy, as the force of `{}` jumps to and fro with what it moves ({SMOOTH})",
                 system.cornering_force(corner)
             ),
             Self::Hidden { share } => format!(

@@ -41,6 +41,7 @@ mod workspace;
 
 pub use collocation::{Collocation, Timing};
 pub use dampers::{Fit, taken_of_turned};
+pub(crate) use failure::SMOOTH;
 pub use failure::{Failure, Unknown};
 pub(crate) use independence::extent;
 pub use independence::{Independence, VANISHED, independence, independent, natural_sizes};

@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use super::pilot::is_rough;
-use crate::formulation::{Failure, Independence, Workspace};
+use crate::formulation::{Failure, Independence, SMOOTH, Workspace};
 
 /// A row that is missed by less than this share of the mechanism's size is not to blame for a step that fails.
 const BLAMED: f64 = 1e-10;
@@ -37,6 +37,12 @@ impl Simulation {
             return format!(
                 "{what}; `{force}` turns round within {speed:.1e} m/s or rad/s, which steps jump across: give friction a larger `speed`"
             );
+        }
+        if of_steps
+            && row.is_empty()
+            && let Some(force) = self.jumping_force()
+        {
+            return format!("{what}; the force of `{force}` jumps there with what it moves ({SMOOTH})");
         }
         let is_of_rows = matches!(failure, Failure::NotConverged { .. } | Failure::Broken { .. } | Failure::Singular(_));
         // What cannot move has no step that is short enough either.

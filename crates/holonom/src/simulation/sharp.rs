@@ -2,7 +2,7 @@
 //! way that no step is short enough for it, as a spring whose ends pass each other.
 
 use super::Simulation;
-use crate::system::Response;
+use crate::system::{Look, Response};
 
 /// How many times faster something moves, by what it comes on in a step, than the speed within which such a force turns round.
 const SHARP: f64 = 100.0;
@@ -36,6 +36,20 @@ impl Simulation {
             moving.iter().find_map(within).map(|(within, speed)| (&law.name, within, speed / within))
         });
         sharpest.max_by(|a, b| a.2.total_cmp(&b.2)).map(|(name, within, _)| (name.as_str(), within))
+    }
+
+    /// The force, by name, that jumps with what moves within what velocities change by in a nominal step, before or behind the present ones: where the
+    /// iteration goes to and fro over a jump, the last step may have ended on either side.
+    pub(super) fn jumping_force(&mut self) -> Option<&str> {
+        let step = self.nominal_step();
+        let Self { system, state, work, .. } = self;
+        let _ = state.look_ahead(0.0, system, work);
+        let [behind, ahead] = [-step, step].map(|by| {
+            let end = &mut work.end;
+            end.v.iter_mut().zip(state.v.iter().zip(&state.a)).for_each(|(end, (v, a))| *end = v + by * a);
+            system.see(Look { x: &end.x, v: &end.v, t: state.t, at: &end.at, inputs: &state.inputs, span: None })
+        });
+        system.jumping_between(&behind, &ahead)
     }
 
     /// The force, by name, whose power turns round at once as the mechanism goes on at its present velocities.

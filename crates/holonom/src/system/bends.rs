@@ -39,6 +39,12 @@ pub(crate) struct Bends {
 /// Two numbers that nobody writes into a model.
 const PLACES: [f64; 2] = [0.577_215_664_901_532_9, 0.915_965_594_177_219];
 
+/// Halves by which a corner is closed in on: what is left of the way is its rounding.
+const HALVES: u32 = 50;
+
+/// Share of a force by which it must differ on the two sides of a corner to jump there.
+const JUMP: f64 = 0.5;
+
 /// A law or a load, the force of which may bend.
 #[derive(Clone, Copy)]
 pub(super) enum Bent<'a> {
@@ -130,6 +136,13 @@ impl Seen {
     pub fn ahead(&self, later: f64) -> Self {
         let values = self.values.iter().zip(&self.rates).map(|(value, rate)| value + later * rate).collect();
         Self { t: self.t + later, values, rates: self.rates.clone() }
+    }
+
+    /// What is seen at a share of the straight way to another state.
+    fn mixed(&self, other: &Self, share: f64) -> Self {
+        let mix = |from: f64, to: f64| from + share * (to - from);
+        let all = |from: &[f64], to: &[f64]| from.iter().zip(to).map(|(from, to)| mix(*from, *to)).collect();
+        Self { t: mix(self.t, other.t), values: all(&self.values, &other.values), rates: all(&self.rates, &other.rates) }
     }
 
     /// About what is seen at a share of the way to the next state: numbers by Hermite's cubic, and rates in a straight line, as those of the cubic
@@ -240,6 +253,29 @@ impl System {
             seen.rates.extend_from_slice(v);
         }
         seen
+    }
+
+    /// The force, by name, that jumps on the straight way from one state to another. Each corner on the way is closed in on, and the forces on its two
+    /// sides are compared there.
+    pub(crate) fn jumping_between(&self, from: &Seen, to: &Seen) -> Option<&str> {
+        let [first, last] = [from, to].map(|seen| self.bends(seen).corners);
+        (0..first.len()).filter(|&corner| first[corner] * last[corner] < 0.0).find_map(|corner| {
+            let mut sides = [0.0, 1.0];
+            for _ in 0..HALVES {
+                let middle = 0.5 * (sides[0] + sides[1]);
+                let is_before = self.bends(&from.mixed(to, middle)).corners[corner] * first[corner] > 0.0;
+                sides[usize::from(!is_before)] = middle;
+            }
+            let (number, force) = (self.bending.force_of(corner), self.bent(self.bending.force_of(corner)));
+            let own = self.bending.seen[number].clone();
+            let [before, behind, first, last] = [sides[0], sides[1], 0.0, 1.0].map(|share| {
+                let seen = from.mixed(to, share);
+                force.force(&seen.values[own.clone()], &seen.rates[own.clone()], seen.t)
+            });
+            // A force that goes through zero at a corner differs there by little of what it is on the way.
+            let size = before.iter().chain(&behind).chain(&first).chain(&last).fold(0.0_f64, |most, force| most.max(force.abs()));
+            before.iter().zip(&behind).any(|(before, behind)| (before - behind).abs() > JUMP * size).then(|| force.name())
+        })
     }
 
     /// Where forces bend.
