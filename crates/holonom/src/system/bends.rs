@@ -266,8 +266,8 @@ impl System {
                 let is_before = self.bends(&from.mixed(to, middle)).corners[corner] * first[corner] > 0.0;
                 sides[usize::from(!is_before)] = middle;
             }
-            let (number, force) = (self.bending.force_of(corner), self.bent(self.bending.force_of(corner)));
-            let own = self.bending.seen[number].clone();
+            let number = self.bending.force_of(corner);
+            let (force, own) = (self.bent(number), self.bending.seen[number].clone());
             let [before, behind, first, last] = [sides[0], sides[1], 0.0, 1.0].map(|share| {
                 let seen = from.mixed(to, share);
                 force.force(&seen.values[own.clone()], &seen.rates[own.clone()], seen.t)
