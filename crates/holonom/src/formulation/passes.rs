@@ -113,8 +113,8 @@ pub(super) fn react(
     outcome
 }
 
-fn react_at_level(
-    matrix: &mut impl LinearSystem,
+fn react_at_level<L: LinearSystem>(
+    matrix: &mut L,
     purpose: Purpose<'_>,
     system: &System,
     t: f64,
@@ -167,12 +167,7 @@ fn react_at_level(
     let leaves = matrix.factor(if is_stiffer { STIFFER * RHO } else { RHO }, work)?;
     let n = system.coordinates();
     let (x, v, at) = (work.end.x.clone(), work.end.v.clone(), work.end.at.clone());
-    work.miss_by_rounding(system, t);
-    let change = correction(matrix, system, work)?;
-    work.end.x.iter_mut().zip(change).for_each(|(x, change)| *x += change);
-    system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
-    meet_rates(matrix, 0.0, system, t, work)?;
-    let mut solve = |work: &mut Workspace| {
+    let solve = |matrix: &mut L, work: &mut Workspace| {
         let pushed = work.begin_pass(system, t);
         if is_near && astray.is_some() {
             follow_rows(matrix, [strays, 0.0], system, t, work)?;
@@ -180,10 +175,11 @@ fn react_at_level(
         work.lambda.fill(0.0);
         passes(matrix, Passes { leaves, pushed, most: MOST, open: ROUNDED }, system, work)
     };
-    solve(work)?;
-    let (others, other_forces) = (work.a[..n].to_vec(), work.lambda.clone());
+    let outcome = move_by_rounding(matrix, system, t, work).and_then(|()| solve(matrix, work));
     (work.end.x, work.end.v, work.end.at) = (x, v, at);
-    let end = solve(work)?;
+    outcome?;
+    let (others, other_forces) = (work.a[..n].to_vec(), work.lambda.clone());
+    let end = solve(matrix, work)?;
     let differs = work.a[..n].iter().zip(&others).fold(0.0, |m: f64, (a, other)| m.max((a - other).abs()));
     let is_sure = differs <= KNOWN * largest(&work.a[..n]).max(pushed) || work.strays(system, t) > NOISE;
     // Large forces elsewhere hide what accelerations differ by; those of the rows that hardly hold show it.
@@ -234,15 +230,15 @@ fn follow_rows(
     work: &mut Workspace,
 ) -> Result<bool, Failure> {
     work.kept_v.copy_from_slice(&work.end.v);
-    meet_rates(matrix, open, system, t, work)?;
+    let outcome = meet_rates(matrix, open, system, t, work);
     let moved = work.end.v.iter().zip(&work.kept_v).fold(0.0, |m: f64, (v, before)| m.max((v - before).abs()));
-    let are_near = moved <= FOLLOWS * strays * largest(&work.kept_v);
+    let are_near = outcome.is_ok() && moved <= FOLLOWS * strays * largest(&work.kept_v);
     if !are_near {
         work.end.v.copy_from_slice(&work.kept_v);
     }
     work.weigh_end_at_rest(system, t);
     work.end.v.copy_from_slice(&work.kept_v);
-    Ok(are_near)
+    outcome.map(|()| are_near)
 }
 
 /// Moves places at the end that are off the rows onto them: there alone redundant rows ask for the same. Beside them they ask for forces without bounds,
@@ -260,6 +256,15 @@ fn meet_rows(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut
         system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
     }
     Ok(())
+}
+
+/// Moves the places at the end to others that meet the rows as well as numbers can, and the velocities onto the rows there.
+fn move_by_rounding(matrix: &mut impl LinearSystem, system: &System, t: f64, work: &mut Workspace) -> Result<(), Failure> {
+    work.miss_by_rounding(system, t);
+    let change = correction(matrix, system, work)?;
+    work.end.x.iter_mut().zip(change).for_each(|(x, change)| *x += change);
+    system.evaluate(&work.end.x, t, &work.start.at, &mut work.end.at);
+    meet_rates(matrix, 0.0, system, t, work)
 }
 
 /// Moves the velocities at the end onto the rows, with the factors at hand, until they are off them by no more than the share `open`.
