@@ -75,14 +75,18 @@ impl Resumed {
             refuse(format!("is no checkpoint: {error}"), "give the folder or the checkpoint.json of an earlier run")
         };
         let value: Value = serde_json::from_slice(&bytes).map_err(is_none)?;
-        let again = "run from the start, without --resume, or with the version that wrote it";
+        let again = "run from the start, without --resume, or with the build of holonom that wrote it";
         match value["provenance"]["version"].as_str() {
             Some(VERSION) => (),
             Some(version) => return Err(refuse(format!("is of version {version}, and this is {VERSION}"), again)),
             None if value["state"].is_object() => return Err(refuse(format!("is of a version before {VERSION}"), again)),
             None => (),
         }
-        let kept: Kept = serde_json::from_value(value).map_err(is_none)?;
+        let is_own = value["provenance"]["version"].is_string();
+        let kept: Kept = serde_json::from_value(value).map_err(|error| match is_own {
+            true => refuse(format!("was written by another build of holonom {VERSION}: {error}"), again),
+            false => is_none(error),
+        })?;
         let differences = differences(&kept.provenance, run, source);
         if !differences.is_empty() {
             let cure = "give the model and the options of that run, or run from the start, without --resume";

@@ -170,6 +170,7 @@ fn another_run_is_refused_with_what_differs() {
     };
     let version = format!("\"version\":\"{}\"", env!("CARGO_PKG_VERSION"));
     edit("version.json", &version, "\"version\":\"0.0.7\"");
+    edit("build.json", "\"a_squares\"", "\"squares\"");
     edit("old.json", "\"provenance\":{", "\"origin\":{");
     edit("rows.json", "\"rows\":11", "\"rows\":12");
     fs::copy(folder.path().join("a/trajectory.csv"), folder.path().join("trajectory.csv")).unwrap();
@@ -195,6 +196,10 @@ fn another_run_is_refused_with_what_differs() {
         ("m.toml --set parameters.N=2 --end 0.2 --resume no.json", vec!["no.json is no checkpoint"]),
         ("m.toml --set parameters.N=2 --end 0.2 --resume torn.json", vec!["torn.json is no checkpoint"]),
         ("m.toml --set parameters.N=2 --end 0.2 --resume version.json", vec!["is of version 0.0.7, and this is"]),
+        (
+            "m.toml --set parameters.N=2 --end 0.2 --resume build.json",
+            vec!["build.json was written by another build of holonom", "`a_squares`", "or with the build of holonom that wrote it"],
+        ),
         ("m.toml --set parameters.N=2 --end 0.2 --resume old.json", vec!["is of a version before"]),
         ("m.toml --set parameters.N=2 --end 0.2 --resume rows.json", vec!["trajectory.csv has not the 12 rows", "row 12 is missing"]),
     ] {
