@@ -1,6 +1,6 @@
 //! Plain tables on a terminal.
 
-use holonom_report::digits::{DIGITS, between, without_round_off};
+use holonom_report::digits::{DIGITS, between, rounded, without_round_off};
 
 /// Characters of a line that a terminal has at least.
 const LEAST: usize = 40;
@@ -103,7 +103,7 @@ pub fn figures(value: f64) -> String {
 
 fn significant(value: f64, figures: usize) -> String {
     let text = format!("{value:.*e}", figures - 1);
-    let rounded: f64 = text.parse().unwrap_or(value);
+    let rounded = rounded(value, figures);
     match (rounded.abs(), text.split_once('e')) {
         (size, Some((mantissa, exponent))) if size > 0.0 && !(1e-3..1e7).contains(&size) => {
             format!("{}e{exponent}", mantissa.trim_end_matches('0').trim_end_matches('.'))
@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn answers_have_five_figures() {
         let cases =
-            [(0.0, "0"), (2.726_63, "2.7266"), (-1.234_56e-4, "-1.2346e-4"), (49.88345, "49.883"), (100_000.0, "100000"), (2e8, "2e8")];
+            [(0.0, "0"), (2.726_63, "2.7266"), (-1.234_56e-4, "-1.2346e-4"), (49.88345, "49.883"), (108_959.4, "108960"), (2e8, "2e8")];
         for (value, text) in cases.into_iter().chain([(0.001_234_56, "0.0012346"), (f64::NAN, "NaN")]) {
             assert_eq!(figures(value), text);
         }

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::digits::{DIGITS, between, without_round_off};
+use crate::digits::{DIGITS, between, rounded, without_round_off};
 
 /// Digits that a number has at most.
 pub const FIGURES: usize = 6;
@@ -27,7 +27,7 @@ pub fn figure(value: f64) -> String {
 
 /// The digits that answers have, as HTML.
 pub fn answer(value: f64) -> String {
-    significant(value, DIGITS)
+    significant(rounded(value, DIGITS), DIGITS)
 }
 
 /// An answer that is zero where it is round-off beside the largest of its like.
@@ -38,7 +38,7 @@ pub fn answer_beside(value: f64, largest: f64) -> String {
 /// An answer between two others.
 pub fn answer_between(value: f64, ends: [f64; 2]) -> String {
     let (value, digits) = between(value, ends);
-    significant(value, digits)
+    significant(rounded(value, digits), digits)
 }
 
 fn significant(value: f64, digits: usize) -> String {
@@ -99,6 +99,7 @@ mod tests {
         assert_eq!(figure(2.0), "2");
         assert_eq!(figure(41.26), "41.3");
         assert_eq!((answer(-389.0812), answer(0.0123456)), ("\u{2212}389.08".to_owned(), "0.012346".to_owned()));
+        assert_eq!((answer(108_959.4), figure(6787.2)), ("108960".to_owned(), "6787".to_owned()));
         assert_eq!([10_000.03, 1e-14].map(|value| answer_between(value, [9_999.97, 10_000.03])), ["10000.03", "0"]);
         assert_eq!((answer_beside(1e-14, 10.0), answer_beside(2.5, 10.0)), ("0".to_owned(), "2.5".to_owned()));
     }

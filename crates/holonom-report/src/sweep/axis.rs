@@ -1,5 +1,6 @@
 //! An axis of a plot: where a value lies on it, and its ticks.
 
+use crate::digits::rounded;
 use crate::format;
 
 /// Where values lie.
@@ -122,7 +123,7 @@ pub fn label(value: f64) -> String {
 
 /// A number with so many significant figures at most.
 pub fn figures(value: f64, figures: usize) -> String {
-    let rounded: f64 = format!("{value:.*e}", figures - 1).parse().unwrap_or(value);
+    let rounded = rounded(value, figures);
     if figures <= format::FIGURES {
         return label(rounded);
     }
