@@ -17,8 +17,11 @@ const MOST_STEPS: usize = 2000;
 const ALL_STEPS: usize = 100_000;
 const FEWEST_STEPS: usize = 20;
 
-/// Most places in a step of which its mean is found.
+/// Most places in a step of which its mean is found; those that any step has, and how many more there are for each on average: what is too fast for
+/// steps of any length would want all of them in every step, and a start would take minutes.
 const MOST_PLACES: usize = 256;
+const PLACES_OF_EACH: usize = 32;
+const MORE_PLACES: usize = 50;
 
 /// To this share of how far a function goes in a step its mean is told.
 const MEAN: f64 = 1e-4;
@@ -109,6 +112,8 @@ struct Seen {
     ends: [f64; 2],
     mean: f64,
     taken: f64,
+    /// Places of which its mean was found, but for the first few.
+    places: usize,
 }
 
 /// A step, or two, of which the method takes something else than there is.
@@ -133,8 +138,10 @@ impl Model {
             let looks = if part.is_motion && looks.len() == 1 { &ends[..] } else { &looks[..] };
             let bends = part.course.bends(end);
             let missed = first_missed(&part.course, &bends, looks, most, [step, end])?;
-            let mut finer = FINER.iter().map(|share| share * step);
-            let cure = match finer.find(|step| first_missed(&part.course, &bends, looks, most, [*step, end]).is_none()) {
+            let is_seen = |step: &f64| first_missed(&part.course, &bends, looks, most, [*step, end]).is_none();
+            let finer = FINER.map(|share| share * step);
+            let finest = finer.last().filter(|finest| is_seen(finest));
+            let cure = match finest.and_then(|_| finer.into_iter().find(is_seen)) {
                 Some(step) => format!("a step of {} s sees it, and so do steps by accuracy", short(step)),
                 None => "steps by accuracy end where it changes".into(),
             };
@@ -184,10 +191,12 @@ fn first_missed(course: &Course, bends: &[f64], looks: &[[f64; 2]], most: usize,
         let [from, to] = Seen::times(seen.number, step);
         beside(from, seen.ends[0]).max(beside(to, seen.ends[1])).max(beside(0.5 * (from + to), seen.mean))
     };
-    let mut reach = 0.0_f64;
+    let (mut reach, mut more) = (0.0_f64, MORE_PLACES * numbers.len());
     let mut steps: Vec<Seen> = Vec::with_capacity(numbers.len());
     for number in numbers {
-        let seen = Seen::of(course, bends, looks, step, number, LOOK * reach, steps.last());
+        let places = MOST_PLACES.min(PLACES_OF_EACH + more);
+        let seen = Seen::of(course, bends, looks, step, number, (LOOK * reach, places), steps.last());
+        more -= seen.places.saturating_sub(PLACES_OF_EACH).min(more);
         let far = far(&seen);
         reach = if far.is_finite() { reach.max(far) } else { reach };
         steps.push(seen);
@@ -206,7 +215,7 @@ fn first_missed(course: &Course, bends: &[f64], looks: &[[f64; 2]], most: usize,
     // What happens beside the end of a step is seen by both or by none.
     let pairs = || steps.windows(2).filter(|pair| pair[1].number == pair[0].number + 1).map(|pair| pair[0].joined(&pair[1]));
     let (seen, length) = alone.or_else(|| pairs().find(|seen| is_missed(seen, 2.0 * step)).map(|seen| (seen, 2.0 * step)))?;
-    let exactly = |number| Seen::of(course, bends, looks, step, number, 0.0, None);
+    let exactly = |number| Seen::of(course, bends, looks, step, number, (0.0, MOST_PLACES), None);
     let told = if length > step { exactly(seen.number).joined(&exactly(seen.number + 1)) } else { exactly(seen.number) };
     let begin = seen.number as f64 * step;
     let known = |value: f64| if value.abs() < SMALL * reach { 0.0 } else { value };
@@ -234,7 +243,8 @@ impl Seen {
     /// This step and the next as one.
     fn joined(&self, next: &Self) -> Self {
         let both = |of: fn(&Self) -> f64| 0.5 * (of(self) + of(next));
-        Self { number: self.number, ends: [self.ends[0], next.ends[1]], mean: both(|seen| seen.mean), taken: both(|seen| seen.taken) }
+        let (mean, taken) = (both(|seen| seen.mean), both(|seen| seen.taken));
+        Self { ends: [self.ends[0], next.ends[1]], mean, taken, ..*self }
     }
 
     /// When a step of this number begins and ends, s.
@@ -242,8 +252,17 @@ impl Seen {
         [number, number + 1].map(|k| k as f64 * step)
     }
 
-    /// A step, with its mean as near as `near`, or as the share `MEAN` of how far the function goes in it; `last` is the step seen last.
-    fn of(course: &Course, bends: &[f64], looks: &[[f64; 2]], step: f64, number: usize, near: f64, last: Option<&Self>) -> Self {
+    /// A step, with its mean as near as `near`, or as the share `MEAN` of how far the function goes in it, as far as that takes no more than `allowed`
+    /// places; `last` is the step seen last.
+    fn of(
+        course: &Course,
+        bends: &[f64],
+        looks: &[[f64; 2]],
+        step: f64,
+        number: usize,
+        (near, allowed): (f64, usize),
+        last: Option<&Self>,
+    ) -> Self {
         let [from, to] = Self::times(number, step);
         let known = last.filter(|last| last.number + 1 == number).map(|last| last.ends[1]);
         let inside = &bends[bends.partition_point(|t| *t <= from)..bends.partition_point(|t| *t < to)];
@@ -267,9 +286,9 @@ impl Seen {
         let values = pieces.iter().flat_map(|piece| piece.values);
         let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(value), most.max(value)));
         let width = near.max(MEAN * (most - least)) * (to - from);
-        let mut left = MOST_PLACES;
+        let mut left = allowed;
         let integral: f64 = pieces.iter().map(|piece| piece.integral(course, width, &mut left)).sum();
-        Self { number, ends, mean: integral / (to - from), taken }
+        Self { number, ends, mean: integral / (to - from), taken, places: allowed - left }
     }
 }
 
