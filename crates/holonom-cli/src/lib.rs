@@ -18,6 +18,7 @@ mod options;
 mod output;
 mod progress;
 mod provenance;
+mod rounds;
 mod sweep;
 mod table;
 

@@ -10,6 +10,7 @@ use holonom::simulation::{Simulation, Start};
 
 use crate::load::Loaded;
 use crate::message::{listed, unused_parameters};
+use crate::rounds;
 use crate::table::short;
 
 /// Positions over the size of the mechanism that round-off moves at the start.
@@ -270,12 +271,14 @@ pub fn long_turns(model: &Model, simulation: &Simulation, recording: &Recording)
     let angles = model.system.gauges().iter().filter(|gauge| gauge.ends_with("angle"));
     let is_whole = simulation.work().rejected_steps == 0;
     let in_space = |name: &String| lag_in_space(name, recording, step, is_whole);
-    // Bodies that no joint has an angle of.
-    let (name, lag) = largest(&mut angles.filter_map(|name| Some((name.clone(), lag(name)?))))
-        .or_else(|| largest(&mut model.scene.bodies.iter().filter_map(|body| Some((body.name.clone(), in_space(&body.name)?)))))?;
+    // Bodies that no joint has an angle of, and then what goes round without turning itself.
+    let ((name, lag), rate) = largest(&mut angles.filter_map(|name| Some((name.clone(), lag(name)?))))
+        .or_else(|| largest(&mut model.scene.bodies.iter().filter_map(|body| Some((body.name.clone(), in_space(&body.name)?)))))
+        .map(|found| (found, "rate"))
+        .or_else(|| Some((largest(&mut rounds::lags(model, simulation, recording, SLOW).into_iter())?, "velocity")))?;
     let [less, lags] = if lag > 0.0 { ["less", "lags"] } else { ["more", "leads"] };
     Some(format!(
-        "`{name}` comes on by {:.0} % {less} than its rate says: a method of order 2 {lags} where steps are long for what spins (a shorter step, or gauss)",
+        "`{name}` comes on by {:.0} % {less} than its {rate} says: a method of order 2 {lags} where steps are long for what spins (a shorter step, or gauss)",
         100.0 * lag.abs()
     ))
 }
@@ -286,19 +289,21 @@ fn lag_in_space(body: &str, recording: &Recording, step: f64, is_whole: bool) ->
     let [qw, qx, qy, qz, wx, wy, wz] = ["qw", "qx", "qy", "qz", "wx", "wy", "wz"].map(column);
     let ([qw, qx, qy, qz], [wx, wy, wz], times) = ([qw?, qx?, qy?, qz?], [wx?, wy?, wz?], recording.column("t")?);
     let rate = |k: usize| (wx[k].powi(2) + wy[k].powi(2) + wz[k].powi(2)).sqrt();
-    let (mut came, mut due) = (0.0, 0.0);
+    // Of the longest way without a turn back: how far it came, and by its rate.
+    let (mut way, mut longest) = ([0.0; 2], [0.0_f64; 2]);
     for k in 1..times.len() {
         let span = times[k] - times[k - 1];
         // The mean of the vectors: what swings to and fro has hardly any where it turns back.
         let turn = 0.5 * span * [wx, wy, wz].map(|w| (w[k - 1] + w[k]).powi(2)).iter().sum::<f64>().sqrt();
         if span < 1.5 * step && (is_whole || turn < std::f64::consts::PI) {
             let cosine = [qw, qx, qy, qz].map(|q| q[k - 1] * q[k]).iter().sum::<f64>().abs();
-            came += 2.0 * cosine.min(1.0).acos();
-            due += turn;
+            let turns_back = [wx, wy, wz].map(|w| w[k - 1] * w[k]).iter().sum::<f64>() < 0.0;
+            way = if turns_back { [0.0; 2] } else { [way[0] + 2.0 * cosine.min(1.0).acos(), way[1] + turn] };
+            longest = if way[1] > longest[1] { way } else { longest };
         }
     }
-    let is_spin = due > std::f64::consts::TAU && (0..times.len()).any(|k| rate(k) * step > SLOW);
-    is_spin.then(|| 1.0 - came / due)
+    let is_spin = longest[1] > std::f64::consts::TAU && (0..times.len()).any(|k| rate(k) * step > SLOW);
+    is_spin.then(|| 1.0 - longest[0] / longest[1])
 }
 
 /// What is not sure of the results of a run, as far as the simulation itself knows at its end.

@@ -159,6 +159,11 @@ const SMALL: f64 = 0.1;
 const ROUNDED: f64 = 1e-9;
 
 impl Simulation {
+    /// Size of the mechanism, m.
+    pub fn length(&self) -> f64 {
+        self.work.scales.length
+    }
+
     /// The constraint that positions were farthest off so far, how far, m, and which share of the mechanism's size that is; nothing where the method
     /// holds them.
     pub fn strayed(&self) -> Option<(&str, f64, f64)> {
