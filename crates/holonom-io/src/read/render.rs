@@ -82,12 +82,22 @@ pub(super) fn at(name: &str, text: &str, bytes: Range<usize>, path: &str, messag
     let margin = " ".repeat(number.to_string().len());
     let line = text[line_start..line_end].trim_end();
     let (line, column_shown) = window(line, column);
-    let pad: String = line.chars().take(column_shown - 1).map(|c| if c == '\t' { '\t' } else { ' ' }).collect();
+    let pad: String = line.chars().take(column_shown - 1).map(blank).collect();
     let marks = "^".repeat(marks.min(WIDEST));
     format!(
         "error: {message}\n{margin}--> {name}:{number}:{column}{path}\n{margin} |\n{number} | {line}\n{margin} | {pad}{marks}\n{}",
         cure_line(&margin, cure)
     )
+}
+
+/// A blank as wide as a character: of those of East Asia, and of emoji, a terminal shows one in the room of two.
+fn blank(c: char) -> char {
+    match c {
+        '\t' => '\t',
+        '\u{1100}'..='\u{115f}' | '\u{2e80}'..='\u{a4cf}' | '\u{ac00}'..='\u{d7a3}' | '\u{f900}'..='\u{faff}' => '\u{3000}',
+        '\u{ff00}'..='\u{ff60}' | '\u{1f300}'..='\u{1faff}' => '\u{3000}',
+        _ => ' ',
+    }
 }
 
 /// The part of a long line around a column, and where the column is in it.
