@@ -33,6 +33,25 @@ thread_local! {
     static WITHIN: RefCell<Vec<usize>> = const { RefCell::new(Vec::new()) };
 }
 
+/// Which simulation is within a step whose function waits for which other, by where they are.
+static WAITS: Mutex<Vec<[usize; 2]>> = Mutex::new(Vec::new());
+
+/// Notes that steps of the simulations `within` wait for another. False where that waits for one of them itself, so that neither would ever go on.
+fn may_wait(within: &[usize], wanted: usize) -> bool {
+    let mut waits = WAITS.lock().unwrap_or_else(|broken| broken.into_inner());
+    let mut behind = vec![wanted];
+    let mut k = 0;
+    while let Some(from) = behind.get(k).copied() {
+        behind.extend(waits.iter().filter(|[of, _]| *of == from).map(|[_, on]| *on));
+        k += 1;
+    }
+    let is_free = within.iter().all(|from| !behind.contains(from));
+    if is_free {
+        waits.extend(within.iter().map(|from| [*from, wanted]));
+    }
+    is_free
+}
+
 /// A model at work, step by step.
 #[pyclass(frozen, module = "holonom._engine")]
 pub struct Simulator {
@@ -58,9 +77,22 @@ impl Simulator {
         if let Some(running) = self.free() {
             return Ok(running);
         }
-        // The other thread may need the interpreter.
-        let wait = || std::iter::repeat_with(|| py.detach(|| std::thread::sleep(PAUSE))).find_map(|()| self.free());
-        Ok(self.waiting(wait).expect("it waits until it has it"))
+        let within = WITHIN.with_borrow(Clone::clone);
+        if !may_wait(&within, self.address()) {
+            let why = "functions of two simulations, which are within a step each, wait for each other's simulation";
+            return Err(refuse(py, "", why, "step both in one thread, or give the functions what they read as arguments or inputs"));
+        }
+        let wait = || loop {
+            // The other thread may need the interpreter.
+            py.detach(|| std::thread::sleep(PAUSE));
+            py.check_signals()?;
+            if let Some(running) = self.free() {
+                return Ok(running);
+            }
+        };
+        let outcome = self.waiting(wait);
+        WAITS.lock().unwrap_or_else(|broken| broken.into_inner()).retain(|[from, _]| !within.contains(from));
+        outcome
     }
 
     /// The simulation, where no other thread is at it.
@@ -172,16 +204,18 @@ impl Simulator {
         drop(running);
         let mut left = count;
         loop {
+            py.detach(|| self.let_others());
+            let mut running = self.running(py)?;
+            let at = &mut *running;
             let (taken, goes_on) = py.detach(|| {
-                self.let_others();
-                let mut running = self.waiting(|| self.running.lock().unwrap_or_else(|broken| broken.into_inner()));
-                let taken = self.within(&mut running, |running| running.advance(left, &self.trouble));
-                self.raise(&mut running).map(|()| taken)
+                let taken = self.within(at, |running| running.advance(left, &self.trouble));
+                self.raise(at).map(|()| taken)
             })?;
             left -= taken;
             if left == 0 || !goes_on {
                 return Ok(goes_on);
             }
+            drop(running);
             py.check_signals()?;
         }
     }

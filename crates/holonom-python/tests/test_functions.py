@@ -284,6 +284,36 @@ def test_a_function_cannot_have_the_simulation_that_calls_it():
     assert "give the function what it reads as arguments" in str(error.value.__cause__)
 
 
+def test_functions_of_two_simulations_that_wait_for_each_other_are_refused():
+    sims, errors, meet = {}, [], threading.Barrier(2, timeout=60)
+
+    def simulation(other):
+        def look(angle):
+            if other not in sims:
+                return -angle
+            if not errors:
+                meet.wait()
+            return -angle - 0 * sims[other].time
+
+        m, pin, _ = pendulum()
+        m.effort("motor", joint=pin, effort=m.function("look", look)("pin.angle"))
+        return hm.Simulation(m, step=0.01)
+
+    def go(sim):
+        try:
+            sim.step(3)
+        except hm.FunctionError as error:
+            errors.append(str(error.__cause__))
+            meet.abort()
+
+    sims.update(a=simulation("b"), b=simulation("a"))
+    threads = [threading.Thread(target=go, args=[sim], daemon=True) for sim in sims.values()]
+    [thread.start() for thread in threads]
+    [thread.join(60) for thread in threads]
+    assert not any(thread.is_alive() for thread in threads)
+    assert "wait for each other" in errors[0]
+
+
 def test_other_threads_may_look_while_functions_are_called():
     m, pin, _ = pendulum()
     f = m.function("back", lambda angle: -angle)
