@@ -23,7 +23,7 @@ export interface Departure {
 /** A logarithmic axis has room for so many powers of ten above the sound runs. */
 const DECADES_ABOVE = 12;
 
-/** Numbers beyond this cannot be drawn. */
+/** Numbers beyond so many times what an axis covers, or 1, cannot be drawn. */
 const LARGEST_DRAWN = 1e30;
 
 /** The axis of a chart for curves that cover so much. */
@@ -54,9 +54,10 @@ export function energyMoved(runs: Run[]): number {
   return most.length > 0 ? Math.min(...most) : 0;
 }
 
-/** A value that a canvas can draw. */
-export function drawable(value: number): number {
-  return Math.min(Math.max(value, -LARGEST_DRAWN), LARGEST_DRAWN);
+/** The largest value of a chart that a canvas can draw. */
+export function largestDrawn(chart: Chart): number {
+  const ends = chart.scale === "log" ? [] : axisOf(chart, chart.curves.flatMap(extentOf));
+  return LARGEST_DRAWN * Math.max(1, ...ends.map(Math.abs));
 }
 
 /** Common range of the sound curves, and of the others as far as they do not flatten them; of all, if none is sound. */

@@ -5,7 +5,6 @@ import type { Clock } from "../clock";
 import { element } from "../dom";
 import { curveColor, curveDash, onThemeChange, theme } from "../theme";
 import type { Visibility } from "../visibility";
-import { drawable } from "./bounds";
 import { withUnit, type Chart, type Curve } from "./charts";
 import { Readout } from "./comparison";
 import { FONT, HEIGHT, LABEL_WIDTH, onClick, UNIT_WIDTH } from "./plot";
@@ -74,7 +73,7 @@ function nearest(plot: uPlot, chart: Chart, visibility: Visibility, left: number
 }
 
 function tableOf(chart: Chart): uPlot.AlignedData {
-  const finite = (values: Float64Array): (number | null)[] => Array.from(values, (value) => (Number.isFinite(value) ? drawable(value) : null));
+  const finite = (values: Float64Array): (number | null)[] => Array.from(values, (value) => (Number.isFinite(value) ? value : null));
   return [null, ...chart.curves.map((curve) => [finite(curve.across!), finite(curve.y)])] as unknown as uPlot.AlignedData;
 }
 

@@ -6,7 +6,7 @@ import { element } from "../dom";
 import { reading } from "../format";
 import { curveColor, curveDash, onThemeChange, theme } from "../theme";
 import type { Visibility } from "../visibility";
-import { axisOf, departures, drawable, type Departure, type Extent } from "./bounds";
+import { axisOf, departures, largestDrawn, type Departure, type Extent } from "./bounds";
 import { withUnit, type Chart, type Curve } from "./charts";
 import { ComparedHeading, Readout } from "./comparison";
 import { Heading } from "./heading";
@@ -164,9 +164,11 @@ function lastRows(gone: Departure[]): Map<Curve, number> {
 /** All curves over one common time axis, cut after the rows given for some. */
 function tableOf(chart: Chart, cutAfter: Map<Curve, number>): uPlot.AlignedData {
   const floor = chart.scale === "log" ? logFloor(chart.curves.flatMap((curve) => [...curve.y])) : -Infinity;
+  const most = largestDrawn(chart);
   const tables = chart.curves.map((curve) => {
     const last = cutAfter.get(curve) ?? Infinity;
-    const drawn = (value: number, row: number): number | null => (Number.isFinite(value) && row <= last ? drawable(Math.max(value, floor)) : null);
+    const within = (value: number): number => Math.min(Math.max(value, floor, -most), most);
+    const drawn = (value: number, row: number): number | null => (Number.isFinite(value) && row <= last ? within(value) : null);
     return [[...curve.x], Array.from(curve.y, drawn)] as uPlot.AlignedData;
   });
   const same = chart.curves.every((curve) => curve.x === chart.curves[0].x);
