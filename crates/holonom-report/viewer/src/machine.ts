@@ -240,7 +240,7 @@ function ofOwners(channels: Channel[], owners: string[]): Group[] {
   });
 }
 
-/** The groups of channels that are shown from the start; of a model without any of them the first coordinates. */
+/** The groups of channels that are shown from the start; of a model without any of them the first coordinates, or how it turns where these stay. */
 function first(channels: Channel[], bodies: Set<string>): Group[] {
   const others = FIRST.map(([title, unit, ending]): Group => {
     const fits = ({ name }: Channel): boolean => ending.test(name) && !bodies.has(name.replace(ending, ""));
@@ -248,7 +248,9 @@ function first(channels: Channel[], bodies: Set<string>): Group[] {
   });
   const found = [...measures(channels), ...others].filter((group) => group.channels.length > 0);
   if (found.length > 0) return found.map((group) => (group.channels.length > 1 ? group : alone(group.channels[0])));
-  const places = channels.filter((channel) => channel.unit === "m").slice(0, 3);
+  const [places, rates] = ["m", "rad/s"].map((unit) => channels.filter((channel) => channel.unit === unit).slice(0, 3));
+  const moves = ({ extremes }: Channel): boolean => extremes !== null && extremes[0] !== extremes[2];
+  if (!places.some(moves) && rates.some(moves)) return [{ title: "Angular velocities", channels: rates }];
   return places.length > 0 ? [{ title: "Positions", channels: places }] : [];
 }
 
