@@ -81,7 +81,7 @@ fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
             let (value, at) = (number(peak, "value"), number(peak, "at"));
             writeln!(
                 out,
-                r#"<tr><th scope="row">{}</th><td class="number">{value} <small>{}</small></td><td class="number"><small>at {at} s</small></td></tr>"#,
+                r#"<tr><th scope="row">{}</th><td class="number">{value}&nbsp;<small>{}</small></td><td class="number"><small>at {at} s</small></td></tr>"#,
                 text("name"),
                 text("unit"),
             )?;
