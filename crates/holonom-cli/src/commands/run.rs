@@ -208,7 +208,7 @@ pub fn describe(loaded: &Loaded, summary: &Value) -> String {
         (
             "steps",
             format!(
-                "{} of {} s{}, {} iterations in each, {} rejected{}",
+                "{} of {} s{}, {} iterations{}, {} rejected{}",
                 summary["steps"],
                 short(summary["step"].as_f64().unwrap_or(0.0)),
                 match summary["method"]["accuracy"].as_f64() {
@@ -216,6 +216,8 @@ pub fn describe(loaded: &Loaded, summary: &Value) -> String {
                     Some(accuracy) => format!(", {} taken for an accuracy of {}", summary["work"]["steps_taken"], short(accuracy)),
                 },
                 number("work", "iterations_per_step"),
+                // A run that stopped at its start has taken none.
+                if summary["work"]["steps_taken"].as_u64() == Some(0) { "" } else { " in each" },
                 summary["work"]["rejected_steps"],
                 recorded(summary)
             ),
