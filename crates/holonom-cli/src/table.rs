@@ -1,6 +1,7 @@
 //! Plain tables on a terminal.
 
 use holonom_report::digits::{DIGITS, between, rounded, without_round_off};
+use unicode_width::UnicodeWidthStr;
 
 /// Characters of a line that a terminal has at least.
 const LEAST: usize = 40;
@@ -20,11 +21,11 @@ pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
 }
 
 fn table_within(room: usize, header: &[&str], rows: &[Vec<String>]) -> String {
-    let width = |k: usize| rows.iter().map(|row| row[k].chars().count()).chain([header[k].chars().count()]).max().unwrap_or(0);
+    let width = |k: usize| rows.iter().map(|row| row[k].width()).chain([header[k].width()]).max().unwrap_or(0);
     let widths: Vec<usize> = (0..header.len()).map(width).collect();
     let line = |cells: &dyn Fn(usize) -> String, columns: &[usize]| {
         let cells = columns.iter().map(|&k| {
-            let padding = " ".repeat(widths[k] - cells(k).chars().count());
+            let padding = " ".repeat(widths[k] - cells(k).width());
             if k == 0 { cells(k) + &padding } else { padding + &cells(k) }
         });
         cells.collect::<Vec<_>>().join(GAP).trim_end().to_string()
@@ -166,6 +167,8 @@ mod tests {
         assert!(blocks[0][2].starts_with("one ") && blocks[0][2].ends_with(" 1"), "{told}");
         assert_eq!(blocks[1][2].split_whitespace().collect::<Vec<_>>(), ["one", "2", "3"], "{told}");
         assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+        let told = table_within(80, &["run", "a"], &[vec!["箱の列".into(), "1".into()], vec!["boxes".into(), "2".into()]]);
+        assert!(told.ends_with("箱の列  1\nboxes   2"), "a character of East Asia is two columns wide: {told}");
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use holonom::model::{Fault, Value};
+use unicode_width::UnicodeWidthChar;
 
 use super::places::Places;
 use super::toml::SyntaxError;
@@ -82,7 +83,7 @@ pub(super) fn at(name: &str, text: &str, bytes: Range<usize>, path: &str, messag
     let margin = " ".repeat(number.to_string().len());
     let line = text[line_start..line_end].trim_end();
     let (line, column_shown) = window(line, column);
-    let pad: String = line.chars().take(column_shown - 1).map(blank).collect();
+    let pad: String = line.chars().take(column_shown - 1).map(blanks).collect();
     let marks = "^".repeat(marks.min(WIDEST));
     format!(
         "error: {message}\n{margin}--> {name}:{number}:{column}{path}\n{margin} |\n{number} | {line}\n{margin} | {pad}{marks}\n{}",
@@ -90,13 +91,13 @@ pub(super) fn at(name: &str, text: &str, bytes: Range<usize>, path: &str, messag
     )
 }
 
-/// A blank as wide as a character: of those of East Asia, and of emoji, a terminal shows one in the room of two.
-fn blank(c: char) -> char {
-    match c {
-        '\t' => '\t',
-        '\u{1100}'..='\u{115f}' | '\u{2e80}'..='\u{a4cf}' | '\u{ac00}'..='\u{d7a3}' | '\u{f900}'..='\u{faff}' => '\u{3000}',
-        '\u{ff00}'..='\u{ff60}' | '\u{1f300}'..='\u{1faff}' => '\u{3000}',
-        _ => ' ',
+/// Blanks as wide as a character: a terminal shows those of East Asia, and emoji, two columns wide.
+fn blanks(c: char) -> &'static str {
+    match (c, c.width()) {
+        ('\t', _) => "\t",
+        (_, Some(2)) => "  ",
+        (_, Some(0)) => "",
+        _ => " ",
     }
 }
 

@@ -178,8 +178,8 @@ impl Simulation {
         self.slip(farthest, fastest, fastest)
     }
 
-    /// The same of the last step and of the largest velocity after it, or of what is missing of a drive's where all else stands. What comes to rest may go on to swing off its constraints, and no more
-    /// than that; nothing where that is little beside the largest velocity so far.
+    /// The same of the last step and of the largest velocity after it, or of what is missing of a drive's where all else stands. What comes to rest may
+    /// go on to swing off its constraints, and no more than that; nothing where that is little beside the largest velocity so far.
     pub fn slips(&self) -> Option<(&str, f64, f64)> {
         let ([_, last], fastest) = self.audit.slipped()?;
         self.slip(last, largest(self.velocities()).max(last.way), fastest).filter(|(_, off, _)| *off > AT_REST * fastest)
