@@ -327,6 +327,24 @@ fn a_winch_tightens_a_rope_between_fixed_places() {
     }
 }
 
+/// A rope between the ground and the middle of a wheel, which a joint holds where it is, pulls all the same and the joint bears it, whether the wheel shares the
+/// place with the ground or not.
+#[test]
+fn a_rope_to_what_a_joint_holds_shows_its_tension() {
+    for reactions in ["", "[output]\nreactions = true\n"] {
+        let model = common::model_with_forces(&format!(
+            "plane = \"xy\"\ngravity = [0, -10]\n[body.wheel]\nmass = 2\ninertia = 0.5\nposition = [0, 0]\nangular_velocity = 1\n\
+             [joint.axle]\ntype = \"revolute\"\nbetween = [\"ground\", \"wheel\"]\nat = [0, 0]\n\
+             [force.guy]\ntype = \"rope\"\nbetween = [\"wheel\", [0, -2]]\nlength = 1.5\nstiffness = 1000\n{reactions}"
+        ));
+        let recording = common::run_every(&model, "conserving-ggl", 0.01, 0.1, 1).1;
+        for (name, expected) in [("guy.force", 500.0), ("guy.length", 2.0), ("axle.fy", 520.0)] {
+            let found = common::last(&recording, name);
+            assert!((found - expected).abs() < 1e-12 * expected, "{reactions}{name}: {found} in place of {expected}");
+        }
+    }
+}
+
 /// A rope of the length that it has at the start, on an arm that turns away: whatever rounding makes of both lengths, it pulls with c ℓ̇ from the first
 /// row on, and the arm feels what is shown.
 #[test]

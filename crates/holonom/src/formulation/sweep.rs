@@ -16,7 +16,7 @@ use crate::system::System;
 const SWEPT: f64 = 1e-5;
 
 /// The same of the last iteration, over the tolerance: what is left has the same sign in step after step, and the energy would drift with it.
-const LAST: f64 = 0.02;
+const LAST: f64 = 0.06;
 
 /// Share of the mechanism that γ' must turn a node by for the curvature of its rows to count.
 const CURVED: f64 = 1e-4;

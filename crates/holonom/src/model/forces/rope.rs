@@ -172,7 +172,8 @@ struct Falls {
     fixed: f64,
 }
 
-/// Of a rope on a drum the first stretch counts as one that changes where no other does: its tension is seen there.
+/// Where no stretch changes, as between the ground and what joints hold where it is, and with a drum, the first between two bodies counts as one that does: the
+/// tension is seen there.
 fn falls(assembly: &mut Assembly<'_>, ends: &[End], has_drum: bool) -> Falls {
     let mut falls = Falls { moving: Vec::new(), fixed: 0.0 };
     let mut seen: Vec<[&Vec<Term>; 2]> = Vec::new();
@@ -187,8 +188,8 @@ fn falls(assembly: &mut Assembly<'_>, ends: &[End], has_drum: bool) -> Falls {
             falls.moving.push((assembly.builder.square(&from_to(a, b)), 1.0));
         }
     }
-    if has_drum && falls.moving.is_empty() {
-        let [a, b] = [&ends[0], &ends[1]];
+    let is_between = |pair: &&[End]| has_drum || pair[0].body.is_none() || pair[0].body != pair[1].body;
+    if let Some([a, b]) = ends.windows(2).find(is_between).filter(|_| falls.moving.is_empty()) {
         falls.fixed -= norm(difference(a, b));
         falls.moving.push((assembly.builder.square(&from_to(a, b)), 1.0));
     }
