@@ -46,7 +46,11 @@ impl Element for Expression {
         }
         let nodes = readings.reading.nodes.clone();
         if nodes.is_empty() {
-            return Err(entry.refuse("value", "nothing that moves is in this formula", "name positions, such as NAME.x"));
+            return Err(entry.refuse(
+                "value",
+                "nothing that moves is in this formula",
+                "name positions, such as NAME.x, of what can move: what joints hold where it is needs no constraint",
+            ));
         }
         let rows = Arc::new(Held { readings, value });
         let position = assembly.builder.position();
