@@ -44,8 +44,8 @@ impl Sweeps {
 
 impl Stabilized {
     /// Replaces the residuals, of d and μ in the unknowns of `newton` and of u and γ' in its own, by increments; the share
-    /// of them that the sweeps leave, or none where they do not contract. Where multipliers begin at zero, what `starts` a step takes the
-    /// second level first, at the increment that was predicted, so that the first feels how γ' pulls.
+    /// of them that the sweeps leave, or none where they do not contract. Where multipliers begin at zero, and beside light parts, what
+    /// `starts` a step takes the second level first, at the increment that was predicted, so that the first feels how γ' pulls.
     pub(super) fn sweep(
         &mut self,
         system: &System,
@@ -68,7 +68,7 @@ impl Stabilized {
         let mut unknowns = std::mem::take(&mut self.unknowns);
         sweeps.second.copy_from_slice(&unknowns);
         unknowns.fill(0.0);
-        if starts && !newton.rank.is_full() {
+        if starts && (work.scales.are_light || !newton.rank.is_full()) {
             self.kkt.solve(&mut sweeps.second);
             std::mem::swap(&mut unknowns, &mut sweeps.second);
             self.pull(system, &unknowns);
