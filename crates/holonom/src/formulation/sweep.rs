@@ -15,9 +15,6 @@ use crate::system::System;
 /// than a sweep.
 const SWEPT: f64 = 1e-5;
 
-/// The same of the last iteration, over the tolerance: what is left has the same sign in step after step, and the energy would drift with it.
-const LAST: f64 = 0.06;
-
 /// Share of the mechanism that γ' must turn a node by for the curvature of its rows to count.
 const CURVED: f64 = 1e-4;
 
@@ -44,8 +41,8 @@ impl Sweeps {
 
 impl Stabilized {
     /// Replaces the residuals, of d and μ in the unknowns of `newton` and of u and γ' in its own, by increments; the share
-    /// of them that the sweeps leave, or none where they do not contract. Where multipliers begin at zero, and beside light parts, what
-    /// `starts` a step takes the second level first, at the increment that was predicted, so that the first feels how γ' pulls.
+    /// of them that the sweeps leave, or none where they do not contract. What `starts` a step takes the second level first, at
+    /// the increment that was predicted.
     pub(super) fn sweep(
         &mut self,
         system: &System,
@@ -68,7 +65,7 @@ impl Stabilized {
         let mut unknowns = std::mem::take(&mut self.unknowns);
         sweeps.second.copy_from_slice(&unknowns);
         unknowns.fill(0.0);
-        if starts && (work.scales.are_light || !newton.rank.is_full()) {
+        if starts {
             self.kkt.solve(&mut sweeps.second);
             std::mem::swap(&mut unknowns, &mut sweeps.second);
             self.pull(system, &unknowns);
@@ -111,7 +108,7 @@ impl Stabilized {
             add(1.0, second, unknowns);
             self.pull(system, second);
             let left = work.farthest(system, &self.force);
-            let least = if ends { tolerance / SAME_SIGN } else { (SWEPT * whole).max(LAST * tolerance) };
+            let least = if ends { tolerance / SAME_SIGN } else { (SWEPT * whole).max(tolerance) };
             if left <= least || (newton.settings.iterations.is_some() && sweep >= FEW) {
                 return Some(left / whole);
             }
