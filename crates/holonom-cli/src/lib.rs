@@ -18,7 +18,7 @@ mod options;
 mod output;
 mod progress;
 mod provenance;
-mod rounds;
+mod spins;
 mod sweep;
 mod table;
 

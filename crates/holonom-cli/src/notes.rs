@@ -10,7 +10,6 @@ use holonom::simulation::{Simulation, Start};
 
 use crate::load::Loaded;
 use crate::message::{listed, unused_parameters};
-use crate::rounds;
 use crate::table::short;
 
 /// Positions over the size of the mechanism that round-off moves at the start.
@@ -236,74 +235,6 @@ pub fn turned_bushings(model: &Model, recording: &Recording) -> Option<String> {
         listed(&names),
         short(first)
     ))
-}
-
-/// Share of itself by which a rotation lags or leads from which on that is said.
-const LAG: f64 = 0.01;
-
-/// Angle a step, rad, below which no method of order 2 lags or leads by that much: what differs then is how few rows are recorded.
-const SLOW: f64 = 0.2;
-
-/// That steps are long for what spins: schemes of order 2 turn it by a twelfth of the cube of the angle too little in each (methods §8.1), and RATTLE
-/// by a sixth of that too much, so that angles come on by less or more than their rates say.
-pub fn long_turns(model: &Model, simulation: &Simulation, recording: &Recording) -> Option<String> {
-    let (method, step) = (simulation.method(), simulation.nominal_step());
-    if method.accuracy.is_some() || method.order() > 2 {
-        return None;
-    }
-    let times = recording.column("t")?;
-    let lag = |name: &String| {
-        let (angles, rates) = (recording.column(name)?, recording.column(&format!("{name}_rate"))?);
-        // Of the longest way without a turn back: how far it came, and by its rate.
-        let (mut way, mut longest) = ([0.0; 2], [0.0_f64; 2]);
-        for ((t, angle), rate) in times.windows(2).zip(angles.windows(2)).zip(rates.windows(2)) {
-            let span = 0.5 * (t[1] - t[0]) * (rate[0] + rate[1]);
-            let turns_back = rate[0] * rate[1] < 0.0 || way[1] * span < 0.0;
-            way = if turns_back { [0.0; 2] } else { [way[0] + angle[1] - angle[0], way[1] + span] };
-            longest = if way[0].abs() > longest[0].abs() { way } else { longest };
-        }
-        let is_spin = longest[0].abs() > std::f64::consts::TAU && rates.iter().any(|rate| rate.abs() * step > SLOW);
-        is_spin.then(|| 1.0 - longest[0] / longest[1])
-    };
-    let largest = |lags: &mut dyn Iterator<Item = (String, f64)>| {
-        lags.filter(|(_, lag)| lag.abs() > LAG).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
-    };
-    let angles = model.system.gauges().iter().filter(|gauge| gauge.ends_with("angle"));
-    let is_whole = simulation.work().rejected_steps == 0;
-    let in_space = |name: &String| lag_in_space(name, recording, step, is_whole);
-    // Bodies that no joint has an angle of, and then what goes round without turning itself.
-    let ((name, lag), rate) = largest(&mut angles.filter_map(|name| Some((name.clone(), lag(name)?))))
-        .or_else(|| largest(&mut model.scene.bodies.iter().filter_map(|body| Some((body.name.clone(), in_space(&body.name)?)))))
-        .map(|found| (found, "rate"))
-        .or_else(|| Some((largest(&mut rounds::lags(model, simulation, recording, SLOW).into_iter())?, "velocity")))?;
-    let [less, lags] = if lag > 0.0 { ["less", "lags"] } else { ["more", "leads"] };
-    Some(format!(
-        "`{name}` comes on by {:.0} % {less} than its {rate} says: a method of order 2 {lags} where steps are long for what spins (a shorter step, or gauss)",
-        100.0 * lag.abs()
-    ))
-}
-
-/// The same of a body in space, of rows a step apart: a step turns it by less than half a turn, unless it is taken in parts.
-fn lag_in_space(body: &str, recording: &Recording, step: f64, is_whole: bool) -> Option<f64> {
-    let column = |ending: &str| recording.column(&format!("{body}.{ending}"));
-    let [qw, qx, qy, qz, wx, wy, wz] = ["qw", "qx", "qy", "qz", "wx", "wy", "wz"].map(column);
-    let ([qw, qx, qy, qz], [wx, wy, wz], times) = ([qw?, qx?, qy?, qz?], [wx?, wy?, wz?], recording.column("t")?);
-    let rate = |k: usize| (wx[k].powi(2) + wy[k].powi(2) + wz[k].powi(2)).sqrt();
-    // Of the longest way without a turn back: how far it came, and by its rate.
-    let (mut way, mut longest) = ([0.0; 2], [0.0_f64; 2]);
-    for k in 1..times.len() {
-        let span = times[k] - times[k - 1];
-        // The mean of the vectors: what swings to and fro has hardly any where it turns back.
-        let turn = 0.5 * span * [wx, wy, wz].map(|w| (w[k - 1] + w[k]).powi(2)).iter().sum::<f64>().sqrt();
-        if span < 1.5 * step && (is_whole || turn < std::f64::consts::PI) {
-            let cosine = [qw, qx, qy, qz].map(|q| q[k - 1] * q[k]).iter().sum::<f64>().abs();
-            let turns_back = [wx, wy, wz].map(|w| w[k - 1] * w[k]).iter().sum::<f64>() < 0.0;
-            way = if turns_back { [0.0; 2] } else { [way[0] + 2.0 * cosine.min(1.0).acos(), way[1] + turn] };
-            longest = if way[1] > longest[1] { way } else { longest };
-        }
-    }
-    let is_spin = longest[1] > std::f64::consts::TAU && (0..times.len()).any(|k| rate(k) * step > SLOW);
-    is_spin.then(|| 1.0 - longest[0] / longest[1])
 }
 
 /// What is not sure of the results of a run, as far as the simulation itself knows at its end.

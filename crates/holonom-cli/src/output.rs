@@ -22,10 +22,11 @@ use crate::folder::{Folder, holds};
 use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
 use crate::message::note;
-use crate::notes::{doubts, long_turns, of_start, rows_without_forces, shared_forces, slips, turned_bushings, unknown_measures};
+use crate::notes::{doubts, of_start, rows_without_forces, shared_forces, slips, turned_bushings, unknown_measures};
 use crate::options::Destination;
 use crate::progress::Watched;
 use crate::provenance::Provenance;
+use crate::spins::long_turns;
 
 /// Name of the column of time.
 const TIME: &str = COLUMNS[0];

@@ -18,7 +18,7 @@ const ALL_STEPS: usize = 100_000;
 const FEWEST_STEPS: usize = 20;
 
 /// Most places in a step of which its mean is found; those that any step has, and how many more there are for each on average: what is too fast for
-/// steps of any length would want all of them in every step, and a start would take minutes.
+/// steps of any length would want all of them in every step, and a start would take long.
 const MOST_PLACES: usize = 256;
 const PLACES_OF_EACH: usize = 32;
 const MORE_PLACES: usize = 50;

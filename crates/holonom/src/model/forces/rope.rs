@@ -172,14 +172,15 @@ struct Falls {
     fixed: f64,
 }
 
-/// Where no stretch changes, as between the ground and what joints hold where it is, and with a drum, the first between two bodies counts as one that does: the
-/// tension is seen there.
+/// Where no stretch changes, as between the ground and what joints hold where it is, the first between two bodies counts as one that does, and with a drum the
+/// first of all: the tension is seen there.
 fn falls(assembly: &mut Assembly<'_>, ends: &[End], has_drum: bool) -> Falls {
     let mut falls = Falls { moving: Vec::new(), fixed: 0.0 };
     let mut seen: Vec<[&Vec<Term>; 2]> = Vec::new();
+    let is_within_a_body = |[a, b]: [&End; 2]| a.body.is_some() && a.body == b.body;
     for pair in ends.windows(2) {
         let [a, b] = [&pair[0], &pair[1]];
-        if (a.body.is_some() && a.body == b.body) || (a.never_moves() && b.never_moves()) {
+        if is_within_a_body([a, b]) || (a.never_moves() && b.never_moves()) {
             falls.fixed += norm(difference(a, b));
         } else if let Some(k) = seen.iter().position(|&known| known == [&a.terms, &b.terms] || known == [&b.terms, &a.terms]) {
             falls.moving[k].1 += 1.0;
@@ -188,8 +189,10 @@ fn falls(assembly: &mut Assembly<'_>, ends: &[End], has_drum: bool) -> Falls {
             falls.moving.push((assembly.builder.square(&from_to(a, b)), 1.0));
         }
     }
-    let is_between = |pair: &&[End]| has_drum || pair[0].body.is_none() || pair[0].body != pair[1].body;
-    if let Some([a, b]) = ends.windows(2).find(is_between).filter(|_| falls.moving.is_empty()) {
+    let counts = |pair: &&[End]| has_drum || !is_within_a_body([&pair[0], &pair[1]]);
+    if falls.moving.is_empty()
+        && let Some([a, b]) = ends.windows(2).find(counts)
+    {
         falls.fixed -= norm(difference(a, b));
         falls.moving.push((assembly.builder.square(&from_to(a, b)), 1.0));
     }

@@ -1,0 +1,245 @@
+//! What a run says beside its results: slips in the model, and what of the results may be off.
+
+mod common;
+
+use std::fs;
+
+use common::*;
+
+#[test]
+fn what_looks_like_a_slip_is_noted_by_run_and_check() {
+    let folder = folder();
+    let model = "[body.door]\nmass = 1\ninertia = [0, 0, 1]\ncheck_inertia = false\nposition = [0.5, 0, 0]\n\
+                 [joint.hinge]\ntype = \"revolute\"\nbetween = [\"ground\", \"door\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n\
+                 [drive.motor]\ntype = \"angle\"\njoint = \"hinge\"\nprofile = \"max(t - 1, 0)\"\n\
+                 [force.shaker]\ntype = \"torque\"\nbody = \"door\"\ntorque = [0, 0, \"cos(2*pi*100*t)\"]\n[simulation]\nend = 0.9\nstep = 0.01\n";
+    fs::write(folder.path().join("door.toml"), model).unwrap();
+    let notes = |words: &str| {
+        let output = holonom(&folder, words);
+        assert!(output.status.success(), "{words}");
+        [text(&output.stdout), text(&output.stderr)].concat()
+    };
+    let inertia = "note: body.door.inertia: the moments 0, 0, 1 cannot belong to a body: 1 exceeds 0 + 0 by 1";
+    let blow = "note: drive.motor.profile: its rate jumps by 1 per s at 1 s";
+    let step = "note: simulation.step: the step of 5 s is longer than the run of 0.9 s";
+    let unseen = "note: force.shaker.torque[2]: steps of 0.01 s do not see what this does within them: from 0 s to 0.01 s its mean is 0 and is taken to be -1 \
+                  (a step of 0.005 s sees it, and so do steps by accuracy)";
+    for (words, expected) in [
+        ("run door.toml --no-report", [true, false, false, true]),
+        ("run door.toml --no-report --end 1.2", [true, true, false, true]),
+        ("run door.toml --no-report --step 5", [true, false, true, false]),
+        ("run door.toml --no-report --step 0.001", [true, false, false, false]),
+        ("run door.toml --no-report --accuracy 1e-4", [true, false, false, false]),
+        ("run door.toml --no-report --quiet", [false, false, false, false]),
+        ("check door.toml --set simulation.end=1.2", [true, true, false, true]),
+        ("check door.toml --json --set simulation.step=5", [false, false, false, false]),
+    ] {
+        let said = notes(words);
+        assert_eq!([inertia, blow, step, unseen].map(|note| said.contains(note)), expected, "{words}\n{said}");
+    }
+    assert_eq!(json(&folder, "check door.toml --json --set simulation.step=5")["notes"].as_array().unwrap().len(), 3);
+}
+
+/// What a drive moves needs no velocity of its own; one that was written and is another in the run is told.
+#[test]
+fn velocities_that_were_written_and_changed_are_told() {
+    let folder = folder();
+    let crank = |velocity: &str| {
+        format!(
+            "plane = \"xy\"\n[body.crank]\nmass = 1\ninertia = 1\nposition = [1, 0]\n{velocity}[joint.pin]\ntype = \"revolute\"\n\
+             between = [\"ground\", \"crank\"]\nat = [0, 0]\n[drive.motor]\ntype = \"angle\"\njoint = \"pin\"\nprofile = \"2*t\"\n"
+        )
+    };
+    for (velocity, told) in
+        [("", ""), ("angular_velocity = 2\nvelocity = [0, 2]\n", ""), ("angular_velocity = 1\n", "`crank` by 2 m/s and 1 rad/s")]
+    {
+        fs::write(folder.path().join("m.toml"), crank(velocity)).unwrap();
+        let notes = text(&holonom(&folder, "run m.toml --end 0.1 --step 0.01 --no-report --out a --force").stderr);
+        assert_eq!((notes.contains("start velocities were changed"), notes.contains(told)), (!told.is_empty(), true), "{velocity}{notes}");
+    }
+}
+
+/// A body that counts as a rod has no turn about itself: that one was written is not left out in silence, unless it is a rod by what is written.
+#[test]
+fn spins_of_rods_about_themselves_that_were_written_are_told() {
+    let folder = folder();
+    for (moment, told) in [("1e-6", false), ("1e-10", true), ("0", false)] {
+        let text_of = format!(
+            "gravity = [0, 0, 0]\n[body.needle]\nmass = 1\ninertia = [{moment}, 1, 1]\nposition = [0, 0, 0]\nangular_velocity = [7, 0, 0]\n"
+        );
+        fs::write(folder.path().join("m.toml"), text_of).unwrap();
+        let notes = text(&holonom(&folder, "run m.toml --end 0.1 --step 0.01 --no-report --out a --force").stderr);
+        assert_eq!(notes.contains("do not turn about themselves: `needle` by 7 rad/s was left out"), told, "{moment}: {notes}");
+    }
+}
+
+/// A formula that is stiff beside the step makes energy that no balance shows: a ball that falls by 1 m comes up to 1 m, and no higher. A pulse of one
+/// step and a step that is short for what a controller does are well.
+#[test]
+fn work_that_steps_get_wrong_is_told() {
+    let folder = folder();
+    let ball = "[point.ball]\nmass = 1\nposition = [0, 0, 1]\n[force.floor]\ntype = \"expression\"\npoint = \"ball\"\n\
+                force = [0, 0, \"1e7*max(0, -z)\"]\n[measure.height]\nvalue = \"max(ball.z)\"\nunit = \"m\"\n[simulation]\nend = 5\nstep = 1e-3\n";
+    let rope = "plane = \"xz\"\n[point.load]\nmass = 2\nposition = [1, 0]\nvelocity = [0.6, 0]\n[force.rope]\ntype = \"rope\"\n\
+                between = [\"ground\", \"load\"]\nlength = \"1 + 0.2*sin(3*t)\"\nstiffness = 1e7\ndamping = 1000\n[simulation]\nend = 4\nstep = 0.01\n";
+    let held = |effort: &str| {
+        format!(
+            "[body.arm]\nmass = 1\ninertia = [0.01, 0.1, 0.1]\nposition = [1, 0, 0]\n[joint.pin]\ntype = \"revolute\"\nbetween = [\"ground\", \"arm\"]\n\
+             at = [0, 0, 0]\naxis = [0, 1, 0]\n[force.motor]\ntype = \"effort\"\njoint = \"pin\"\neffort = \"{effort}\"\n\
+             [simulation]\nend = 4\nstep = 0.01\n"
+        )
+    };
+    let notes = |model: &str, words: &str| {
+        fs::write(folder.path().join("model.toml"), model).unwrap();
+        text(&holonom(&folder, &format!("run model.toml --no-report --force --out a {words}")).stderr)
+    };
+    let told = |name: &str| format!(" J that could move, most of it that of `{name}`: steps are long for how it changes");
+    for method in ["conserving", "conserving-ggl", "midpoint"] {
+        let said = notes(ball, &format!("--method {method}"));
+        assert!(said.contains(&told("floor")), "{method}: {said}");
+        let said = notes(rope, &format!("--method {method}"));
+        assert!(said.contains(&told("rope")), "{method}: {said}");
+        for (model, words) in [
+            (ball, "--step 1e-4"),
+            (rope, "--step 1e-4"),
+            (&held("-200*(q - 1) - 20*q_rate"), ""),
+            (&held("100*(step(t - 0.5) - step(t - 0.51))"), ""),
+        ] {
+            let said = notes(model, &format!("--method {method} {words}"));
+            assert!(!said.contains("may be wrong"), "{method}: {said}");
+        }
+    }
+    // These damp it whatever the step is.
+    for method in ["conserving", "conserving-ggl"] {
+        let said = notes(&held("-2e4*(q - 1) - 2e3*q_rate"), &format!("--method {method}"));
+        assert!(!said.contains("may be wrong"), "{method}: {said}");
+    }
+}
+
+/// Two wheels on one axle hold it sideways twice, at positions and at velocities, which within a step ask for different motions: a method that takes it
+/// in many small parts says so, one that stops names those that do not.
+#[test]
+fn steps_in_many_parts_are_told() {
+    let folder = folder();
+    let wheel = |name: &str, y: f64| {
+        format!(
+            "[body.{name}]\nmass = 1\nshape = {{ cylinder = [0.2, 0.02] }}\norientation = {{ axis = [1, 0, 0], angle = \"pi/2\" }}\n\
+             position = [0, {y}, 0.2]\nvelocity = [{}, 0, 0]\nangular_velocity = [0, {}, 2]\n\
+             [joint.axle-{name}]\ntype = \"revolute\"\nbetween = [\"cart\", \"{name}\"]\nat = \"{name}\"\naxis = [0, 1, 0]\n\
+             [joint.tread-{name}]\ntype = \"rolling\"\nbetween = [\"ground\", \"{name}\"]\nat = \"{name}\"\naxis = [0, 1, 0]\n\
+             normal = [0, 0, 1]\nradius = 0.2\n",
+            2.0 - 2.0 * y,
+            10.0 - 10.0 * y
+        )
+    };
+    let cart = "[body.cart]\nmass = 20\ninertia = [2, 3, 4]\nposition = [0.3, 0, 0.3]\nvelocity = [2, 0.6, 0]\nangular_velocity = [0, 0, 2]\n\
+                [joint.foot]\ntype = \"point-on-plane\"\nbetween = [\"ground\", \"cart\"]\nat = [0.8, 0, 0]\naxis = [0, 0, 1]\n";
+    fs::write(folder.path().join("cart.toml"), format!("{cart}{}{}", wheel("left", 0.4), wheel("right", -0.4))).unwrap();
+    let said = |words: &str| {
+        let out = holonom(&folder, &format!("run cart.toml --no-report --force --out a {words}"));
+        text(&out.stdout) + &text(&out.stderr)
+    };
+    let in_parts = "nominal steps failed as a whole and were taken in ";
+    let slow = said("--method generalized-alpha --step 0.01 --end 0.05");
+    assert!(slow.contains("completed") && slow.contains(in_parts), "{slow}");
+    let stopped = said("--method trapezoidal-projected --step 0.02 --end 0.3");
+    assert!(on_one_line(&stopped).contains("may ask for different motions within a step of this method"), "{stopped}");
+    let well = said("--method conserving-ggl --step 0.01 --end 0.3");
+    assert!(well.contains("completed") && !well.contains(in_parts), "{well}");
+}
+
+/// Steps that are long for what spins, and a method that loses much of the energy, are told beside figures that are all round-off.
+#[test]
+fn long_steps_are_told() {
+    let folder = folder();
+    let rotor = |drive: &str| {
+        format!(
+            "[body.top]\nmass = 1\ninertia = [0.01, 0.006, 0.006]\nposition = [0, 0, 0]\nangular_velocity = [600, 0, 0]\n\
+             [joint.axle]\ntype = \"revolute\"\nbetween = [\"ground\", \"top\"]\nat = [0, 0, 0]\naxis = [1, 0, 0]\n{drive}\
+             [simulation]\nend = 0.05\nstep = 1e-3\n"
+        )
+    };
+    fs::write(folder.path().join("top.toml"), rotor("")).unwrap();
+    let notes = |words: &str| text(&holonom(&folder, &format!("run top.toml --no-report --force --out a {words}")).stderr);
+    let turns = "note: `axle.angle` comes on by 3 % less than its rate says: a method of order 2 lags";
+    assert!(notes("").contains(turns), "{}", notes(""));
+    assert!(!notes("--step 1e-4").contains("comes on by"), "{}", notes("--step 1e-4"));
+    assert!(!notes("--method gauss").contains("comes on by"), "{}", notes("--method gauss"));
+    // RATTLE turns by asin ωh, 0.6435 for 0.6.
+    let turns = "note: `axle.angle` comes on by 7 % more than its rate says: a method of order 2 leads";
+    assert!(notes("--method rattle").contains(turns), "{}", notes("--method rattle"));
+    // So does what turns back on its way: from 600 rad/s to −600 rad/s.
+    fs::write(folder.path().join("top.toml"), rotor("[force.motor]\ntype = \"effort\"\njoint = \"axle\"\neffort = -240\n")).unwrap();
+    assert!(notes("").contains("`axle.angle` comes on by") && !notes("--step 1e-4").contains("comes on by"), "{}", notes(""));
+    // Few rows of a rotor that turns back and forth at short steps say nothing of these.
+    let spring = rotor("[force.spring]\ntype = \"torsion\"\njoint = \"axle\"\nstiffness = 100\n");
+    fs::write(folder.path().join("top.toml"), spring).unwrap();
+    let few = notes("--step 1e-4 --end 0.5 --every 60");
+    assert!(!few.contains("comes on by"), "{few}");
+    let free = "[body.top]\nmass = 1\ninertia = [0.01, 0.006, 0.006]\nposition = [0, 0, 0]\nangular_velocity = [600, 1, 0]\n\
+                [simulation]\nend = 0.05\nstep = 1e-3\n";
+    fs::write(folder.path().join("top.toml"), free).unwrap();
+    // A body in space that no joint has an angle of: 0.6 rad a step, of which 2 atan 0.3 = 0.583 rad come on.
+    assert!(notes("").contains("note: `top` comes on by 3 % less than its rate says"), "{}", notes(""));
+    for words in ["--step 1e-4", "--method gauss", "--every 20", "--accuracy 1e-6"] {
+        assert!(!notes(words).contains("comes on by"), "{words}: {}", notes(words));
+    }
+    // What goes round without turning itself, in units of any size, and on a carriage; a pendulum goes to and fro.
+    let round = |size: f64, along: f64, end: &str| {
+        format!(
+            "plane = \"xy\"\ngravity = [0, {}]\n[point]\nq = {{ mass = 1, position = [0, 0], velocity = [{along}, {}] }}\n\
+             p = {{ mass = 1, position = [{size}, 0], velocity = [{along}, {}] }}\n\
+             [constraint]\nrod = {{ type = \"distance\", between = [\"q\", \"p\"] }}\n[simulation]\n{end}\n",
+            -1e-6 * size,
+            -300.0 * size,
+            300.0 * size,
+        )
+    };
+    for (size, along) in [(1.0, 0.0), (1e3, 0.0), (1e-3, 0.0), (1.0, 1e4)] {
+        fs::write(folder.path().join("top.toml"), round(size, along, "end = 0.05\nstep = 1e-3")).unwrap();
+        for (words, told) in [("", "3 % less"), ("--method rattle", "7 % more")] {
+            let told = format!("comes on by {told} than its velocity says");
+            assert!(notes(words).contains(&told), "{size} {along} {words}: {}", notes(words));
+        }
+        for words in ["--step 2e-4", "--method gauss"] {
+            assert!(!notes(words).contains("comes on by"), "{words}: {}", notes(words));
+        }
+    }
+    let swing = "plane = \"xy\"\ngravity = [0, -9.81]\n[point]\np = { mass = 1, position = [1, 0] }\n\
+                 [constraint]\nrod = { type = \"distance\", between = [\"ground\", \"p\"] }\n[simulation]\nend = 20\nstep = 0.15\n";
+    fs::write(folder.path().join("top.toml"), swing).unwrap();
+    assert!(!notes("").contains("comes on by"), "{}", notes(""));
+    fs::write(folder.path().join("top.toml"), free).unwrap();
+    let lost = notes("--method radau --step 5e-3");
+    assert!(lost.contains("note: the method has lost ") && lost.contains(" J that could move: shorter steps"), "{lost}");
+    assert!(!notes("--method radau --accuracy 1e-6").contains("the method has"));
+    // What is driven does not lag.
+    fs::write(folder.path().join("top.toml"), rotor("[drive.motor]\ntype = \"angle\"\njoint = \"axle\"\nprofile = \"600*t\"\n")).unwrap();
+    assert!(!notes("").contains("comes on by"), "{}", notes(""));
+}
+
+#[test]
+fn a_row_at_a_dead_centre_has_no_forces_and_says_so() {
+    let folder = folder();
+    // A ram goes to where both links stretch at 1 s, and back.
+    let model = "plane = \"xz\"\n[parameters]\nc = \"cos(10*deg)\"\ns = \"sin(10*deg)\"\n\
+                 [body.upper]\nmass = 20\nshape = { rod = 0.4 }\nposition = [\"0.2*s\", \"-0.2*c\"]\norientation = { angle = \"10*deg - pi/2\" }\n\
+                 [body.lower]\nmass = 20\nshape = { rod = 0.4 }\nposition = [\"0.2*s\", \"-0.6*c\"]\norientation = { angle = \"-10*deg - pi/2\" }\n\
+                 [body.ram]\nmass = 150\ninertia = 4\nposition = [0, \"-0.8*c\"]\n\
+                 [joint.head]\ntype = \"revolute\"\nbetween = [\"ground\", \"upper\"]\nat = [0, 0]\n\
+                 [joint.knee]\ntype = \"revolute\"\nbetween = [\"upper\", \"lower\"]\nat = [\"0.4*s\", \"-0.4*c\"]\n\
+                 [joint.wrist]\ntype = \"revolute\"\nbetween = [\"lower\", \"ram\"]\nat = \"ram\"\n\
+                 [joint.guide]\ntype = \"prismatic\"\nbetween = [\"ground\", \"ram\"]\naxis = [0, -1]\n\
+                 [drive.screw]\ntype = \"displacement\"\njoint = \"guide\"\nprofile = \"0.4*(1 - c)*(1 - cos(pi*t))\"\n\
+                 [force.work]\ntype = \"effort\"\njoint = \"guide\"\neffort = -1e6\n\
+                 [measure.root]\nvalue = \"sqrt(upper.z + 0.15)\"\n[measure.pin]\nvalue = \"wrist.fz\"\n";
+    fs::write(folder.path().join("press.toml"), model).unwrap();
+    let notes = on_one_line(&text(&holonom(&folder, "run press.toml --method radau --step 0.01 --end 2 --no-report --out a").stderr));
+    for note in [
+        "note: one row has no accelerations and no forces of joints and drives, first at 1 s: at a singular position they do not follow",
+        "note: the measure `pin` has no finite value in 1 of 201 rows: what it reads has none in the first of them",
+        "note: the measure `root` has no finite value in 201 of 201 rows: a formula is outside its domain there",
+    ] {
+        assert!(notes.contains(note), "{note}\n{notes}");
+    }
+}
