@@ -16,6 +16,7 @@ use crate::system::System;
 const SWEPT: f64 = 1e-5;
 
 /// The same of the last iteration, over the tolerance: what is left has the same sign in step after step, and the energy would drift with it.
+/// Near a singular position it is all of the tolerance: the rounding of positions moves them by more.
 const LAST: f64 = 0.06;
 
 /// Share of the mechanism that γ' must turn a node by for the curvature of its rows to count.
@@ -44,8 +45,8 @@ impl Sweeps {
 
 impl Stabilized {
     /// Replaces the residuals, of d and μ in the unknowns of `newton` and of u and γ' in its own, by increments; the share
-    /// of them that the sweeps leave, or none where they do not contract. What `starts` a step takes the first level first where that is
-    /// [plain](is_plain); else the second, at the increment that was predicted, so that the first feels how γ' pulls.
+    /// of them that the sweeps leave, or none where they do not contract. Where multipliers begin at zero, and beside light parts, what
+    /// `starts` a step takes the second level first, at the increment that was predicted, so that the first feels how γ' pulls.
     pub(super) fn sweep(
         &mut self,
         system: &System,
@@ -68,7 +69,7 @@ impl Stabilized {
         let mut unknowns = std::mem::take(&mut self.unknowns);
         sweeps.second.copy_from_slice(&unknowns);
         unknowns.fill(0.0);
-        if starts && !is_plain(newton, work) {
+        if starts && (work.scales.are_light || !newton.rank.is_full()) {
             self.kkt.solve(&mut sweeps.second);
             std::mem::swap(&mut unknowns, &mut sweeps.second);
             self.pull(system, &unknowns);
@@ -103,7 +104,7 @@ impl Stabilized {
         let Sweeps { first, second } = sweeps;
         let tolerance = newton.settings.tolerance * work.scales.length;
         let mut whole = largest(&first[..n]).max(tolerance);
-        let floor = if is_plain(newton, work) { LAST * tolerance } else { tolerance };
+        let floor = if newton.rank.is_full() { LAST * tolerance } else { tolerance };
         let mut last = f64::INFINITY;
         for sweep in 1..=SWEEPS {
             add(1.0, first, &mut newton.unknowns);
@@ -157,11 +158,6 @@ impl Stabilized {
             self.kkt.add_sum_times(0.5, &change[..n], &mut self.force);
         }
     }
-}
-
-/// Whether rows have no proximal term to speak of, with which multipliers begin at zero, and no part is light, whose increments are rounded by more.
-fn is_plain(newton: &Newton, work: &Workspace) -> bool {
-    newton.rank.is_full() && !work.scales.are_light
 }
 
 /// target += factor · change, as far as the change goes.
