@@ -180,6 +180,7 @@ pub(super) fn attempt(
 ) -> Result<(), Failure> {
     let settings = newton.settings;
     newton.rank.spares_regular = false;
+    work.scales.reach_out(&work.start.x);
     equations.begin(newton, work);
     let mut convergence = Convergence::new(&settings, work.scales.shortest, equations.kept(newton, work));
     for iteration in 1..=settings.max_iterations {

@@ -28,8 +28,14 @@ const ROUNDED: f64 = 1e-14;
 /// Sizes of a mechanism, its nodes and its rows.
 #[derive(Clone, Debug)]
 pub struct Scales {
-    /// Diagonal of the box around the origin and all nodes at the start, m: the unit of increments.
+    /// Diagonal of the box around the origin and all nodes at the start, m.
     pub length: f64,
+    /// The unit of increments, m: `length` or, where every mechanism has gone farther from the origin, how far at least, as positions are rounded there.
+    pub extent: f64,
+    /// Mechanism of each free node, which rows and mass hold together, and how far each reaches.
+    mechanism: Vec<usize>,
+    farthest: Vec<f64>,
+    dim: usize,
     /// Largest diagonal entry of the mass matrix, kg; where nothing that moves has a mass, what stands in for it.
     pub heaviest: f64,
     /// Length of the shortest row that turns, the gradient of an invariant over its curvature, over `length`, at most 1.
@@ -61,12 +67,18 @@ impl Scales {
         let (free, rows) = (system.free, system.constraints());
         let own: Vec<f64> = (0..free).map(|node| system.mass.diagonal(node)).collect();
         let heaviest = heaviest(system, &own);
-        let around = around(system, &own);
+        let (mechanism, mechanisms) = mechanisms(system);
+        let around = around(system, &own, &mechanism);
+        let length = extent(system);
         let yielding: Vec<f64> = (0..free).map(|node| yielding(system, node)).collect();
         let is_light = |node: usize| yielding[node] < LIGHT * around[node];
         let filled = |node: usize, mass: f64| 1.0 / if mass > 0.0 { mass } else { around[node].max(f64::MIN_POSITIVE) };
         let mut scales = Self {
-            length: extent(system),
+            length,
+            extent: length,
+            mechanism,
+            farthest: vec![0.0; mechanisms],
+            dim: system.dim,
             heaviest,
             shortest: 1.0,
             held: (0..free).map(|node| filled(node, if is_light(node) { around[node] } else { own[node] })).collect(),
@@ -83,6 +95,16 @@ impl Scales {
         };
         scales.measure_rows(system, is_light);
         scales
+    }
+
+    /// Sets the unit of increments for positions x (full), m.
+    pub(super) fn reach_out(&mut self, x: &[f64]) {
+        self.farthest.fill(0.0);
+        for (node, &mechanism) in x.chunks_exact(self.dim).zip(&self.mechanism) {
+            self.farthest[mechanism] = self.farthest[mechanism].max(largest(node));
+        }
+        let least = self.farthest.iter().copied().reduce(f64::min);
+        self.extent = least.filter(|least| least.is_finite()).map_or(self.length, |least| least.max(self.length));
     }
 
     fn measure_rows(&mut self, system: &System, is_light: impl Fn(usize) -> bool) {
@@ -119,31 +141,47 @@ impl Scales {
     }
 }
 
-/// The largest mass in the mechanism that each free node belongs to, all that rows and mass hold together, kg: what a light node
-/// counts as, but no more than 1e12 of its own mass. Where all that hangs together has none, as directions of a rod that are held
-/// by the ground alone, the largest of the system stands in.
-fn around(system: &System, own: &[f64]) -> Vec<f64> {
-    let mut root: Vec<usize> = (0..own.len()).collect();
+/// The mechanism that each free node belongs to, all that rows and mass hold together, and how many there are.
+fn mechanisms(system: &System) -> (Vec<usize>, usize) {
+    let free = system.free;
+    let mut root: Vec<usize> = (0..free).collect();
     let mut join = |a: usize, b: usize| {
         let (a, b) = (find(&mut root, a), find(&mut root, b));
         root[a.max(b)] = a.min(b);
     };
     let mut first = vec![None; system.constraints()];
-    for slot in system.slots.by_row.iter().filter(|slot| (slot.node as usize) < own.len()) {
+    for slot in system.slots.by_row.iter().filter(|slot| (slot.node as usize) < free) {
         join(*first[slot.row as usize].get_or_insert(slot.node as usize), slot.node as usize);
     }
-    for node in 0..own.len() {
-        system.mass.row(node).filter(|&(other, _)| other < own.len()).for_each(|(other, _)| join(node, other));
+    for node in 0..free {
+        system.mass.row(node).filter(|&(other, _)| other < free).for_each(|(other, _)| join(node, other));
     }
+    let mut number = vec![0; free];
+    let mut mechanisms = 0;
+    for node in 0..free {
+        // The first node of a mechanism is its root.
+        number[node] = match find(&mut root, node) {
+            root if root < node => number[root],
+            _ => {
+                mechanisms += 1;
+                mechanisms - 1
+            }
+        };
+    }
+    (number, mechanisms)
+}
+
+/// The largest mass in the mechanism of each free node, kg: what a light node counts as, but no more than 1e12 of its own mass. Where all that
+/// hangs together has none, as directions of a rod that are held by the ground alone, the largest of the system stands in.
+fn around(system: &System, own: &[f64], mechanism: &[usize]) -> Vec<f64> {
     let mut heaviest = vec![0.0_f64; own.len()];
-    for (node, &mass) in own.iter().enumerate() {
-        let root = find(&mut root, node);
-        heaviest[root] = heaviest[root].max(mass);
+    for (&mass, &mechanism) in own.iter().zip(mechanism) {
+        heaviest[mechanism] = heaviest[mechanism].max(mass);
     }
     let any = self::heaviest(system, own);
-    let around = |node: usize| Some(heaviest[node]).filter(|mass| *mass > 0.0).unwrap_or(any);
+    let around = |mechanism: usize| Some(heaviest[mechanism]).filter(|mass| *mass > 0.0).unwrap_or(any);
     let most = |own: f64| if own > 0.0 { own / LEAST_SHARE } else { f64::INFINITY };
-    (0..own.len()).map(|node| around(find(&mut root, node)).min(most(own[node]))).collect()
+    own.iter().zip(mechanism).map(|(&own, &mechanism)| around(mechanism).min(most(own))).collect()
 }
 
 /// The heaviest of these masses, kg. Where there are none it is that of what never moves, as the middle of a shaft without inertia about its axis: what is
