@@ -61,6 +61,20 @@ fn turns_are_counted_however_long_the_step() {
     }
 }
 
+/// Where a composed step turns a wheel too far it is taken in parts, and begins again where it began: ½ α t² of a constant torque, by half a turn a
+/// step at the end, where the parts are too long for order 4 or 6 to show.
+#[test]
+fn composed_steps_that_are_too_long_are_taken_in_parts() {
+    let text = ROTOR.replace("SPIN", "0").replace("CLIMB", "0")
+        + "type = \"revolute\"\n[force.motor]\ntype = \"effort\"\njoint = \"j\"\neffort = 400\n";
+    for (integrator, formulation, order) in [("conserving-ggl", "ggl", 4), ("conserving-ggl", "ggl", 6), ("conserving", "lagrange-3", 4)] {
+        let [formulation, name] = [formulation, integrator].map(|name| Some(name.to_string()));
+        let choice = Choice { formulation, integrator: name, order: Some(order), ..Choice::default() };
+        let (values, _, drift) = run(&text, choice, 0.02, 1.0);
+        assert!((values[0] - 100.0).abs() < 0.1 && drift < 1e-9 * 4e4, "{integrator}, order {order}: {values:?}, {drift:e}");
+    }
+}
+
 /// A flat rotor has light directions, whose iteration ends by its residual: what that leaves adds up over steps.
 #[test]
 fn a_flat_rotor_keeps_its_energy_for_long() {

@@ -130,13 +130,7 @@ impl Composed {
             std::mem::swap(&mut self.memory, &mut work.memory);
             let outcome = self.inner.step(system, start + passed * h, share * h, newton, work);
             std::mem::swap(&mut self.memory, &mut work.memory);
-            let step = match outcome {
-                Ok(step) => step,
-                Err(failure) => {
-                    system.evaluate_again(&self.start, start, &mut work.start.at);
-                    return Err(failure);
-                }
-            };
+            let step = outcome?;
             memory.inner.copy_from_slice(&self.memory);
             memory.acceleration.remember(follows, |i| work.a[i], |_| 1.0);
             memory.lambda.remember(follows, |row| work.lambda[row], |row| work.scales.reach[row].powi(2));

@@ -121,13 +121,20 @@ impl Simulation {
         outcome
     }
 
-    /// Integrates and finishes a step.
+    /// Integrates and finishes a step. One that fails leaves the start of the workspace at the present state: the last part of a composed
+    /// step began elsewhere.
     fn try_step(&mut self, step: f64, target: f64) -> Result<Step, Failure> {
         let (system, work) = (&*self.system, &mut self.work);
         self.state.load(work);
         system.constraint_values(&work.start.at, self.state.t, &mut work.phi_start);
-        let taken = self.integrator.step(system, self.state.t, step, &mut self.newton, work)?;
-        self.finish(taken, step, target)
+        let taken = self.integrator.step(system, self.state.t, step, &mut self.newton, work);
+        let outcome = taken.and_then(|taken| self.finish(taken, step, target));
+        if outcome.is_err() {
+            let start = &mut self.work.start.at;
+            start.functions.angle.copy_from_slice(&self.state.angle);
+            self.system.evaluate_again(&self.state.x, self.state.t, start);
+        }
+        outcome
     }
 
     /// Audits, projects and judges what the integrator left in the workspace; it becomes the present state only then.
