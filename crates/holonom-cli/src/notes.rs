@@ -33,8 +33,9 @@ pub fn shared_forces(model: &Model, simulation: &Simulation) -> Option<String> {
 /// nodes are: `hinge.fy .tx`, `motor.effort`.
 pub fn open_columns(free: &Undetermined<'_>, channels: &Channels, world: &[f64], model: &Model) -> Vec<String> {
     let mut open = Vec::new();
-    for joint in &channels.joints {
-        let unique = free.are_unique(&joint.rows, &joint.nodes, free.system().of_world(joint.place(world, model.dimension)));
+    for (k, joint) in channels.joints.iter().enumerate() {
+        let about = free.system().of_world(joint.place(world, model.dimension));
+        let unique = free.are_unique(&joint.rows, &joint.nodes, about, |lambda| channels.borne(k, lambda, world));
         let columns = RecordedJoint::columns(model.axes);
         let columns: Vec<&str> = columns.iter().filter(|(k, _)| !unique[*k]).map(|(_, column)| column.as_str()).collect();
         if !columns.is_empty() {

@@ -211,6 +211,17 @@ fn runs_name_the_forces_that_are_not_unique() {
     let output = holonom(&folder, "run gears.toml");
     assert!(text(&output.stderr).contains(&format!(": of {efforts} one way of many")), "{}", text(&output.stderr));
     assert!(on_one_line(&prints(&folder, "check gears.toml", 0)).contains(&format!("not unique: {efforts}; all others are")));
+    // With teeth or a belt the bearings bear what either does: of a belt without tension at rest along both axes, of a tight one across the strands alone.
+    let borne = |keys: &str| {
+        let text = gears.replace("ratio = -1\n", "").replace("type = \"gear\"", keys);
+        fs::write(folder.path().join("borne.toml"), text).unwrap();
+        let open = json(&folder, "check borne.toml --json")["reactions_not_unique"].as_array().unwrap().clone();
+        open.iter().map(|columns| columns.as_str().unwrap().to_string()).filter(|columns| columns.starts_with('a')).collect::<Vec<_>>()
+    };
+    assert_eq!(borne("type = \"gear\"\nratio = -1\npressure_angle = \"20*deg\""), ["a[0].fx .fy", "a[1].fx .fy"]);
+    let belt = "type = \"pulley\"\nradii = [0.1, 0.1]\ncrossed = true\npretension = ";
+    assert_eq!(borne(&format!("{belt}0")), ["a[0].fx .fy", "a[1].fx .fy"]);
+    assert_eq!(borne(&format!("{belt}50")), ["a[0].fy", "a[1].fy"]);
     // A door on two hinges, in metres, millimetres and others.
     let door = "[parameters]\nu = 1\n[body.door]\nmass = 1\ninertia = [\"u^2\", \"u^2\", \"u^2\"]\nposition = [\"u\", 0, 0]\n\
                 [joint.hinge]\nrepeat = \"i = 0 to 1\"\ntype = \"revolute\"\nbetween = [\"ground\", \"door\"]\n\

@@ -101,15 +101,23 @@ impl<'s> Undetermined<'s> {
     }
 
     /// Whether the components of force (3) and moment about a place (3) of some rows on some nodes (points or directions)
-    /// are unique.
-    pub fn are_unique(&self, rows: &Range<usize>, nodes: &[(NodeId, bool)], about: [f64; 3]) -> [bool; 6] {
+    /// are unique, with what is borne beside these rows, by the multipliers of all rows.
+    pub fn are_unique(
+        &self,
+        rows: &Range<usize>,
+        nodes: &[(NodeId, bool)],
+        about: [f64; 3],
+        borne: impl Fn(&[f64]) -> ([f64; 3], [f64; 3]),
+    ) -> [bool; 6] {
         let (mut unique, length) = ([true; 6], extent(self.system));
+        let none = borne(&vec![0.0; self.system.constraints()]);
         for space in &self.spaces {
             let (force, moment) = wrench(self.system, rows.clone(), &space.lambda, &self.at.gradient, nodes, about, &self.x);
+            let more = borne(&space.lambda);
             let scale = SMALL * space.largest;
             for c in 0..3 {
-                unique[c] &= force[c].abs() <= scale;
-                unique[3 + c] &= moment[c].abs() <= scale * length;
+                unique[c] &= (force[c] + more.0[c] - none.0[c]).abs() <= scale;
+                unique[3 + c] &= (moment[c] + more.1[c] - none.1[c]).abs() <= scale * length;
             }
         }
         unique

@@ -315,15 +315,15 @@ impl Channels {
             let wrench = joint.wrench(simulation, &x).unwrap_or(([f64::NAN; 3], [f64::NAN; 3]));
             row.extend(components.iter().map(|&k| component(wrench, k)));
         }
-        let pushes: Vec<Push> = told.transmissions.iter().map(|transmission| told.push(transmission, simulation, &x)).collect();
+        let (lambda, t) = (simulation.reactions().map(|reactions| &reactions.lambda), simulation.state().t);
+        let of = |row: usize| lambda.map_or(f64::NAN, |lambda| lambda[row]);
+        let pushes: Vec<Push> = told.transmissions.iter().map(|transmission| told.push(transmission, of(transmission.row), &x)).collect();
         for (transmission, push) in told.transmissions.iter().zip(&pushes) {
             for (joint, wrench) in transmission.borne(push) {
                 let own = &mut row[first + joint * components.len()..];
                 own.iter_mut().zip(components).for_each(|(own, &k)| *own += component(wrench, k));
             }
         }
-        let (lambda, t) = (simulation.reactions().map(|reactions| &reactions.lambda), simulation.state().t);
-        let of = |row: usize| lambda.map_or(f64::NAN, |lambda| lambda[row]);
         let (system, at) = simulation.reacting();
         let share =
             |coupling: &RecordedCoupling| coupling.factor * coupling.curve.map_or(1.0, |part| system.slope_in_row(coupling.row, part, at));
@@ -332,24 +332,30 @@ impl Channels {
         row.extend(told.rods.iter().map(|rod| of(rod.row) * rod.length.at(t)[0]));
     }
 
-    /// What one of the transmissions of these channels does at the present state, of which `x` are the positions of all nodes.
-    fn push(&self, transmission: &RecordedTransmission, simulation: &Simulation, x: &[f64]) -> Push {
+    /// What one of the transmissions of these channels does with this multiplier of its row, where `x` are the positions of all nodes.
+    fn push(&self, transmission: &RecordedTransmission, lambda: f64, x: &[f64]) -> Push {
         let dim = self.axes.len();
-        let lambda = simulation.reactions().map_or(f64::NAN, |reactions| reactions.lambda[transmission.row]);
         transmission.push(transmission.joints.map(|joint| self.joints[joint].place(x, dim)), lambda, x, dim)
+    }
+
+    /// What a joint bears of transmissions beside its own rows, with these multipliers of all rows and positions `x` of all nodes in the world.
+    pub fn borne(&self, joint: usize, lambda: &[f64], x: &[f64]) -> Wrench {
+        let mut sum = ([0.0; 3], [0.0; 3]);
+        for transmission in self.transmissions.iter().filter(|transmission| transmission.joints.contains(&joint)) {
+            let push = self.push(transmission, lambda[transmission.row], x);
+            for (_, (force, moment)) in transmission.borne(&push).filter(|(on, _)| *on == joint) {
+                (0..3).for_each(|c| (sum.0[c], sum.1[c]) = (sum.0[c] + force[c], sum.1[c] + moment[c]));
+            }
+        }
+        sum
     }
 
     /// Force and moment of one of the joints whose forces are found, as [`RecordedJoint::wrench`] has it, with what it bears of transmissions.
     pub(crate) fn wrench(&self, joint: usize, simulation: &Simulation) -> Option<Wrench> {
         let (told, x) = (self.found_by(simulation)?, simulation.reacting_positions());
-        let mut sum = told.joints[joint].wrench(simulation, &x)?;
-        for transmission in told.transmissions.iter().filter(|transmission| transmission.joints.contains(&joint)) {
-            let push = told.push(transmission, simulation, &x);
-            for (_, (force, moment)) in transmission.borne(&push).filter(|(on, _)| *on == joint) {
-                (0..3).for_each(|c| (sum.0[c], sum.1[c]) = (sum.0[c] + force[c], sum.1[c] + moment[c]));
-            }
-        }
-        Some(sum)
+        let (force, moment) = told.joints[joint].wrench(simulation, &x)?;
+        let more = told.borne(joint, &simulation.reactions()?.lambda, &x);
+        Some((std::array::from_fn(|c| force[c] + more.0[c]), std::array::from_fn(|c| moment[c] + more.1[c])))
     }
 
     /// Appends the columns of the multipliers, and of what the constraints exert on points.
