@@ -6,6 +6,8 @@ use holonom::model::Model;
 use holonom::record::Recording;
 use holonom::simulation::Simulation;
 
+use crate::table::short;
+
 /// Share of itself by which a rotation lags or leads from which on that is said.
 const LAG: f64 = 0.01;
 
@@ -14,6 +16,15 @@ const SLOW: f64 = 0.2;
 
 /// Turns that it makes in one sense at least: the acceleration of what swings as a pendulum turns once before it turns back.
 const ROUNDS: f64 = 2.0;
+
+/// Share of all its way by which the angle of a joint and the sum of its rate part, from which on that is said.
+const PARTING: f64 = 0.05;
+
+/// Angle below which they do not part, rad: what is round-off of a joint that stands.
+const NOTHING: f64 = 1e-3;
+
+/// Most that schemes of order 2 let such a sum part from the angle, over the cube of the angle a step by which the fastest body turns: RATTLE's is a sixth.
+const MISLED: f64 = 0.25;
 
 /// Largest angle a step, rad: what trembles from step to step is turned about in each.
 const ABOUT: f64 = 2.0;
@@ -74,15 +85,56 @@ pub fn long_turns(model: &Model, simulation: &Simulation, recording: &Recording)
     let is_whole = simulation.work().rejected_steps == 0;
     let in_space = |name: &String| lag_in_space(name, recording, step, is_whole);
     // Bodies that no joint has an angle of, and then what goes round without turning itself.
-    let ((name, lag), rate) = largest(&mut angles.filter_map(|name| Some((name.clone(), lag(name)?))))
+    let Some(((name, lag), rate)) = largest(&mut angles.filter_map(|name| Some((name.clone(), lag(name)?))))
         .or_else(|| largest(&mut model.scene.bodies.iter().filter_map(|body| Some((body.name.clone(), in_space(&body.name)?)))))
         .map(|found| (found, "rate"))
-        .or_else(|| Some((largest(&mut lags_round(model, simulation, recording).into_iter())?, "velocity")))?;
+        .or_else(|| Some((largest(&mut lags_round(model, simulation, recording).into_iter())?, "velocity")))
+    else {
+        return misled(model, step, recording);
+    };
     let [less, lags] = if lag > 0.0 { ["less", "lags"] } else { ["more", "leads"] };
     Some(format!(
         "`{name}` comes on by {:.0} % {less} than its {rate} says: a method of order 2 {lags} where steps are long for what spins (a shorter step, or gauss)",
         100.0 * lag.abs()
     ))
+}
+
+/// That the rate of a joint on something that spins is not that of its angle: what is driven round keeps its rate, and what it carries along has that of
+/// a lagging rotation, so that the two differ by far more than anything lags.
+fn misled(model: &Model, step: f64, recording: &Recording) -> Option<String> {
+    let times = recording.column("t")?;
+    if times.len() < 2 || times.windows(2).any(|t| t[1] - t[0] > 1.5 * step) {
+        return None;
+    }
+    let turned = turned_by_bodies(model, recording);
+    let bound: f64 = times.windows(2).zip(&turned).map(|(t, rate)| MISLED * ((t[1] - t[0]) * rate).powi(3)).sum();
+    let parts = |name: &String| {
+        let (angles, rates) = (recording.column(name)?, recording.column(&format!("{name}_rate"))?);
+        let spans = || times.windows(2).zip(rates.windows(2)).map(|(t, rate)| 0.5 * (t[1] - t[0]) * (rate[0] + rate[1]));
+        let (due, way) = (spans().sum::<f64>(), spans().map(f64::abs).sum::<f64>());
+        let parted = due - (angles[angles.len() - 1] - angles[0]);
+        (parted.abs() > (PARTING * way).max(NOTHING) && parted.abs() < bound).then(|| (name.clone(), parted, way))
+    };
+    let angles = model.system.gauges().iter().filter(|gauge| gauge.ends_with("angle"));
+    let (name, parted, way) = angles.filter_map(parts).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    Some(format!(
+        "`{name}` comes on by {} rad {} than its rate says, {:.0} % of all its way: it is on what spins, and with a method of order 2 and long steps its rate, and \
+         dampers that read it, are off (a shorter step, or gauss)",
+        short(parted.abs()),
+        if parted > 0.0 { "less" } else { "more" },
+        100.0 * parted.abs() / way
+    ))
+}
+
+/// The rate at which the fastest body turns in each row, rad/s.
+fn turned_by_bodies(model: &Model, recording: &Recording) -> Vec<f64> {
+    let mut fastest = vec![0.0_f64; recording.rows()];
+    for body in &model.scene.bodies {
+        let of = |ending: &str| recording.column(&format!("{}.{ending}", body.name));
+        let rates: Vec<&[f64]> = ["wx", "wy", "wz", "angle_rate"].into_iter().filter_map(of).collect();
+        fastest.iter_mut().enumerate().for_each(|(k, most)| *most = most.max(rates.iter().map(|rate| rate[k].powi(2)).sum::<f64>().sqrt()));
+    }
+    fastest
 }
 
 /// The same of a body in space, of rows a step apart: a step turns it by less than half a turn, unless it is taken in parts.

@@ -192,6 +192,30 @@ fn long_steps_are_told() {
     assert!(!notes("").contains("comes on by"), "{}", notes(""));
 }
 
+/// The blade of a rotor that is driven round, on a hinge with a damper: at 25 steps a turn its angle falls by 0.07 rad and the sum of its rate rises.
+#[test]
+fn rates_on_what_spins_are_told() {
+    let folder = folder();
+    let rotor = "plane = \"xy\"\n[body.hub]\nmass = 20\ninertia = 0.7\nposition = [0, 0]\n\
+                 [body.blade]\nmass = 18\ninertia = 13.5\nposition = [1.72, 0]\nvelocity = [0, \"1.72*42\"]\nangular_velocity = 42\n\
+                 [joint.mast]\ntype = \"revolute\"\nbetween = [\"ground\", \"hub\"]\nat = [0, 0]\n\
+                 [joint.lag]\ntype = \"revolute\"\nbetween = [\"hub\", \"blade\"]\nat = [0.22, 0]\n\
+                 [force.damper]\ntype = \"torsion\"\njoint = \"lag\"\ndamping = 35\n\
+                 [force.drag]\ntype = \"torque\"\nbody = \"blade\"\ntorque = -800\n[simulation]\nend = 0.6\nstep = 6e-3\n";
+    let driven = "[drive.engine]\ntype = \"angle\"\njoint = \"mast\"\nprofile = \"42*t\"\n";
+    let notes = |words: &str| text(&holonom(&folder, &format!("run rotor.toml --no-report --force --out a {words}")).stderr);
+    fs::write(folder.path().join("rotor.toml"), rotor.to_string() + driven).unwrap();
+    let said = notes("");
+    assert!(said.contains("note: `lag.angle` comes on by 0.14") && said.contains(" rad less than its rate says, "), "{said}");
+    for words in ["--step 1e-3", "--method gauss", "--method conserving", "--accuracy 1e-4"] {
+        assert!(!notes(words).contains("comes on by"), "{words}: {}", notes(words));
+    }
+    // What turns freely lags with all that it carries.
+    fs::write(folder.path().join("rotor.toml"), rotor.replace("position = [0, 0]\n", "position = [0, 0]\nangular_velocity = 42\n"))
+        .unwrap();
+    assert!(!notes("").contains("`lag.angle`"), "{}", notes(""));
+}
+
 /// The same of what goes round without turning itself, in units of any size, on a carriage and far from the origin; a pendulum goes to and fro.
 #[test]
 fn long_steps_are_told_of_what_goes_round() {
