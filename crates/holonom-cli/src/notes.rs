@@ -101,16 +101,20 @@ pub fn rows_without_forces(model: &Model, recording: &Recording) -> Option<Strin
 /// Share of the energy that could move from which on it is said that a method has made or lost it.
 const LOST: f64 = 0.01;
 
-/// That a method has made or lost much of the energy.
-fn lost_energy(simulation: &Simulation) -> Option<String> {
+/// That a method has made or lost much of the energy. Where nothing is free to move, the energy is that of the drives at any step, and only their work is off.
+fn lost_energy(simulation: &Simulation, is_free: bool) -> Option<String> {
     let [made, supply] = simulation.made_energy();
     let did = if made > 0.0 { "made" } else { "lost" };
     (made.abs() > LOST * supply).then(|| {
-        format!(
-            "the method has {did} {} J of the {} J that could move: shorter steps show what that changes, and conserving-ggl keeps the energy",
-            short(made.abs()),
-            short(supply)
-        )
+        let (made, supply) = (short(made.abs()), short(supply));
+        match is_free {
+            true => format!(
+                "the method has {did} {made} J of the {supply} J that could move: shorter steps show what that changes, and conserving-ggl keeps the energy"
+            ),
+            false => format!(
+                "the work of the drives, which lead all that moves, is booked {made} J off the energy, of {supply} J that could move (a shorter step, or conserving-ggl)"
+            ),
+        }
     })
 }
 
@@ -238,9 +242,9 @@ pub fn turned_bushings(model: &Model, recording: &Recording) -> Option<String> {
     ))
 }
 
-/// What is not sure of the results of a run, as far as the simulation itself knows at its end.
-pub fn doubts(simulation: &Simulation, completed: bool) -> impl Iterator<Item = String> {
-    let of_energy = lost_energy(simulation).into_iter().chain(unsure_work(simulation)).filter(move |_| completed);
+/// What is not sure of the results of a run, as far as the simulation itself knows at its end; whether something is free to move is for the rank to say.
+pub fn doubts(simulation: &Simulation, is_free: bool, completed: bool) -> impl Iterator<Item = String> {
+    let of_energy = lost_energy(simulation, is_free).into_iter().chain(unsure_work(simulation)).filter(move |_| completed);
     of_energy
         .chain(strayed(simulation))
         .chain(slipped(simulation))

@@ -184,7 +184,7 @@ pub(crate) fn simulate_kept(
     let without = rows_without_forces(model, watched.recorder.recording());
     let turns = long_turns(model, &simulation, watched.recorder.recording());
     let turned = turned_bushings(model, watched.recorder.recording());
-    let of_steps = doubts(&simulation, status == Status::Completed).chain(turned).chain(turns);
+    let of_steps = doubts(&simulation, summary.size.dof > 0, status == Status::Completed).chain(turned).chain(turns);
     let of_results: Vec<String> = unknown.into_iter().chain(without).chain(shared_forces(model, &simulation)).chain(of_steps).collect();
     if !quiet {
         of_results.iter().for_each(|text| say(text));

@@ -187,6 +187,14 @@ fn long_steps_are_told() {
     let lost = notes("--method radau --step 5e-3");
     assert!(lost.contains("note: the method has lost ") && lost.contains(" J that could move: shorter steps"), "{lost}");
     assert!(!notes("--method radau --accuracy 1e-6").contains("the method has"));
+    // Where a drive leads all that moves the energy is right at any step, and its work alone is off.
+    let led = "[drive.motor]\ntype = \"angle\"\njoint = \"axle\"\nprofile = \"600*t + 3*(1 - cos(300*t))\"\n";
+    fs::write(folder.path().join("top.toml"), rotor(led)).unwrap();
+    let booked = notes("--method bdf");
+    assert!(
+        booked.contains("note: the work of the drives, which lead all that moves, is booked ") && !booked.contains("the method has"),
+        "{booked}"
+    );
     // What is driven does not lag.
     fs::write(folder.path().join("top.toml"), rotor("[drive.motor]\ntype = \"angle\"\njoint = \"axle\"\nprofile = \"600*t\"\n")).unwrap();
     assert!(!notes("").contains("comes on by"), "{}", notes(""));

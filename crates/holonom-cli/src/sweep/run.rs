@@ -129,7 +129,7 @@ impl Runner<'_> {
             model.find_reactions(&mut simulation);
         }
         let figures = Some(figures(&simulation, watched.watch.values(&simulation)));
-        notes.extend(doubts(&simulation, status == Status::Completed));
+        notes.extend(doubts(&simulation, rank.size(&model.system).dof > 0, status == Status::Completed));
         Ok(Some(match status {
             Status::Completed => Outcome { ending: Ending::Completed, stopped_at: None, reason: String::new(), notes, figures },
             Status::Stopped { at, reason } => Outcome { ending: Ending::Stopped, stopped_at: Some(at), reason, notes, figures },
