@@ -154,6 +154,18 @@ pub const OF_METHOD: [&str; 6] = [
     "simulation.projection.levels",
 ];
 
+/// Refuses to set what the name of a method on the command line replaces, as nothing would come of it.
+pub fn require_kept(set: &[String], names_method: bool) -> Result<(), Failure> {
+    let replaced = set.iter().filter_map(|given| split(given).ok()).find(|(key, _)| OF_METHOD.contains(key));
+    match replaced.filter(|_| names_method) {
+        Some((key, _)) => Err(Failure::usage(
+            format!("`{key}` is set, and --method replaces it"),
+            "leave out one of the two; an order goes with the name of an integrator, as in --method ggl/conserving-ggl-4",
+        )),
+        None => Ok(()),
+    }
+}
+
 /// Refuses a parameter that the model does not have, as nothing would come of it, and the bare name of one that it has; and a key of a body, joint
 /// or another entry that the model does not have, as a new one would be made.
 pub fn require_key(key: &str, source: &Source) -> Result<(), Failure> {

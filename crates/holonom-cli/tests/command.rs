@@ -34,6 +34,8 @@ fn wrong_use_ends_with_two_and_says_what_there_is() {
         (format!("stability {PAPER} --set parameters.k=3"), "no parameter `k`"),
         (format!("run {PAPER} --step abc"), "abc"),
         (format!("run {PAPER} --end 0.5 --set simulation.integrator=euler"), "conserving-ggl"),
+        (format!("run {PAPER} --set simulation.order=4 --method conserving"), "`simulation.order` is set, and --method replaces it"),
+        (format!("compare {PAPER} --set simulation.order=4 --method conserving"), "--method replaces it"),
         (format!("check {PAPER} --set simulation.projection.matrix=unit"), "identity"),
         (format!("check {PAPER} --set simulation.projection.matrix=custom"), "weight"),
         ("run example:nothing".into(), "four-bar"),

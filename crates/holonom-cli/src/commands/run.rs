@@ -21,6 +21,7 @@ const CHANGED_ACCURACY: &str = "an accuracy is that of the whole run, so its ste
 
 /// Simulates one model by one method and leaves everything in a folder.
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
+    load::require_kept(&arguments.model.set, arguments.method.name.is_some())?;
     let mut overrides = load::overrides(&arguments.model.set);
     overrides.number("simulation.step", arguments.method.step.as_deref());
     overrides.number("simulation.accuracy", arguments.method.accuracy.as_deref());

@@ -41,6 +41,7 @@ impl Bounds {
 
 /// Searches the largest step of each method. Steps are never subdivided here.
 pub fn stability(arguments: &StabilityArguments) -> Result<ExitCode, Failure> {
+    load::require_kept(&arguments.model.set, !arguments.methods.is_empty())?;
     let mut overrides = load::overrides(&arguments.model.set);
     overrides.number("simulation.step", arguments.step.as_deref());
     overrides.number("simulation.end", arguments.end.as_deref());

@@ -23,6 +23,7 @@ pub fn sweep(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
     let writers = table_writers(&arguments.formats)?;
     let plan = Plan::new(arguments)?;
     let varied = plan.varied.len();
+    load::require_kept(&arguments.model.set, arguments.method.name.is_some())?;
     let mut overrides = load::overrides(&arguments.model.set);
     overrides.number("simulation.step", arguments.method.step.as_deref());
     overrides.number("simulation.accuracy", arguments.method.accuracy.as_deref());

@@ -174,6 +174,7 @@ fn refuse_idle(arguments: &CompareArguments, subjects: &[Subject]) -> Result<(),
 
 /// Loads a model once for each variant and step.
 fn prepare(subject: &Subject, all: &[Subject], arguments: &CompareArguments, models: &mut Vec<Loaded>) -> Result<Prepared, Failure> {
+    load::require_kept(&arguments.set, !arguments.methods.is_empty())?;
     let is_shared = all.iter().filter(|other| other.name() == subject.name()).count() > 1;
     let name = if is_shared { subject.argument() } else { subject.name() };
     let mut prepared = Prepared { subject: subject.clone(), name, models: Vec::new() };
