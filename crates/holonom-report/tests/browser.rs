@@ -8,6 +8,7 @@ mod chromium;
 mod sample;
 
 use chromium::{WINDOW, checks_in, dump_dom};
+use holonom::record::{SceneWheels, WheelsKind};
 use holonom_report::{Report, Run};
 use sample::Sample;
 use serde_json::{Value, json};
@@ -180,6 +181,27 @@ fn bodies_in_a_plane() {
     bodies_move(&seen, "coupler", 6);
     assert_eq!(seen["middle"]["bodies"]["coupler"][1], 0, "the missing coordinate is 0: {seen:#}");
     home_leads_back(&seen);
+}
+
+/// A ring around the mechanism, fixed in the world, and the wheel that runs in it: the view has room for both.
+#[test]
+fn wheels_of_gears_are_in_the_picture() {
+    let mut geared = sample::bodies::four_bar(2.5);
+    let (joints, bodies) = (["axle", "a"].map(String::from), [Some("wheel".to_owned()), None]);
+    geared.scene.wheels.push(SceneWheels {
+        name: "mesh".to_owned(),
+        kind: WheelsKind::Gear,
+        joints,
+        bodies,
+        radii: [Some(1.0), Some(5.0)],
+    });
+    // Pixels between the wheel and the block, which keeps its place.
+    let apart = |seen: &Value| {
+        let [wheel, block] = [4, 3].map(|body| [0, 1].map(|k| seen["start"]["screen"][body][k].as_f64().unwrap()));
+        (wheel[0] - block[0]).hypot(wheel[1] - block[1])
+    };
+    let [without, with] = [open("ungeared", &[sample::bodies::four_bar(2.5)]), open("geared", &[geared])].map(|seen| apart(&seen));
+    assert!(with < 0.4 * without, "{with} of {without} px");
 }
 
 /// Single precision has steps of 6 cm there.

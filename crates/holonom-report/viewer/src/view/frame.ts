@@ -5,6 +5,7 @@ import { carried, type Motion } from "../motion";
 import type { Vec3 } from "../payload";
 import { outline } from "./outline";
 import { poseOf, sidesOf } from "./side";
+import { sidesOfWheels } from "./wheels";
 
 /** Rows looked at per run; a box needs no more. */
 const SAMPLES = 400;
@@ -65,6 +66,13 @@ function placesInRow(motion: Motion, row: number): Vec3[] {
     const disc = sidesOf(motion, joint)?.[1];
     const pose = disc && poseOf(motion, disc.body, row);
     if (pose) places.push(...ball(carried(pose, disc.at.toArray()), joint.radius));
+  }
+  // Wheels with teeth or a belt reach beyond the places of their joints.
+  for (const wheels of motion.run.scene.wheels) {
+    sidesOfWheels(motion, wheels).forEach((side, k) => {
+      const [pose, radius] = [side && poseOf(motion, side.body, row), wheels.radii[k]];
+      if (side && pose && radius) places.push(...ball(carried(pose, side.at.toArray()), radius));
+    });
   }
   // Curves go with the bodies that have them, as the groove of a cam.
   for (const { body, curve } of joints) {
