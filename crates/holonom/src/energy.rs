@@ -1,6 +1,6 @@
 //! The energy audit: T, V, what was done on the system, and momenta (the paper's §6).
 
-use crate::formulation::{Sampling, Stage, Workspace};
+use crate::formulation::{Moment, Sampling, Stage, Workspace};
 use crate::linalg::largest;
 use crate::system::{Evaluation, InvariantId, LawEntry, Response, System};
 
@@ -72,15 +72,28 @@ pub fn size_of_working_forces(system: &System, work: &Workspace) -> f64 {
 }
 
 /// Work in a step with forces between its ends: loads, dissipation, and known motion through inertia, forces and rows,
-/// J. The rows take part through their targets alone: work of a violated row is the integrator's (25)–(27).
-pub fn work_between(system: &System, stage: &Stage, work: &Workspace) -> f64 {
+/// J. The rows take part through their targets alone: work of a violated row is the integrator's (25)–(27). Adds to the
+/// shares of the workspace what each worker did.
+pub fn work_between(system: &System, stage: &Stage, work: &mut Workspace) -> f64 {
+    let mut shares = std::mem::take(&mut work.shares);
+    let sum = add_work_between(system, stage, work, &mut shares);
+    work.shares = shares;
+    sum
+}
+
+fn add_work_between(system: &System, stage: &Stage, work: &Workspace, shares: &mut [f64]) -> f64 {
     let (n, dim, h) = (system.coordinates(), system.dim, stage.step);
-    let mut sum = loads_along(system, work, |i| work.d[i]);
-    for (law, response) in system.laws.iter().zip(&work.forces.responses).filter(|(law, _)| !law.law.conservative()) {
-        sum += work_of_law(system, law, response, stage, work);
+    let way = |i: usize| if i < n { work.d[i] } else { work.end.x[i] - work.start.x[i] };
+    let [of_laws, of_loads, of_rows, of_nodes] = system.workers().split(shares);
+    let mut sum = loads_along(system, work, way, [of_loads, of_nodes]);
+    let laws = system.laws.iter().zip(&work.forces.responses).filter(|(law, _)| !law.law.conservative());
+    for ((law, response), share) in laws.zip(of_laws) {
+        let own = work_of_law(system, law, response, stage, work);
+        (sum, *share) = (sum + own, *share + own);
     }
     for i in n..work.end.x.len() {
-        sum += work.forces.sum[i] * (work.end.x[i] - work.start.x[i]);
+        let own = work.forces.sum[i] * way(i);
+        (sum, of_nodes[(i - n) / dim]) = (sum + own, of_nodes[(i - n) / dim] + own);
     }
     for node in system.free..system.nodes() {
         for (b, mass) in system.mass.row(node) {
@@ -90,15 +103,18 @@ pub fn work_between(system: &System, stage: &Stage, work: &Workspace) -> f64 {
                 way[0][c] = 0.5 * (work.start.v[i] + work.end.v[i]);
                 way[1][c] = work.end.v[j] - work.start.v[j];
             }
-            sum += mass.product(&way[0], &way[1]);
+            let own = mass.product(&way[0], &way[1]);
+            (sum, of_nodes[node - system.free]) = (sum + own, of_nodes[node - system.free] + own);
         }
     }
-    for (row, &lambda) in work.lambda.iter().enumerate() {
-        sum += lambda
+    for (&row, share) in system.driven_rows.iter().zip(of_rows) {
+        let row = row as usize;
+        let own = work.lambda[row]
             * match system.rows.get(row) {
                 Some(row) => row.target(stage.start)[0] - row.target(stage.end())[0],
                 None => h * system.explicit_rate(row, &work.sampled.at, stage.time()),
             };
+        (sum, *share) = (sum + own, *share + own);
     }
     sum
 }
@@ -165,51 +181,117 @@ pub(crate) fn unsure_work(system: &System, stage: &Stage, work: &Workspace) -> (
     (sum, most)
 }
 
-/// Power of everything that [`work_between`] counts, at a state with its accelerations, W. Needs the state sampled.
-pub fn power(system: &System, t: f64, v: &[f64], a: &[f64], work: &Workspace) -> f64 {
-    let n = system.coordinates();
-    let mut sum = loads_along(system, work, |i| v[i]);
-    for (law, response) in system.laws.iter().zip(&work.forces.responses).filter(|(law, _)| !law.law.conservative()) {
-        for (k, id) in law.invariants.iter().enumerate() {
-            sum -= response.force[k] * system.along(&system.invariants.slots_of(*id), &system.slots.nodes, &work.sampled.at, v);
-        }
-    }
-    sum += (n..v.len()).map(|i| work.forces.sum[i] * v[i]).sum::<f64>();
-    add_power_of_known(system, t, &work.sampled.at, v, a, &work.lambda, sum)
+/// Power of everything that [`work_between`] counts, at a moment of a workspace with its accelerations, W. Needs the state sampled. Leaves in the
+/// workspace that of each worker.
+pub fn power(system: &System, t: f64, moment: impl Fn(&Workspace) -> &Moment, work: &mut Workspace) -> f64 {
+    let mut powers = std::mem::take(&mut work.powers);
+    let sum = power_with(system, t, &moment(work).v, &work.a, work, &mut powers);
+    work.powers = powers;
+    sum
 }
 
-/// Adds to a sum the power that known motion gives to masses with the accelerations `a`, and that of rows that depend on time with the multipliers
-/// λ, W.
-fn add_power_of_known(system: &System, t: f64, at: &Evaluation, v: &[f64], a: &[f64], lambda: &[f64], mut sum: f64) -> f64 {
-    let dim = system.dim;
-    for node in system.free..system.nodes() {
-        for (b, mass) in system.mass.row(node) {
-            sum += mass.product(&v[node * dim..(node + 1) * dim], &a[b * dim..(b + 1) * dim]);
+/// The same with these velocities and accelerations; leaves in `shares` the power of each worker.
+pub fn power_with(system: &System, t: f64, v: &[f64], a: &[f64], work: &Workspace, shares: &mut [f64]) -> f64 {
+    let n = system.coordinates();
+    shares.fill(0.0);
+    let [of_laws, of_loads, _, of_nodes] = system.workers().split(shares);
+    let mut sum = loads_along(system, work, |i| v[i], [of_loads, of_nodes]);
+    let laws = system.laws.iter().zip(&work.forces.responses).filter(|(law, _)| !law.law.conservative());
+    for ((law, response), share) in laws.zip(of_laws) {
+        for (k, id) in law.invariants.iter().enumerate() {
+            let own = response.force[k] * system.along(&system.invariants.slots_of(*id), &system.slots.nodes, &work.sampled.at, v);
+            (sum, *share) = (sum - own, *share - own);
         }
     }
-    for (row, &lambda) in lambda.iter().enumerate() {
-        sum += lambda * system.explicit_rate(row, at, t);
+    let mut of_known = 0.0;
+    for i in n..v.len() {
+        let own = work.forces.sum[i] * v[i];
+        (of_known, of_nodes[(i - n) / system.dim]) = (of_known + own, of_nodes[(i - n) / system.dim] + own);
+    }
+    add_power_of_known(system, t, &work.sampled.at, v, a, &work.lambda, sum + of_known, shares)
+}
+
+/// Adds to a sum, and to the shares of the workers, the power that known motion gives to masses with the accelerations `a`, and that of rows that
+/// depend on time with the multipliers λ, W.
+#[allow(clippy::too_many_arguments)]
+fn add_power_of_known(
+    system: &System,
+    t: f64,
+    at: &Evaluation,
+    v: &[f64],
+    a: &[f64],
+    lambda: &[f64],
+    mut sum: f64,
+    shares: &mut [f64],
+) -> f64 {
+    let dim = system.dim;
+    let [_, _, of_rows, of_nodes] = system.workers().split(shares);
+    for (node, share) in (system.free..system.nodes()).zip(of_nodes) {
+        for (b, mass) in system.mass.row(node) {
+            let own = mass.product(&v[node * dim..(node + 1) * dim], &a[b * dim..(b + 1) * dim]);
+            (sum, *share) = (sum + own, *share + own);
+        }
+    }
+    for (&row, share) in system.driven_rows.iter().zip(of_rows) {
+        let own = lambda[row as usize] * system.explicit_rate(row as usize, at, t);
+        (sum, *share) = (sum + own, *share + own);
     }
     sum
 }
 
-/// Power of moving rows and of known motion at the start of a step, as far as it comes of multipliers and accelerations, W.
+/// Power of moving rows and of known motion at the start of a step, as far as it comes of multipliers and accelerations, W. Leaves in `shares` that of
+/// each worker.
 pub fn power_of_rows(system: &System, t: f64, work: &mut Workspace) -> f64 {
-    let Workspace { full, lambda, start, a, .. } = work;
-    full.fill(0.0);
-    system.slots.add_forces(system.dim, lambda, &start.at.gradient, full);
-    let sum = (system.coordinates()..full.len()).map(|i| full[i] * start.v[i]).sum();
-    add_power_of_known(system, t, &start.at, &start.v, a, lambda, sum)
+    let Workspace { full, lambda, start, a, powers, .. } = work;
+    powers.fill(0.0);
+    let sum = add_power_on_known(system, &start.at, &start.v, lambda, full, powers);
+    add_power_of_known(system, t, &start.at, &start.v, a, lambda, sum, powers)
 }
 
-/// Σ F·motion over the loads on free nodes.
-fn loads_along(system: &System, work: &Workspace, motion: impl Fn(usize) -> f64) -> f64 {
+/// The power of rows with these multipliers on known nodes, W, which is added to the shares of these.
+fn add_power_on_known(system: &System, at: &Evaluation, v: &[f64], lambda: &[f64], full: &mut [f64], shares: &mut [f64]) -> f64 {
+    let (n, dim) = (system.coordinates(), system.dim);
+    full.fill(0.0);
+    system.slots.add_forces(dim, lambda, &at.gradient, full);
+    let [.., of_nodes] = system.workers().split(shares);
+    let mut sum = 0.0;
+    for i in n..full.len() {
+        let own = full[i] * v[i];
+        (sum, of_nodes[(i - n) / dim]) = (sum + own, of_nodes[(i - n) / dim] + own);
+    }
+    sum
+}
+
+/// Adds to the shares of the workers what the impulses of a projection of velocities at the end of a step did along rows that move, J, and to their
+/// powers that of the forces of one of accelerations, W.
+pub fn add_of_projections(system: &System, t: f64, work: &mut Workspace) {
+    let Workspace { end, impulses, full, shares, powers, .. } = work;
+    if !system.motions.is_empty() {
+        add_power_on_known(system, &end.at, &end.v, &impulses[0], full, shares);
+        add_power_on_known(system, &end.at, &end.v, &impulses[1], full, powers);
+    }
+    let [[_, _, shares, _], [_, _, powers, _]] = [shares, powers].map(|sums| system.workers().split(sums));
+    for ((&row, share), power) in system.driven_rows.iter().zip(shares).zip(powers) {
+        let row = row as usize;
+        if impulses.iter().any(|impulses| impulses[row] != 0.0) {
+            let rate = system.explicit_rate(row, &end.at, t);
+            (*share, *power) = (*share + impulses[0][row] * rate, *power + impulses[1][row] * rate);
+        }
+    }
+}
+
+/// Σ F·motion over the loads on free nodes. To the shares of loads that is added over all of their nodes, and what they push known nodes along by is
+/// taken from the shares of these.
+fn loads_along(system: &System, work: &Workspace, motion: impl Fn(usize) -> f64, [of_loads, of_nodes]: [&mut [f64]; 2]) -> f64 {
     let (mut sum, mut first) = (0.0, 0);
-    for load in &system.loads {
+    for (load, share) in system.loads.iter().zip(of_loads) {
         for (k, node) in load.nodes.iter().enumerate() {
-            if node.index() < system.free {
-                for c in 0..system.dim {
-                    sum += work.forces.of_loads[first + k * system.dim + c] * motion(node.index() * system.dim + c);
+            for c in 0..system.dim {
+                let own = work.forces.of_loads[first + k * system.dim + c] * motion(node.index() * system.dim + c);
+                *share += own;
+                match node.index().checked_sub(system.free) {
+                    None => sum += own,
+                    Some(known) => of_nodes[known] -= own,
                 }
             }
         }

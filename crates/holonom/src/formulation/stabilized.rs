@@ -274,10 +274,13 @@ impl Stabilized {
     }
 
     /// Work of known motion in the step that the stage's forces do not show, J: through the velocity rows,
-    /// γ·(Ḡ Δv + H v̄ Δx − Δċ) over the known nodes, and through inertia, as Δq/h is not v̄ here.
-    pub fn work(&self, system: &System, stage: &Stage, work: &Workspace) -> f64 {
+    /// γ·(Ḡ Δv + H v̄ Δx − Δċ) over the known nodes, and through inertia, as Δq/h is not v̄ here. It is added to the shares of rows and nodes.
+    pub fn work(&self, system: &System, stage: &Stage, work: &mut Workspace) -> f64 {
         let (dim, h) = (system.dim, stage.step);
         let mut sum = 0.0;
+        let mut shares = std::mem::take(&mut work.shares);
+        let [_, _, of_rows, of_nodes] = system.workers().split(&mut shares);
+        let mut driven = system.driven_rows.iter().zip(of_rows).peekable();
         for known in system.free..system.nodes() {
             for (node, mass) in system.mass.row(known).filter(|&(node, _)| node < system.free) {
                 let [mut push, mut slip, mut lag, mut pull] = [[0.0; 3]; 4];
@@ -288,7 +291,8 @@ impl Stabilized {
                     lag[c] = (work.end.x[k] - work.start.x[k]) / h - 0.5 * (work.start.v[k] + work.end.v[k]);
                     pull[c] = work.end.v[i] - work.start.v[i];
                 }
-                sum += mass.product(&push, &slip) + mass.product(&lag, &pull);
+                let own = mass.product(&push, &slip) + mass.product(&lag, &pull);
+                (sum, of_nodes[known - system.free]) = (sum + own, of_nodes[known - system.free] + own);
             }
         }
         for (row, slots) in system.slots.rows.iter().enumerate() {
@@ -296,15 +300,22 @@ impl Stabilized {
                 Some(custom) => self.rate_by_time[custom],
                 None => system.explicit_rate(row, &work.end.at, stage.end()) - system.explicit_rate(row, &work.start.at, stage.start),
             };
+            if let Some((_, share)) = driven.next_if(|(driven, _)| **driven as usize == row) {
+                *share += self.gamma[row] / h * along;
+            }
             for s in slots.clone().filter(|&s| system.slots.nodes[s] as usize >= system.free) {
                 let node = system.slots.nodes[s] as usize * dim;
                 for c in 0..dim {
                     let (g, turned) = (self.velocity_gradient[s * dim + c], self.turned_w[s * dim + c] / h);
-                    along += g * (work.end.v[node + c] - work.start.v[node + c]) + turned * (work.end.x[node + c] - work.start.x[node + c]);
+                    let own =
+                        g * (work.end.v[node + c] - work.start.v[node + c]) + turned * (work.end.x[node + c] - work.start.x[node + c]);
+                    along += own;
+                    of_nodes[node / dim - system.free] += self.gamma[row] / h * own;
                 }
             }
             sum += self.gamma[row] / h * along;
         }
+        work.shares = shares;
         sum
     }
 }

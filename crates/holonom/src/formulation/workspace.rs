@@ -142,6 +142,12 @@ pub struct Workspace {
     pub rows: Vec<f64>,
     /// Sizes of gradients (D a slot).
     pub(super) sizes: Vec<f64>,
+    /// What each of the system's workers has done in the step so far, J.
+    pub shares: Vec<f64>,
+    /// The power of each of them where it was found last, W.
+    pub powers: Vec<f64>,
+    /// Multipliers of the last projections of velocities and of accelerations (r each).
+    pub impulses: [Vec<f64>; 2],
     works: bool,
     /// Whether a stage between two positions looks at their gradients and nothing else.
     only_gradients: bool,
@@ -207,6 +213,9 @@ impl Workspace {
             inertial: vec![0.0; n],
             rows: vec![0.0; r],
             sizes: vec![0.0; slots],
+            shares: vec![0.0; system.workers().count()],
+            powers: vec![0.0; system.workers().count()],
+            impulses: [vec![0.0; r], vec![0.0; r]],
             works: system.is_worked_on(),
             only_gradients: system.has_only_quadratic_rows(),
         }
@@ -252,6 +261,11 @@ impl Workspace {
     /// Whether anything does work on the system from outside its energy.
     pub fn is_worked_on(&self) -> bool {
         self.works
+    }
+
+    /// Adds the powers that were found last, times a number, to what the workers have done in the step.
+    pub fn book_powers(&mut self, time: f64) {
+        self.shares.iter_mut().zip(&self.powers).for_each(|(share, power)| *share += time * power);
     }
 
     /// Brings the sampled state to the solution of a stage, and for the balance of work forces and gradients: the last

@@ -29,9 +29,11 @@ pub(super) struct Bdf {
 const GAUSS: [[f64; 2]; 3] = [[0.112_701_665_379_258_31, 5.0 / 18.0], [0.5, 4.0 / 9.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
 
 /// The memory: how many states there are, the order in use, the power where the last step ended, how many steps were taken with that order, then for
-/// each state its time, the power there, positions and velocities, the latest first. The power at the first state is not known.
+/// each state its time, the power there and that of each worker, positions and velocities, the latest first. The powers at the first state are not
+/// known.
 struct History<'a> {
     n: usize,
+    workers: usize,
     numbers: &'a mut [f64],
 }
 
@@ -40,54 +42,60 @@ impl History<'_> {
         self.numbers[0] as usize
     }
 
-    /// Time, power, positions and velocities of state `k`.
+    /// Numbers before those of the states, and of each state.
+    fn sizes(&self) -> [usize; 2] {
+        [HEAD + self.workers, 2 + self.workers + 2 * self.n]
+    }
+
+    /// Time, powers, positions and velocities of state `k`.
     fn entry(&self, k: usize) -> &[f64] {
-        let first = HEAD + k * (2 * self.n + 2);
-        &self.numbers[first..first + 2 * self.n + 2]
+        let [head, each] = self.sizes();
+        &self.numbers[head + k * each..head + (k + 1) * each]
     }
 
     fn time(&self, k: usize) -> f64 {
         self.entry(k)[0]
     }
 
-    fn power(&self, k: usize) -> f64 {
-        self.entry(k)[1]
+    /// The powers at state `k`: of all, then of each worker.
+    fn powers(&self, k: usize) -> &[f64] {
+        &self.entry(k)[1..2 + self.workers]
     }
 
-    /// Takes note of the power where a step ends, for when that state is pushed.
-    fn set_power(&mut self, power: f64) {
+    /// Takes note of the powers where a step ends, for when that state is pushed.
+    fn set_power(&mut self, power: f64, of_workers: &[f64]) {
         self.numbers[2] = power;
+        self.numbers[HEAD..HEAD + self.workers].copy_from_slice(of_workers);
     }
 
     /// Positions, then velocities, of state `k`.
     fn state(&self, k: usize) -> &[f64] {
-        &self.entry(k)[2..]
+        &self.entry(k)[2 + self.workers..]
     }
 
     fn push(&mut self, t: f64, x: &[f64], v: &[f64]) {
-        let n = self.n;
-        let (head, states) = self.numbers.split_at_mut(HEAD);
-        states.rotate_right(2 * n + 2);
+        let (n, first, [head, each]) = (self.n, 2 + self.workers, self.sizes());
+        let (head, states) = self.numbers.split_at_mut(head);
+        states.rotate_right(each);
         (states[0], states[1]) = (t, head[2]);
-        states[2..2 + n].copy_from_slice(&x[..n]);
-        states[2 + n..2 + 2 * n].copy_from_slice(&v[..n]);
+        states[2..first].copy_from_slice(&head[HEAD..]);
+        states[first..first + n].copy_from_slice(&x[..n]);
+        states[first + n..first + 2 * n].copy_from_slice(&v[..n]);
         head[0] = (head[0] + 1.0).min(KEPT as f64);
     }
 
-    /// The work of a step of an order to the time `t`, where the power is `power`: the integral of the polynomial through the power there and
-    /// at as many states before, as far as it is known.
-    fn work(&self, order: usize, t: f64, power: f64) -> f64 {
+    /// What the powers at the end of a step of an order to the time `t` and at the states before count for in its work, s: by the integral of the polynomial
+    /// through as many of them as the order says and are known. How many there are, too.
+    fn weights_of_work(&self, order: usize, t: f64) -> ([f64; KEPT], usize) {
         let known = order.min(self.count() - 1);
-        let at = |k: usize| if k == 0 { (t, power) } else { (self.time(k - 1), self.power(k - 1)) };
-        let polynomial = |s: f64| -> f64 {
-            let term = |k: usize| {
-                let (own, power) = at(k);
-                (0..=known).filter(|&i| i != k).fold(power, |term, i| term * (s - at(i).0) / (own - at(i).0))
-            };
-            (0..=known).map(term).sum()
-        };
+        let time = |k: usize| if k == 0 { t } else { self.time(k - 1) };
         let (start, step) = (self.time(0), t - self.time(0));
-        GAUSS.iter().map(|[node, weight]| step * weight * polynomial(start + node * step)).sum()
+        let mut weights = [0.0; KEPT];
+        for (k, weight) in weights[..=known].iter_mut().enumerate() {
+            let basis = |s: f64| (0..=known).filter(|&i| i != k).map(|i| (s - time(i)) / (time(k) - time(i))).product::<f64>();
+            *weight = GAUSS.iter().map(|[node, weight]| step * weight * basis(start + node * step)).sum();
+        }
+        (weights, known)
     }
 }
 
@@ -128,13 +136,14 @@ impl Integrator for Bdf {
     }
 
     fn memory(&self, system: &System) -> usize {
-        HEAD + KEPT * (2 * system.coordinates() + 2)
+        let workers = system.workers().count();
+        HEAD + workers + KEPT * (2 + workers + 2 * system.coordinates())
     }
 
     fn step(&mut self, system: &System, start: f64, h: f64, newton: &mut Newton, work: &mut Workspace) -> Result<Step, Failure> {
         let n = system.coordinates();
         let mut memory = std::mem::take(&mut work.memory);
-        let mut history = History { n, numbers: &mut memory };
+        let mut history = History { n, workers: work.shares.len(), numbers: &mut memory };
         history.push(start, &work.start.x, &work.start.v);
         let outcome = self.advance(system, start, h, newton, &mut history, work);
         work.memory = memory;
@@ -157,7 +166,8 @@ impl Bdf {
         if history.count() < self.order + usize::from(self.varies) {
             let step = self.starter.step(system, start, h, newton, work)?;
             (work.estimate.energy, work.estimate.rounded) = (0.0, 0.0);
-            history.set_power(if work.is_worked_on() { energy::power(system, start + h, &work.end.v, &work.a, work) } else { 0.0 });
+            let power = if work.is_worked_on() { energy::power(system, start + h, |work| &work.end, work) } else { 0.0 };
+            history.set_power(power, &work.powers);
             return Ok(step);
         }
         let t = start + h;
@@ -181,9 +191,16 @@ impl Bdf {
         let mut done = 0.0;
         if work.is_worked_on() {
             work.sample(system, t);
-            let power = energy::power(system, t, &work.sampled.v, &work.a, work);
-            done = history.work(order, t, power);
-            history.set_power(power);
+            let power = energy::power(system, t, |work| &work.sampled, work);
+            let (weights, known) = history.weights_of_work(order, t);
+            let work_of =
+                |k: usize, power: f64| weights[0] * power + (1..=known).map(|i| weights[i] * history.powers(i - 1)[k]).sum::<f64>();
+            done = work_of(0, power);
+            let Workspace { shares, powers, .. } = work;
+            for (k, (share, power)) in shares.iter_mut().zip(powers).enumerate() {
+                *share += work_of(1 + k, *power);
+            }
+            history.set_power(power, &work.powers);
         }
         work.end.x[n..].copy_from_slice(&work.sampled.x[n..]);
         work.end.v.copy_from_slice(&work.sampled.v);

@@ -94,7 +94,7 @@ pub(super) struct Explicit {
     /// v_i and a_i of the stages and the end of the step, n numbers each.
     rates: Vec<f64>,
     slopes: Vec<f64>,
-    /// The power of what does work there, W.
+    /// The power of what does work there, W, each time followed by that of each worker.
     powers: Vec<f64>,
     /// Whether the further stages of the dense output are those of the last step.
     extended: bool,
@@ -111,7 +111,7 @@ impl Explicit {
             tableau,
             rates: room.clone(),
             slopes: room,
-            powers: vec![0.0; stages],
+            powers: vec![0.0; stages * (1 + system.workers().count())],
             extended: false,
             lambda: vec![0.0; system.constraints()],
         }
@@ -144,7 +144,10 @@ impl Explicit {
         newton.accelerate(system, t, work)?;
         self.rates[i * n..(i + 1) * n].copy_from_slice(&work.end.v[..n]);
         self.slopes[i * n..(i + 1) * n].copy_from_slice(&work.a[..n]);
-        self.powers[i] = if work.is_worked_on() { energy::power(system, t, &work.end.v, &work.a, work) } else { 0.0 };
+        let each = 1 + work.shares.len();
+        if let [all, shares @ ..] = &mut self.powers[i * each..(i + 1) * each] {
+            *all = if work.is_worked_on() { energy::power_with(system, t, &work.end.v, &work.a, work, shares) } else { 0.0 };
+        }
         Ok(())
     }
 
@@ -219,7 +222,11 @@ impl Integrator for Explicit {
                 work.estimate.stages.push(system.see(look));
             }
         }
-        let done = self.tableau.rows[stages].iter().zip(&self.powers).map(|(weight, power)| h * weight * power).sum();
+        let each = 1 + work.shares.len();
+        let weights = self.tableau.rows[stages];
+        let done = |k: usize| weights.iter().enumerate().map(|(i, weight)| h * weight * self.powers[i * each + k]).sum();
+        work.shares.iter_mut().enumerate().for_each(|(k, share)| *share = done(1 + k));
+        let done = done(0);
         self.take(system, (stages, self.tableau.rows[stages]), start + h, h, newton, work)?;
         self.extended = false;
         newton.iterations += stages as u64 + 1;
@@ -257,6 +264,9 @@ impl Integrator for Explicit {
             work.end.v[k] = work.start.v[k] + h * self.through(&self.slopes, n, k, share);
         }
         newton.accelerate(system, start + share * h, work)?;
-        Ok(h * self.through(&self.powers, 1, 0, share))
+        let each = 1 + work.shares.len();
+        let done = |k: usize| h * self.through(&self.powers, each, k, share);
+        work.shares.iter_mut().enumerate().for_each(|(k, share)| *share = done(1 + k));
+        Ok(done(0))
     }
 }

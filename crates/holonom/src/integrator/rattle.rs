@@ -27,7 +27,11 @@ impl Integrator for Rattle {
             work.prediction.offset[i] = 0.0;
             work.d[i] = h * work.start.v[i] + inertia * work.a[i];
         }
-        let before = if system.is_driven() { energy::power_of_rows(system, start, work) } else { 0.0 };
+        let mut before = 0.0;
+        if system.is_driven() {
+            before = energy::power_of_rows(system, start, work);
+            work.book_powers(-0.5 * h);
+        }
         // The first kick takes place at the start, the rows at the end.
         let Workspace { sampled, a, .. } = work;
         system.place_known(start, &mut sampled.x, &mut sampled.v, a);
@@ -39,7 +43,9 @@ impl Integrator for Rattle {
             for i in 0..n {
                 work.a[i] = (work.sampled.v[i] - work.start.v[i]) / (0.5 * h);
             }
-            0.5 * h * (energy::power_of_rows(system, start, work) - before)
+            let extra = 0.5 * h * (energy::power_of_rows(system, start, work) - before);
+            work.book_powers(0.5 * h);
+            extra
         } else {
             0.0
         };

@@ -188,8 +188,9 @@ impl Integrator for RungeKutta {
             for i in 0..s {
                 let t = self.stages.place(system, timing, i, work);
                 work.sample(system, t);
-
-                done += h * self.tableau.weights[i] * energy::power(system, t, &work.sampled.v, &work.a, work);
+                let time = h * self.tableau.weights[i];
+                done += time * energy::power(system, t, |work| &work.sampled, work);
+                work.book_powers(time);
             }
         }
         let Workspace { end, a, .. } = work;

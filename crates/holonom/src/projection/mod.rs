@@ -130,6 +130,7 @@ impl Projection {
         if !(self.velocity || self.acceleration) {
             return Ok(());
         }
+        work.impulses.iter_mut().for_each(|impulses| impulses.fill(0.0));
         // What is left of both equations is solved for with the matrix that is there.
         if !self.position {
             self.factor(system, time, step, newton, work)?;
@@ -217,6 +218,7 @@ impl Projection {
                 values[i] += newton.unknowns[i];
                 work.full[i] += newton.unknowns[i];
             }
+            work.impulses[level as usize].iter_mut().zip(&newton.unknowns[n..]).for_each(|(impulse, unknown)| *impulse += unknown);
         }
         if self.strength != 1.0 {
             let values = if level == Level::Velocity { &mut work.end.v } else { &mut work.a };

@@ -375,7 +375,7 @@ fn component((force, moment): Wrench, k: usize) -> f64 {
 }
 
 /// The node that a point is, where it is one.
-fn node(point: &RecordedPoint) -> Option<NodeId> {
+pub(super) fn node(point: &RecordedPoint) -> Option<NodeId> {
     match point.terms[..] {
         [Term { place: Place::Node(node), factor: 1.0, turn: 0.0 }] => Some(node),
         _ => None,

@@ -11,6 +11,7 @@ mod peaks;
 mod recorder;
 mod scene;
 mod transmission;
+mod works;
 
 pub use between::{Bounds, Largest};
 pub use body::RecordedBody;
@@ -26,6 +27,7 @@ pub use scene::{
     Anchor, Line, LineKind, PointKind, Scene, SceneAxis, SceneBody, SceneJoint, SceneLoad, ScenePoint, SceneShape, SceneWheels, WheelsKind,
 };
 pub use transmission::{RecordedTransmission, Transmission};
+pub use works::{Work, Works};
 
 /// A table of columns of equal length; row 0 is the start.
 #[derive(Clone, Debug, Default, PartialEq)]

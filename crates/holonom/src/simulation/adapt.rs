@@ -8,6 +8,7 @@ use super::landing::Landing;
 use super::pilot::{OFTEN, Pilot, SMALLEST_SHARE, TO_ROWS, is_rough};
 use super::sight::INSIDE;
 use super::{Audit, Simulation, start};
+use crate::energy;
 use crate::formulation::{Failure, Multipliers};
 use crate::integrator::{Step, Work};
 
@@ -279,6 +280,7 @@ impl Simulation {
             self.state.a.copy_from_slice(&work.a);
             self.state.lambda.copy_from_slice(&work.lambda);
             self.audit.change_power(system, &self.state, work);
+            self.shares.powers.copy_from_slice(&work.powers);
         }
     }
 
@@ -292,9 +294,14 @@ impl Simulation {
 
     /// Puts the velocities of the present state, at which the workspace is, on the rows, where that can be.
     fn put_velocities_on_rows(&mut self) {
-        let Self { system, state, shown_v, gauges, audit, newton, work, .. } = self;
+        let Self { system, state, shown_v, gauges, audit, shares, newton, work, .. } = self;
         if TO_ROWS.apply(system, state.t, self.step, newton, work).is_ok() {
+            work.shares.fill(0.0);
             audit.put_on_rows(system, &state.v, true, work);
+            if system.is_driven() {
+                energy::add_of_projections(system, state.t, work);
+            }
+            shares.add(work);
             state.v.copy_from_slice(&work.end.v);
             shown_v.copy_from_slice(&work.end.v);
             system.measure(&state.x, shown_v, gauges);

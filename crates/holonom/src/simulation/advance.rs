@@ -127,6 +127,7 @@ impl Simulation {
         let (system, work) = (&*self.system, &mut self.work);
         self.state.load(work);
         system.constraint_values(&work.start.at, self.state.t, &mut work.phi_start);
+        work.shares.fill(0.0);
         let taken = self.integrator.step(system, self.state.t, step, &mut self.newton, work);
         let outcome = taken.and_then(|taken| self.finish(taken, step, target));
         if outcome.is_err() {
@@ -162,7 +163,7 @@ impl Simulation {
     /// Audits and projects what is in the workspace, and has every promise looked at; the audit was `before`.
     fn close(&mut self, before: &Audit, taken: &Step, step: f64, target: f64) -> Result<(), Failure> {
         let (system, work, method, audit) = (&*self.system, &mut self.work, &self.method, &mut self.audit);
-        let accounts = audit.integrated(system, taken, target, work);
+        let accounts = audit.integrated(system, taken, target, &self.shares.powers, work);
         self.judge.corners(system, work)?;
         self.judge.positions(system, target, work)?;
         audit.violate_acceleration(system, method, taken, target, work);
@@ -190,6 +191,7 @@ impl Simulation {
     /// Makes the end of a step in the workspace the present state.
     fn commit(&mut self, step: f64, target: f64) {
         let work = &mut self.work;
+        self.shares.add(work);
         // The paper's loops start from the paper's prediction.
         if self.method.settings.iteration == Iteration::Newton {
             self.state.remember(step, &self.found_a, work);

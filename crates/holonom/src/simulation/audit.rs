@@ -93,7 +93,7 @@ impl Audit {
             _ => None,
         };
         work.sample_end(system, state.t);
-        let power = energy::power(system, state.t, &state.v, &state.a, work);
+        let power = power_at(system, state, work);
         system.constraint_values(&work.end.at, state.t, &mut work.phi);
         let potential =
             energy::potential(system, &work.forces.weight, &state.x, &work.end.at, penalty.map(|alpha| (alpha, work.phi.as_slice())));
@@ -223,7 +223,7 @@ impl Audit {
 
     /// Goes on with the power at a state where forces have changed abruptly; `work` has them.
     pub(super) fn change_power(&mut self, system: &System, state: &State, work: &mut Workspace) {
-        self.power = energy::power(system, state.t, &state.v, &state.a, work);
+        self.power = power_at(system, state, work);
     }
 
     /// Goes on from a state a little later, which no step led to and at which `work` has the evaluation of its start: forces that do work have done
@@ -248,13 +248,17 @@ impl Audit {
         (self.total_iterations, self.factorizations) = (newton.iterations, newton.factorizations);
     }
 
-    /// Books what the integrator did: ΔE_i is the change of energy that no work accounts for (21).
-    pub(super) fn integrated(&mut self, system: &System, taken: &Step, t: f64, work: &mut Workspace) -> Accounts {
+    /// Books what the integrator did: ΔE_i is the change of energy that no work accounts for (21). The workspace gets what each worker did, which had
+    /// these powers at the start of the step.
+    pub(super) fn integrated(&mut self, system: &System, taken: &Step, t: f64, powers: &[f64], work: &mut Workspace) -> Accounts {
         self.taken += 1;
         let done = match taken.work {
             Work::AtEnds(extra) => {
-                let power = energy::power(system, t, &work.end.v, &work.a, work);
-                let done = 0.5 * taken.stage.step * (self.power + power) + extra;
+                let power = energy::power(system, t, |work| &work.end, work);
+                let half = 0.5 * taken.stage.step;
+                work.book_powers(half);
+                work.shares.iter_mut().zip(powers).for_each(|(share, power)| *share += half * power);
+                let done = half * (self.power + power) + extra;
                 self.power = power;
                 done
             }
@@ -345,6 +349,13 @@ impl Audit {
             }
             work.acceleration_violation(system, target);
             self.phi_ddot = norm(&work.rows);
+        }
+        let projection = &method.projection;
+        if (projection.velocity || projection.acceleration) && projection.is_by_mass() && system.is_driven() {
+            if projection.shadow {
+                work.impulses[0].fill(0.0);
+            }
+            energy::add_of_projections(system, target, work);
         }
         self.count(newton);
         self.keep_violations();
@@ -450,6 +461,14 @@ impl Audit {
             rejected_steps: self.rejected,
         }
     }
+}
+
+/// The power of all that does work at a state, W, which `work` has sampled; it gets that of each worker.
+fn power_at(system: &System, state: &State, work: &mut Workspace) -> f64 {
+    let mut powers = std::mem::take(&mut work.powers);
+    let power = energy::power_with(system, state.t, &state.v, &state.a, work, &mut powers);
+    work.powers = powers;
+    power
 }
 
 fn norm(values: &[f64]) -> f64 {

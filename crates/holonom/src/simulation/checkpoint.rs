@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::doubts::Contact;
 use super::events::SHORTEST;
 use super::pilot::Flight;
+use super::shares::Shares;
 use super::{Audit, Happening, Method, Reactions, Simulation, State};
 use crate::formulation::{Fit, Newton, Rank, Workspace};
 use crate::integrator::Integrator;
@@ -58,6 +59,7 @@ struct Progress {
     shown: [Vec<f64>; 2],
     measured: Measured,
     audit: Audit,
+    shares: Shares,
     contacts: Vec<Contact>,
     reactions: Option<Reactions>,
     hints: Hints,
@@ -173,6 +175,7 @@ impl Simulation {
             shown: [self.shown_v.clone(), self.shown_a.clone()],
             measured,
             audit: self.audit.clone(),
+            shares: self.shares.clone(),
             contacts: self.contacts.clone(),
             reactions: self.reactions.clone(),
             hints: Hints::of(&self.newton, &*self.integrator),
@@ -231,7 +234,8 @@ impl Simulation {
         [self.shown_v, self.shown_a] = progress.shown;
         self.gauges.restore(&progress.measured);
         self.gauges.count_on(&state.measured);
-        (self.audit, self.contacts, self.reactions) = (progress.audit, progress.contacts, progress.reactions);
+        (self.audit, self.shares) = (progress.audit, progress.shares);
+        (self.contacts, self.reactions) = (progress.contacts, progress.reactions);
         [self.newton.iterations, self.newton.factorizations] = progress.counters;
         self.hints = progress.hints;
         self.hints.restore(&mut self.newton, &mut *self.integrator);

@@ -23,6 +23,7 @@ mod places;
 mod promise;
 mod reactions;
 mod reason;
+mod shares;
 mod sharp;
 mod sight;
 mod start;
@@ -57,6 +58,7 @@ use checkpoint::{Grid, Hints};
 use doubts::Contact;
 use pilot::Pilot;
 use promise::Judge;
+use shares::Shares;
 
 /// How a run ended.
 #[must_use]
@@ -133,6 +135,8 @@ pub struct Simulation {
     found_v: Vec<f64>,
     found_a: Vec<f64>,
     audit: Audit,
+    /// What each of what does work has done of that of the audit.
+    shares: Shares,
     judge: Judge,
     /// What was seen of forces that begin and end to act with what moves; nothing where an accuracy chooses the steps, as these end there.
     contacts: Vec<Contact>,
@@ -245,11 +249,12 @@ impl Simulation {
         mut state: State,
     ) -> Self {
         let audit = Audit::new(&system, &method, &mut work, &state);
+        let shares = Shares::new(&system, &state.x, &work);
         let mut gauges = system.gauge_values();
         gauges.count_on(&state.measured);
         system.measure(&state.x, &state.v, &mut gauges);
         state.measured.copy_from_slice(gauges.counted());
-        let pilot = Pilot::new(&system, &method, &newton, &state, &gauges, &audit);
+        let pilot = Pilot::new(&system, &method, &newton, &state, &gauges, (&audit, &shares));
         let mut simulation = Self {
             hints: Hints::of(&newton, &*integrator),
             grid: Grid::new(state.t, step),
@@ -266,6 +271,7 @@ impl Simulation {
             work,
             state,
             audit,
+            shares,
             start: Start::default(),
             step,
             steps: 0,

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::control::Control;
 use super::passage::View;
+use super::shares::Shares;
 use super::sight::Sight;
 use super::{Audit, Method, Simulation, State};
 use crate::energy;
@@ -23,6 +24,7 @@ pub(super) struct Moment {
     a: Vec<f64>,
     measured: Measured,
     audit: Audit,
+    shares: Shares,
 }
 
 impl Moment {
@@ -32,6 +34,7 @@ impl Moment {
         self.a.copy_from_slice(&simulation.shown_a);
         self.measured.keep(&simulation.gauges);
         self.audit.clone_from(&simulation.audit);
+        self.shares.copy_from(&simulation.shares);
     }
 
     /// Puts a simulation back here.
@@ -42,6 +45,7 @@ impl Moment {
         simulation.gauges.restore(&self.measured);
         simulation.gauges.count_on(&self.state.measured);
         simulation.audit.clone_from(&self.audit);
+        simulation.shares.copy_from(&self.shares);
         let work = &mut simulation.work;
         work.start.at.functions.angle.copy_from_slice(&self.state.angle);
         simulation.system.evaluate_again(&self.state.x, self.state.t, &mut work.start.at);
@@ -126,11 +130,24 @@ const CHATTER_LOOKS: u32 = 3;
 pub(super) const BETWEEN: f64 = 4.0;
 
 impl Pilot {
-    pub fn new(system: &System, method: &Method, newton: &Newton, state: &State, gauges: &GaugeValues, audit: &Audit) -> Option<Box<Self>> {
+    pub fn new(
+        system: &System,
+        method: &Method,
+        newton: &Newton,
+        state: &State,
+        gauges: &GaugeValues,
+        (audit, shares): (&Audit, &Shares),
+    ) -> Option<Box<Self>> {
         let mut measured = Measured::default();
         measured.keep(gauges);
-        let moment =
-            || Moment { state: state.clone(), v: state.v.clone(), a: state.a.clone(), measured: measured.clone(), audit: audit.clone() };
+        let moment = || Moment {
+            state: state.clone(),
+            v: state.v.clone(),
+            a: state.a.clone(),
+            measured: measured.clone(),
+            audit: audit.clone(),
+            shares: shares.clone(),
+        };
         let estimate = method.integrator.estimate;
         // Errors of schemes of order 2 add up in one direction where nothing holds the energy.
         let is_loose = method.order() <= SYMMETRIC && !method.integrator.conserves;

@@ -124,6 +124,26 @@ pub(crate) struct CustomEntry {
     pub rows: Arc<dyn CustomRows>,
 }
 
+/// How many do work on a system that its energy does not show: laws without a potential and loads, as [`System::working_forces`] numbers them, then
+/// the rows that depend on time, then the nodes that move as time has it.
+#[derive(Clone, Copy)]
+pub(crate) struct Workers([usize; 4]);
+
+impl Workers {
+    pub fn count(self) -> usize {
+        self.0.iter().sum()
+    }
+
+    /// Numbers of all of them as those of laws, loads, rows and nodes.
+    pub fn split(self, numbers: &mut [f64]) -> [&mut [f64]; 4] {
+        let [laws, loads, rows, _] = self.0;
+        let (of_laws, numbers) = numbers.split_at_mut(laws);
+        let (of_loads, numbers) = numbers.split_at_mut(loads);
+        let (of_rows, of_nodes) = numbers.split_at_mut(rows);
+        [of_laws, of_loads, of_rows, of_nodes]
+    }
+}
+
 /// A mechanism ready to be simulated. It never changes during a run.
 #[derive(Clone)]
 pub struct System {
@@ -144,6 +164,10 @@ pub struct System {
     pub(crate) velocity_rows: Vec<u32>,
     /// The rows that are no invariants but functions of them.
     pub(crate) function_rows: Vec<u32>,
+    /// The rows that depend on time.
+    pub(crate) driven_rows: Vec<u32>,
+    /// How many laws have no potential.
+    pub(crate) dissipative: usize,
     pub(crate) rows: Vec<Row>,
     pub(crate) custom: Vec<CustomEntry>,
     pub(crate) laws: Vec<LawEntry>,
@@ -226,6 +250,14 @@ impl System {
     /// Gives the k-th row another target c(t).
     pub(crate) fn retarget(&mut self, row: usize, target: Arc<dyn Signal>) {
         self.rows[row] = Row::new(self.rows[row].quantity, target);
+        self.find_driven_rows();
+    }
+
+    /// Notes which rows depend on time, as any that is a function of coordinates and time may.
+    pub(crate) fn find_driven_rows(&mut self) {
+        let known = self.rows.len();
+        let driven = (0..self.constraints()).filter(|&row| row >= known || !self.rows[row].is_constant());
+        self.driven_rows = driven.map(|row| row as u32).collect();
     }
 
     /// Names of the constraint rows (r), as `constraint` or `constraint[component]`.
@@ -236,12 +268,17 @@ impl System {
     /// Whether anything does work on the system that its energy does not show: known motion, dissipation, loads, rows
     /// that depend on time.
     pub(crate) fn is_worked_on(&self) -> bool {
-        self.is_driven() || !self.loads.is_empty() || self.laws.iter().any(|law| !law.law.conservative())
+        self.workers().count() > 0
     }
 
     /// Whether rows or nodes move as time has it.
     pub fn is_driven(&self) -> bool {
-        self.rows.iter().any(|row| !row.is_constant()) || !(self.motions.is_empty() && self.custom.is_empty())
+        !(self.driven_rows.is_empty() && self.motions.is_empty())
+    }
+
+    /// What does work on the system that its energy does not show.
+    pub(crate) fn workers(&self) -> Workers {
+        Workers([self.dissipative, self.loads.len(), self.driven_rows.len(), self.motions.len()])
     }
 
     /// Names of the events that happen on a condition, and not with a period.

@@ -107,6 +107,8 @@ impl SystemBuilder {
             functions: self.functions,
             gauges: self.gauges,
             function_rows,
+            driven_rows: Vec::new(),
+            dissipative: self.laws.iter().filter(|law| !law.law.conservative()).count(),
             rows: self.rows,
             custom: self.custom,
             laws: self.laws,
@@ -126,6 +128,7 @@ impl SystemBuilder {
             slots: Arc::default(),
             plans: Arc::default(),
         };
+        system.find_driven_rows();
         system.slots = Arc::new(Slots::new(&system));
         system.bending = system.find_bending();
         system
