@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use cpu_time::ProcessTime;
 use holonom::analysis;
 use holonom::model::Model;
-use holonom::record::{COLUMNS, Column, Constraints, Peaks, Recorder, Recording};
+use holonom::record::{COLUMNS, Column, Constraints, Peaks, Recorder, Recording, Works};
 use holonom::simulation::{Method, Simulation, Status};
 use holonom_io::{WriteTable, Writer};
 use holonom_report::{Report, Run};
@@ -194,6 +194,7 @@ pub(crate) fn simulate_kept(
     let last = Point::of(&simulation, &watched.recorder, &corrections);
     let before_end = watched.before_end.take().filter(|_| !last.run.goes_on_unbroken());
     let recording = watched.finish();
+    value["work_by"] = serde_json::to_value(Works::of(&model.channels, &simulation)).expect("works are plain data");
     value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording, &model.system)).expect("peaks are plain data");
     let finished = Finished { method: name, recording, summary: value, completed: status == Status::Completed };
     Ok((finished, Reached { last, before_end }))

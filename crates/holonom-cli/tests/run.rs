@@ -260,6 +260,33 @@ fn output_chooses_columns_by_patterns() {
     }
 }
 
+/// A motor turns a wheel of 0.1 kg·m² up to 10 rad/s against a damper of 0.3 N·m·s/rad and a spring of 0.08 N·m/rad: they take 5 J, 0.3 ∫ (10t)² dt and ½ 0.08 5².
+#[test]
+fn the_work_of_drives_and_forces_is_told() {
+    let folder = folder();
+    let model = "plane = \"xy\"\n[body.wheel]\nmass = 1\ninertia = 0.1\nposition = [0, 0]\n\
+                 [joint.shaft]\ntype = \"revolute\"\nbetween = [\"ground\", \"wheel\"]\nat = [0, 0]\n\
+                 [drive.motor]\ntype = \"angle\"\njoint = \"shaft\"\nprofile = \"5*t^2\"\n\
+                 [force.oil]\ntype = \"torsion\"\njoint = \"shaft\"\ndamping = 0.3\n\
+                 [force.coil]\ntype = \"torsion\"\njoint = \"shaft\"\nstiffness = 0.08\n[simulation]\nend = 1\nstep = 1e-3\n";
+    fs::write(folder.path().join("m.toml"), model).unwrap();
+    let told = prints(&folder, "run m.toml --every 1000 --out out", 0);
+    let lines: Vec<&str> = told.lines().skip_while(|line| !line.starts_with("  work ")).take(4).map(str::trim).collect();
+    assert_eq!(lines[..3], ["work       motor   16 J", "oil    -10 J", "coil    -1 J; holds 1 J more than at the start"], "{told}");
+    assert!(lines[3].starts_with("size"), "{told}");
+    let summary = read_json(folder.path().join("out/summary.json"));
+    let all = ["drives", "forces"].map(|sort| summary["work_by"][sort].as_array().unwrap().clone()).concat();
+    let sum: f64 = all.iter().map(|own| own["work"].as_f64().unwrap() + own["stored"].as_f64().unwrap()).sum();
+    assert!((sum - summary["energy"]["work_total"].as_f64().unwrap()).abs() < 1e-12, "{summary}");
+    let report = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    let table = report.split_once("Work in the run</caption>").unwrap().1.split_once("</table>").unwrap().0;
+    assert!(table.contains("coil</th>") && table.contains("holds 1&nbsp;J more"), "{table}");
+    // Over a whole turn without friction a motor gives what it takes back, and all of it is round-off.
+    let round = model.split_once("[force.oil]").unwrap().0.replace("5*t^2", "sin(2*pi*t) - 2*pi*t");
+    fs::write(folder.path().join("round.toml"), round + "[simulation]\nend = 1\nstep = 1e-3\n").unwrap();
+    assert!(prints(&folder, "run round.toml --no-report", 0).contains("work       motor  0 J\n"));
+}
+
 /// Swings as cos 2πt: 20 times through its middle in 9.9 s, and what happens once is not lost behind them.
 #[test]
 fn events_are_told_by_their_names() {

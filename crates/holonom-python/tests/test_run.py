@@ -214,6 +214,17 @@ def test_what_was_put_right_before_the_start_is_said():
         assert hm.Simulation(m, step=0.01).notes == run.notes
 
 
+def test_the_work_of_a_force_is_in_the_summary():
+    m = hm.Model(gravity=[0, 0, 0])
+    m.point("p", position=[1, 0, 0], mass=0.5, velocity=[3, 0, 0])
+    m.spring("oil", between=["ground", "p"], along=[1, 0, 0], damping=0.8)
+    run = m.simulate(end=1, step=1e-3)
+    (oil,) = run.summary["work_by"]["forces"]
+    # What e^(−ct/m) leaves of the velocity is not lost.
+    assert (oil["name"], oil["stored"]) == ("oil", 0) and abs(oil["work"] + 2.25 * (1 - np.exp(-3.2))) < 1e-5
+    assert "work       oil  -2.15" in str(run)
+
+
 def test_the_package_has_the_version_of_the_command():
     run = hm.load("example:four-bar").simulate(end=0.1, step=0.01)
     assert run.summary["provenance"]["version"] == hm.__version__

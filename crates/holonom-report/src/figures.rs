@@ -2,7 +2,7 @@
 
 use crate::escape::html;
 use crate::outcome::{ended, is_measured};
-use crate::{Run, comparison, digits, format, page};
+use crate::{Run, comparison, digits, format, page, works};
 use serde_json::Value;
 use std::io;
 
@@ -32,6 +32,7 @@ fn one(run: &Run, out: &mut dyn io::Write) -> io::Result<()> {
     measures(run.summary, &mut tables)?;
     events(run.summary, &mut tables)?;
     peaks(run.summary, &mut tables)?;
+    works(run.summary, &mut tables)?;
     if tables.is_empty() {
         return Ok(());
     }
@@ -96,6 +97,36 @@ fn peaks(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
         writeln!(out, "</tbody></table>")?;
     }
     Ok(())
+}
+
+/// Works that are shown.
+const WORKS: usize = 8;
+
+/// What put energy into the mechanism and what took it out.
+fn works(summary: &Value, out: &mut dyn io::Write) -> io::Result<()> {
+    let (shown, more) = works::largest(summary, WORKS);
+    if shown.is_empty() {
+        return Ok(());
+    }
+    writeln!(
+        out,
+        r#"<table><caption title="above zero what it put into the mechanism, below zero what it took out">Work in the run</caption><tbody>"#
+    )?;
+    for own in shown {
+        let stored = own.stored.map_or(String::new(), |stored| {
+            format!("<small>holds {}&nbsp;J {}</small>", format::answer(stored.abs()), if stored > 0.0 { "more" } else { "less" })
+        });
+        let (name, work) = (html(&own.name), format::answer(own.work));
+        writeln!(
+            out,
+            r#"<tr><th scope="row">{name}</th><td class="number">{work}&nbsp;<small>J</small></td><td class="number">{stored}</td></tr>"#
+        )?;
+    }
+    if more > 0 {
+        let plural = if more == 1 { "" } else { "s" };
+        writeln!(out, r#"<tr><td colspan="3"><small>{more} smaller one{plural}: see <code>summary.json</code></small></td></tr>"#)?;
+    }
+    writeln!(out, "</tbody></table>")
 }
 
 /// Measures that are shown at once; more would push the picture far down.

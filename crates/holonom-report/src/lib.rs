@@ -22,6 +22,7 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 mod thin;
+mod works;
 
 use holonom::record::{Recording, Scene};
 use std::io;
@@ -31,6 +32,7 @@ pub use live::{Frames, LIVE};
 pub use outcome::ended;
 pub use stability::{Search, StabilityReport};
 pub use sweep::{SweepColumn, SweepKey, SweepReport, SweepRun};
+pub use works::{Work, largest as largest_works};
 
 /// What is known of one run.
 pub struct Run<'a> {

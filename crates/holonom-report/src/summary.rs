@@ -26,7 +26,7 @@ const UNITS: [(&str, &str); 13] = [
 const HEADINGS: [&str; 2] = ["label", "table"];
 
 /// Beginnings of the keys that stand elsewhere on the page: at the top, and above the model.
-const ELSEWHERE: [&str; 3] = ["peaks.", "events", "provenance."];
+const ELSEWHERE: [&str; 4] = ["peaks.", "work_by.", "events", "provenance."];
 
 /// The summary of one run in two halves side by side; of several, what is the same in all of them so, and a column of the
 /// rest for each run.

@@ -239,43 +239,40 @@ fn add_power_of_known(
     sum
 }
 
-/// Power of moving rows and of known motion at the start of a step, as far as it comes of multipliers and accelerations, W. Leaves in `shares` that of
-/// each worker.
+/// Power of moving rows and of known motion at the start of a step, as far as it comes of multipliers and accelerations, W. Leaves in the workspace that
+/// of each worker.
 pub fn power_of_rows(system: &System, t: f64, work: &mut Workspace) -> f64 {
+    let (n, dim) = (system.coordinates(), system.dim);
     let Workspace { full, lambda, start, a, powers, .. } = work;
+    full.fill(0.0);
     powers.fill(0.0);
-    let sum = add_power_on_known(system, &start.at, &start.v, lambda, full, powers);
+    system.slots.add_forces(dim, lambda, &start.at.gradient, full);
+    let [.., of_nodes] = system.workers().split(powers);
+    (n..full.len()).for_each(|i| of_nodes[(i - n) / dim] += full[i] * start.v[i]);
+    let sum = (n..full.len()).map(|i| full[i] * start.v[i]).sum();
     add_power_of_known(system, t, &start.at, &start.v, a, lambda, sum, powers)
 }
 
-/// The power of rows with these multipliers on known nodes, W, which is added to the shares of these.
-fn add_power_on_known(system: &System, at: &Evaluation, v: &[f64], lambda: &[f64], full: &mut [f64], shares: &mut [f64]) -> f64 {
-    let (n, dim) = (system.coordinates(), system.dim);
-    full.fill(0.0);
-    system.slots.add_forces(dim, lambda, &at.gradient, full);
-    let [.., of_nodes] = system.workers().split(shares);
-    let mut sum = 0.0;
-    for i in n..full.len() {
-        let own = full[i] * v[i];
-        (sum, of_nodes[(i - n) / dim]) = (sum + own, of_nodes[(i - n) / dim] + own);
-    }
-    sum
-}
-
 /// Adds to the shares of the workers what the impulses of a projection of velocities at the end of a step did along rows that move, J, and to their
-/// powers that of the forces of one of accelerations, W.
-pub fn add_of_projections(system: &System, t: f64, work: &mut Workspace) {
-    let Workspace { end, impulses, full, shares, powers, .. } = work;
-    if !system.motions.is_empty() {
-        add_power_on_known(system, &end.at, &end.v, &impulses[0], full, shares);
-        add_power_on_known(system, &end.at, &end.v, &impulses[1], full, powers);
-    }
-    let [[_, _, shares, _], [_, _, powers, _]] = [shares, powers].map(|sums| system.workers().split(sums));
+/// powers that of the forces of one of accelerations, W. The velocities are on the rows, so that ∂Φ/∂t is −G v.
+pub fn add_of_projections(system: &System, work: &mut Workspace) {
+    let dim = system.dim;
+    let Workspace { end, impulses: [of_v, of_a], shares, powers, .. } = work;
+    let [[_, _, shares, led], [_, _, powers, led_by]] = [shares, powers].map(|sums| system.workers().split(sums));
     for ((&row, share), power) in system.driven_rows.iter().zip(shares).zip(powers) {
         let row = row as usize;
-        if impulses.iter().any(|impulses| impulses[row] != 0.0) {
-            let rate = system.explicit_rate(row, &end.at, t);
-            (*share, *power) = (*share + impulses[0][row] * rate, *power + impulses[1][row] * rate);
+        let rate = -system.along(&system.slots.rows[row], &system.slots.nodes, &end.at, &end.v);
+        (*share, *power) = (*share + of_v[row] * rate, *power + of_a[row] * rate);
+    }
+    if system.motions.is_empty() {
+        return;
+    }
+    for (row, slots) in system.slots.rows.iter().enumerate() {
+        for s in slots.clone() {
+            if let Some(k) = (system.slots.nodes[s] as usize).checked_sub(system.free) {
+                let along: f64 = (0..dim).map(|c| end.at.gradient[s * dim + c] * end.v[(system.free + k) * dim + c]).sum();
+                (led[k], led_by[k]) = (led[k] + of_v[row] * along, led_by[k] + of_a[row] * along);
+            }
         }
     }
 }

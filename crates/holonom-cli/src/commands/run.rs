@@ -103,10 +103,33 @@ fn peaks(summary: &Value, sort: usize) -> String {
         [peak["name"].as_str().unwrap_or("").to_string(), value, format!("{} at {at} s", peak["unit"].as_str().unwrap_or(""))]
     };
     let peaks: Vec<[String; 3]> = of_sort.as_array().into_iter().flatten().map(peak).collect();
-    let width = |k: usize| peaks.iter().map(|peak| peak[k].chars().count()).max().unwrap_or(0);
+    aligned(&peaks, more.as_u64().unwrap_or(0) as usize)
+}
+
+/// Works that have lines of their own.
+const WORKS: usize = 10;
+
+/// What put energy into the mechanism, and below zero what took it out.
+fn works(summary: &Value) -> String {
+    let (works, more) = holonom_report::largest_works(summary, WORKS);
+    let works: Vec<[String; 3]> = works
+        .into_iter()
+        .map(|own| {
+            let stored = own.stored.map_or(String::new(), |stored| {
+                format!("; holds {} J {} than at the start", figures(stored.abs()), if stored > 0.0 { "more" } else { "less" })
+            });
+            [own.name, figures(own.work), format!("J{stored}")]
+        })
+        .collect();
+    aligned(&works, more)
+}
+
+/// Lines of a name, a number and more, the numbers below each other, and how many are not listed.
+fn aligned(entries: &[[String; 3]], more: usize) -> String {
+    let width = |k: usize| entries.iter().map(|entry| entry[k].chars().count()).max().unwrap_or(0);
     let (names, values) = (width(0), width(1));
-    let mut lines: Vec<String> = peaks.iter().map(|[name, value, rest]| format!("{name:names$}  {value:>values$} {rest}")).collect();
-    lines.extend(more.as_u64().filter(|more| *more > 0).map(|more| format!("{more} smaller one{}", if more == 1 { "" } else { "s" })));
+    let mut lines: Vec<String> = entries.iter().map(|[name, value, rest]| format!("{name:names$}  {value:>values$} {rest}")).collect();
+    lines.extend((more > 0).then(|| format!("{more} smaller one{}", if more == 1 { "" } else { "s" })));
     lines.join("\n")
 }
 
@@ -193,6 +216,7 @@ pub fn describe(loaded: &Loaded, summary: &Value) -> String {
     // What the model asks for comes first.
     items.extend([("measures", measures(&summary["peaks"]["measures"])), ("events", events(summary, &conditions(loaded)))]);
     items.extend([0, 1, 2].map(|sort| (SORTS[sort], peaks(summary, sort))));
+    items.push(("work", works(summary)));
     items.retain(|(_, text)| !text.is_empty());
     items.extend([
         (

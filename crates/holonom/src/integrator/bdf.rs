@@ -193,12 +193,12 @@ impl Bdf {
             work.sample(system, t);
             let power = energy::power(system, t, |work| &work.sampled, work);
             let (weights, known) = history.weights_of_work(order, t);
-            let work_of =
-                |k: usize, power: f64| weights[0] * power + (1..=known).map(|i| weights[i] * history.powers(i - 1)[k]).sum::<f64>();
-            done = work_of(0, power);
-            let Workspace { shares, powers, .. } = work;
-            for (k, (share, power)) in shares.iter_mut().zip(powers).enumerate() {
-                *share += work_of(1 + k, *power);
+            done = weights[0] * power;
+            work.book_powers(weights[0]);
+            for (k, weight) in weights[1..=known].iter().enumerate() {
+                let [all, of_workers @ ..] = history.powers(k) else { unreachable!("the power of all is first") };
+                done += weight * all;
+                work.shares.iter_mut().zip(of_workers).for_each(|(share, power)| *share += weight * power);
             }
             history.set_power(power, &work.powers);
         }

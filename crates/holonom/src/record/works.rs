@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::channels::{Channels, RecordedPoint, node};
+use super::channels::{Channels, node};
 use crate::simulation::Simulation;
 
 /// What something has done on the mechanism since the start.
@@ -29,36 +29,34 @@ pub struct Works {
     pub rest: f64,
 }
 
+/// Share of all energy that could move below which a work is round-off.
+const ROUNDED: f64 = 1e-12;
+
 impl Works {
-    /// The works up to the present state of a simulation. What has done nothing and stores nothing is left out.
+    /// The works up to the present state of a simulation. Beside drives, what has done nothing and stores nothing is left out.
     pub fn of(channels: &Channels, simulation: &Simulation) -> Self {
         let (done, system) = (simulation.done(), simulation.system());
-        let effort_of = |row: usize| channels.efforts.iter().position(|effort| effort.row == row);
-        let mut of_rows: Vec<(usize, String, f64)> = done
-            .rows
-            .iter()
-            .map(|&(row, work)| match effort_of(row) {
-                Some(drive) => (drive, channels.efforts[drive].name.clone(), work),
-                None => (usize::MAX, system.row_names()[row].clone(), work),
-            })
-            .collect();
-        of_rows.sort_by_key(|(drive, ..)| *drive);
-        let of_points = done.nodes.iter().enumerate().map(|(k, work)| {
-            let is_led = |point: &&RecordedPoint| node(point).is_some_and(|node| node.index() == system.free_nodes() + k);
-            (channels.points.iter().find(is_led).map_or(String::new(), |point| point.name.clone()), *work)
-        });
-        let drives = of_rows.into_iter().map(|(_, name, work)| (name, work)).chain(of_points);
+        let (least, mut rest) = (ROUNDED * simulation.audit().supply()[1], done.rest);
+        let mut named = |name: &String, work: f64, stored: f64| {
+            let is_rounded = work.abs() <= least && stored.abs() <= least;
+            rest += if is_rounded { work + stored } else { 0.0 };
+            let [work, stored] = if is_rounded { [0.0; 2] } else { [work, stored] };
+            Work { name: name.clone(), work, stored }
+        };
+        let of_row = |row: usize| done.rows.iter().find(|(own, _)| *own == row).map_or(0.0, |(_, work)| *work);
+        let mut drives: Vec<Work> = channels.efforts.iter().map(|effort| named(&effort.name, of_row(effort.row), 0.0)).collect();
+        let is_of_drive = |row: usize| channels.efforts.iter().any(|effort| effort.row == row);
+        let others = done.rows.iter().filter(|(row, _)| !is_of_drive(*row)).map(|(row, work)| named(&system.row_names()[*row], *work, 0.0));
+        let mut others: Vec<Work> = others.collect();
+        let led = channels.points.iter().filter_map(|point| Some((point, node(point)?.index().checked_sub(system.free_nodes())?)));
+        others.extend(led.map(|(point, k)| named(&point.name, done.nodes[k], 0.0)));
         let forces = channels.forces.iter().map(|force| {
             let [work, stored] = done.laws[force.laws.clone()].iter().fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
-            let of_loads: f64 = done.loads[force.loads.clone()].iter().sum();
-            Work { name: force.name.clone(), work: work + of_loads, stored }
+            named(&force.name, work + done.loads[force.loads.clone()].iter().sum::<f64>(), stored)
         });
-        let is_something = |own: &Work| own.work != 0.0 || own.stored != 0.0;
-        Self {
-            drives: drives.map(|(name, work)| Work { name, work, stored: 0.0 }).filter(is_something).collect(),
-            forces: forces.filter(is_something).collect(),
-            gravity: 0.0 + done.weight,
-            rest: done.rest,
-        }
+        let mut forces: Vec<Work> = forces.collect();
+        [&mut others, &mut forces].into_iter().for_each(|own| own.retain(|own| own.work != 0.0 || own.stored != 0.0));
+        drives.append(&mut others);
+        Self { drives, forces, gravity: if done.weight.abs() > least { done.weight } else { 0.0 }, rest }
     }
 }

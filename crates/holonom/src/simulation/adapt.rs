@@ -299,7 +299,7 @@ impl Simulation {
             work.shares.fill(0.0);
             audit.put_on_rows(system, &state.v, true, work);
             if system.is_driven() {
-                energy::add_of_projections(system, state.t, work);
+                energy::add_of_projections(system, work);
             }
             shares.add(work);
             state.v.copy_from_slice(&work.end.v);

@@ -355,7 +355,7 @@ impl Audit {
             if projection.shadow {
                 work.impulses[0].fill(0.0);
             }
-            energy::add_of_projections(system, target, work);
+            energy::add_of_projections(system, work);
         }
         self.count(newton);
         self.keep_violations();
@@ -411,7 +411,7 @@ impl Audit {
     }
 
     /// By how much the energy exceeds that of the start and all work that was put in, and all that could have become motion, J.
-    pub(super) fn supply(&self) -> [f64; 2] {
+    pub(crate) fn supply(&self) -> [f64; 2] {
         let input = self.input + (self.work - self.before.work).max(0.0);
         let [kinetic, potential] = self.first;
         let supply = kinetic + (potential - self.lowest.min(self.potential)) + input;

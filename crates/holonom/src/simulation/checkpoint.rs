@@ -235,6 +235,7 @@ impl Simulation {
         self.gauges.restore(&progress.measured);
         self.gauges.count_on(&state.measured);
         (self.audit, self.shares) = (progress.audit, progress.shares);
+        self.work.powers.copy_from_slice(&self.shares.powers);
         (self.contacts, self.reactions) = (progress.contacts, progress.reactions);
         [self.newton.iterations, self.newton.factorizations] = progress.counters;
         self.hints = progress.hints;

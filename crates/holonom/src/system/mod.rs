@@ -135,6 +135,7 @@ impl Workers {
     }
 
     /// Numbers of all of them as those of laws, loads, rows and nodes.
+    #[inline]
     pub fn split(self, numbers: &mut [f64]) -> [&mut [f64]; 4] {
         let [laws, loads, rows, _] = self.0;
         let (of_laws, numbers) = numbers.split_at_mut(laws);
@@ -277,6 +278,7 @@ impl System {
     }
 
     /// What does work on the system that its energy does not show.
+    #[inline]
     pub(crate) fn workers(&self) -> Workers {
         Workers([self.dissipative, self.loads.len(), self.driven_rows.len(), self.motions.len()])
     }
