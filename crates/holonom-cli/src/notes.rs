@@ -179,6 +179,15 @@ fn brief_forces(simulation: &Simulation) -> Option<String> {
     })
 }
 
+/// That what moves goes to and fro, or round, so fast that a step passes much of a period of it.
+pub fn hasty(simulation: &Simulation) -> Option<String> {
+    simulation.is_hasty().then(|| {
+        "much of the kinetic energy is in what vibrates or turns by a radian or more in each step: a method of order 2 has it too slow where nothing drives it, and \
+         recorded rows miss its largest values (a shorter step or an accuracy sees it; a vibration that does not matter is damped by radau and generalized-alpha)"
+            .into()
+    })
+}
+
 /// Share of the mechanism's size from which on it is said that positions are off their constraints.
 const STRAYED: f64 = 1e-3;
 

@@ -22,7 +22,7 @@ use crate::folder::{Folder, holds};
 use crate::keeper::Keeper;
 use crate::load::{self, Loaded};
 use crate::message::note;
-use crate::notes::{doubts, of_start, rows_without_forces, shared_forces, slips, turned_bushings, unknown_measures};
+use crate::notes::{doubts, hasty, of_start, rows_without_forces, shared_forces, slips, turned_bushings, unknown_measures};
 use crate::options::Destination;
 use crate::progress::Watched;
 use crate::provenance::Provenance;
@@ -184,7 +184,9 @@ pub(crate) fn simulate_kept(
     let without = rows_without_forces(model, watched.recorder.recording());
     let turns = long_turns(model, &simulation, watched.recorder.recording());
     let turned = turned_bushings(model, watched.recorder.recording());
-    let of_steps = doubts(&simulation, summary.size.dof > 0, status == Status::Completed).chain(turned).chain(turns);
+    // What spins is told by its name.
+    let hasty = if turns.is_none() { hasty(&simulation) } else { None };
+    let of_steps = doubts(&simulation, summary.size.dof > 0, status == Status::Completed).chain(turned).chain(turns).chain(hasty);
     let of_results: Vec<String> = unknown.into_iter().chain(without).chain(shared_forces(model, &simulation)).chain(of_steps).collect();
     if !quiet {
         of_results.iter().for_each(|text| say(text));

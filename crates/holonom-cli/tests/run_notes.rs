@@ -281,3 +281,30 @@ fn a_row_at_a_dead_centre_has_no_forces_and_says_so() {
         assert!(notes.contains(note), "{note}\n{notes}");
     }
 }
+
+/// A vibration of 1000 rad/s, in steps that pass much of its period, is another motion: that is told of methods of order 2, where it holds the kinetic energy and goes on. A
+/// stiff spring that hardly vibrates beside a swing, a damped one, and steps that see it are not told of.
+#[test]
+fn vibrations_that_steps_do_not_see_are_told() {
+    let folder = folder();
+    let bob = |start: f64, others: &str| {
+        format!(
+            "plane = \"xy\"\ngravity = [0, -9.81]\n[point.bob]\nmass = 1\nposition = [{start}, 0]\n[force.s]\ntype = \"spring\"\n\
+             between = [\"ground\", \"bob\"]\nstiffness = 1e6\nrest_length = 1\n{others}[simulation]\nend = 2\nstep = 0.01\n"
+        )
+    };
+    let is_told = |model: &str, words: &str| {
+        fs::write(folder.path().join("bob.toml"), model).unwrap();
+        let said = on_one_line(&text(&holonom(&folder, &format!("run bob.toml --no-report --force --out a {words}")).stderr));
+        said.contains("note: much of the kinetic energy is in what vibrates or turns by a radian or more in each step: ")
+    };
+    // 50 J are in the vibration and up to 9.81 J in the swing.
+    let stretched = bob(1.01, "");
+    for words in ["", "--step 0.1", "--step 1.5e-3", "--step 2e-3 --method conserving", "--step 1.5e-3 --method trapezoidal"] {
+        assert!(is_told(&stretched, words), "{words}");
+    }
+    for words in ["--step 5e-4", "--accuracy 1e-4 --end 0.1", "--method radau", "--method generalized-alpha"] {
+        assert!(!is_told(&stretched, words), "{words}");
+    }
+    assert!(!is_told(&bob(1.0001, ""), "") && !is_told(&bob(1.01, "damping = 1e3\n"), ""));
+}

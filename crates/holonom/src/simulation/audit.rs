@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::doubts::{Stray, Strays, UnsureWork};
+use super::doubts::{Haste, Stray, Strays, UnsureWork};
 use super::{EnergySummary, MomentumSummary, ViolationSummary, WorkSummary};
 use super::{Method, Promise, State};
 use crate::energy;
@@ -67,6 +67,7 @@ pub struct Audit {
     power: f64,
     penalty: Option<f64>,
     unsure: UnsureWork,
+    haste: Haste,
 }
 
 /// What was booked at the start of a nominal step.
@@ -139,6 +140,7 @@ impl Audit {
             power,
             penalty,
             unsure: UnsureWork::default(),
+            haste: Haste::default(),
         };
         work.rate_violation(system, state.t);
         audit.phi_dot = norm(&work.rows);
@@ -279,6 +281,11 @@ impl Audit {
         let penalty = self.penalty.map(|alpha| (alpha, work.phi.as_slice()));
         let potential = energy::potential(system, &work.forces.weight, &work.end.x, &work.end.at, penalty);
         let kinetic = energy::kinetic(system, &work.end.v);
+        if work.estimate.allowed == 0.0 && Haste::looks_at(self.taken) {
+            let Workspace { full, start, end, .. } = work;
+            full.iter_mut().zip(&end.v).zip(&start.v).for_each(|((half, after), before)| *half = 0.5 * (after - before));
+            self.haste.look(energy::kinetic(system, full), 0.5 * (self.kinetic + kinetic));
+        }
         let change = (kinetic - self.kinetic) + (potential - self.potential);
         self.integrator_total += change - done;
         self.work += done;
@@ -292,6 +299,11 @@ impl Audit {
     /// [`System::working_forces`], that differs most.
     pub(super) fn unsure_work(&self) -> (f64, usize) {
         self.unsure.largest()
+    }
+
+    /// The mean kinetic energy, J, where much of it is in vibrations that steps are long for.
+    pub(super) fn of_vibrations(&self) -> Option<f64> {
+        self.haste.of_vibrations()
     }
 
     /// ‖Φ̈‖ of the accelerations the integrator found, where it takes its forces.

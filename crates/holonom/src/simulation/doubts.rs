@@ -29,6 +29,53 @@ impl UnsureWork {
     }
 }
 
+/// Steps at the start of a run that are all looked at for how fast motion changes, and how many there are from one look to the next later.
+const FIRST: u64 = 64;
+const LATER: u64 = 4;
+
+/// Share of the kinetic energy that is in changes of velocity within a step from which on a step is fast: of a vibration a step passes a radian there.
+const FAST: f64 = 0.2;
+
+/// Share of the looks that find fast steps from which on it is no transient.
+const LASTING: f64 = 0.25;
+
+/// Fewest looks that say something.
+const FEWEST: u64 = 8;
+
+/// How fast the motion changes from step to step: sums over the looks at some of the steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Haste {
+    /// Looks, and those that found a fast step.
+    looks: u64,
+    fast: u64,
+    /// Kinetic energy of half the change of velocity in the step, and the mean of those at its ends, J.
+    change: f64,
+    kinetic: f64,
+}
+
+impl Haste {
+    /// Whether the step of this number is looked at.
+    pub fn looks_at(step: u64) -> bool {
+        step <= FIRST || step.is_multiple_of(LATER)
+    }
+
+    /// Looks at a step.
+    pub fn look(&mut self, change: f64, kinetic: f64) {
+        self.looks += 1;
+        self.fast += u64::from(change > FAST * kinetic);
+        self.change += change;
+        self.kinetic += kinetic;
+    }
+
+    /// The mean kinetic energy, J, where much of it is in fast steps and these last: half the change of velocity over the velocity is the sine of half
+    /// the angle by which a method of order 2 turns a vibration in a step, 2 atan(ωh/2).
+    pub fn of_vibrations(&self) -> Option<f64> {
+        let looks = self.looks as f64;
+        let is_fast = self.looks >= FEWEST && self.fast as f64 > LASTING * looks && self.change > FAST * self.kinetic;
+        is_fast.then(|| self.kinetic / looks)
+    }
+}
+
 /// A row and how far positions are off it, m, or velocities, m/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Stray {

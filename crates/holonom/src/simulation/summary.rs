@@ -221,6 +221,12 @@ impl Simulation {
         found.into_iter().map(|(name, touch)| (name, touch.at, touch.steps)).collect()
     }
 
+    /// Whether much of the kinetic energy is in vibrations of which equal steps of a method of order 2 pass a radian or more; not where the mechanism
+    /// stands about still.
+    pub fn is_hasty(&self) -> bool {
+        self.method.order() <= 2 && self.audit.of_vibrations().is_some_and(|kinetic| kinetic > self.nothing())
+    }
+
     /// Energy that is nothing beside what the mechanism has, J: where it stands about still, and round-off.
     fn nothing(&self) -> f64 {
         let length = self.work.scales.length;
