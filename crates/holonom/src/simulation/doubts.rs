@@ -30,8 +30,8 @@ impl UnsureWork {
 }
 
 /// Steps at the start of a run that are all looked at for how fast motion changes, and how many there are from one look to the next later.
-const FIRST: u64 = 64;
-const LATER: u64 = 4;
+const FIRST: u64 = 16;
+const LATER: u64 = 16;
 
 /// Share of the kinetic energy that is in changes of velocity within a step from which on a step is fast: of a vibration a step passes a radian there.
 const FAST: f64 = 0.2;
