@@ -89,8 +89,14 @@ impl Resumed {
         })?;
         let differences = differences(&kept.provenance, run, source);
         if !differences.is_empty() {
-            let cure = "give the model and the options of that run, or run from the start, without --resume";
-            return Err(refuse(format!("is of another run: {}", listed(&differences)), cure));
+            let others = "the model and the options of that run, or run from the start, without --resume";
+            // Without a step the rows of a run by accuracy are a share of its end apart.
+            let follows = holonom_io::to_json(source.value())["simulation"]["step"].is_null();
+            let cure = match kept.provenance.step {
+                step if step != run.step && follows => format!("give --step {step}, which followed from the end of that run, and {others}"),
+                _ => format!("give {others}"),
+            };
+            return Err(refuse(format!("is of another run: {}", listed(&differences)), &cure));
         }
         let reached = kept.last.run.state.t;
         // A run that was killed while its results were written has still to write them.

@@ -121,7 +121,10 @@ fn a_run_by_accuracy_is_noted_to_differ() {
     let words = words.replace("example:double-pendulum", "model.toml");
     prints(&folder, &format!("{words} --end 1 --out b"), 0);
     let message = fails(&folder, &format!("{words} --end 2 --resume b"), 2);
-    assert!(message.contains("`simulation.step` was 0.005 and is 0.01"), "{message}");
+    assert!(
+        message.contains("`simulation.step` was 0.005 and is 0.01") && message.contains("give --step 0.005, which followed from"),
+        "{message}"
+    );
     prints(&folder, &format!("{words} --end 2 --step 0.005 --resume b"), 0);
 }
 
