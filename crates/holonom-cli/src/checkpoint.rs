@@ -89,12 +89,15 @@ impl Resumed {
         })?;
         let differences = differences(&kept.provenance, run, source);
         if !differences.is_empty() {
-            let others = "the model and the options of that run, or run from the start, without --resume";
             // Without a step the rows of a run by accuracy are a share of its end apart.
             let follows = holonom_io::to_json(source.value())["simulation"]["step"].is_null();
             let cure = match kept.provenance.step {
-                step if step != run.step && follows => format!("give --step {step}, which followed from the end of that run, and {others}"),
-                _ => format!("give {others}"),
+                step if step != run.step && follows => {
+                    format!(
+                        "give --step {step}, which followed from the end of that run, and what else it had, or run from the start, without --resume"
+                    )
+                }
+                _ => "give the model and the options of that run, or run from the start, without --resume".into(),
             };
             return Err(refuse(format!("is of another run: {}", listed(&differences)), &cure));
         }

@@ -306,5 +306,8 @@ fn vibrations_that_steps_do_not_see_are_told() {
     for words in ["--step 5e-4", "--accuracy 1e-4 --end 0.1", "--method radau", "--method generalized-alpha"] {
         assert!(!is_told(&stretched, words), "{words}");
     }
+    fs::write(folder.path().join("bob.toml"), &stretched).unwrap();
+    let swept = on_one_line(&text(&holonom(&folder, "sweep bob.toml --vary simulation.step=0.01,5e-4 --no-report --out s").stderr));
+    assert!(swept.contains("1 of 2 runs has notes, in the column `notes`: run 1: much of the kinetic energy"), "{swept}");
     assert!(!is_told(&bob(1.0001, ""), "") && !is_told(&bob(1.01, "damping = 1e3\n"), ""));
 }

@@ -213,7 +213,7 @@ pub fn power_with(system: &System, t: f64, v: &[f64], a: &[f64], work: &Workspac
 
 /// Adds to a sum, and to the shares of the workers, the power that known motion gives to masses with the accelerations `a`, and that of rows that
 /// depend on time with the multipliers λ, W.
-#[allow(clippy::too_many_arguments)]
+#[expect(clippy::too_many_arguments)] // the state, and where it goes
 fn add_power_of_known(
     system: &System,
     t: f64,

@@ -16,7 +16,7 @@ use super::vary::Setting;
 use super::watch::{Columns, Watch};
 use crate::failure::Failure;
 use crate::load;
-use crate::notes::{doubts, of_start};
+use crate::notes::{doubts, hasty, of_start};
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,7 +129,7 @@ impl Runner<'_> {
             model.find_reactions(&mut simulation);
         }
         let figures = Some(figures(&simulation, watched.watch.values(&simulation)));
-        notes.extend(doubts(&simulation, rank.size(&model.system).dof > 0, status == Status::Completed));
+        notes.extend(doubts(&simulation, rank.size(&model.system).dof > 0, status == Status::Completed).chain(hasty(&simulation)));
         Ok(Some(match status {
             Status::Completed => Outcome { ending: Ending::Completed, stopped_at: None, reason: String::new(), notes, figures },
             Status::Stopped { at, reason } => Outcome { ending: Ending::Stopped, stopped_at: Some(at), reason, notes, figures },

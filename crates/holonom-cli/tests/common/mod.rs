@@ -101,3 +101,33 @@ pub fn assert_summary(summary: &Value) {
         keys.iter().for_each(|key| assert!(table.contains_key(*key), "no {group}/{key}"));
     }
 }
+
+/// Fails where files of two folders differ, other than in what tells when the run was, how it was typed and what it took.
+#[track_caller]
+pub fn assert_same(one: &Path, other: &Path, what: &str) {
+    assert_eq!(files(one), files(other), "{what}");
+    for name in files(one) {
+        let [mut a, mut b] = [one, other].map(|folder| fs::read(folder.join(&name)).unwrap());
+        if name == "report.html" {
+            // All numbers of the recording; without the viewer there are none.
+            [&mut a, &mut b].into_iter().for_each(|bytes| {
+                let page = String::from_utf8(std::mem::take(bytes)).unwrap();
+                let data = page.split_once(r#"id="holonom-data">"#).map(|(_, rest)| rest.split_once("</script>").unwrap().0);
+                *bytes = data.unwrap_or("").as_bytes().to_vec();
+            });
+            assert!(!cfg!(feature = "viewer") || !a.is_empty());
+        }
+        if name.ends_with(".json") {
+            [&mut a, &mut b].into_iter().for_each(|bytes| {
+                let mut value: Value = serde_json::from_slice(bytes).unwrap();
+                for key in ["/provenance/date", "/provenance/command", "/time"] {
+                    value.pointer_mut(key).map(Value::take);
+                }
+                *bytes = serde_json::to_string_pretty(&value).unwrap().into_bytes();
+            });
+        }
+        let at = a.iter().zip(&b).take_while(|(a, b)| a == b).count();
+        let around = |bytes: &[u8]| String::from_utf8_lossy(&bytes[at.saturating_sub(60)..bytes.len().min(at + 60)]).into_owned();
+        assert!(a == b, "{what}: {name} at byte {at}\n{}\n\n{}", around(&a), around(&b));
+    }
+}

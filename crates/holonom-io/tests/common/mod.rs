@@ -4,7 +4,7 @@
 use holonom::analysis::rank;
 use holonom::model::Model;
 use holonom::record::{Constraints, Recorder, Recording};
-use holonom::simulation::{Choice, Method, Simulation, Status};
+use holonom::simulation::{Choice, Method, Simulation, Status, Summary, Verdict};
 use holonom_io::Source;
 
 /// A model of the gallery.
@@ -41,11 +41,34 @@ pub fn run(model: &Model, choice: Choice, step: f64, end: f64) -> (Simulation, R
     (simulation, recorder.finish())
 }
 
+/// A method by its name.
+pub fn method(name: &str) -> Method {
+    Method::resolve(&Choice::default().named(name)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The methods that keep the energy.
+pub const CONSERVING: [&str; 2] = ["conserving-ggl", "conserving"];
+
+/// Runs a model to its end, and says what the summary does.
+pub fn complete(name: &str, model: &Model, of: &str, step: f64, end: f64) -> Summary {
+    let mut simulation = Simulation::new(model.system.clone(), method(of), step).unwrap_or_else(|error| panic!("{name}, {of}: {error}"));
+    let status = simulation.run(end, &mut |_: &Simulation| Verdict::GoOn);
+    assert_eq!(status, Status::Completed, "{name}, {of}");
+    let size = rank(&model.system, &simulation.state().x, end).size(&model.system);
+    simulation.summary(name, end, &status, size)
+}
+
+/// The coordinates of joints at the end of a run, by name.
+pub fn coordinates(model: &Model, of: &str, step: f64, end: f64) -> Vec<(String, f64)> {
+    let mut simulation = Simulation::new(model.system.clone(), method(of), step).unwrap_or_else(|error| panic!("{of}: {error}"));
+    assert_eq!(simulation.run(end, &mut |_: &Simulation| Verdict::GoOn), Status::Completed, "{of}");
+    model.system.gauges().iter().cloned().zip(simulation.gauges().value.iter().copied()).collect()
+}
+
 /// A simulation that finds the forces of joints.
 #[track_caller]
 pub fn simulation(model: &Model, method: &str, step: f64) -> Simulation {
-    let method = Method::resolve(&Choice::default().named(method)).unwrap();
-    let mut simulation = Simulation::new(model.system.clone(), method, step).unwrap();
+    let mut simulation = Simulation::new(model.system.clone(), self::method(method), step).unwrap();
     model.find_reactions(&mut simulation);
     simulation
 }
@@ -62,7 +85,7 @@ pub fn run_every(model: &Model, method: &str, step: f64, end: f64, every: u64) -
 /// Degrees of freedom and redundant rows at the start.
 #[track_caller]
 pub fn freedom(model: &Model) -> [usize; 2] {
-    let method = Method::resolve(&Choice::default().named("conserving")).unwrap();
+    let method = method("conserving");
     let simulation = Simulation::new(model.system.clone(), method, 1e-3).unwrap_or_else(|error| panic!("{error}"));
     let size = rank(&model.system, &simulation.state().x, 0.0).size(&model.system);
     [size.dof, size.redundant]

@@ -414,7 +414,7 @@ impl Collocation {
                 multipliers[i * r + row] += self.unknowns[self.kkt.multiplier(row, field)];
             }
         }
-        largest / work.scales.extent
+        largest / work.scales.unit
     }
 
     /// Largest increment of a multiplier: how far it would move a node of its row, over the size of the mechanism.

@@ -205,7 +205,7 @@ pub(super) fn restart(share: f64, work: &mut Workspace) {
 /// Adds the solution to the increment; its largest entry over the size of the mechanism.
 fn advance(increments: &[f64], work: &mut Workspace) -> f64 {
     work.d.iter_mut().zip(increments).for_each(|(d, step)| *d += step);
-    largest(increments) / work.scales.extent
+    largest(increments) / work.scales.unit
 }
 
 /// Sets δ to what a penalty stands for, and says how λ changes with Φ: α for each row.

@@ -180,7 +180,7 @@ pub(super) fn attempt(
 ) -> Result<(), Failure> {
     let settings = newton.settings;
     newton.rank.spares_regular = false;
-    work.scales.reach_out(&work.start.x);
+    work.scales.measure_from(&work.start.x);
     equations.begin(newton, work);
     let mut convergence = Convergence::new(&settings, work.scales.shortest, equations.kept(newton, work));
     for iteration in 1..=settings.max_iterations {
@@ -207,10 +207,15 @@ pub(super) fn attempt(
             return Ok(());
         }
         if convergence.is_lost() {
-            return Err(Failure::NotConverged { iterations: iteration, increment: change.increment });
+            return Err(not_converged(iteration, change.increment, work));
         }
     }
-    Err(Failure::NotConverged { iterations: settings.max_iterations, increment: convergence.increment })
+    Err(not_converged(settings.max_iterations, convergence.increment, work))
+}
+
+/// A failure that tells an increment as a share of the mechanism's size, also where the unit of increments is more.
+fn not_converged(iterations: usize, increment: f64, work: &Workspace) -> Failure {
+    Failure::NotConverged { iterations, increment: increment * (work.scales.unit / work.scales.length) }
 }
 
 /// Increments of this share of the mechanism are the rounding of positions; what they leave of the energy is for its audit.

@@ -31,7 +31,7 @@ pub struct Scales {
     /// Diagonal of the box around the origin and all nodes at the start, m.
     pub length: f64,
     /// The unit of increments, m: `length` or, where every mechanism has gone farther from the origin, how far at least, as positions are rounded there.
-    pub extent: f64,
+    pub unit: f64,
     /// Mechanism of each free node, which rows and mass hold together, and how far each reaches.
     mechanism: Vec<usize>,
     farthest: Vec<f64>,
@@ -75,7 +75,7 @@ impl Scales {
         let filled = |node: usize, mass: f64| 1.0 / if mass > 0.0 { mass } else { around[node].max(f64::MIN_POSITIVE) };
         let mut scales = Self {
             length,
-            extent: length,
+            unit: length,
             mechanism,
             farthest: vec![0.0; mechanisms],
             dim: system.dim,
@@ -98,13 +98,13 @@ impl Scales {
     }
 
     /// Sets the unit of increments for positions x (full), m.
-    pub(super) fn reach_out(&mut self, x: &[f64]) {
+    pub(super) fn measure_from(&mut self, x: &[f64]) {
         self.farthest.fill(0.0);
         for (node, &mechanism) in x.chunks_exact(self.dim).zip(&self.mechanism) {
             self.farthest[mechanism] = self.farthest[mechanism].max(largest(node));
         }
         let least = self.farthest.iter().copied().reduce(f64::min);
-        self.extent = least.filter(|least| least.is_finite()).map_or(self.length, |least| least.max(self.length));
+        self.unit = least.filter(|least| least.is_finite()).map_or(self.length, |least| least.max(self.length));
     }
 
     fn measure_rows(&mut self, system: &System, is_light: impl Fn(usize) -> bool) {

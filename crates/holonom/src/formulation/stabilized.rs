@@ -243,7 +243,7 @@ impl Stabilized {
         self.u.iter_mut().zip(&self.unknowns[..n]).for_each(|(u, turn)| *u += turn);
         self.mu.iter_mut().zip(&newton.unknowns[n..]).for_each(|(mu, step)| *mu += step);
         self.gamma.iter_mut().zip(&self.unknowns[n..]).for_each(|(gamma, step)| *gamma += step);
-        largest(&newton.unknowns[..n]).max(largest(&self.unknowns[..n])) / work.scales.extent
+        largest(&newton.unknowns[..n]).max(largest(&self.unknowns[..n])) / work.scales.unit
     }
 
     /// Whether the residuals of both levels are round-off.

@@ -80,7 +80,7 @@ impl Stabilized {
         newton.unknowns.fill(0.0);
         let left = solved.map(|()| {
             let ends = starts && work.are_rows_quadratic() && {
-                let increment = largest(&sweeps.first[..n]) / work.scales.extent;
+                let increment = largest(&sweeps.first[..n]) / work.scales.unit;
                 let multipliers = work.scaled_multipliers(sweeps.first[n..].iter().copied()).max(bend);
                 increment * newton.rest_of_first(increment, multipliers, work) <= newton.settings.tolerance
             };
@@ -102,7 +102,7 @@ impl Stabilized {
     ) -> Option<f64> {
         let n = system.coordinates();
         let Sweeps { first, second } = sweeps;
-        let tolerance = newton.settings.tolerance * work.scales.extent;
+        let tolerance = newton.settings.tolerance * work.scales.unit;
         let mut whole = largest(&first[..n]).max(tolerance);
         let floor = if newton.rank.is_full() { LAST * tolerance } else { tolerance };
         let mut last = f64::INFINITY;

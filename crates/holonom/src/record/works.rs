@@ -1,5 +1,7 @@
 //! Who puts energy into a mechanism and who takes it out: what each drive and each force has done in a run.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::channels::{Channels, node};
@@ -43,11 +45,10 @@ impl Works {
             let [work, stored] = if is_rounded { [0.0; 2] } else { [work, stored] };
             Work { name: name.clone(), work, stored }
         };
-        let of_row = |row: usize| done.rows.iter().find(|(own, _)| *own == row).map_or(0.0, |(_, work)| *work);
-        let mut drives: Vec<Work> = channels.efforts.iter().map(|effort| named(&effort.name, of_row(effort.row), 0.0)).collect();
-        let is_of_drive = |row: usize| channels.efforts.iter().any(|effort| effort.row == row);
-        let others = done.rows.iter().filter(|(row, _)| !is_of_drive(*row)).map(|(row, work)| named(&system.row_names()[*row], *work, 0.0));
-        let mut others: Vec<Work> = others.collect();
+        let mut rows: BTreeMap<usize, f64> = done.rows.iter().copied().collect();
+        let efforts = channels.efforts.iter();
+        let mut drives: Vec<Work> = efforts.map(|effort| named(&effort.name, rows.remove(&effort.row).unwrap_or(0.0), 0.0)).collect();
+        let mut others: Vec<Work> = rows.into_iter().map(|(row, work)| named(&system.row_names()[row], work, 0.0)).collect();
         let led = channels.points.iter().filter_map(|point| Some((point, node(point)?.index().checked_sub(system.free_nodes())?)));
         others.extend(led.map(|(point, k)| named(&point.name, done.nodes[k], 0.0)));
         let forces = channels.forces.iter().map(|force| {

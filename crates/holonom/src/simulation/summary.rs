@@ -159,7 +159,7 @@ const SMALL: f64 = 0.1;
 const ROUNDED: f64 = 1e-9;
 
 impl Simulation {
-    /// Size of the mechanism at its start, m: the unit that increments and circles are small in.
+    /// Size of the mechanism at its start, m: what circles are small beside.
     pub fn length(&self) -> f64 {
         self.work.scales.length
     }
