@@ -57,4 +57,4 @@ pub use stage::{RowsAt, Sampling, Stage};
 pub use standing::Sure;
 pub use table::{FORMULATIONS, Formulation};
 pub use twists::Twists;
-pub use workspace::{Moment, Workspace};
+pub use workspace::{Moment, Prediction, Workspace};

@@ -5,7 +5,7 @@ use super::rank::Rank;
 use super::stage::Stage;
 use super::workspace::Workspace;
 use crate::linalg::largest;
-use crate::system::{Direction, System, scatter_rows};
+use crate::system::{Direction, System, scatter, scatter_rows};
 
 /// Residual of a node's forces over the sum of its terms' sizes that is round-off: each term is itself a sum of some products.
 const FORCES: f64 = 32.0 * f64::EPSILON;
@@ -88,6 +88,25 @@ impl Workspace {
             *size = inertia * (*size + self.forces.weight[i].abs()) + self.inertial[i];
         }
         spread(dim, &mut self.full[..n]);
+    }
+
+    /// How fast the forces at the sampled state and those of the rows, each by its size, would make the free node that they push most, m/s².
+    pub fn pushed_at_most(&mut self, system: &System) -> f64 {
+        let (n, dim) = (system.coordinates(), system.dim);
+        let Self { full, forces, sampled, lambda, rows, sizes, .. } = self;
+        full.iter_mut().zip(&forces.weight).for_each(|(full, weight)| *full = weight.abs());
+        sizes.iter_mut().zip(&sampled.at.gradient).for_each(|(size, g)| *size = g.abs());
+        rows.iter_mut().zip(lambda).for_each(|(row, lambda)| *row = lambda.abs());
+        scatter_rows(dim, &system.slots.by_row, rows, sizes, full);
+        for (law, response) in system.laws.iter().zip(&forces.responses) {
+            for (&id, force) in law.invariants.iter().zip(&response.force) {
+                let slots = system.invariants.slots_of(id);
+                scatter(dim, &system.slots.nodes[slots.clone()], force.abs(), &sizes[slots.start * dim..slots.end * dim], full);
+            }
+        }
+        let of_loads = system.loads.iter().flat_map(|load| &load.nodes).zip(forces.of_loads.chunks_exact(dim));
+        of_loads.for_each(|(node, force)| (0..dim).for_each(|c| full[node.index() * dim + c] += force[c].abs()));
+        self.farthest(system, &self.full[..n])
     }
 
     /// Leaves the sizes of the terms of Φ in `rows`: of gradients times positions, whose last digits are lost.

@@ -3,8 +3,9 @@
 use std::cell::LazyCell;
 
 use super::assembly::Assembly;
+use super::bodies::frame::Frame;
 use super::bodies::nodes::Member;
-use super::bodies::short;
+use super::bodies::{RigidBody, short};
 use super::geometry::{norm, subtract};
 use super::start::{Target, leading};
 use crate::simulation::Places;
@@ -35,15 +36,8 @@ pub(super) fn moved(assembly: &Assembly<'_>) -> Option<String> {
             }
         }
     }
-    let (dim, position) = (assembly.dimension(), assembly.builder.position());
     let moved = bodies.iter().zip(&assembly.frames).zip(&tied).filter(|(_, tied)| !**tied).filter_map(|((body, frame), _)| {
-        let at = |terms: Vec<Term>| place_of(&terms, position, dim);
-        let way = norm(subtract(at(frame.point(body.position)), body.position));
-        let turned = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|unit| at(frame.vector(unit)));
-        let trace = if dim == 2 { 2.0 * turned[0][0] + 1.0 } else { turned[0][0] + turned[1][1] + turned[2][2] };
-        // A thin rod has no directions across it.
-        let is_whole = turned[..dim].iter().all(|unit| norm(*unit) > 0.5);
-        let turn = if is_whole { ((trace - 1.0) / 2.0).clamp(-1.0, 1.0).acos() } else { 0.0 };
+        let (way, turn) = moved_by(assembly, body, frame);
         (way > ADRIFT * assembly.builder.size() || turn > ADRIFT)
             .then(|| format!("`{}` by {} m and {} rad", body.name, short(way), short(turn)))
     });
@@ -52,6 +46,18 @@ pub(super) fn moved(assembly: &Assembly<'_>) -> Option<String> {
         "bodies that no joint ties to the ground were moved, as little as they can be in the metric of the mass: {moved} (they stay where they are \
          in a file that is written in the pose in which the run begins)"
     ))
+}
+
+/// How far the centre of a body is from where that is written, m, and by what it is turned, rad.
+pub(super) fn moved_by(assembly: &Assembly<'_>, body: &RigidBody, frame: &Frame) -> (f64, f64) {
+    let (dim, position) = (assembly.dimension(), assembly.builder.position());
+    let at = |terms: Vec<Term>| place_of(&terms, position, dim);
+    let way = norm(subtract(at(frame.point(body.position)), body.position));
+    let turned = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|unit| at(frame.vector(unit)));
+    let trace = if dim == 2 { 2.0 * turned[0][0] + 1.0 } else { turned[0][0] + turned[1][1] + turned[2][2] };
+    // A thin rod has no directions across it.
+    let is_whole = turned[..dim].iter().all(|unit| norm(*unit) > 0.5);
+    (way, if is_whole { ((trace - 1.0) / 2.0).clamp(-1.0, 1.0).acos() } else { 0.0 })
 }
 
 /// Coordinates of the joints of a system and their rates.
@@ -123,7 +129,7 @@ pub(super) fn followed(assembly: &Assembly<'_>, targets: &[Target], before: &Gau
 }
 
 /// The first of some, and how many more there are.
-fn list(moved: impl Iterator<Item = String>) -> Option<String> {
+pub(super) fn list(moved: impl Iterator<Item = String>) -> Option<String> {
     let mut moved: Vec<String> = moved.collect();
     let more = moved.len().saturating_sub(NAMED);
     moved.truncate(NAMED);

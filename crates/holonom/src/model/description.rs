@@ -16,7 +16,7 @@ use super::measure::Measure;
 use super::points::Point;
 use super::reader::Reader;
 use super::settings::{OutputKeys, SimulationKeys};
-use super::start::{Start, one_of};
+use super::start::{EQUILIBRIUM, Start, one_of};
 use super::synonyms::same;
 use super::tables::Curve;
 use super::value::{Table, Value, key_path};
@@ -52,6 +52,8 @@ pub struct Description {
     pub forces: Entries<Boxed>,
     /// `[start.JOINT]`: where joints are at the start.
     pub starts: Entries<Start>,
+    /// `equilibrium` of `[start]`: whether the mechanism begins where all forces balance.
+    pub equilibrium: bool,
     /// `[measure.NAME]`: formulas of what the mechanism does, recorded and read by others.
     pub measures: Entries<Measure>,
     /// `[event.NAME]`: conditions whose times are found.
@@ -218,7 +220,7 @@ impl Description {
             ("constraint", self.constraints.write(boxed)),
             ("drive", self.drives.write(boxed)),
             ("force", self.forces.write(boxed)),
-            ("start", self.starts.write(Keys::write)),
+            ("start", self.write_starts()),
             ("measure", self.measures.write(Keys::write)),
             ("event", self.events.write(Keys::write)),
             ("simulation", self.simulation.as_ref().map(Field::write)),
@@ -226,6 +228,18 @@ impl Description {
         ];
         sections.into_iter().for_each(|(name, section)| section.into_iter().for_each(|section| table.push(name, section)));
         Value::Table(table)
+    }
+
+    /// The table of starts, with its own key.
+    fn write_starts(&self) -> Option<Value> {
+        let mut table = Table::default();
+        if self.equilibrium {
+            table.push(EQUILIBRIUM.name, Value::Bool(true));
+        }
+        if let Some(Value::Table(of_joints)) = self.starts.write(Keys::write) {
+            of_joints.iter().for_each(|(name, value)| table.push(name, value.clone()));
+        }
+        (!table.is_empty()).then_some(Value::Table(table))
     }
 
     /// Names of the entries that are neither points nor bodies, and what they are.
@@ -258,6 +272,11 @@ impl Description {
         let elements = of("constraint", &self.constraints).chain(of("joint", &self.joints));
         signals.chain(parts).chain(elements).chain(of("drive", &self.drives)).chain(of("force", &self.forces))
     }
+}
+
+/// Whether a table of starts says whether it is at equilibrium, which a joint of that name does not.
+fn is_equilibrium(starts: &Table) -> bool {
+    starts.get(EQUILIBRIUM.name).is_some_and(|value| !matches!(value, Value::Table(_)))
 }
 
 /// Names of the tables of a model.
@@ -325,6 +344,12 @@ pub(super) fn read(value: &Value, kinds: &Kinds, sink: &Sink) -> Read<Partial> {
     let (forces, _) = elements(&mut names, "force", &kinds.forces);
     // A start has the name of its joint.
     let mut of_joints = Names { sink, known: HashSet::new() };
+    let equilibrium = match table.get("start") {
+        Some(Value::Table(table)) if is_equilibrium(table) => {
+            Reader::new("start", "start", table, sink).must_have(EQUILIBRIUM.name).unwrap_or(false)
+        }
+        _ => false,
+    };
     let (starts, _) = section(&root, "start", &mut of_joints, |reader| keys::<Start>("a start", reader));
     let (measures, unread_measures) = section(&root, "measure", &mut names, |reader| keys::<Measure>("a measure", reader));
     let (events, _) = section(&root, "event", &mut names, |reader| keys::<Event>("an event", reader));
@@ -344,6 +369,7 @@ pub(super) fn read(value: &Value, kinds: &Kinds, sink: &Sink) -> Read<Partial> {
             drives,
             forces,
             starts,
+            equilibrium,
             measures,
             events,
             simulation,
@@ -379,6 +405,9 @@ fn section<T>(
         }
     };
     for (name, value) in table.iter() {
+        if section == "start" && name == EQUILIBRIUM.name && is_equilibrium(table) {
+            continue;
+        }
         let path = key_path(section, name);
         let valid = names.check(section, name);
         let Value::Table(table) = value else {

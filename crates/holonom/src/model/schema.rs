@@ -4,8 +4,8 @@ use super::fields::Keys;
 use super::key::{Key, Kind, Shape};
 use super::value::{Table, Value};
 use super::{
-    Bar, Body, Curve, Event, Input, Measure, ModelKeys, OutputKeys, Point, REPEAT, SimulationKeys, Start, constraints, drives, forces,
-    joints,
+    Bar, Body, Curve, EQUILIBRIUM, Event, Input, Measure, ModelKeys, OutputKeys, Point, REPEAT, SimulationKeys, Start, constraints, drives,
+    forces, joints,
 };
 
 /// JSON Schema (draft 2020-12) of the model file.
@@ -21,7 +21,11 @@ pub fn schema() -> Value {
     properties.push("constraint", entries(one_of(constraints::KINDS)));
     properties.push("drive", entries(one_of(drives::KINDS)));
     properties.push("force", entries(one_of(forces::KINDS)));
-    properties.push("start", entries(named(Start::KEYS)));
+    let Value::Table(mut starts) = entries(named(Start::KEYS)) else { unreachable!("entries are a table") };
+    // A joint may have the same name.
+    let of_all = table([("anyOf", Value::List(vec![described(&EQUILIBRIUM), named(Start::KEYS)]))]);
+    starts.push("properties", table([(EQUILIBRIUM.name, of_all)]));
+    properties.push("start", Value::Table(starts));
     properties.push("measure", entries(named(Measure::KEYS)));
     properties.push("event", entries(named(Event::KEYS)));
     properties.push("simulation", object(SimulationKeys::KEYS, None));

@@ -7,10 +7,20 @@ use super::entry::Entry;
 use super::fault::{Read, nearest};
 use super::fields::{Keys, Number};
 use super::joints::{Coordinate, coordinate};
+use super::key::{Key, Shape};
 use super::lengths::{DrivenLength, extend, released, require_held};
 use super::way::{self, assemble};
 use crate::simulation::Places;
 use crate::system::{Constant, Shifted, Signal, SystemBuilder};
+
+/// The key of `[start]` itself.
+pub const EQUILIBRIUM: Key = Key::optional(
+    "equilibrium",
+    Shape::Flag,
+    "false",
+    "",
+    "begins where all forces balance at t = 0, with the joints that are given a place held there",
+);
 
 /// `[start.JOINT]`
 #[derive(Clone, Debug, Default, PartialEq, Keys)]
@@ -169,24 +179,24 @@ pub(super) fn one_of(joint: &str) -> Option<String> {
     Some(format!("for `{joint}` alone write [start.{base}] with repeat = \"{}\", and a longer range for several", ranges.join(", ")))
 }
 
-/// Puts the mechanism where its coordinates are given, and has it move at the rates that are. Says whether these leave anything free.
+/// Puts the mechanism where its coordinates are given. Says whether these leave anything free.
 ///
 /// # Errors
 /// Why that cannot be, and the cure.
-pub(super) fn begin(
+pub(super) fn place(
     builder: &mut SystemBuilder,
     targets: &[Target],
     lengths: &[DrivenLength],
     efforts: &mut [Effort],
 ) -> Result<bool, (String, &'static str)> {
-    let mut leaves_free = false;
-    if targets.iter().any(Target::is_placed) {
-        let released = released(builder, targets, lengths, efforts);
-        require_held(builder, lengths, efforts, &released)?;
-        leaves_free = assemble(builder, targets, &released)?;
-        extend(builder, lengths, efforts)?;
+    if !targets.iter().any(Target::is_placed) {
+        return Ok(false);
     }
-    Ok(set_off(builder, targets)? || leaves_free)
+    let released = released(builder, targets, lengths, efforts);
+    require_held(builder, lengths, efforts, &released)?;
+    let leaves_free = assemble(builder, targets, &released)?;
+    extend(builder, lengths, efforts)?;
+    Ok(leaves_free)
 }
 
 /// A coordinate that has a rate: its value now, and that.
@@ -217,7 +227,7 @@ pub(super) fn leading(builder: &SystemBuilder, rates: &[(&Target, f64)]) -> Syst
 
 /// Gives the nodes the velocities at which coordinates have their rates and all constraints are met, with as little as possible of a change
 /// of those that are written, in the metric of the mass. Says whether the rates leave anything free.
-fn set_off(builder: &mut SystemBuilder, targets: &[Target]) -> Result<bool, (String, &'static str)> {
+pub(super) fn set_off(builder: &mut SystemBuilder, targets: &[Target]) -> Result<bool, (String, &'static str)> {
     let rated: Vec<(&Target, f64)> = targets.iter().filter_map(|target| Some((target, target.rate?))).collect();
     if rated.is_empty() {
         return Ok(false);

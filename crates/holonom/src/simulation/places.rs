@@ -13,12 +13,12 @@ const STEP: f64 = 1e-3;
 
 /// A system with the room for its places and velocities, at the time 0. Its targets may change, and nothing is planned or allocated again.
 pub(crate) struct Places {
-    system: System,
-    newton: Newton,
-    work: Workspace,
+    pub(super) system: System,
+    pub(super) newton: Newton,
+    pub(super) work: Workspace,
     /// From which turns are counted, rad: of the equations, and of what is measured.
-    angles: Vec<f64>,
-    gauges: GaugeValues,
+    pub(super) angles: Vec<f64>,
+    pub(super) gauges: GaugeValues,
 }
 
 impl Places {

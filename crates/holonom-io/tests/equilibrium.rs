@@ -1,0 +1,191 @@
+//! `[start] equilibrium`: runs that begin where all forces balance, beside closed forms of statics.
+
+mod common;
+
+use std::f64::consts::FRAC_PI_6;
+
+use common::{freedom, model, run, source};
+use holonom::simulation::Choice;
+
+const G: f64 = 9.81;
+const BEGIN: &str = "[start]\nequilibrium = true\n[simulation]\nend = 2\nstep = 0.01\n";
+
+/// A planar rod of 1 kg from x = k to k + 1, hinged where it begins.
+fn rod(k: usize, holder: &str) -> String {
+    format!(
+        "[body.r{k}]\nmass = 1\nshape = {{ rod = 1 }}\nposition = [{k}.5, 0]\n\
+         [joint.h{k}]\ntype = \"revolute\"\nbetween = [\"{holder}\", \"r{k}\"]\nat = [{k}, 0]\n"
+    )
+}
+
+/// Says that what columns of a run record begins at these values and stays there, but for rounding.
+#[track_caller]
+fn assert_stays(text: &str, columns: &[(&str, f64)]) {
+    let recording = run(&model(text), Choice::default(), 0.01, 2.0).1;
+    for (name, value) in columns {
+        let found = recording.column(name).unwrap_or_else(|| panic!("there is no column {name}"));
+        let off = found.iter().fold(0.0, |off: f64, found| off.max((found - value).abs()));
+        assert!(off < 1e-10 * value.abs().max(1.0), "{name} is {off:.1e} off {value}\n{text}");
+    }
+}
+
+fn planar(parts: &[String]) -> String {
+    format!("plane = \"xz\"\n{}{BEGIN}", parts.concat())
+}
+
+/// Rods hang, also where they are written upright: forces balance there and do not hold them.
+#[test]
+fn what_can_fall_hangs() {
+    let across = planar(&[rod(0, "ground"), rod(1, "r0")]);
+    let mut upright = across.clone();
+    for k in [0, 1] {
+        upright =
+            upright.replace(&format!("position = [{k}.5, 0]"), &format!("position = [0, {k}.5]\norientation = {{ angle = \"90*deg\" }}"));
+        upright = upright.replace(&format!("at = [{k}, 0]"), &format!("at = [0, {k}]"));
+    }
+    for text in [across, upright] {
+        assert_stays(&text, &[("r0.z", -0.5), ("r1.z", -1.5), ("r1.x", 0.0)]);
+    }
+}
+
+/// A joint that is put somewhere stays there while all others come to rest, and is let go in the run.
+#[test]
+fn what_is_given_is_held() {
+    let text = planar(&[rod(0, "ground"), rod(1, "r0")]).replace("[start]", "[start.h0]\nangle = \"30*deg\"\n[start]");
+    let recording = run(&model(&text), Choice::default(), 0.01, 0.1).1;
+    let [held, hanging] = ["h0.angle", "r1.z"].map(|name| recording.column(name).unwrap());
+    assert!((held[0] - FRAC_PI_6).abs() < 1e-12, "{}", held[0]);
+    assert!((hanging[0] - (FRAC_PI_6.sin() - 0.5)).abs() < 1e-12, "{}", hanging[0]);
+    assert!(held[10] < held[0] - 0.01, "it is let go");
+}
+
+/// A chain of ten rods between two pins 6 m apart: with the thrust H rod k has the slope (k − 4.5) m g/H, as the weights left of its middle leave.
+#[test]
+fn a_chain_hangs_as_statics_has_it() {
+    let slope = |k: usize, thrust: f64| (k as f64 - 4.5) * G / thrust;
+    let span = |thrust: f64| (0..10).map(|k| 1.0 / slope(k, thrust).hypot(1.0)).sum::<f64>();
+    let (mut low, mut high) = (1.0, 100.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        (low, high) = if span(middle) < 6.0 { (middle, high) } else { (low, middle) };
+    }
+    let angle = |k: usize| slope(k, low).atan();
+    // As a zigzag of two sides, with its ends in place.
+    let side = 0.6_f64.acos();
+    let mut parts = Vec::new();
+    for k in 0..10 {
+        let (falls, along) = (k < 5, k as f64 + 0.5);
+        let height = -side.sin() * if falls { along } else { 10.0 - along };
+        let turn = if falls { -side } else { side };
+        let holder = if k == 0 { "ground".to_string() } else { format!("r{}", k - 1) };
+        let at = -side.sin() * (k as f64).min(10.0 - k as f64);
+        parts.push(format!(
+            "[body.r{k}]\nmass = 1\nshape = {{ rod = 1 }}\nposition = [{}, {height}]\norientation = {{ angle = {turn} }}\n\
+             [joint.h{k}]\ntype = \"revolute\"\nbetween = [\"{holder}\", \"r{k}\"]\nat = [{}, {at}]\n",
+            0.6 * along,
+            0.6 * k as f64
+        ));
+    }
+    parts.push("[joint.end]\ntype = \"revolute\"\nbetween = [\"ground\", \"r9\"]\nat = [6, 0]\n".into());
+    let middle: f64 = (0..5).map(|k| angle(k).sin()).sum();
+    let last = 6.0 - 0.5 * angle(9).cos();
+    assert_stays(&planar(&parts), &[("r4.z", middle - 0.5 * angle(4).sin()), ("r9.x", last), ("r0.z", 0.5 * angle(0).sin())]);
+}
+
+/// Springs give, forces that follow a body turn it, controllers reach what their gain leaves, ropes are taut or slack, and dampers and friction
+/// hold nothing.
+#[test]
+fn forces_of_every_sort_balance() {
+    let weightless = |force: &str| planar(&[rod(0, "ground"), force.into()]).replacen('\n', "\ngravity = [0, 0]\n", 1);
+    let torsion = "[force.k]\ntype = \"torsion\"\njoint = \"h0\"\nstiffness = 10\ndamping = 1\n";
+    let follows = "[force.f]\ntype = \"force\"\nbody = \"r0\"\nat = [1, 0]\naxes = \"body\"\nforce = [\"0\", \"3\"]\n";
+    assert_stays(&weightless(&format!("{torsion}{follows}")), &[("h0.angle", 0.3)]);
+    let controller = "[force.k]\ntype = \"effort\"\njoint = \"h0\"\neffort = \"100*(0.3 - q) - 10*q_rate + 2*cos(t)^2 + 2*sin(t)^2\"\n";
+    assert_stays(&weightless(controller), &[("h0.angle", 0.32)]);
+    let friction = "[force.k]\ntype = \"friction\"\njoint = \"h0\"\neffort = 20\nspeed = 0.01\n";
+    assert_stays(&planar(&[rod(0, "ground"), friction.into()]), &[("r0.z", -0.5)]);
+    let bob = "[point.bob]\nmass = 2\nposition = [0.1, -0.2]\n".to_string();
+    let rope = "[force.k]\ntype = \"rope\"\nbetween = [\"ground\", \"bob\"]\nlength = 1.5\nstiffness = 1e5\n".to_string();
+    assert_stays(&planar(&[bob.clone(), rope]), &[("bob.z", -1.5 - 2.0 * G / 1e5)]);
+    // A formula as stiffness: its work lifts and lowers.
+    let stiffening =
+        "[force.k]\ntype = \"spring\"\nbetween = [\"ground\", \"bob\"]\nrest_length = 0\nstiffness = \"20 + 0*t\"\n".to_string();
+    assert_stays(&planar(&[bob, stiffening]), &[("bob.z", -2.0 * G / 20.0), ("bob.x", 0.0)]);
+}
+
+/// What is driven stays where its drive has it at t = 0, however fast it moves then, and redundant rows are no obstacle.
+#[test]
+fn drives_and_redundant_rows_hold() {
+    let driven = "[drive.d]\ntype = \"angle\"\njoint = \"h0\"\nprofile = \"0.5*t\"\n".to_string();
+    let text = planar(&[rod(0, "ground"), rod(1, "r0"), driven]);
+    let recording = run(&model(&text), Choice::default(), 0.01, 0.01).1;
+    let [x, z] = ["r1.x", "r1.z"].map(|name| recording.column(name).unwrap()[0]);
+    assert!((x - 1.0).abs() < 1e-12 && (z + 0.5).abs() < 1e-12, "{x} {z}");
+    // A deck on three equal cranks, of which two would do.
+    let crank = |k: usize| {
+        format!(
+            "[body.c{k}]\nmass = 1\nshape = {{ rod = 1 }}\nposition = [{k}, 0.5]\norientation = {{ angle = \"90*deg\" }}\n\
+             [joint.a{k}]\ntype = \"revolute\"\nbetween = [\"ground\", \"c{k}\"]\nat = [{k}, 0]\n\
+             [joint.b{k}]\ntype = \"revolute\"\nbetween = [\"c{k}\", \"deck\"]\nat = [{k}, 1]\n"
+        )
+    };
+    let deck = "[body.deck]\nmass = 3\nshape = { rod = 2 }\nposition = [1, 1]\n".to_string();
+    let text = planar(&[deck, crank(0), crank(1), crank(2)]);
+    assert_eq!(freedom(&model(&text)), [1, 1]);
+    assert_stays(&text, &[("deck.z", -1.0), ("deck.x", 1.0)]);
+}
+
+/// A velocity that all have is kept, and what moves with it stays at rest in it.
+#[test]
+fn what_travels_settles() {
+    let cart = "[body.cart]\nmass = 10\nshape = { box = [2, 1, 0.2] }\nposition = [0, 0, 1]\nvelocity = [20, 0, 0]\n\
+                [force.road]\ntype = \"force\"\nbody = \"cart\"\nforce = [\"0\", \"0\", \"981*(1 - z)\"]\n\
+                [body.bob]\nmass = 1\nshape = { sphere = 0.1 }\nposition = [0.5, 0, 1]\nvelocity = [20, 0, 0]\n\
+                [joint.pin]\ntype = \"revolute\"\nbetween = [\"cart\", \"bob\"]\nat = [0, 0, 1]\naxis = [0, 1, 0]\n";
+    assert_stays(&format!("{cart}{BEGIN}"), &[("cart.z", 1.0 - 11.0 * G / 981.0), ("cart.vx", 20.0), ("bob.z", 0.5 - 11.0 * G / 981.0)]);
+}
+
+/// The same places in other units: mm, t and s.
+#[test]
+fn units_do_not_matter() {
+    let text = |length: f64, mass: f64| {
+        let (stiffness, gravity) = (300.0 * mass, G * length);
+        format!(
+            "plane = \"xz\"\ngravity = [0, {}]\n[point.a]\nfixed = true\nposition = [0, 0]\n[point.b]\nfixed = true\nposition = [{}, {}]\n\
+             [point.m]\nmass = {}\nposition = [{}, {}]\n\
+             [force.left]\ntype = \"spring\"\nbetween = [\"a\", \"m\"]\nstiffness = {stiffness}\nrest_length = {}\n\
+             [force.right]\ntype = \"spring\"\nbetween = [\"b\", \"m\"]\nstiffness = {stiffness}\n{BEGIN}",
+            -gravity,
+            2.0 * length,
+            0.3 * length,
+            5.0 * mass,
+            0.8 * length,
+            0.1 * length,
+            0.5 * length
+        )
+    };
+    let place = |length: f64, mass: f64| {
+        let recording = run(&model(&text(length, mass)), Choice::default(), 0.01, 0.01).1;
+        ["m.x", "m.z"].map(|name| recording.column(name).unwrap()[0] / length)
+    };
+    let [x, z] = place(1.0, 1.0);
+    for (length, mass) in [(1e3, 1e-3), (1e-6, 1e9), (1e9, 1e-6)] {
+        let [other_x, other_z] = place(length, mass);
+        assert!((other_x - x).abs() < 1e-11 && (other_z - z).abs() < 1e-11, "{other_x} {x}, {other_z} {z}");
+    }
+}
+
+/// What nothing holds is refused, and says where it went.
+#[test]
+fn what_never_rests_is_refused() {
+    let refused = |text: &str| source(text).model().map(|_| ()).expect_err("nothing holds it");
+    let ball = "[body.ball]\nmass = 1\nshape = { sphere = 0.1 }\nposition = [0, 0, 0]\n";
+    let message = refused(&format!("{ball}{BEGIN}"));
+    assert!(message.contains("it goes on and on; so far it has moved `ball`"), "{message}");
+    let motor = "[force.m]\ntype = \"effort\"\njoint = \"h0\"\neffort = 3\n".to_string();
+    let message = refused(&planar(&[rod(0, "ground"), motor]).replacen('\n', "\ngravity = [0, 0]\n", 1));
+    assert!(message.contains("it goes on and on"), "{message}");
+    let text = planar(&[rod(0, "ground")]).replace("mass = 1\n", "mass = 1\nangular_velocity = 2\n");
+    let message = refused(&text);
+    assert!(message.contains("the velocity of `r0` is written for the pose in the file"), "{message}");
+}

@@ -1,0 +1,186 @@
+//! Where a mechanism comes to rest (methods §20), by pseudo-transient continuation (Kelley and Keyes 1998): steps of implicit Euler, each from rest, at
+//! a time that stands still. Short ones go down the forces, and long ones are those of Newton's iteration for their balance.
+
+use super::places::Places;
+use super::start::{Asked, Start, StartError, correct_velocities};
+use crate::energy;
+use crate::formulation::{Prediction, RowsAt, Sampling, Stage, Workspace, solve};
+use crate::linalg::largest;
+use crate::system::{System, scatter};
+
+/// Share of the mechanism's size that the first step would be long, were nothing in the way of the forces that are left, and what the whole forces
+/// would make it at most.
+const FIRST: f64 = 0.01;
+
+/// Share of its size and of how far it has gone by which a mechanism moves in a step at most.
+const LONGEST: f64 = 0.1;
+
+/// Share of the size that a step moves the mechanism by at its end, and of the step before that it is then, at most.
+const AT_REST: f64 = 1e-12;
+const QUICK: f64 = 0.1;
+
+/// A step that rounding alone makes of forces and places, over the larger of both.
+const ROUNDED: f64 = 64.0 * f64::EPSILON;
+
+/// By how much steps grow after one that is slow, and shrink after one that leads nowhere.
+const GROWTH: f64 = 2.0;
+const SHRINKAGE: f64 = 0.25;
+
+/// Steps until the mechanism is at rest, and sizes that it goes until then, at most.
+const MOST: usize = 5000;
+const FARTHEST: f64 = 100.0;
+
+/// The least step, over the first.
+const SHORTEST: f64 = 1e-12;
+
+/// Share of the size by which a mechanism at rest is moved to see whether it comes back, and how many times that it may then be off.
+const PUSH: f64 = 1e-4;
+const BACK: f64 = 10.0;
+
+/// Of the golden ratio, whose multiples fall everywhere between whole numbers.
+const GOLDEN: f64 = 0.618_033_988_749_895;
+
+/// Why a mechanism does not come to rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Restless {
+    /// It goes on and on.
+    Moves,
+    /// Steps however short lead nowhere.
+    Stuck,
+}
+
+impl Places {
+    /// Moves the mechanism from the start of its system to where all forces balance at the time 0, downhill on the way, and stays only where it would
+    /// come back to.
+    ///
+    /// # Errors
+    /// When that is nowhere. The mechanism is where it was last then.
+    pub fn settle(&mut self) -> Result<(), Restless> {
+        let x = self.system.start_position().to_vec();
+        self.put(&x).map_err(|_| Restless::Stuck)?;
+        self.come_to_rest()?;
+        let rest = self.work.end.x.clone();
+        let Ok(push) = self.pushed() else { return Ok(()) };
+        let ahead: Vec<f64> = rest.iter().zip(&push).map(|(x, push)| x + push).collect();
+        let comes_back = self.put(&ahead).is_err() || {
+            self.come_to_rest()?;
+            let apart = rest.iter().zip(&self.work.end.x).fold(0.0, |apart: f64, (x, other)| apart.max((x - other).abs()));
+            apart <= BACK * PUSH * self.work.scales.length
+        };
+        if comes_back { self.put(&rest).map_err(|_| Restless::Stuck) } else { Ok(()) }
+    }
+
+    /// A move of all nodes that the rows allow.
+    fn pushed(&mut self) -> Result<Vec<f64>, StartError> {
+        let Self { system, newton, work, .. } = self;
+        let push: Vec<f64> = (0..work.end.v.len()).map(|k| (k as f64 * GOLDEN).fract() - 0.5).collect();
+        let impulse = vec![0.0; system.coordinates()];
+        work.end.v.copy_from_slice(&push);
+        work.end.v[impulse.len()..].fill(0.0);
+        correct_velocities(system, &Asked { v: &push, impulse: &impulse, ..Asked::of(system, 1.0) }, newton, work, &mut Start::default())?;
+        let n = system.coordinates();
+        let by = PUSH * work.scales.length / largest(&work.end.v[..n]).max(f64::MIN_POSITIVE);
+        Ok(work.end.v.iter().enumerate().map(|(k, v)| if k < n { by * v } else { 0.0 }).collect())
+    }
+
+    /// Takes steps until hardly any of one is left, or rounding alone.
+    fn come_to_rest(&mut self) -> Result<(), Restless> {
+        self.begin_at_end();
+        let whole = self.pushed_at_most();
+        let size = self.work.scales.length;
+        let mut h = (FIRST * size / whole).sqrt();
+        if !h.is_finite() {
+            return if whole == 0.0 { Ok(()) } else { Err(Restless::Stuck) };
+        }
+        let least = SHORTEST * h;
+        let (mut gone, mut before) = (0.0, f64::INFINITY);
+        for _ in 0..MOST {
+            let longest = LONGEST * (size + gone);
+            match self.step(h) {
+                Some(way) if way <= longest => {
+                    self.begin_at_end();
+                    gone += way;
+                    let is_quick = way <= QUICK * before;
+                    let rounded = ROUNDED * (size + h * h * self.work.pushed_at_most(&self.system));
+                    if way <= rounded || is_quick && way <= AT_REST * size {
+                        return Ok(());
+                    }
+                    if gone > FARTHEST * size {
+                        return Err(Restless::Moves);
+                    }
+                    // Ways are as the squares of steps as long as nothing is in the way.
+                    let growth = if is_quick { 1.0 } else { GROWTH.min((longest / way).sqrt()) };
+                    (h, before) = (growth * h, way);
+                }
+                way if h > least => {
+                    let shrinkage = way.map_or(SHRINKAGE, |way| SHRINKAGE.max(0.5 * (longest / way).sqrt()));
+                    (h, before) = (shrinkage * h, f64::INFINITY);
+                }
+                _ => return Err(Restless::Stuck),
+            }
+        }
+        Err(Restless::Moves)
+    }
+
+    /// Has the next step begin where the last one ended, at rest.
+    fn begin_at_end(&mut self) {
+        let Self { system, work, angles, gauges, .. } = self;
+        work.end.v.fill(0.0);
+        work.start.x.copy_from_slice(&work.end.x);
+        work.start.v.fill(0.0);
+        work.start.at.copy_from(&work.end.at);
+        angles.copy_from_slice(&work.end.at.functions.angle);
+        system.measure(&work.end.x, &work.end.v, gauges);
+    }
+
+    /// How fast all forces where the next step begins would make what they push most, m/s².
+    fn pushed_at_most(&mut self) -> f64 {
+        self.start_step(1.0);
+        self.work.pushed_at_most(&self.system)
+    }
+
+    /// Puts the end of a step of length h, and what is sampled, where the step begins, and evaluates the forces there.
+    fn start_step(&mut self, h: f64) -> Stage {
+        let Self { system, work, .. } = self;
+        let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start: -h, step: h, inertia: h * h, rate: 1.0 / h };
+        let Prediction { drift, offset, a_change, lambda_change } = &mut work.prediction;
+        let none = [drift, offset, a_change, lambda_change, &mut work.d, &mut work.a, &mut work.lambda, &mut work.sampled.v];
+        none.into_iter().for_each(|numbers| numbers.fill(0.0));
+        work.end.x.copy_from_slice(&work.start.x);
+        work.sampled.x.copy_from_slice(&work.start.x);
+        work.place(&stage);
+        work.evaluate(system, &stage);
+        stage
+    }
+
+    /// A step of implicit Euler from rest, of length h; how far the node went that went farthest, m. `None` where it leads nowhere, or uphill.
+    fn step(&mut self, h: f64) -> Option<f64> {
+        let stage = self.start_step(h);
+        let Self { system, newton, work, .. } = self;
+        let potential = |work: &Workspace| energy::potential(system, &work.forces.weight, &work.end.x, &work.end.at, None);
+        let (before, at_start) = (potential(work), supplying(system, work));
+        solve(system, &stage, newton, work).ok()?;
+        work.place(&stage);
+        work.evaluate(system, &stage);
+        let mean = at_start.iter().zip(supplying(system, work)).map(|(before, after)| 0.5 * (before + after));
+        let done: f64 = mean.zip(&work.d).map(|(force, d)| force * d).sum();
+        let pulls = work.lambda.iter().zip(&work.scales.gradient).map(|(lambda, gradient)| lambda.abs() * gradient);
+        let rounding = ROUNDED * (energy::size(system, work, &work.end.x) + work.scales.length * pulls.sum::<f64>());
+        (potential(work) - before - done <= rounding).then(|| largest(&work.d))
+    }
+}
+
+/// The forces on all nodes, as they were sampled last, that have no potential and may supply energy, N.
+fn supplying(system: &System, work: &Workspace) -> Vec<f64> {
+    let (dim, mut sum) = (system.dim, vec![0.0; work.end.x.len()]);
+    for (law, response) in system.laws.iter().zip(&work.forces.responses).filter(|(law, _)| law.law.may_supply()) {
+        for (&id, force) in law.invariants.iter().zip(&response.force) {
+            let slots = system.invariants.slots_of(id);
+            let gradient = &work.sampled.at.gradient[slots.start * dim..slots.end * dim];
+            scatter(dim, &system.slots.nodes[slots], -force, gradient, &mut sum);
+        }
+    }
+    let of_loads = system.loads.iter().flat_map(|load| &load.nodes).zip(work.forces.of_loads.chunks_exact(dim));
+    of_loads.for_each(|(node, force)| (0..dim).for_each(|c| sum[node.index() * dim + c] += force[c]));
+    sum
+}
