@@ -29,6 +29,7 @@ use clap::Parser;
 
 pub use commands::check::checked;
 pub use commands::compare::{side_by_side, write_side_by_side};
+pub use commands::modes::vibrations;
 pub use commands::run::describe;
 pub use commands::stability::largest_steps;
 pub use failure::Failure;
@@ -55,6 +56,7 @@ pub fn command(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Sweep(arguments) => commands::sweep::sweep(arguments),
         Command::Stability(arguments) => commands::stability::stability(arguments),
         Command::Check(arguments) => commands::check::check(arguments),
+        Command::Modes(arguments) => commands::modes::modes_of(arguments),
         Command::Methods(arguments) => commands::methods::methods(arguments),
         Command::Examples(arguments) => commands::examples::examples(arguments),
         Command::View(arguments) => commands::view::view(arguments),

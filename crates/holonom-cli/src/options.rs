@@ -25,6 +25,8 @@ pub enum Command {
     Stability(StabilityArguments),
     /// Validate a model: degrees of freedom, rank, redundant rows, what is near singular
     Check(CheckArguments),
+    /// Natural frequencies and damping of small vibrations about the start, and whether it is stable
+    Modes(ModesArguments),
     /// Formulations, integrators and projections, and which go together
     Methods(MethodsArguments),
     /// The gallery inside the binary
@@ -197,6 +199,15 @@ pub struct CheckArguments {
     /// Say what the projection of the model's method can do to the energy: the matrix D of (30)
     #[arg(long)]
     pub projection: bool,
+    /// Print the result as JSON on standard output, nothing else there
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct ModesArguments {
+    #[command(flatten)]
+    pub model: ModelArguments,
     /// Print the result as JSON on standard output, nothing else there
     #[arg(long)]
     pub json: bool,

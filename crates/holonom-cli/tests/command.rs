@@ -65,7 +65,7 @@ fn a_wrong_model_is_answered_with_every_fault() {
     let folder = folder();
     let model = "[point.a]\nmas = 1\nposition = [1, 0]\n\n[constraint.rod]\ntype = \"distance\"\nbetween = [\"ground\", \"b\"]\n";
     fs::write(folder.path().join("wrong.toml"), model).unwrap();
-    for command in ["run", "check", "compare", "stability"] {
+    for command in ["run", "check", "modes", "compare", "stability"] {
         let message = fails(&folder, &format!("{command} wrong.toml"), 2);
         for told in ["wrong.toml:2", "did you mean `mass`", "wrong.toml:3", "wrong.toml:7", "`b`"] {
             assert!(message.contains(told), "{told}\n{message}");

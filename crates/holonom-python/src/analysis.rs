@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use holonom_cli::{Finished, Found, Loaded, checked, largest_steps, side_by_side, write_side_by_side};
+use holonom_cli::{Finished, Found, Loaded, checked, largest_steps, side_by_side, vibrations, write_side_by_side};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -26,6 +26,18 @@ pub fn check(py: Python<'_>, draft: &Bound<'_, Draft>, changes: &Bound<'_, PyDic
     // What is wrong with the model is told in the lines of the program.
     let loaded = Draft::snapshot(draft)?.load_with(py, &read_changes(py, changes)?, &trouble)?;
     let found = py.detach(|| checked(loaded.source, &loaded.name, projection));
+    match trouble.take() {
+        Some(raised) => Err(raised),
+        None => found.map(answer).map_err(|fault| failure(py, fault)),
+    }
+}
+
+/// The small vibrations about the start of a model.
+#[pyfunction]
+pub fn modes(py: Python<'_>, draft: &Bound<'_, Draft>, changes: &Bound<'_, PyDict>) -> PyResult<Answer> {
+    let trouble = Trouble::default();
+    let loaded = Draft::snapshot(draft)?.load_with(py, &read_changes(py, changes)?, &trouble)?;
+    let found = py.detach(|| vibrations(&loaded));
     match trouble.take() {
         Some(raised) => Err(raised),
         None => found.map(answer).map_err(|fault| failure(py, fault)),

@@ -23,6 +23,25 @@ def test_a_check_says_what_the_command_says():
     assert repr(check) == command("check", "example:bricard", "--projection").rstrip("\n")
 
 
+def test_modes_are_those_of_the_command():
+    changes = {"start.equilibrium": True}
+    found = hm.load("example:suspension").modes(set=changes)
+    assert [mode["frequency"] > 0 for mode in found["modes"]] == [True] * 3
+    words = ("modes", "example:suspension", "--set", "start.equilibrium=true")
+    assert dict(found) == json.loads(command(*words, "--json"))
+    assert repr(found) == command(*words).rstrip("\n")
+
+
+def test_a_model_begins_at_equilibrium():
+    m = hm.Model(plane="xz")
+    m.point("bob", mass=2, position=[1, 0])
+    m.constraint_distance("rod", between=["ground", "bob"])
+    m.set("start.equilibrium", True)
+    assert abs(m.modes()["modes"][0]["frequency"] - np.sqrt(9.81) / (2 * np.pi)) < 1e-12
+    again = hm.loads(m.to_toml())
+    assert abs(hm.simulate(again, end=0.1, step=0.01)["bob.z"][-1] + 1) < 1e-12
+
+
 def test_a_check_tells_what_is_wrong_in_lines_of_the_program():
     m = throw()
     m.spring("s", between=["ground", "bal"], stiffness=1)

@@ -5,6 +5,7 @@ pub mod compare;
 pub mod completions;
 pub mod examples;
 pub mod methods;
+pub mod modes;
 pub mod run;
 pub mod schema;
 pub mod stability;

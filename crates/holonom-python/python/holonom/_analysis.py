@@ -27,6 +27,17 @@ class Check(dict[str, Any]):
         return self._text
 
 
+class Modes(dict[str, Any]):
+    """Small vibrations about the start: what ``holonom modes --json`` prints, by its keys; its text is that of the command."""
+
+    def __init__(self, answer: tuple[str, str]) -> None:
+        super().__init__(json.loads(answer[0]))
+        self._text = answer[1]
+
+    def __repr__(self) -> str:
+        return self._text
+
+
 class Stability(dict[str, dict[str, Any]]):
     """Of each method, by its name, the largest step that ``completes`` and the least that ``fails``, s; its text is that of the command."""
 
@@ -120,6 +131,11 @@ def _run(model: Model, **keys: Any) -> Run:
 def of_check(model: Model, projection: bool, changes: dict[str, Any]) -> Check:
     """What a model is made of."""
     return Check(_engine.check(model._draft, changes, projection))
+
+
+def of_modes(model: Model, changes: dict[str, Any]) -> Modes:
+    """Small vibrations about the start of a model."""
+    return Modes(_engine.modes(model._draft, changes))
 
 
 def of_stability(model: Model, methods: Sequence[str], changes: dict[str, Any]) -> Stability:

@@ -175,6 +175,11 @@ class Model(Builders):
         start. With `projection` also what that of its method can do to the energy."""
         return _analysis.of_check(self, bool(projection), changes_of({}, set))
 
+    def modes(self, *, set: Mapping[str, Any] | None = None) -> _analysis.Modes:
+        """Finds natural frequencies (Hz), damping and what moves in the small vibrations about the start, where the model is at rest, as
+        ``start.equilibrium`` has it."""
+        return _analysis.of_modes(self, changes_of({}, set))
+
     def stability(
         self,
         *,

@@ -1,13 +1,15 @@
-//! What is asked of a model rather than simulated: rank and redundancy, what a projection does to the energy, the
-//! largest stable step.
+//! What is asked of a model rather than simulated: rank and redundancy, what a projection does to the energy, small
+//! vibrations, the largest stable step.
 
 mod jacobian;
+mod modes;
 mod projection;
 mod rank;
 mod reactions;
 mod stability;
 
 pub use jacobian::constraint_jacobian;
+pub use modes::{MOST_FREEDOMS, Mode, Modes, NoModes, modes};
 pub use projection::{ProjectionForm, projection_form};
 pub use rank::{Rank, rank, rank_of};
 pub use reactions::{MOST_ROWS, Undetermined, undetermined, undetermined_of};

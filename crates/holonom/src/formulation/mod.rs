@@ -22,6 +22,7 @@ mod iteration;
 mod kept;
 mod kkt;
 mod level;
+mod linear;
 mod newton;
 mod passes;
 mod pattern;

@@ -263,7 +263,7 @@ impl Workspace {
 
     /// Derivatives of a load at the sampled state by the positions of its nodes and by their velocities. Between the ends of a step its
     /// quantities change with the second, and their gradients `bend` times as much.
-    fn load_tangents(&mut self, system: &System, load: &LoadEntry, t: f64, between: Option<f64>, bend: f64) -> [&[f64]; 2] {
+    pub(super) fn load_tangents(&mut self, system: &System, load: &LoadEntry, t: f64, between: Option<f64>, bend: f64) -> [&[f64]; 2] {
         let Self { start, sampled, end, inputs, forces, .. } = self;
         let look = look(start, end, sampled, inputs, t, between);
         let slopes = match between {

@@ -285,7 +285,7 @@ impl Workspace {
     }
 
     /// How far forces on the free nodes (kg·m) would move those that they move farthest, each by its own mass, m.
-    pub(super) fn farthest(&self, system: &System, force: &[f64]) -> f64 {
+    pub fn farthest(&self, system: &System, force: &[f64]) -> f64 {
         let nodes = force.chunks_exact(system.dim).zip(&self.scales.agility);
         nodes.map(|(force, agility)| agility * largest(force)).fold(0.0, f64::max)
     }

@@ -21,6 +21,19 @@ fn matrix(size: usize, values: &[f64]) -> Mat<f64> {
     Mat::from_fn(size, size, |i, j| values[i * size + j])
 }
 
+/// An eigenvalue with its eigenvector: real and imaginary parts of each number.
+pub type Eigenpair = ([f64; 2], Vec<[f64; 2]>);
+
+/// Those of a matrix (size × size, row-major). `None` where they are not found.
+pub fn eigenpairs(size: usize, values: &[f64]) -> Option<Vec<Eigenpair>> {
+    let eigen = matrix(size, values).eigen().ok()?;
+    let pair = |k: usize| {
+        let vector = (0..size).map(|i| eigen.U()[(i, k)]).map(|entry| [entry.re, entry.im]).collect();
+        ([eigen.S()[k].re, eigen.S()[k].im], vector)
+    };
+    Some((0..size).map(pair).collect())
+}
+
 /// Orthonormal vectors that a symmetric positive semidefinite matrix (size × size, row-major) takes to at most `share` of
 /// its largest eigenvalue.
 pub fn null_space(size: usize, values: &[f64], share: f64) -> Vec<Vec<f64>> {

@@ -145,6 +145,7 @@ mod start;
 mod straight;
 mod stroke;
 mod sum;
+mod swings;
 mod synonyms;
 mod tables;
 #[cfg(test)]
@@ -175,6 +176,7 @@ pub use reader::Reader;
 pub use schema::schema;
 pub use settings::{Output, OutputKeys, ProjectionKeys, Settings, SimulationKeys};
 pub use start::{EQUILIBRIUM, Start};
+pub use swings::Swing;
 pub use tables::Curve;
 pub use value::{Table, Value, item_path, key_path};
 pub use written::StartChange;

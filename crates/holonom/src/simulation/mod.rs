@@ -13,6 +13,7 @@ mod doubts;
 mod events;
 mod golden;
 mod landing;
+mod linear;
 mod locate;
 mod method;
 mod no_value;
@@ -36,6 +37,7 @@ pub use audit::Audit;
 pub use checkpoint::Checkpoint;
 pub use conflict::Conflict;
 pub use events::Happening;
+pub(crate) use linear::NoRest;
 pub use method::{
     Choice, LEVELS, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, OMEGA, PENALTY, ProjectionChoice, TOLERANCE, XI, combinations,
 };

@@ -70,6 +70,11 @@ impl Places {
         self.system.retarget(row, target);
     }
 
+    /// Size of the mechanism, m.
+    pub fn length(&self) -> f64 {
+        self.work.scales.length
+    }
+
     /// How many rows follow from others at the place.
     pub fn redundant_rows(&self) -> usize {
         Independence::like(&self.system, &self.newton.kkt).count_redundant(&self.system, &self.work.end.x, 0.0)

@@ -10,7 +10,7 @@ use crate::system::{System, scatter};
 
 /// Share of the mechanism's size that the first step would be long, were nothing in the way of the forces that are left, and what the whole forces
 /// would make it at most.
-const FIRST: f64 = 0.01;
+pub(super) const FIRST: f64 = 0.01;
 
 /// Share of its size and of how far it has gone by which a mechanism moves in a step at most.
 const LONGEST: f64 = 0.1;
@@ -34,11 +34,11 @@ const FARTHEST: f64 = 100.0;
 const SHORTEST: f64 = 1e-12;
 
 /// Share of the size by which a mechanism at rest is moved to see whether it comes back, and how many times that it may then be off.
-const PUSH: f64 = 1e-4;
+pub(super) const PUSH: f64 = 1e-4;
 const BACK: f64 = 10.0;
 
 /// Of the golden ratio, whose multiples fall everywhere between whole numbers.
-const GOLDEN: f64 = 0.618_033_988_749_895;
+pub(super) const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// Why a mechanism does not come to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +71,7 @@ impl Places {
     }
 
     /// A move of all nodes that the rows allow.
-    fn pushed(&mut self) -> Result<Vec<f64>, StartError> {
+    pub(super) fn pushed(&mut self) -> Result<Vec<f64>, StartError> {
         let Self { system, newton, work, .. } = self;
         let push: Vec<f64> = (0..work.end.v.len()).map(|k| (k as f64 * GOLDEN).fract() - 0.5).collect();
         let impulse = vec![0.0; system.coordinates()];
@@ -123,7 +123,7 @@ impl Places {
     }
 
     /// Has the next step begin where the last one ended, at rest.
-    fn begin_at_end(&mut self) {
+    pub(super) fn begin_at_end(&mut self) {
         let Self { system, work, angles, gauges, .. } = self;
         work.end.v.fill(0.0);
         work.start.x.copy_from_slice(&work.end.x);
@@ -134,13 +134,13 @@ impl Places {
     }
 
     /// How fast all forces where the next step begins would make what they push most, m/s².
-    fn pushed_at_most(&mut self) -> f64 {
+    pub(super) fn pushed_at_most(&mut self) -> f64 {
         self.start_step(1.0);
         self.work.pushed_at_most(&self.system)
     }
 
     /// Puts the end of a step of length h, and what is sampled, where the step begins, and evaluates the forces there.
-    fn start_step(&mut self, h: f64) -> Stage {
+    pub(super) fn start_step(&mut self, h: f64) -> Stage {
         let Self { system, work, .. } = self;
         let stage = Stage { sampling: Sampling::End, rows: RowsAt::End, start: -h, step: h, inertia: h * h, rate: 1.0 / h };
         let Prediction { drift, offset, a_change, lambda_change } = &mut work.prediction;
@@ -154,7 +154,7 @@ impl Places {
     }
 
     /// A step of implicit Euler from rest, of length h; how far the node went that went farthest, m. `None` where it leads nowhere, or uphill.
-    fn step(&mut self, h: f64) -> Option<f64> {
+    pub(super) fn step(&mut self, h: f64) -> Option<f64> {
         let stage = self.start_step(h);
         let Self { system, newton, work, .. } = self;
         let potential = |work: &Workspace| energy::potential(system, &work.forces.weight, &work.end.x, &work.end.at, None);

@@ -1,0 +1,58 @@
+//! `holonom modes` as people type it, with the model of its chapter.
+
+mod common;
+
+use std::f64::consts::TAU;
+use std::fs;
+use std::path::Path;
+
+use common::*;
+
+/// The model of the chapter, in a folder, and what the chapter says that the command prints.
+fn chapter() -> (tempfile::TempDir, String) {
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/modes.md")).unwrap();
+    let between = |from: &str| text.split_once(from).unwrap().1.split_once("```").unwrap().0.to_string();
+    let folder = folder();
+    fs::write(folder.path().join("quarter.toml"), between("```toml\n")).unwrap();
+    (folder, between("$ holonom modes quarter.toml\n"))
+}
+
+#[test]
+fn prints_what_the_book_shows() {
+    let (folder, shown) = chapter();
+    assert_eq!(prints(&folder, "modes quarter.toml", 0).trim_end(), shown.trim_end());
+}
+
+/// A quarter of a car has the roots of its characteristic polynomial.
+#[test]
+fn tells_numbers_as_json() {
+    let (folder, _) = chapter();
+    let found = json(&folder, "modes quarter.toml --json");
+    let modes = found["modes"].as_array().unwrap();
+    assert_eq!((modes.len(), &found["zero"]), (2, &0.into()));
+    let [wheel, chassis, tyre, spring, damper] = [40.0, 400.0, 160e3, 20e3, 1500.0];
+    for mode in modes {
+        let s = [mode["growth"].as_f64().unwrap(), TAU * mode["frequency"].as_f64().unwrap()];
+        let times = |a: [f64; 2], b: [f64; 2]| [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]];
+        let link = [spring + damper * s[0], damper * s[1]];
+        let square = times(s, s);
+        let below = [wheel * square[0] + tyre + link[0], wheel * square[1] + link[1]];
+        let above = [chassis * square[0] + link[0], chassis * square[1] + link[1]];
+        let (whole, coupled) = (times(below, above), times(link, link));
+        let left = (whole[0] - coupled[0]).hypot(whole[1] - coupled[1]);
+        assert!(left < 1e-9 * coupled[0].hypot(coupled[1]), "{left:e}");
+    }
+    let heave = &modes[0]["moves"];
+    assert_eq!(heave["chassis.z"][0], 1.0);
+    assert!(heave["wheel.z"][0].as_f64().unwrap() < 0.2 && heave["wheel.x"][0].as_f64().unwrap() < 1e-9, "{heave}");
+}
+
+#[test]
+fn says_what_is_missing() {
+    let (folder, _) = chapter();
+    let message = fails(&folder, "modes quarter.toml --set start.equilibrium=false", 2);
+    assert!(message.contains("forces do not balance") && message.contains("--set start.equilibrium=true"), "{message}");
+    let message = fails(&folder, "modes example:heavy-top", 2);
+    assert!(message.contains("moves at the start"), "{message}");
+    assert!(prints(&folder, "modes example:robot-arm --set start.equilibrium=true", 0).contains("nothing vibrates"));
+}

@@ -1,0 +1,164 @@
+//! Small vibrations about a state at rest, beside closed forms.
+
+mod common;
+
+use std::f64::consts::{PI, SQRT_2, TAU};
+
+use common::model;
+use holonom::analysis::{Modes, NoModes, modes};
+
+const G: f64 = 9.81;
+
+#[track_caller]
+fn found(text: &str) -> Modes {
+    modes(&model(text).system).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// Real and imaginary parts of the exponents, 1/s.
+#[track_caller]
+fn exponents(text: &str) -> Vec<[f64; 2]> {
+    found(text).modes.iter().map(|mode| [mode.growth, TAU * mode.frequency]).collect()
+}
+
+#[track_caller]
+fn assert_exponents(text: &str, expected: &[[f64; 2]]) {
+    let found = exponents(text);
+    assert_eq!(found.len(), expected.len(), "{found:?}\n{text}");
+    for ([re, im], [re0, im0]) in found.iter().zip(expected) {
+        let off = (re - re0).hypot(im - im0) / re0.hypot(*im0);
+        assert!(off < 1e-9, "{re} {im} for {re0} {im0}: {off:.1e}\n{text}");
+    }
+}
+
+/// A rod of 1 kg and 1 m in the plane whose first end is at the place, turned by an angle.
+fn rod(k: usize, holder: &str, [x, z]: [f64; 2], angle: f64) -> String {
+    format!(
+        "[body.r{k}]\nmass = 1\nshape = {{ rod = 1 }}\nposition = [{}, {}]\norientation = {{ angle = {angle} }}\n\
+         [joint.h{k}]\ntype = \"revolute\"\nbetween = [\"{holder}\", \"r{k}\"]\nat = [{x}, {z}]\n",
+        x + 0.5 * angle.cos(),
+        z + 0.5 * angle.sin()
+    )
+}
+
+/// A mass of 2 kg on a rail, on a spring of 50 N/m.
+fn rail(damping: f64) -> String {
+    format!(
+        "gravity = [0, 0, 0]\n[body.m]\nmass = 2\nshape = {{ box = [0.1, 0.1, 0.1] }}\nposition = [0.3, 0, 0]\n\
+         [joint.r]\ntype = \"prismatic\"\nbetween = [\"ground\", \"m\"]\nat = [0, 0, 0]\naxis = [1, 0, 0]\n\
+         [force.k]\ntype = \"torsion\"\njoint = \"r\"\nstiffness = 50\ndamping = {damping}\n"
+    )
+}
+
+/// Two rods that hang: θ''s of M = [[4/3, 1/2], [1/2, 1/3]] and K = diag(3/2, 1/2) g.
+#[test]
+fn a_double_pendulum_has_two() {
+    let text = format!("plane = \"xz\"\n{}{}", rod(0, "ground", [0.0, 0.0], -0.5 * PI), rod(1, "r0", [0.0, -1.0], -0.5 * PI));
+    // det(K − ω² M) = 0 of the square p = ω²/g.
+    let (a, b, c) = (4.0 / 9.0 - 0.25, -(0.5 + 2.0 / 3.0), 0.75_f64);
+    let root = (b * b - 4.0 * a * c).sqrt();
+    let omega = [(-b - root) / (2.0 * a), (-b + root) / (2.0 * a)].map(|p: f64| (G * p).sqrt());
+    assert_exponents(&text, &[[0.0, omega[0]], [0.0, omega[1]]]);
+    // Upright it falls as fast as it would vibrate.
+    let upright = format!("plane = \"xz\"\n{}", rod(0, "ground", [0.0, 0.0], 0.5 * PI));
+    let speed = (1.5 * G).sqrt();
+    assert_exponents(&upright, &[[speed, 0.0], [-speed, 0.0]]);
+}
+
+/// Dampers below and above the critical one, and with a formula of a rate.
+#[test]
+fn dampers_damp() {
+    assert_exponents(&rail(4.0), &[[-1.0, 24.0_f64.sqrt()]]);
+    let root = (225.0_f64 - 25.0).sqrt();
+    assert_exponents(&rail(60.0), &[[root - 15.0, 0.0], [-15.0 - root, 0.0]]);
+    let formula = rail(0.0).replace("damping = 0\n", "") + "[force.c]\ntype = \"effort\"\njoint = \"r\"\neffort = \"-4*q_rate - 3*q\"\n";
+    assert_exponents(&formula, &[[-1.0, (26.5_f64 - 1.0).sqrt()]]);
+    // Without a spring one exponent is zero.
+    let free = rail(4.0).replace("stiffness = 50\n", "");
+    assert_exponents(&free, &[[-2.0, 0.0]]);
+    assert_eq!(found(&free).free, 1);
+}
+
+/// Fifty masses on springs between a wall and a free end: ω = 2 √(k/m) sin((2j − 1)π/(4N + 2)); the same in other units, and beside a spring that is
+/// 1e10 times as stiff.
+#[test]
+fn a_chain_of_springs_has_its_spectrum() {
+    let n = 50;
+    for (length, mass) in [(1.0, 1.0), (1e3, 1e-3), (1e-6, 1e6)] {
+        let mut text = "plane = \"xz\"\ngravity = [0, 0]\n".to_string();
+        for k in 1..=n {
+            text += &format!(
+                "[body.m{k}]\nmass = {mass}\nshape = {{ box = [{0}, {0}, {0}] }}\nposition = [{1}, 0]\n\
+                 [joint.r{k}]\ntype = \"prismatic\"\nbetween = [\"ground\", \"m{k}\"]\nat = [{1}, 0]\naxis = [1, 0]\n\
+                 [force.k{k}]\ntype = \"spring\"\nbetween = [\"{2}\", \"m{k}\"]\nstiffness = {3}\n",
+                0.1 * length,
+                k as f64 * length,
+                if k == 1 { "ground".into() } else { format!("m{}", k - 1) },
+                100.0 * mass
+            );
+        }
+        let expected: Vec<[f64; 2]> = (1..=n).map(|j| [0.0, 20.0 * ((2 * j - 1) as f64 * PI / (4 * n + 2) as f64).sin()]).collect();
+        assert_exponents(&text, &expected);
+    }
+    let two = rail(0.0).replace("damping = 0\n", "")
+        + "[body.n]\nmass = 1\nshape = { box = [0.1, 0.1, 0.1] }\nposition = [1, 0, 0]\n\
+           [joint.s]\ntype = \"prismatic\"\nbetween = [\"ground\", \"n\"]\nat = [1, 0, 0]\naxis = [1, 0, 0]\n\
+           [force.l]\ntype = \"torsion\"\njoint = \"s\"\nstiffness = 25e10\n";
+    assert_exponents(&two, &[[0.0, 5.0], [0.0, 5e5]]);
+}
+
+/// A pendulum in space has the same frequency twice; a deck on three cranks, of which two would do, one; a wheel that rolls against a spring
+/// has its moment beside its mass.
+#[test]
+fn rows_hold_what_they_hold() {
+    let bob = "[point.bob]\nmass = 3\nposition = [0, 0, -2]\n[constraint.rod]\ntype = \"distance\"\nbetween = [\"ground\", \"bob\"]\n";
+    let omega = (G / 2.0).sqrt();
+    assert_exponents(bob, &[[0.0, omega], [0.0, omega]]);
+    let crank = |k: usize| {
+        rod(k, "ground", [k as f64, 0.0], -0.5 * PI)
+            + &format!("[joint.b{k}]\ntype = \"revolute\"\nbetween = [\"r{k}\", \"deck\"]\nat = [{k}, -1]\n")
+    };
+    let deck = "[body.deck]\nmass = 3\nshape = { rod = 2 }\nposition = [1, -1]\n";
+    let text = format!("plane = \"xz\"\n{deck}{}{}{}", crank(0), crank(1), crank(2));
+    // (3 + 3/3) θ'' = −(3 + 3/2) g θ
+    assert_exponents(&text, &[[0.0, (4.5 * G / 4.0).sqrt()]]);
+    let wheel = "[body.wheel]\nmass = 2\nshape = { cylinder = [0.5, 0.1] }\nposition = [0, 0, 0.5]\norientation = { axis = [1, 0, 0], angle = \"90*deg\" }\n\
+                 [joint.roll]\ntype = \"rolling\"\nbetween = [\"ground\", \"wheel\"]\nat = [0, 0, 0.5]\nnormal = [0, 0, 1]\nradius = 0.5\naxis = [0, 1, 0]\n\
+                 [joint.upright]\ntype = \"parallel\"\nbetween = [\"ground\", \"wheel\"]\nat = [0, 0, 0]\naxis = [0, 1, 0]\n\
+                 [force.k]\ntype = \"force\"\nbody = \"wheel\"\nforce = [\"-75*x\", \"0\", \"0\"]\n";
+    assert_exponents(wheel, &[[0.0, 5.0]]);
+}
+
+/// Ziegler's pendulum: forces that follow the last rod make it flutter above P = (7/2 − √2) c/l.
+#[test]
+fn forces_that_follow_make_it_flutter() {
+    let text = |force: f64| {
+        format!(
+            "plane = \"xz\"\ngravity = [0, 0]\n[body.a]\nmass = 1e-9\nshape = {{ rod = 1 }}\nposition = [0.5, 0]\n\
+             [body.b]\nmass = 1e-9\nshape = {{ rod = 1 }}\nposition = [1.5, 0]\n\
+             [body.ma]\nmass = 2\ninertia = 1e-9\nposition = [1, 0]\n[body.mb]\nmass = 1\ninertia = 1e-9\nposition = [2, 0]\n\
+             [joint.h]\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\nat = [0, 0]\n\
+             [joint.k]\ntype = \"revolute\"\nbetween = [\"a\", \"b\"]\nat = [1, 0]\n\
+             [joint.fa]\ntype = \"fixed\"\nbetween = [\"a\", \"ma\"]\nat = [1, 0]\n[joint.fb]\ntype = \"fixed\"\nbetween = [\"b\", \"mb\"]\nat = [2, 0]\n\
+             [force.c]\ntype = \"torsion\"\njoint = \"h\"\nstiffness = 1\n[force.d]\ntype = \"torsion\"\njoint = \"k\"\nstiffness = 1\n\
+             [force.p]\ntype = \"force\"\nbody = \"b\"\nat = [2, 0]\naxes = \"body\"\nforce = [\"-{force}\", \"0\"]\n"
+        )
+    };
+    let critical = 3.5 - SQRT_2;
+    assert!(exponents(&text(0.999 * critical)).iter().all(|[re, _]| *re == 0.0));
+    let beyond = exponents(&text(1.001 * critical));
+    assert!(beyond.iter().any(|[re, im]| *re > 1e-3 && *im > 0.1), "{beyond:?}");
+}
+
+/// What is free is counted, and what moves or is not at rest is refused.
+#[test]
+fn modes_are_about_rest() {
+    let ball = "gravity = [0, 0, 0]\n[body.ball]\nmass = 1\nshape = { sphere = 0.1 }\nposition = [0, 0, 0]\n";
+    let of_ball = found(ball);
+    assert_eq!((of_ball.modes.len(), of_ball.free), (0, 12));
+    let why = |text: &str| modes(&model(text).system).expect_err("it is not at rest");
+    assert_eq!(why(&ball.replacen("gravity = [0, 0, 0]\n", "", 1)), NoModes::Unbalanced);
+    assert_eq!(why(&format!("{ball}velocity = [1, 0, 0]\n")), NoModes::Moving);
+    let across = format!("plane = \"xz\"\n{}", rod(0, "ground", [0.0, 0.0], 0.0));
+    assert_eq!(why(&across), NoModes::Unbalanced);
+    assert_exponents(&format!("{across}[start]\nequilibrium = true\n"), &[[0.0, (1.5 * G).sqrt()]]);
+}
