@@ -5,10 +5,49 @@ mod common;
 use std::f64::consts::FRAC_PI_6;
 
 use common::{freedom, model, run, source};
+use holonom::analysis::modes;
 use holonom::simulation::Choice;
 
 const G: f64 = 9.81;
 const BEGIN: &str = "[start]\nequilibrium = true\n[simulation]\nend = 2\nstep = 0.01\n";
+
+/// A ball of 11 mg that carries a rod of 32 g, on springs.
+const RIDGE: &str = r#"
+gravity = [9.39213, 2.83193, -0.0647654]
+[body.b0]
+mass = 1.05651e-05
+position = [0.0248655, 0, -0.0124328]
+shape = { sphere = 0.00155595 }
+[joint.j0]
+type = "spherical"
+between = ["ground", "b0"]
+at = [0, 0, -0.0124328]
+[body.b1]
+mass = 0.0316279
+position = [0.0248655, 0, -0.0124328]
+orientation = { quat_wxyz = [0.295088, -0.796838, -0.311193, 0.425594] }
+shape = { rod = 0.00476702 }
+[joint.j1]
+type = "revolute"
+between = ["b0", "b1"]
+at = [0.049731, 0, -0.0124328]
+axis = [0, 0, 1]
+[joint.j2]
+type = "constant-velocity"
+between = ["ground", "b0"]
+at = [0, 0, -0.0124328]
+axes = [[0, 1, 0], [0.994356, 1, 0.106094]]
+[force.light]
+type = "spring"
+between = [[0.030947, -0.00155121, -0.0168182],"b0"]
+stiffness = 0.0148701
+rest_length = 0
+[force.heavy]
+type = "spring"
+between = [[0.0287264, 0.00295824, -0.019567],"b1"]
+stiffness = 475.418
+rest_length = 0
+"#;
 
 /// A planar rod of 1 kg from x = k to k + 1, hinged where it begins.
 fn rod(k: usize, holder: &str) -> String {
@@ -46,6 +85,15 @@ fn what_can_fall_hangs() {
     for text in [across, upright] {
         assert_stays(&text, &[("r0.z", -0.5), ("r1.z", -1.5), ("r1.x", 0.0)]);
     }
+}
+
+/// A light ball that carries a heavy rod by a hinge: what holds the rod still hides how the ball falls off the ridge on which the forces balance first.
+#[test]
+fn heavy_parts_do_not_hide_how_light_ones_fall() {
+    let text = format!("{RIDGE}[start]\nequilibrium = true\n");
+    let found = modes(&model(&text).system).unwrap();
+    assert_eq!((found.modes.len(), found.free, found.unsure), (3, 0, 0));
+    assert!(found.modes.iter().all(|mode| mode.growth == 0.0), "{:?}", found.modes.iter().map(|mode| mode.growth).collect::<Vec<_>>());
 }
 
 /// A joint that is put somewhere stays there while all others come to rest, and is let go in the run.

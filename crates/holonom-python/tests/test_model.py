@@ -34,7 +34,7 @@ def test_every_kind_has_a_builder_with_its_own_name():
     assert len(set(names)) == len(names) > 40
     others = {name for name in vars(hm.Model) if not name.startswith("_")} - set(names)
     parts = {"ground", "parameter", "simulation", "output", "set", "get", "entries", "title", "to_toml", "notes", "copy", "function"}
-    assert others == parts | {"simulate", "check", "stability", "compare"}
+    assert others == parts | {"simulate", "check", "modes", "stability", "compare"}
     for name in names:
         builder = getattr(hm.Model, name)
         assert name.isidentifier() and builder.__name__ == name

@@ -40,7 +40,7 @@ pub fn vibrations(loaded: &Loaded) -> Result<Found, Failure> {
         json!({ "frequency": mode.frequency, "growth": mode.growth, "damping": mode.damping(), "moves": moves })
     };
     let all: Vec<Value> = found.modes.iter().zip(&swings).map(of_mode).collect();
-    let value = json!({ "model": loaded.name, "modes": all, "zero": found.free, "fast": found.fast });
+    let value = json!({ "model": loaded.name, "modes": all, "zero": found.free, "unsure": found.unsure });
     Ok(Found { value, text: describe(loaded, &found, &swings) })
 }
 
@@ -81,8 +81,8 @@ fn describe(loaded: &Loaded, found: &Modes, swings: &[Vec<(Swing, f64)>]) -> Str
     if found.free > 0 {
         text.push_str(&format!("\n\n{} more exponents are zero: of motions that nothing drives back", found.free));
     }
-    if found.fast > 0 {
-        text.push_str(&format!("\n\n{} more are too fast to be told beside the slowest", found.fast));
+    if found.unsure > 0 {
+        text.push_str(&format!("\n\n{} more cannot be told from rounding beside the others", found.unsure));
     }
     text
 }

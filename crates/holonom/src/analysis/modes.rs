@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::linalg::eigenpairs;
-use crate::simulation::{NoRest, Places, StartError};
+use crate::linalg::{Eigenpair, eigenpairs};
+use crate::simulation::{Motions, NoRest, Places, Rest, StartError};
 use crate::system::System;
 
 /// A motion e^(s t) of the linearised equations.
@@ -24,8 +24,8 @@ pub struct Modes {
     pub modes: Vec<Mode>,
     /// How many s are zero: two of each freedom that nothing resists, one of those that are only damped.
     pub free: usize,
-    /// How many are more than 1e10 times as fast as the slowest.
-    pub fast: usize,
+    /// How many rounding leaves open, beside those that are much faster or much slower.
+    pub unsure: usize,
     /// Size of the mechanism, m, by which ways are compared with turns.
     pub length: f64,
 }
@@ -75,9 +75,16 @@ const WIDTH: f64 = 1e3;
 const WINDOWS: i32 = 4;
 const AWAY: f64 = 0.83;
 
-/// An s over the slowest that is zero, and the share that a step leaves of what is too fast for it.
-const ZERO: f64 = 1e-5;
+/// The other step that motions are looked at with, and by what share of an s both may differ.
+const OTHER: f64 = 1.37;
+const AGREE: f64 = 1e-4;
+
+/// An s over the slowest that may be zero, and the share that a step leaves of what is too fast for it.
+const SLOWER: f64 = 0.5;
 const FAST: f64 = 1e-9;
+
+/// By how many times what both steps differ by a real part is round-off.
+const UNSURE: f64 = 10.0;
 
 /// Share of an s that its real part may be by round-off.
 const ROUNDED: f64 = 1e-10;
@@ -98,21 +105,20 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
         return Err(NoModes::Moving);
     }
     let mut places = Places::new(system.clone())?;
-    let fastest = places.rest()?;
+    let rest = places.rest(system.start_position().to_vec())?;
     let freedom = system.coordinates() + places.redundant_rows() - system.constraints();
     if freedom > MOST_FREEDOMS {
         return Err(NoModes::Large(freedom));
     }
     let motions = places.motions()?;
     let none = Modes { free: 2 * freedom, length: places.length(), ..Modes::default() };
-    if fastest == 0.0 || freedom == 0 {
+    if rest.speed == 0.0 || freedom == 0 {
         return Ok(none);
     }
+    let mut seen = |h: f64| look_twice(&mut places, &rest, &motions, h);
     // A long step shows the slowest motion, and one that is about as long as a motion takes shows that well.
-    let pairs = |places: &mut Places, h: f64| eigenpairs(2 * freedom, &places.propagator(&motions, h)?).ok_or(NoModes::Singular);
-    let h = LONG / fastest;
-    let speeds = pairs(&mut places, h)?.into_iter().filter_map(|(theta, _)| Some(exponent(theta, h)?).map(|[re, im]| re.hypot(im)));
-    let slowest = speeds.filter(|speed| speed * h > ZERO).fold(f64::INFINITY, f64::min);
+    let speeds = seen(LONG / rest.speed)?.into_iter().filter_map(|found| found.is_sure.then_some(found.s[0].hypot(found.s[1])));
+    let slowest = speeds.fold(f64::INFINITY, f64::min);
     if slowest == f64::INFINITY {
         return Ok(none);
     }
@@ -120,18 +126,15 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
     let mut left = 2 * freedom;
     for window in 0..WINDOWS {
         let middle = slowest * WIDTH.powi(window);
-        let h = AWAY / middle;
-        for (theta, vector) in pairs(&mut places, h)? {
-            let Some([re, im]) = exponent(theta, h) else { continue };
-            let mode = Mode::new(system, &motions.basis, [re, im], &vector);
-            match mode.speed() / middle {
-                share if window == 0 && share <= ZERO => (modes.free, left) = (modes.free + 1, left.saturating_sub(1)),
-                share if share >= WIDTH.sqrt() || window > 0 && share < 1.0 / WIDTH.sqrt() => {}
-                _ => {
-                    left = left.saturating_sub(1);
-                    if im >= 0.0 {
-                        modes.modes.push(mode);
-                    }
+        for found in seen(AWAY / middle)? {
+            let share = found.s[0].hypot(found.s[1]) / middle;
+            let is_here = share < WIDTH.sqrt() && (window == 0 || share >= 1.0 / WIDTH.sqrt());
+            if window == 0 && !found.is_sure && share < SLOWER {
+                (modes.free, left) = (modes.free + 1, left.saturating_sub(1));
+            } else if found.is_sure && is_here {
+                left = left.saturating_sub(1);
+                if found.s[1] >= 0.0 {
+                    modes.modes.push(Mode::new(system, &motions.basis, &found));
                 }
             }
         }
@@ -139,25 +142,47 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
             break;
         }
     }
-    modes.fast = left;
+    modes.unsure = left;
     modes.modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency).then(b.growth.total_cmp(&a.growth)));
     Ok(modes)
 }
 
+/// An exponent as steps of two lengths have it.
+struct Found {
+    s: [f64; 2],
+    shares: Vec<[f64; 2]>,
+    /// Whether both agree, and by what their real parts differ.
+    is_sure: bool,
+    apart: f64,
+}
+
+/// The exponents that a step of length h shows, and whether one of another length, a little beside, agrees: what rounding makes of a zero is another
+/// number there.
+fn look_twice(places: &mut Places, rest: &Rest, motions: &Motions, h: f64) -> Result<Vec<Found>, NoModes> {
+    let mut look = |h: f64, spot: usize| -> Result<Vec<Eigenpair>, NoModes> {
+        let pairs = eigenpairs(2 * motions.basis.len(), &places.propagator(motions, &rest.spots[spot], h)?).ok_or(NoModes::Singular)?;
+        Ok(pairs.into_iter().filter_map(|(theta, shares)| Some((exponent(theta, h)?, shares))).collect())
+    };
+    let (first, second) = (look(h, 0)?, look(OTHER * h, 1)?);
+    let found = first.into_iter().map(|(s, shares)| {
+        let apart = |other: &[f64; 2]| (s[0] - other[0]).hypot(s[1] - other[1]);
+        let nearest = second.iter().map(|(other, _)| other).min_by(|a, b| apart(a).total_cmp(&apart(b)));
+        let is_sure = nearest.is_some_and(|other| apart(other) <= AGREE * s[0].hypot(s[1]));
+        Found { s, shares, is_sure, apart: nearest.map_or(f64::INFINITY, |other| (s[0] - other[0]).abs()) }
+    });
+    Ok(found.collect())
+}
+
 impl Mode {
-    /// With the exponent s, and shares of motions in it.
-    fn new(system: &System, motions: &[Vec<f64>], [re, im]: [f64; 2], shares: &[[f64; 2]]) -> Self {
+    fn new(system: &System, motions: &[Vec<f64>], found: &Found) -> Self {
+        let [re, im] = found.s;
         let mut shape = vec![[0.0; 2]; system.nodes() * system.dimension()];
-        for (motion, [re, im]) in motions.iter().zip(shares) {
+        for (motion, [re, im]) in motions.iter().zip(&found.shares) {
             shape.iter_mut().zip(motion).for_each(|(shape, q)| *shape = [shape[0] + re * q, shape[1] + im * q]);
         }
-        let growth = if re.abs() <= ROUNDED * re.hypot(im) { 0.0 } else { re };
+        let rounding = (ROUNDED * re.hypot(im)).max(UNSURE * found.apart);
+        let growth = if re.abs() <= rounding { 0.0 } else { re };
         Self { growth, frequency: im / TAU, shape }
-    }
-
-    /// |s|, 1/s.
-    fn speed(&self) -> f64 {
-        self.growth.hypot(TAU * self.frequency)
     }
 }
 

@@ -12,7 +12,7 @@ mod plans;
 mod solve;
 mod tile;
 
-pub use eigen::{eigenpairs, inverse, null_space, relative_eigenvalues};
+pub use eigen::{Eigenpair, eigenpairs, inverse, null_space, relative_eigenvalues};
 pub use ordering::fill_reducing_order;
 pub use plans::Plans;
 

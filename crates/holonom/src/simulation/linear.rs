@@ -2,10 +2,16 @@
 
 use super::places::Places;
 use super::rest::{FIRST, GOLDEN, PUSH};
-use super::start::StartError;
+use crate::linalg::{eigenpairs, largest};
 
 /// How far what is left of the forces would move the mechanism while their whole would move it by its size, over that: more is no rest.
 const BALANCED: f64 = 1e-9;
+
+/// Steps over the time of the fastest motion with which falls are looked for.
+const LONG: f64 = 1e4;
+
+/// How far the place is beside it, over the mechanism's size.
+const BESIDE: f64 = 1e-13;
 
 /// Share of a motion's size that is left of it when it follows from those before.
 const FOLLOWS: f64 = 1e-6;
@@ -21,6 +27,20 @@ pub(crate) enum NoRest {
     Singular,
 }
 
+/// A mechanism at rest.
+pub(crate) struct Rest {
+    /// How fast its motions may be, as far as forces tell, 1/s; 0 without forces.
+    pub speed: f64,
+    /// The place at rest, and one a little beside it, where other numbers are rounded.
+    pub spots: [Spot; 2],
+}
+
+/// A place (full), with the multipliers that balance the forces there.
+pub(crate) struct Spot {
+    x: Vec<f64>,
+    lambda: Vec<f64>,
+}
+
 /// Independent motions q (n each) that the rows allow, with qᵀ M q = 1 each and 0 of two, and M q of each.
 pub(crate) struct Motions {
     pub basis: Vec<Vec<f64>>,
@@ -28,42 +48,48 @@ pub(crate) struct Motions {
 }
 
 impl Places {
-    /// Puts the mechanism at the start of its system, and sees that it is at rest there. Hands back how fast its motions may be, as far as forces tell,
-    /// 1/s; 0 without forces.
-    pub fn rest(&mut self) -> Result<f64, NoRest> {
-        let x = self.system.start_position().to_vec();
-        let unmet = |_: StartError| NoRest::Unbalanced;
-        self.put(&x).map_err(unmet)?;
-        self.begin_at_end();
+    /// Puts the mechanism at a place, and sees that it is at rest there.
+    pub fn rest(&mut self, x: Vec<f64>) -> Result<Rest, NoRest> {
+        self.put(&x).map_err(|_| NoRest::Unbalanced)?;
+        // Which rows are redundant is known from here.
+        if !self.newton.factor_inertia(&self.work) {
+            return Err(NoRest::Singular);
+        }
+        let (here, way) = self.balance(x)?;
+        if way.is_nan() || way > BALANCED * FIRST * self.work.scales.length {
+            return Err(NoRest::Unbalanced);
+        }
         let (whole, size) = (self.pushed_at_most(), self.work.scales.length);
-        let push = self.pushed().map_err(unmet)?;
-        let ahead: Vec<f64> = x.iter().zip(&push).map(|(x, push)| x + push).collect();
-        self.put(&ahead).map_err(unmet)?;
+        let push = self.pushed().map_err(|_| NoRest::Unbalanced)?;
+        let beside = |by: f64| here.x.iter().zip(&push).map(|(x, push)| x + by * push).collect::<Vec<f64>>();
+        self.put(&beside(1.0)).map_err(|_| NoRest::Unbalanced)?;
         self.begin_at_end();
         // How fast forces drive back what is pushed, and dampers brake what moves.
         let driven = self.pushed_at_most() / PUSH;
         let braked = self.work.resistance(&self.system, 0.0, &push);
         let braked = self.work.farthest(&self.system, &braked[..self.system.coordinates()]) / (PUSH * size);
-        self.put(&x).map_err(unmet)?;
-        self.begin_at_end();
-        let h = (FIRST * size / whole).sqrt();
-        if whole > 0.0 && self.step(h).is_none_or(|way| way > BALANCED * FIRST * size) {
-            return Err(NoRest::Unbalanced);
-        }
-        if whole == 0.0 {
-            self.work.lambda.fill(0.0);
-        }
-        Ok((driven.max(whole) / size).sqrt().max(braked))
+        let (there, _) = self.balance(beside(BESIDE / PUSH))?;
+        self.put(&here.x).map_err(|_| NoRest::Unbalanced)?;
+        Ok(Rest { speed: (driven.max(whole) / size).sqrt().max(braked), spots: [here, there] })
     }
 
-    /// The motions that the mechanism is free for.
+    /// The multipliers that balance all forces at a place, as far as they do, and how far what is left moves the mechanism in a short step, m.
+    fn balance(&mut self, x: Vec<f64>) -> Result<(Spot, f64), NoRest> {
+        self.put(&x).map_err(|_| NoRest::Unbalanced)?;
+        self.begin_at_end();
+        let (whole, size) = (self.pushed_at_most(), self.work.scales.length);
+        if whole > 0.0 {
+            // What forces leave may be too little for an iteration to end.
+            let _ = self.step((FIRST * size / whole).sqrt());
+        }
+        Ok((Spot { x, lambda: self.work.lambda.clone() }, largest(&self.work.d)))
+    }
+
+    /// The motions that the mechanism is free for, where it was put last.
     pub fn motions(&mut self) -> Result<Motions, NoRest> {
         let n = self.system.coordinates();
         let freedom = n + self.redundant_rows() - self.system.constraints();
         let mut found = Motions { basis: Vec::new(), momenta: Vec::new() };
-        let lambda = self.work.lambda.clone();
-        self.work.end.x.copy_from_slice(&self.work.start.x);
-        self.system.evaluate_again(&self.work.end.x, 0.0, &mut self.work.end.at);
         if !self.newton.factor_inertia(&self.work) {
             return Err(NoRest::Singular);
         }
@@ -89,8 +115,33 @@ impl Places {
             found.momenta.push(self.momentum(&q));
             found.basis.push(q);
         }
-        self.work.lambda = lambda;
         Ok(found)
+    }
+
+    /// A small move along which forces drive a mechanism at rest on, where it was put last, if there is one; neither where it has more freedoms, or they
+    /// cannot be told.
+    pub fn falls(&mut self, most: usize) -> Option<Option<Vec<f64>>> {
+        let rest = self.rest(self.work.end.x.clone()).ok()?;
+        let freedom = self.system.coordinates() + self.redundant_rows() - self.system.constraints();
+        if freedom > most {
+            return None;
+        }
+        let motions = self.motions().ok()?;
+        if rest.speed == 0.0 || freedom == 0 {
+            return Some(None);
+        }
+        // A long step goes back to where it came from, but for what rests nowhere: (I + h² K)⁻¹.
+        let whole = self.propagator(&motions, &rest.spots[0], LONG / rest.speed).ok()?;
+        let of_velocity: Vec<f64> = whole.chunks_exact(2 * freedom).take(freedom).flat_map(|line| &line[freedom..]).copied().collect();
+        let falling = eigenpairs(freedom, &of_velocity)?.into_iter().filter(|([share, _], _)| *share < 0.0);
+        let Some((_, shares)) = falling.max_by(|(a, _), (b, _)| a[0].total_cmp(&b[0])) else { return Some(None) };
+        let mut push = vec![0.0; self.work.end.x.len()];
+        for (motion, [share, _]) in motions.basis.iter().zip(shares) {
+            push.iter_mut().zip(motion).for_each(|(push, q)| *push += share * q);
+        }
+        let by = PUSH * self.work.scales.length / largest(&push);
+        push.iter_mut().for_each(|push| *push *= by);
+        Some(Some(push))
     }
 
     /// M q of the free coordinates.
@@ -103,11 +154,11 @@ impl Places {
     }
 
     /// What a step of implicit Euler of length h makes of the shares of the motions in positions, and in velocities times h (2f × 2f, row-major).
-    pub fn propagator(&mut self, motions: &Motions, h: f64) -> Result<Vec<f64>, NoRest> {
+    pub fn propagator(&mut self, motions: &Motions, spot: &Spot, h: f64) -> Result<Vec<f64>, NoRest> {
         let f = motions.basis.len();
-        let lambda = self.work.lambda.clone();
+        self.work.start.x.copy_from_slice(&spot.x);
         let stage = self.start_step(h);
-        self.work.lambda.copy_from_slice(&lambda);
+        self.work.lambda.copy_from_slice(&spot.lambda);
         self.newton.factor_there(&self.system, &stage, &mut self.work).map_err(|_| NoRest::Singular)?;
         let mut out = vec![0.0; 4 * f * f];
         for (j, (motion, momentum)) in motions.basis.iter().zip(&motions.momenta).enumerate() {

@@ -37,6 +37,10 @@ const SHORTEST: f64 = 1e-12;
 pub(super) const PUSH: f64 = 1e-4;
 const BACK: f64 = 10.0;
 
+/// Ridges that a mechanism may come to on its way, and the most freedoms of one that is looked at from all sides.
+const RIDGES: usize = 20;
+const MOST_FREEDOMS: usize = 200;
+
 /// Of the golden ratio, whose multiples fall everywhere between whole numbers.
 pub(super) const GOLDEN: f64 = 0.618_033_988_749_895;
 
@@ -59,15 +63,32 @@ impl Places {
         let x = self.system.start_position().to_vec();
         self.put(&x).map_err(|_| Restless::Stuck)?;
         self.come_to_rest()?;
-        let rest = self.work.end.x.clone();
-        let Ok(push) = self.pushed() else { return Ok(()) };
-        let ahead: Vec<f64> = rest.iter().zip(&push).map(|(x, push)| x + push).collect();
-        let comes_back = self.put(&ahead).is_err() || {
-            self.come_to_rest()?;
-            let apart = rest.iter().zip(&self.work.end.x).fold(0.0, |apart: f64, (x, other)| apart.max((x - other).abs()));
-            apart <= BACK * PUSH * self.work.scales.length
-        };
-        if comes_back { self.put(&rest).map_err(|_| Restless::Stuck) } else { Ok(()) }
+        for _ in 0..RIDGES {
+            let rest = self.work.end.x.clone();
+            let Some(push) = self.way_down() else { break };
+            let ahead: Vec<f64> = rest.iter().zip(&push).map(|(x, push)| x + push).collect();
+            let comes_back = self.put(&ahead).is_err() || {
+                self.come_to_rest()?;
+                let apart = rest.iter().zip(&self.work.end.x).fold(0.0, |apart: f64, (x, other)| apart.max((x - other).abs()));
+                apart <= BACK * PUSH * self.work.scales.length
+            };
+            if comes_back {
+                return self.put(&rest).map_err(|_| Restless::Stuck);
+            }
+        }
+        Ok(())
+    }
+
+    /// A small move along which the mechanism at rest may leave that. `None` where it comes back from all.
+    fn way_down(&mut self) -> Option<Vec<f64>> {
+        let x = self.work.end.x.clone();
+        let falls = self.falls(MOST_FREEDOMS);
+        self.put(&x).ok()?;
+        self.begin_at_end();
+        match falls {
+            Some(falls) => falls,
+            None => self.pushed().ok(),
+        }
     }
 
     /// A move of all nodes that the rows allow.
@@ -86,6 +107,10 @@ impl Places {
     /// Takes steps until hardly any of one is left, or rounding alone.
     fn come_to_rest(&mut self) -> Result<(), Restless> {
         self.begin_at_end();
+        // Which rows are redundant is known from here.
+        if !self.newton.factor_inertia(&self.work) {
+            return Err(Restless::Stuck);
+        }
         let whole = self.pushed_at_most();
         let size = self.work.scales.length;
         let mut h = (FIRST * size / whole).sqrt();
