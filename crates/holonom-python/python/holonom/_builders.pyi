@@ -786,7 +786,7 @@ class Builders:
     ) -> Entry:
         """Adds a force of the kind ``spring``: a spring, a damper, or both, between two points or along an axis; linear or as a formula.
 
-        Equations: V = ½ k (r − L₀)², tension c ṙ, V(r), tension F(r, ṙ, t), whichever are given, with r = max(|x_b − x_a|, 1e-9 m), or along an axis r = (x_b − x_a)·e
+        Equations: V = ½ k (r − L₀)², tension c ṙ, V(r), tension F(r, ṙ, t), whichever are given, with r = |x_b − x_a|, or along an axis r = (x_b − x_a)·e
 
         between: the two points
         along: e, a direction in the axes of the model at the start, which stays, or "BODY.AXIS", which turns with the body: the length is that along it and may be negative [any]; default: none: from point to point

@@ -1,5 +1,6 @@
 //! What the readers of points, bars, constraints and forces build on: the system so far, and the points by name.
 
+use std::cell::OnceCell;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
@@ -27,6 +28,9 @@ pub const GROUND: &str = "ground";
 
 /// Largest relative contradiction between what a constraint says and where the points start.
 pub const CONTRADICTION: f64 = 1e-6;
+
+/// Share of the size of a mechanism below which a distance has no direction: rounding of places is 1e-4 of it.
+const SHORTEST: f64 = 1e-12;
 
 /// The world axes of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -138,6 +142,8 @@ pub struct Assembly<'a> {
     pub(in crate::model) signals: Signals,
     /// Where the joints of the entry are that is built.
     pub(in crate::model) geometries: std::vec::IntoIter<Geometry>,
+    /// How far the nodes are apart when forces are built, m; 0 where they do not show it.
+    extent: OnceCell<f64>,
 }
 
 /// What a drive exerts: −λ of its row, times the length where the row is one of half a square.
@@ -194,6 +200,7 @@ impl<'a> Assembly<'a> {
             shows: Shows::Power,
             signals: Signals::default(),
             geometries: Vec::new().into_iter(),
+            extent: OnceCell::new(),
         }
     }
 }
@@ -225,6 +232,14 @@ impl Assembly<'_> {
     /// Whether a bar or a constraint keeps the distance of two places as it is.
     pub fn keeps_apart(&self, a: &End, b: &End) -> bool {
         self.kept_apart.iter().any(|[one, other]| [one, other] == [&a.name, &b.name] || [one, other] == [&b.name, &a.name])
+    }
+
+    /// What shorter distances count as for a force between places that are `start` apart at the start, with a length of `rest` without tension, m.
+    pub(in crate::model) fn shortest(&self, start: f64, rest: f64) -> f64 {
+        let extent = *self.extent.get_or_init(|| Some(self.builder.extent()).filter(|extent| extent.is_finite()).unwrap_or(0.0));
+        // What nodes do not show the force does; where it has no length any unit will do.
+        let size = start.max(if extent > 0.0 { extent } else { rest });
+        SHORTEST * if size > 0.0 { size } else { 1.0 }
     }
 
     /// Has this recorded of the laws and loads of the entry that is built. Of those of which nothing is said it is the power alone.

@@ -31,6 +31,8 @@ pub enum Shows {
         quantities: Vec<Quantity>,
         /// How the length follows from them.
         lengths: Lengths,
+        /// Distances below this count as this, m, as the laws have it.
+        shortest: f64,
     },
     /// What its laws exert along some coordinates.
     Along(Vec<Along>),
@@ -218,7 +220,7 @@ impl RecordedForce {
         let responses: SmallVec<[_; 2]> = laws.iter().map(|law| at.response(law)).collect();
         match &self.shows {
             Shows::Power => (),
-            Shows::Tension { quantities, lengths } => {
+            Shows::Tension { quantities, lengths, shortest } => {
                 let of = |quantity: &Quantity| [at.value(*quantity), at.rate(*quantity)];
                 let force = |k: usize| {
                     let of_loads = loads.iter().map(|load| at.along(load, quantities[k]));
@@ -227,7 +229,7 @@ impl RecordedForce {
                 match lengths {
                     Lengths::Distances { factors, fixed, drum } => {
                         let stretches = quantities[..factors.len()].iter();
-                        let each: SmallVec<[[f64; 2]; 4]> = stretches.map(of).map(length).collect();
+                        let each: SmallVec<[[f64; 2]; 4]> = stretches.map(|stretch| length(of(stretch), *shortest)).collect();
                         let tension = force(0) * each[0][0] / factors[0];
                         let sum = |k: usize| each.iter().zip(factors).map(|(one, factor)| factor * one[k]).sum::<f64>();
                         row.extend([fixed + sum(0), sum(1), tension]);
@@ -292,14 +294,11 @@ fn moments([first, second]: &[Vec<Vec<Term>>; 2], x: &[f64], efforts: &mut [f64]
     }
 }
 
-/// Distances below this count as this, m: as the laws of springs have it.
-const SHORTEST: f64 = 1e-9;
-
-/// A length and its rate, from half its square and the rate of that.
-fn length([half_square, rate]: [f64; 2]) -> [f64; 2] {
+/// A length and its rate, from half its square and the rate of that, where a distance counts as `shortest` at least (m).
+fn length([half_square, rate]: [f64; 2], shortest: f64) -> [f64; 2] {
     let length = (2.0 * half_square).sqrt();
     // Also taken when rounding has made the square negative.
-    let length = if length > SHORTEST { length } else { SHORTEST };
+    let length = if length > shortest { length } else { shortest };
     [length, rate / length]
 }
 

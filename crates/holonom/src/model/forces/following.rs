@@ -4,7 +4,6 @@
 use num_dual::Dual;
 use smallvec::SmallVec;
 
-use super::laws::SHORTEST;
 use super::rope_laws::{is_taut, taken_up};
 use crate::model::assembly::Assembly;
 use crate::model::entry::Entry;
@@ -89,10 +88,10 @@ fn read<N: AnyNumber>(readings: &Readings, x: &[N], v: &[N], t: N) -> SmallVec<[
     read
 }
 
-/// A length and its rate from half its square and the rate of that.
-fn length<N: AnyNumber>(half_square: N, rate: N) -> [N; 2] {
+/// A length and its rate from half its square and the rate of that, where a distance counts as `shortest` at least (m).
+fn length<N: AnyNumber>(half_square: N, rate: N, shortest: f64) -> [N; 2] {
     let square = half_square * 2.0;
-    let r = if square.re() > SHORTEST * SHORTEST { square.sqrt() } else { N::from(SHORTEST) };
+    let r = if square.re() > shortest * shortest { square.sqrt() } else { N::from(shortest) };
     [r, rate / r]
 }
 
@@ -102,6 +101,8 @@ pub(super) struct SpringLoad {
     pub own: usize,
     /// Whether that is half the square of the length, and not the length itself.
     pub is_square: bool,
+    /// Distances below this count as this, m.
+    pub shortest: f64,
     pub stiffness: Option<Follows>,
     pub rest: Follows,
     pub damping: Option<Follows>,
@@ -113,7 +114,7 @@ pub(super) struct SpringLoad {
 impl SpringLoad {
     /// Length and rate.
     fn own<N: AnyNumber>(&self, x: &[N], v: &[N]) -> [N; 2] {
-        if self.is_square { length(x[self.own], v[self.own]) } else { [x[self.own], v[self.own]] }
+        if self.is_square { length(x[self.own], v[self.own], self.shortest) } else { [x[self.own], v[self.own]] }
     }
 
     /// What the formula of the force is of, where the rest length is `rest`.
@@ -162,6 +163,8 @@ pub(super) struct RopeLoad {
     pub radius: Option<f64>,
     /// The sum of the stretches that never change, m.
     pub fixed: f64,
+    /// Distances below this count as this, m.
+    pub shortest: f64,
     pub length: Follows,
     pub stiffness: Follows,
     pub damping: Follows,
@@ -178,7 +181,7 @@ impl RopeLoad {
         let free = self.length.at(&read(&self.readings, &moving, &still, along(&t, &N::from(1.0))));
         let mut sum = [N::from(self.fixed) - free.re, -free.eps];
         for (k, factor) in self.factors.iter().enumerate() {
-            let own = length(x[self.own + k], v[self.own + k]);
+            let own = length(x[self.own + k], v[self.own + k], self.shortest);
             (0..2).for_each(|i| sum[i] += own[i] * *factor);
         }
         if let Some(radius) = self.radius {
@@ -190,7 +193,7 @@ impl RopeLoad {
 
     /// The whole length of its stretches, m.
     fn whole<N: AnyNumber>(&self, x: &[N], v: &[N]) -> f64 {
-        self.factors.iter().enumerate().map(|(k, factor)| factor * length(x[self.own + k], v[self.own + k])[0].re()).sum()
+        self.factors.iter().enumerate().map(|(k, factor)| factor * length(x[self.own + k], v[self.own + k], self.shortest)[0].re()).sum()
     }
 
     /// What its spring and its damper pull with.
@@ -220,7 +223,7 @@ impl ForceFunction for RopeLoad {
             return;
         }
         for (k, factor) in self.factors.iter().enumerate() {
-            let [r, _] = length(x[self.own + k], v[self.own + k]);
+            let [r, _] = length(x[self.own + k], v[self.own + k], self.shortest);
             force[self.own + k] = -tension * *factor / r;
         }
         if let Some(radius) = self.radius {

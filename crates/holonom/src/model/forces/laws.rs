@@ -8,9 +8,6 @@ use num_dual::{Dual2_64, Dual64};
 use crate::model::expression::Program;
 use crate::system::{Bend, Law, Reach, Response};
 
-/// Distances below this count as this, m: a spring of no length has no direction, and nothing must become 0/0.
-pub(super) const SHORTEST: f64 = 1e-9;
-
 /// Relative change of length below which the quotient ΔV/Δr gives way to an average of V′, which does not cancel.
 const QUOTIENT: f64 = 1e-3;
 
@@ -26,11 +23,11 @@ pub(super) const FORCE_VARIABLES: &[&str] = &["length", "rate", "t", "rest", "ex
 /// Names of the variables of an energy.
 pub(super) const ENERGY_VARIABLES: &[&str] = &["length", "rest", "extension"];
 
-/// r and dr/dπ.
-pub(super) fn length(half_square: f64) -> (f64, f64) {
+/// r and dr/dπ, where a distance counts as `shortest` at least (m): a spring of no length has no direction, and nothing must become 0/0.
+pub(super) fn length(half_square: f64, shortest: f64) -> (f64, f64) {
     let r = (2.0 * half_square).sqrt();
     // Also taken when rounding has made the square negative.
-    if r > SHORTEST { (r, 1.0 / r) } else { (SHORTEST, 0.0) }
+    if r > shortest { (r, 1.0 / r) } else { (shortest, 0.0) }
 }
 
 /// Lengths at the ends of a step and between them.
@@ -46,11 +43,11 @@ pub(super) struct Lengths {
 }
 
 /// Lengths at the ends of a step from half their squares.
-pub(super) fn lengths(from: f64, to: f64) -> Lengths {
-    let ((start, _), (end, slope)) = (length(from), length(to));
+pub(super) fn lengths(from: f64, to: f64, shortest: f64) -> Lengths {
+    let ((start, _), (end, slope)) = (length(from, shortest), length(to, shortest));
     let mean = 0.5 * (start + end);
     // The same as r₁ − r₀ without its cancellation.
-    let rise = if start > SHORTEST && end > SHORTEST { (to - from) / mean } else { end - start };
+    let rise = if start > shortest && end > shortest { (to - from) / mean } else { end - start };
     Lengths { start, end, mean, rise, slope }
 }
 
@@ -58,6 +55,8 @@ pub(super) fn lengths(from: f64, to: f64) -> Lengths {
 pub(super) struct LinearSpring {
     pub stiffness: f64,
     pub rest_length: f64,
+    /// Distances below this count as this, m.
+    pub shortest: f64,
 }
 
 impl Law for LinearSpring {
@@ -66,7 +65,7 @@ impl Law for LinearSpring {
         if self.rest_length == 0.0 {
             return self.stiffness * value[0];
         }
-        0.5 * self.stiffness * (length(value[0]).0 - self.rest_length).powi(2)
+        0.5 * self.stiffness * (length(value[0], self.shortest).0 - self.rest_length).powi(2)
     }
 
     fn conservative(&self) -> bool {
@@ -74,13 +73,13 @@ impl Law for LinearSpring {
     }
 
     fn at(&self, value: &[f64], _rate: &[f64], _t: f64, out: &mut Response) {
-        let (r, slope) = length(value[0]);
+        let (r, slope) = length(value[0], self.shortest);
         out.force[0] = self.stiffness * (1.0 - self.rest_length / r);
         out.by_value[0][0] = self.stiffness * self.rest_length / (r * r) * slope;
     }
 
     fn between(&self, reach: Reach<'_>, out: &mut Response) {
-        let Lengths { mean, slope, .. } = lengths(reach.from[0], reach.to[0]);
+        let Lengths { mean, slope, .. } = lengths(reach.from[0], reach.to[0], self.shortest);
         out.force[0] = self.stiffness * (1.0 - self.rest_length / mean);
         out.by_value[0][0] = self.stiffness * self.rest_length / (mean * mean) * 0.5 * slope;
     }
@@ -89,6 +88,8 @@ impl Law for LinearSpring {
 /// Tension c ṙ.
 pub(super) struct Damper {
     pub damping: f64,
+    /// Distances below this count as this, m.
+    pub shortest: f64,
 }
 
 impl Law for Damper {
@@ -97,14 +98,14 @@ impl Law for Damper {
     }
 
     fn at(&self, value: &[f64], rate: &[f64], _t: f64, out: &mut Response) {
-        let (r, slope) = length(value[0]);
+        let (r, slope) = length(value[0], self.shortest);
         out.by_rate[0][0] = self.damping / (r * r);
         out.force[0] = out.by_rate[0][0] * rate[0];
         out.by_value[0][0] = -2.0 * out.force[0] / r * slope;
     }
 
     fn between(&self, reach: Reach<'_>, out: &mut Response) {
-        let Lengths { mean, rise, slope, .. } = lengths(reach.from[0], reach.to[0]);
+        let Lengths { mean, rise, slope, .. } = lengths(reach.from[0], reach.to[0], self.shortest);
         let c = self.damping / reach.step;
         out.force[0] = c * rise / mean;
         out.by_value[0][0] = c * slope * (1.0 / mean - 0.5 * rise / (mean * mean));
@@ -116,6 +117,8 @@ pub(super) struct Energy {
     pub formula: Program,
     /// L₀, m
     pub rest: f64,
+    /// Distances below this count as this, m.
+    pub shortest: f64,
 }
 
 impl Energy {
@@ -154,11 +157,11 @@ impl Energy {
 
 impl Law for Energy {
     fn bends(&self, value: &[f64], _rate: &[f64], _t: f64, note: &mut dyn FnMut(Bend)) {
-        self.bends(length(value[0]).0, note);
+        self.bends(length(value[0], self.shortest).0, note);
     }
 
     fn energy(&self, value: &[f64]) -> f64 {
-        self.value(length(value[0]).0)
+        self.value(length(value[0], self.shortest).0)
     }
 
     fn conservative(&self) -> bool {
@@ -166,14 +169,14 @@ impl Law for Energy {
     }
 
     fn at(&self, value: &[f64], _rate: &[f64], _t: f64, out: &mut Response) {
-        let (r, slope) = length(value[0]);
+        let (r, slope) = length(value[0], self.shortest);
         let v = self.v(r);
         out.force[0] = v.v1 / r;
         out.by_value[0][0] = (v.v2 / r - v.v1 / (r * r)) * slope;
     }
 
     fn between(&self, reach: Reach<'_>, out: &mut Response) {
-        let Lengths { start, end, mean, rise, slope } = lengths(reach.from[0], reach.to[0]);
+        let Lengths { start, end, mean, rise, slope } = lengths(reach.from[0], reach.to[0], self.shortest);
         let [average, by_end] = self.average([start, end], rise, mean);
         out.force[0] = average / mean;
         out.by_value[0][0] = (by_end / mean - 0.5 * average / (mean * mean)) * slope;
@@ -185,6 +188,8 @@ pub(super) struct Force {
     pub formula: Program,
     /// L₀, m
     pub rest: f64,
+    /// Distances below this count as this, m.
+    pub shortest: f64,
 }
 
 impl Force {
@@ -203,7 +208,7 @@ impl Force {
 
 impl Law for Force {
     fn bends(&self, value: &[f64], rate: &[f64], t: f64, note: &mut dyn FnMut(Bend)) {
-        let (r, _) = length(value[0]);
+        let (r, _) = length(value[0], self.shortest);
         self.bends(r, rate[0] / r, t, note);
     }
 
@@ -216,7 +221,7 @@ impl Law for Force {
     }
 
     fn at(&self, value: &[f64], rate: &[f64], t: f64, out: &mut Response) {
-        let (r, slope) = length(value[0]);
+        let (r, slope) = length(value[0], self.shortest);
         let speed = rate[0] / r;
         let (tension, by_length, by_speed) = self.tension(r, speed, t);
         out.force[0] = tension / r;
@@ -225,7 +230,7 @@ impl Law for Force {
     }
 
     fn between(&self, reach: Reach<'_>, out: &mut Response) {
-        let Lengths { mean, rise, slope, .. } = lengths(reach.from[0], reach.to[0]);
+        let Lengths { mean, rise, slope, .. } = lengths(reach.from[0], reach.to[0], self.shortest);
         let (tension, by_length, by_speed) = self.tension(mean, rise / reach.step, reach.middle);
         out.force[0] = tension / mean;
         out.by_value[0][0] = ((0.5 * by_length + by_speed / reach.step) / mean - 0.5 * tension / (mean * mean)) * slope;
@@ -237,14 +242,16 @@ mod tests {
     use super::*;
     use crate::model::expression::Scope;
 
+    const SHORTEST: f64 = 1e-12;
+
     fn laws() -> Vec<(&'static str, Box<dyn Law>)> {
         let parse = |text, variables: &[&str]| Program::parse(text, variables, &Scope::default()).unwrap();
-        let energy = |text| Energy { formula: parse(text, ENERGY_VARIABLES), rest: 0.7 };
-        let force = |text| Force { formula: parse(text, FORCE_VARIABLES), rest: 0.7 };
+        let energy = |text| Energy { formula: parse(text, ENERGY_VARIABLES), rest: 0.7, shortest: SHORTEST };
+        let force = |text| Force { formula: parse(text, FORCE_VARIABLES), rest: 0.7, shortest: SHORTEST };
         vec![
-            ("linear spring", Box::new(LinearSpring { stiffness: 30.0, rest_length: 0.7 })),
-            ("spring of no rest length", Box::new(LinearSpring { stiffness: 30.0, rest_length: 0.0 })),
-            ("damper", Box::new(Damper { damping: 2.0 })),
+            ("linear spring", Box::new(LinearSpring { stiffness: 30.0, rest_length: 0.7, shortest: SHORTEST })),
+            ("spring of no rest length", Box::new(LinearSpring { stiffness: 30.0, rest_length: 0.0, shortest: SHORTEST })),
+            ("damper", Box::new(Damper { damping: 2.0, shortest: SHORTEST })),
             ("energy", Box::new(energy("3*(length - 0.4)^4 + 1/length"))),
             ("force", Box::new(force("4*(length - 1)^3 + rate^3*length + sin(t)"))),
             ("energy of the extension", Box::new(energy("30*extension^4/rest"))),
@@ -317,20 +324,23 @@ mod tests {
     #[test]
     fn a_large_constant_in_an_energy_is_no_force() {
         let parse = |text| Program::parse(text, ENERGY_VARIABLES, &Scope::default()).unwrap();
-        let [plain, raised] =
-            ["4*length^2 + 2*length", "4*length^2 + 2*length + 1e5"].map(|text| Energy { formula: parse(text), rest: 0.7 });
+        let [plain, raised] = ["4*length^2 + 2*length", "4*length^2 + 2*length + 1e5"].map(|text| Energy {
+            formula: parse(text),
+            rest: 0.7,
+            shortest: SHORTEST,
+        });
         for way in [1e-12, 1e-9, 1e-6, 1e-3, 0.1] {
             let [plain, raised] = [&plain, &raised].map(|energy| energy.average([0.0, way], way, way));
             assert!((plain[0] - raised[0]).abs() < 1e-7 && (plain[1] - raised[1]).abs() < 1e-3, "{way} m: {plain:?}, {raised:?}");
         }
         // From slope to slope over a hill, the average is still that of the energy.
-        let hill = Energy { formula: parse("exp(-length^2)"), rest: 0.7 };
+        let hill = Energy { formula: parse("exp(-length^2)"), rest: 0.7, shortest: SHORTEST };
         assert_eq!(hill.average([-0.5, 0.5], 1.0, 0.5)[0], 0.0);
     }
 
     #[test]
     fn a_damper_takes_out_what_it_says_and_nothing_becomes_nan() {
-        let damper = Damper { damping: 2.0 };
+        let damper = Damper { damping: 2.0, shortest: SHORTEST };
         let (from, to): (f64, f64) = (0.5, 0.8);
         let rise = (2.0 * to).sqrt() - (2.0 * from).sqrt();
         assert!((between(&damper, from, to).force[0] * (to - from) - 2.0 * rise * rise / 0.1).abs() < 1e-14);

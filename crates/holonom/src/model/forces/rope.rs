@@ -88,9 +88,10 @@ impl Element for Rope {
         let drum = drum.map(|(coordinate, _)| along(assembly, &coordinate));
         arguments.extend(drum.iter().map(|drum| Quantity::from(drum.coordinate)));
         let (length, damping) = (length.unwrap_or(Follows::Known(start)), damping.unwrap_or(Follows::Known(0.0)));
+        let shortest = assembly.shortest(start, length.known().unwrap_or(0.0));
         match (length.known(), stiffness.known(), damping.known()) {
             (Some(length), Some(stiffness), Some(damping)) => {
-                let strands = Strands::new(&factors, radius.unwrap_or(0.0), length - falls.fixed);
+                let strands = Strands::new(&factors, radius.unwrap_or(0.0), length - falls.fixed, shortest);
                 assembly.builder.law(entry.name, &arguments, Arc::new(Taut { strands, pull: Elastic { stiffness } }));
                 if damping > 0.0 {
                     assembly.builder.law(entry.name, &arguments, Arc::new(Taut { strands, pull: Damping { damping, stiffness } }));
@@ -99,11 +100,15 @@ impl Element for Rope {
             _ => {
                 let own = arguments.iter().map(|&quantity| readings.own(quantity)).min().expect("a length changes");
                 let (factors, fixed, reading) = (factors.clone(), falls.fixed, readings.reading.clone());
-                let load = RopeLoad { own, factors, radius, fixed, length, stiffness, damping, readings };
+                let load = RopeLoad { own, factors, radius, fixed, shortest, length, stiffness, damping, readings };
                 assembly.builder.load_reading(entry.name, reading, Arc::new(Differentiated(load)));
             }
         }
-        assembly.show(Shows::Tension { quantities: arguments, lengths: Lengths::Distances { factors, fixed: falls.fixed, drum } });
+        assembly.show(Shows::Tension {
+            quantities: arguments,
+            lengths: Lengths::Distances { factors, fixed: falls.fixed, drum },
+            shortest,
+        });
         ends.windows(2).for_each(|pair| assembly.draw(entry, LineKind::Rope, &pair[0], &pair[1]));
         Ok(())
     }

@@ -32,18 +32,20 @@ pub(super) struct Strands {
     radius: f64,
     /// Free length that is left for them where the drum is at zero, m.
     free: f64,
+    /// Distances below this count as this, m.
+    shortest: f64,
 }
 
 impl Strands {
-    pub(super) fn new(factors: &[f64], radius: f64, free: f64) -> Self {
+    pub(super) fn new(factors: &[f64], radius: f64, free: f64, shortest: f64) -> Self {
         let mut all = [0.0; MAX_ARGUMENTS];
         all[..factors.len()].copy_from_slice(factors);
-        Self { factors: all, lengths: factors.len(), radius, free }
+        Self { factors: all, lengths: factors.len(), radius, free, shortest }
     }
 
     /// Its whole length, m.
     fn whole(&self, value: &[f64]) -> f64 {
-        value[..self.lengths].iter().zip(self.factors).map(|(&value, factor)| factor * length(value).0).sum()
+        value[..self.lengths].iter().zip(self.factors).map(|(&value, factor)| factor * length(value, self.shortest).0).sum()
     }
 
     /// By how much a rope is longer than its free length, m, below zero where it is slack.
@@ -54,7 +56,12 @@ impl Strands {
     /// The rate of that, m/s.
     fn speed(&self, value: &[f64], rate: &[f64]) -> f64 {
         let (lengths, drum) = rate.split_at(self.lengths);
-        let whole: f64 = lengths.iter().zip(value).zip(self.factors).map(|((&rate, &value), factor)| factor * rate / length(value).0).sum();
+        let whole: f64 = lengths
+            .iter()
+            .zip(value)
+            .zip(self.factors)
+            .map(|((&rate, &value), factor)| factor * rate / length(value, self.shortest).0)
+            .sum();
         whole - drum.first().map_or(0.0, |rate| self.radius * rate)
     }
 }
@@ -203,7 +210,7 @@ impl<P: Pull> Law for Taut<P> {
         let (mut by_value, mut by_rate, mut speed) = ([[0.0; 2]; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS], 0.0);
         for (i, (&value, &rate)) in value.iter().zip(rate).enumerate() {
             if i < self.strands.lengths {
-                let ((r, slope), factor) = (length(value), self.strands.factors[i]);
+                let ((r, slope), factor) = (length(value, self.strands.shortest), self.strands.factors[i]);
                 by_rate[i] = factor / r;
                 by_value[i] = [factor * slope, -factor * rate / (r * r) * slope];
             } else {
@@ -221,7 +228,7 @@ impl<P: Pull> Law for Taut<P> {
             }
         }
         for (i, &value) in value[..self.strands.lengths].iter().enumerate() {
-            let (r, slope) = length(value);
+            let (r, slope) = length(value, self.strands.shortest);
             out.by_value[i][i] -= by_rate[i] * tension / r * slope;
         }
     }
@@ -235,7 +242,7 @@ impl<P: Pull> Law for Taut<P> {
         let (mut share, mut slope, mut bend, mut rise) = ([0.0; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS], [0.0; MAX_ARGUMENTS], 0.0);
         for i in 0..reach.from.len() {
             if i < self.strands.lengths {
-                let (of_one, factor) = (lengths(reach.from[i], reach.to[i]), self.strands.factors[i]);
+                let (of_one, factor) = (lengths(reach.from[i], reach.to[i], self.strands.shortest), self.strands.factors[i]);
                 (share[i], slope[i]) = (factor / of_one.mean, factor * of_one.slope);
                 bend[i] = -share[i] * 0.5 * of_one.slope / of_one.mean;
                 rise += factor * of_one.rise;
@@ -260,7 +267,7 @@ mod tests {
     use super::*;
 
     fn laws() -> Vec<(&'static str, Box<dyn Law>)> {
-        let strands = Strands::new(&[1.0, 2.0], 0.0, 3.0);
+        let strands = Strands::new(&[1.0, 2.0], 0.0, 3.0, 1e-12);
         vec![
             ("elastic", Box::new(Taut { strands, pull: Elastic { stiffness: 30.0 } })),
             ("damping", Box::new(Taut { strands, pull: Damping { damping: 2.0, stiffness: 30.0 } })),
@@ -271,7 +278,7 @@ mod tests {
     /// Derivatives and work of a rope from a drum, too, whose coordinate is an argument as it is.
     #[test]
     fn a_drum_is_as_exact_as_a_length() {
-        let (h, strands) = (1e-6, Strands::new(&[2.0], 0.4, 1.5));
+        let (h, strands) = (1e-6, Strands::new(&[2.0], 0.4, 1.5, 1e-12));
         let laws: [(&str, Box<dyn Law>); 2] = [
             ("elastic", Box::new(Taut { strands, pull: Elastic { stiffness: 30.0 } })),
             ("damping", Box::new(Taut { strands, pull: Damping { damping: 2.0, stiffness: 30.0 } })),

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use super::along_laws::Along;
 use super::coordinate_laws::{self, Resisting, Viscous};
 use super::following::{Follows, SpringLoad, any, not_negative};
-use super::laws::{Damper, ENERGY_VARIABLES, Energy, FORCE_VARIABLES, Force, LinearSpring, SHORTEST};
+use super::laws::{Damper, ENERGY_VARIABLES, Energy, FORCE_VARIABLES, Force, LinearSpring};
 use crate::model::assembly::Assembly;
 use crate::model::bodies::nodes::Member;
 use crate::model::element::Element;
@@ -25,7 +25,7 @@ use crate::system::{Differentiated, Law, Quantity, Reading, Term};
 #[derive(Clone, Debug, PartialEq, Keys)]
 #[kind(
     name = "spring",
-    equations = "V = ½ k (r − L₀)², tension c ṙ, V(r), tension F(r, ṙ, t), whichever are given, with r = max(|x_b − x_a|, 1e-9 m), or along an axis r = (x_b − x_a)·e",
+    equations = "V = ½ k (r − L₀)², tension c ṙ, V(r), tension F(r, ṙ, t), whichever are given, with r = |x_b − x_a|, or along an axis r = (x_b − x_a)·e",
     example = r#"
 [point.bob]
 mass = 1
@@ -102,15 +102,15 @@ impl Element for Spring {
         let (d, from_a_to_b) = (difference(&a, &b), from_to(&a, &b));
         let start = axis.as_ref().map_or(norm(d), |axis| dot(d, axis.start));
         let rest = rest_length.unwrap_or(Follows::Known(start));
-        let shortest = if axis.is_some() { start } else { start.max(SHORTEST) };
         let length: Quantity = match &axis {
             None => assembly.builder.square(&from_a_to_b).into(),
             Some(axis) => assembly.builder.dot(&from_a_to_b, &axis.terms).into(),
         };
+        let shortest = assembly.shortest(start, rest.known().unwrap_or(0.0));
         let acting = Acting { quantity: length, is_along: axis.is_some(), start, shortest };
         acting.build(assembly, entry, Parts { stiffness, damping, energy, force }, rest, readings)?;
         let lengths = if axis.is_some() { Lengths::Along } else { Lengths::Distances { factors: vec![1.0], fixed: 0.0, drum: None } };
-        assembly.show(Shows::Tension { quantities: vec![length], lengths });
+        assembly.show(Shows::Tension { quantities: vec![length], lengths, shortest });
         assembly.draw_along(entry, drawn, &a, &b, axis.map(|axis| axis.drawn));
         Ok(())
     }
@@ -122,8 +122,9 @@ pub(super) struct Acting {
     pub quantity: Quantity,
     /// Whether it is a coordinate.
     pub is_along: bool,
-    /// The length or the coordinate at the start, and the length at which formulas are tried, m or rad.
+    /// The length or the coordinate at the start, m or rad.
     pub start: f64,
+    /// Distances below this count as this, m.
     pub shortest: f64,
 }
 
@@ -133,14 +134,14 @@ impl Acting {
         let (parts, followed) = parts.split(&rest);
         // Where the rest length follows something, no law has it.
         let known = rest.known().unwrap_or(self.start);
-        parts.check(entry, self.shortest, known)?;
-        for law in parts.laws(known, self.is_along) {
+        parts.check(entry, if self.is_along { self.start } else { self.start.max(self.shortest) }, known)?;
+        for law in parts.laws(known, self.is_along, self.shortest) {
             assembly.builder.law(entry.name, &[self.quantity], law);
         }
         if let Some(Parts { stiffness, damping, force, .. }) = followed {
             let own = readings.own(self.quantity);
             let reading = readings.reading.clone();
-            let load = SpringLoad { own, is_square: !self.is_along, stiffness, rest, damping, force, readings };
+            let load = SpringLoad { own, is_square: !self.is_along, shortest: self.shortest, stiffness, rest, damping, force, readings };
             assembly.builder.load_reading(entry.name, reading, Arc::new(Differentiated(load)));
         }
         Ok(())
@@ -186,18 +187,18 @@ impl Parts {
         }
     }
 
-    fn laws(self, rest: f64, is_along: bool) -> Vec<Arc<dyn Law>> {
+    fn laws(self, rest: f64, is_along: bool, shortest: f64) -> Vec<Arc<dyn Law>> {
         let known = |number: Option<Follows>| number.and_then(|number| number.known());
         let (stiffness, damping) = (known(self.stiffness), known(self.damping));
-        let energy = self.energy.map(|formula| Energy { formula, rest });
-        let force = self.force.map(|formula| Force { formula, rest });
+        let energy = self.energy.map(|formula| Energy { formula, rest, shortest });
+        let force = self.force.map(|formula| Force { formula, rest, shortest });
         let laws = if is_along {
             let linear = stiffness.map(|stiffness| law(coordinate_laws::Spring { stiffness, rest }));
             let damper = damping.map(|damping| law(Resisting(Viscous(damping))));
             [linear, damper, energy.map(|energy| law(Along(energy))), force.map(|force| law(Along(force)))]
         } else {
-            let linear = stiffness.map(|stiffness| law(LinearSpring { stiffness, rest_length: rest }));
-            [linear, damping.map(|damping| law(Damper { damping })), energy.map(law), force.map(law)]
+            let linear = stiffness.map(|stiffness| law(LinearSpring { stiffness, rest_length: rest, shortest }));
+            [linear, damping.map(|damping| law(Damper { damping, shortest })), energy.map(law), force.map(law)]
         };
         laws.into_iter().flatten().collect()
     }
