@@ -116,6 +116,22 @@ fn motions_that_jump_and_long_steps_are_noted() {
     assert_eq!(driven("step(t - 1)", "1", "step = 3"), [""; 0], "the end is not known");
 }
 
+/// A table that ends with a slope, and the run with it: its last row has the rate of the slope.
+#[test]
+fn what_jumps_where_the_run_ends_is_not_noted() {
+    let notes = |end: f64| {
+        model(&format!(
+            "plane = \"xy\"\n[table.way]\npoints = [[0, 0], [1, 0.5], [2, 0.7]]\ninterpolation = \"cubic\"\n\
+             [body.a]\nmass = 1\ninertia = 1\nposition = [0, 0]\n\
+             [joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"a\"]\naxis = [1, 0]\n\
+             [drive.push]\ntype = \"displacement\"\njoint = \"rail\"\nprofile = \"way(t)\"\n[simulation]\nend = {end}\nstep = 0.1\n"
+        ))
+        .notes
+    };
+    assert_eq!(notes(2.0), [""; 0]);
+    assert_eq!(notes(2.1), ["drive.push.profile: its rate jumps by -0.125 per s at 2 s, which is a blow: round it off"]);
+}
+
 /// A spline through points at uneven distances, of a table as of a drive's own profile; other interpolations stay within what is written.
 #[test]
 fn splines_that_swing_are_noted() {

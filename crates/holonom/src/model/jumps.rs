@@ -64,7 +64,8 @@ impl Way {
             // Across the zero, which is some roundings beside the place. What rises steeply there, as a root does, has risen by more a little farther on.
             let beside = BESIDE * t.abs().max(end);
             let before = (t - beside).max(0.0);
-            let by = across(before, t + beside);
+            // What comes behind the end the run does not see.
+            let by = across(before, (t + beside).min(end));
             let is_jump = by.abs() > ROUNDED * largest && by.abs() > JUMPED * across(before, t + STEEP * t.abs().max(end)).abs();
             is_jump.then_some((t, by))
         };
@@ -100,6 +101,7 @@ mod tests {
             ("min(t, 0.3)", 2.0, Some("its rate jumps by -1 per s at 0.3 s")),
             ("abs(t - 0.5) + step(t - 1.5)", 2.0, Some("it jumps by 1 at 1.5 s")),
             ("0.5*step(t - 1)", 0.9, None),
+            ("0.5*step(t - 1)", 1.0, Some("it jumps by 0.5 at 1 s")),
             ("step(t + 0.75 - 1)", 0.5, Some("it jumps by 1 at 0.25 s")),
             ("floor(2*t + 0.5)", 0.5, Some("it jumps by 1 at 0.25 s")),
             ("max(0, t + 0.75 - 1)", 0.5, Some("its rate jumps by 1 per s at 0.25 s")),
