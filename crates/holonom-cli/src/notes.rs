@@ -22,17 +22,17 @@ const FEW_ROWS: usize = 200;
 pub fn shared_forces(model: &Model, simulation: &Simulation) -> Option<String> {
     simulation.reactions()?;
     let free = analysis::undetermined_of(simulation, FEW_ROWS).filter(|free| free.count() > 0)?;
-    let open = open_columns(&free, model.channels.told(), &simulation.reacting_positions(), model);
+    let open = open_columns(&free, model.channels.told(), model);
     let named = (!open.is_empty()).then(|| listed(&open))?;
     Some(format!(
         "redundant constraints leave open how they share forces: of {named} one way of many is shown (a bushing in place of a joint decides it)"
     ))
 }
 
-/// Components of forces and moments of joints, efforts of drives and couplers, and tensions of rods, that are left undetermined, `world` being where the
-/// nodes are: `hinge.fy .tx`, `motor.effort`.
-pub fn open_columns(free: &Undetermined<'_>, channels: &Channels, world: &[f64], model: &Model) -> Vec<String> {
-    let mut open = Vec::new();
+/// Components of forces and moments of joints, efforts of drives and couplers, and tensions of rods, that are left undetermined:
+/// `hinge.fy .tx`, `motor.effort`.
+pub fn open_columns(free: &Undetermined<'_>, channels: &Channels, model: &Model) -> Vec<String> {
+    let (mut open, world) = (Vec::new(), &*free.positions());
     for (k, joint) in channels.joints.iter().enumerate() {
         let about = free.system().of_world(joint.place(world, model.dimension));
         let unique = free.are_unique(&joint.rows, &joint.nodes, about, |lambda| channels.borne(k, lambda, world));

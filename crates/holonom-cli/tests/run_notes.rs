@@ -256,6 +256,33 @@ fn long_steps_are_told_of_what_goes_round() {
     assert!(!notes("").contains("comes on by"), "{}", notes(""));
 }
 
+/// A trammel: its ends slide on the floor and along the wall, and its middle goes round the corner, which says the same. The forces of a penalty, and others where
+/// positions drift, are one way of many as well, though beside the rows no row follows from the others.
+#[test]
+fn forces_that_redundant_rows_share_are_told_off_the_rows_as_on_them() {
+    let folder = folder();
+    let trammel = "plane = \"xy\"\n[body.rod]\nmass = 2\ninertia = 0.2\nposition = [0.3, 0.4]\n\
+                   points = { a = [0.3, -0.4], b = [-0.3, 0.4] }\n\
+                   [constraint.floor]\ntype = \"point-on-line\"\npoint = \"rod.a\"\ndirection = [1, 0]\n\
+                   [constraint.wall]\ntype = \"point-on-line\"\npoint = \"rod.b\"\ndirection = [0, 1]\n\
+                   [constraint.crank]\ntype = \"distance\"\nbetween = [[0, 0], \"rod\"]\n\
+                   [force.push]\ntype = \"force\"\nbody = \"rod\"\nat = \"rod.a\"\nforce = [30, 0]\n[simulation]\nend = 0.2\nstep = 0.001\n";
+    let notes = |words: &str| text(&holonom(&folder, &format!("run m.toml --no-report --force --out a {words}")).stderr);
+    fs::write(folder.path().join("m.toml"), trammel).unwrap();
+    let shared = "note: redundant constraints leave open how they share forces: of crank.force one way of many is shown";
+    for method in ["conserving-ggl", "penalty/conserving", "penalty/radau", "penalty-stabilized/trapezoidal", "lagrange-1/trapezoidal"] {
+        let said = notes(&format!("--method {method}"));
+        assert!(said.contains(shared), "{method}: {said}");
+    }
+    // With nothing redundant nothing is shared.
+    fs::write(
+        folder.path().join("m.toml"),
+        trammel.replace("[constraint.wall]\ntype = \"point-on-line\"\npoint = \"rod.b\"\ndirection = [0, 1]\n", ""),
+    )
+    .unwrap();
+    assert!(!notes("--method penalty/conserving").contains("share forces"));
+}
+
 #[test]
 fn a_row_at_a_dead_centre_has_no_forces_and_says_so() {
     let folder = folder();

@@ -168,13 +168,13 @@ impl Held {
         let mut simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
         let conflict = simulation.conflict();
         let rank = rank_of(&mut simulation);
-        let (system, x) = (&model.system, &simulation.state().x);
+        let x = &simulation.state().x;
         let size = rank.size(&model.system);
         let (mut involved, mut not_unique) = (Vec::new(), Vec::new());
         let free = if rank.redundant.is_empty() { None } else { undetermined(&model.system, x, 0.0) };
         if let Some(free) = free {
             involved = free.rows().into_iter().map(|row| model.system.row_names()[row].clone()).collect();
-            not_unique = open_columns(&free, &model.channels, &system.in_world(x), model);
+            not_unique = open_columns(&free, &model.channels, model);
         }
         let mut notes = notes(model);
         notes.extend(rivals(&mut simulation, &rank).filter(|_| conflict.is_none()));

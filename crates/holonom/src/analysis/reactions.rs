@@ -1,5 +1,6 @@
 //! Which forces of joints redundant rows leave undetermined.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use super::constraint_jacobian;
@@ -73,20 +74,25 @@ fn gram(rows: usize, n: usize, values: &[f64]) -> Vec<f64> {
     gram
 }
 
-/// Finds what redundant rows leave undetermined of the forces that a simulation finds at its present state. `None` as above, and for
-/// more than `most` rows.
+/// Finds what redundant rows leave undetermined of the forces that a simulation finds at its present state, with its positions on the rows: beside
+/// them redundant rows are independent. `None` as above, and for more than `most` rows.
 pub fn undetermined_of(simulation: &Simulation, most: usize) -> Option<Undetermined<'_>> {
     let (system, _) = simulation.reacting();
     if system.constraints() > most {
         return None;
     }
-    undetermined(system, simulation.reacting_x(), simulation.state().t)
+    undetermined(system, &simulation.reacting_x_on_rows(), simulation.state().t)
 }
 
 impl<'s> Undetermined<'s> {
     /// The system that they are found in.
     pub fn system(&self) -> &'s System {
         self.system
+    }
+
+    /// Positions of all nodes in the world (D × nodes), m, at which they are found.
+    pub fn positions(&self) -> Cow<'_, [f64]> {
+        self.system.in_world(&self.x)
     }
 
     /// Number of independent combinations: the redundant rows.

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
+use super::start::on_rows;
 use super::{Method, Simulation, State};
 use crate::formulation::{Newton, Sure, Twists, Workspace};
 use crate::system::{Evaluation, NodeId, Quantity, Sense, System, Term, place_of, rate_of};
@@ -205,6 +206,12 @@ impl Simulation {
     /// Positions of its nodes from its origin (D × nodes), m.
     pub(crate) fn reacting_x(&self) -> &[f64] {
         self.apart.as_ref().map_or(&self.state.x, |elsewhere| &elsewhere.work.end.x)
+    }
+
+    /// Those on its rows that are nearest to them, m: methods with a penalty, and others that do not hold positions, leave the rows.
+    pub(crate) fn reacting_x_on_rows(&self) -> Vec<f64> {
+        let (system, at) = self.reacting();
+        on_rows(system, self.reacting_x(), self.state.t, &at.functions.angle)
     }
 
     /// Velocities of its nodes (D × nodes), m/s.

@@ -2,6 +2,7 @@
 
 use super::Method;
 use super::conflict::{Conflict, why};
+use super::method::Choice;
 use crate::formulation::{Failure, Level, Multipliers, Newton, Workspace};
 use crate::linalg::largest;
 use crate::system::System;
@@ -201,6 +202,19 @@ pub(super) fn put(
     match work.scaled_violation() <= MET {
         true => Ok(()),
         false => Err(StartError::Position { rows: worst(system, &work.phi) }),
+    }
+}
+
+/// The positions of all nodes (D × nodes) on the rows that are nearest to `x`, at the time `t` (s), with turns counted from `angles`; `x` where there are
+/// none near it.
+pub(super) fn on_rows(system: &System, x: &[f64], t: f64, angles: &[f64]) -> Vec<f64> {
+    let settings = Method::resolve(&Choice::default()).expect("the default method goes with everything").settings;
+    let mut work = Workspace::new(system);
+    let mut newton = Newton::new(system, &work.scales, settings);
+    let asked = Asked { t, x, angles: Some([angles, &[]]), ..Asked::of(system, 1.0) };
+    match put(system, &asked, &mut newton, &mut work, &mut Start::default()) {
+        Ok(()) => work.end.x,
+        Err(_) => x.to_vec(),
     }
 }
 
