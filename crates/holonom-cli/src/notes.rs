@@ -182,9 +182,11 @@ fn brief_forces(simulation: &Simulation) -> Option<String> {
 /// That what moves goes to and fro, or round, so fast that a step passes much of a period of it.
 pub fn hasty(simulation: &Simulation) -> Option<String> {
     simulation.is_hasty().then(|| {
-        "much of the kinetic energy is in what vibrates or turns by a radian or more in each step: a method of order 2 has it too slow where nothing drives it, and \
-         recorded rows miss its largest values (a shorter step or an accuracy sees it; a vibration that does not matter is damped by radau and generalized-alpha)"
-            .into()
+        format!(
+            "much of the kinetic energy is in what vibrates or turns by a radian or more in each step: a method of order {} has it too slow where nothing drives it, and \
+             recorded rows miss its largest values (a shorter step or an accuracy sees it; a vibration that does not matter is damped by radau and generalized-alpha)",
+            simulation.method().convergence()[0]
+        )
     })
 }
 

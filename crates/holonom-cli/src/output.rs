@@ -182,7 +182,7 @@ pub(crate) fn simulate_kept(
     }
     let unknown = unknown_measures(model, watched.recorder.recording());
     let without = rows_without_forces(model, watched.recorder.recording());
-    let turns = long_turns(model, &simulation, watched.recorder.recording());
+    let turns = long_turns(model, &simulation, watched.recorder.recording(), summary.size.dof > 0);
     let turned = turned_bushings(model, watched.recorder.recording());
     // What spins is told by its name.
     let hasty = if turns.is_none() { hasty(&simulation) } else { None };

@@ -62,8 +62,9 @@ impl Way {
 }
 
 /// That steps are long for what spins: schemes of order 2 turn it by a twelfth of the cube of the angle too little in each (methods §8.1), and RATTLE
-/// by a sixth of that too much, so that angles come on by less or more than their rates say.
-pub fn long_turns(model: &Model, simulation: &Simulation, recording: &Recording) -> Option<String> {
+/// by a sixth of that too much, so that angles come on by less or more than their rates say. What drives lead has its angle, and its rate is off; so is that of
+/// all that turns with positions of a higher order than velocities. Whether something is free to move is for the rank to say.
+pub fn long_turns(model: &Model, simulation: &Simulation, recording: &Recording, is_free: bool) -> Option<String> {
     let (method, step) = (simulation.method(), simulation.nominal_step());
     if method.accuracy.is_some() || method.order() > 2 {
         return None;
@@ -90,20 +91,28 @@ pub fn long_turns(model: &Model, simulation: &Simulation, recording: &Recording)
         .map(|found| (found, "rate"))
         .or_else(|| Some((largest(&mut lags_round(model, simulation, recording).into_iter())?, "velocity")))
     else {
-        return misled(model, step, recording);
+        return misled(model, simulation, recording);
     };
-    let [less, lags] = if lag > 0.0 { ["less", "lags"] } else { ["more", "leads"] };
+    let [less, lags, high] = if lag > 0.0 { ["less", "lags", "high"] } else { ["more", "leads", "low"] };
+    let [of_positions, of_velocities, _] = method.convergence();
+    let why = if of_positions > of_velocities || !is_free {
+        format!("with velocities of order {of_velocities} its {rate} is too {high}")
+    } else if model.system.is_driven() {
+        format!("with a method of order {of_positions} what is free {lags}, and what drives lead has too {high} a {rate},")
+    } else {
+        format!("a method of order {of_positions} {lags}")
+    };
     Some(format!(
-        "`{name}` comes on by {:.0} % {less} than its {rate} says: a method of order 2 {lags} where steps are long for what spins (a shorter step, or gauss)",
+        "`{name}` comes on by {:.0} % {less} than its {rate} says: {why} where steps are long for what spins (a shorter step, or gauss)",
         100.0 * lag.abs()
     ))
 }
 
 /// That the rate of a joint on something that spins is not that of its angle: what is driven round keeps its rate, and what it carries along has that of
 /// a lagging rotation, so that the two differ by far more than anything lags.
-fn misled(model: &Model, step: f64, recording: &Recording) -> Option<String> {
+fn misled(model: &Model, simulation: &Simulation, recording: &Recording) -> Option<String> {
     let times = recording.column("t")?;
-    if times.len() < 2 || times.windows(2).any(|t| t[1] - t[0] > 1.5 * step) {
+    if times.len() < 2 || times.windows(2).any(|t| t[1] - t[0] > 1.5 * simulation.nominal_step()) {
         return None;
     }
     let turned = turned_by_bodies(model, recording);
@@ -118,11 +127,12 @@ fn misled(model: &Model, step: f64, recording: &Recording) -> Option<String> {
     let angles = model.system.gauges().iter().filter(|gauge| gauge.ends_with("angle"));
     let (name, parted, way) = angles.filter_map(parts).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
     Some(format!(
-        "`{name}` comes on by {} rad {} than its rate says, {:.0} % of all its way: it is on what spins, and with a method of order 2 and long steps its rate, and \
+        "`{name}` comes on by {} rad {} than its rate says, {:.0} % of all its way: it is on what spins, and with velocities of order {} and long steps its rate, and \
          dampers that read it, are off (a shorter step, or gauss)",
         short(parted.abs()),
         if parted > 0.0 { "less" } else { "more" },
-        100.0 * parted.abs() / way
+        100.0 * parted.abs() / way,
+        simulation.method().convergence()[1]
     ))
 }
 
