@@ -121,11 +121,16 @@ fn lost_energy(simulation: &Simulation, is_free: bool) -> Option<String> {
 /// Parts of a nominal step from which on it is said how many there are.
 const MANY_PARTS: f64 = 10.0;
 
-/// That nominal steps were taken in many parts, as they failed as a whole.
-fn in_parts(simulation: &Simulation) -> Option<String> {
+/// In how many parts nominal steps were taken on average, where they are many.
+pub fn many_parts(simulation: &Simulation) -> Option<f64> {
     let steps = simulation.steps();
     let parts = simulation.audit().work_summary(steps).steps_taken as f64 / steps.max(1) as f64;
-    (simulation.method().accuracy.is_none() && parts >= MANY_PARTS).then(|| {
+    (simulation.method().accuracy.is_none() && parts >= MANY_PARTS).then_some(parts)
+}
+
+/// That nominal steps were taken in many parts, as they failed as a whole.
+fn in_parts(simulation: &Simulation) -> Option<String> {
+    many_parts(simulation).map(|parts| {
         format!(
             "nominal steps failed as a whole and were taken in {parts:.0} parts on average, as if the step were {} s (conserving-ggl and radau take longer \
              steps than most where redundant or singular constraints are why)",

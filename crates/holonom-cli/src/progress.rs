@@ -1,4 +1,4 @@
-//! Progress on a terminal: time left and energy drift. Silent when standard error is not a terminal.
+//! Progress on a terminal: time left, energy drift, and whether steps fail and are taken in many parts. Silent when standard error is not a terminal.
 
 use std::io::IsTerminal;
 use std::sync::Arc;
@@ -11,6 +11,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::checkpoint::Point;
 use crate::keeper::Keeper;
+use crate::notes::many_parts;
 
 /// Time between two changes of what the terminal shows.
 const SHOWN: Duration = Duration::from_millis(100);
@@ -55,7 +56,9 @@ impl<'a, 'f> Watched<'a, 'f> {
     fn show(&self, simulation: &Simulation) {
         self.bar.set_position((1000.0 * simulation.state().t / self.end) as u64);
         let drift = simulation.audit().energy_summary().max_drift;
-        self.bar.set_message(format!("t = {:.3} s, energy drift {drift:.1e} J", simulation.state().t));
+        // Why it takes as long as it does.
+        let parts = many_parts(simulation).map_or(String::new(), |parts| format!(", each step in {parts:.0} parts"));
+        self.bar.set_message(format!("t = {:.3} s, energy drift {drift:.1e} J{parts}", simulation.state().t));
     }
 }
 
