@@ -7,6 +7,7 @@ use crate::outcome::{Outcome, completed, ended, outcomes};
 use crate::{Run, format};
 use serde_json::Value;
 use std::io;
+use std::ops::Range;
 
 /// One column of the table of the solver.
 struct Figure {
@@ -61,14 +62,29 @@ pub fn write(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
 /// Rows of answers that are seen at once; more would push the picture far down.
 const ROWS: usize = 15;
 
+/// Runs for which a page is wide enough to have a column for each.
+const ABREAST: usize = 8;
+
+/// A row of a table with a column for each run: its heading, and its cells.
+struct Row {
+    heading: String,
+    cells: Vec<String>,
+}
+
+/// Runs that stand side by side: all of them, or about as many in each of several tables.
+pub fn abreast(runs: usize) -> impl Iterator<Item = Range<usize>> {
+    let each = runs.div_ceil(runs.div_ceil(ABREAST).max(1)).max(1);
+    (0..runs).step_by(each).map(move |first| first..(first + each).min(runs))
+}
+
 /// How each run ended, where one did not come to the end asked for, then a row for each answer, with its difference to that of the first run.
 fn answers_of(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
     let summaries: Vec<&Value> = runs.iter().map(|run| run.summary).collect();
     let outcomes = outcomes(runs);
     let mut rows = Vec::new();
     if outcomes.iter().any(|outcome| *outcome != Outcome::Sound) || summaries.iter().any(|summary| ended(summary).is_some()) {
-        let cells: String = runs.iter().zip(&outcomes).map(|(run, outcome)| status_cell(run.summary, *outcome)).collect();
-        rows.push(format!(r#"<tr><th scope="row">status</th>{cells}</tr>"#));
+        let cells = runs.iter().zip(&outcomes).map(|(run, outcome)| status_cell(run.summary, *outcome)).collect();
+        rows.push(Row { heading: "status".into(), cells });
     }
     rows.extend(columns_asked(runs));
     rows.extend(answers(&summaries).iter().map(answer_row));
@@ -85,25 +101,31 @@ fn answers_of(runs: &[Run], out: &mut dyn io::Write) -> io::Result<()> {
     Ok(())
 }
 
-fn answer_table(runs: &[Run], rows: &[String], out: &mut dyn io::Write) -> io::Result<()> {
-    let head = |(index, run): (usize, &Run)| format!(r#"<th scope="col" class="number">{}</th>"#, label(run, index));
-    let heads: String = runs.iter().enumerate().map(head).collect();
-    writeln!(out, r#"<div class="scroll"><table class="answers"><thead><tr><th></th>{heads}</tr></thead><tbody>"#)?;
-    writeln!(out, "{}</tbody></table></div>", rows.join("\n"))
+fn answer_table(runs: &[Run], rows: &[Row], out: &mut dyn io::Write) -> io::Result<()> {
+    for some in abreast(runs.len()) {
+        let head = |index: usize| format!(r#"<th scope="col" class="number">{}</th>"#, label(&runs[index], index));
+        let heads: String = some.clone().map(head).collect();
+        writeln!(out, r#"<div class="scroll"><table class="answers"><thead><tr><th></th>{heads}</tr></thead><tbody>"#)?;
+        for Row { heading, cells } in rows {
+            writeln!(out, r#"<tr><th scope="row">{heading}</th>{}</tr>"#, cells[some.clone()].concat())?;
+        }
+        writeln!(out, "</tbody></table></div>")?;
+    }
+    Ok(())
 }
 
-fn answer_row(answer: &Answer) -> String {
+fn answer_row(answer: &Answer) -> Row {
     let cell = |(run, value): (usize, &Option<f64>)| {
         let value = value.map_or("–".to_owned(), |value| format::answer_beside(value, answer.size));
         let difference = answer.difference(run).map_or(String::new(), |text| format!(" <small>{}</small>", text.replace('-', "\u{2212}")));
         format!(r#"<td class="number">{value}{difference}</td>"#)
     };
-    let cells: String = answer.values.iter().enumerate().map(cell).collect();
-    format!(r#"<tr><th scope="row">{} {}{}</th>{cells}</tr>"#, html(&answer.name), answer.what, in_unit(&answer.unit))
+    let heading = format!("{} {}{}", html(&answer.name), answer.what, in_unit(&answer.unit));
+    Row { heading, cells: answer.values.iter().enumerate().map(cell).collect() }
 }
 
 /// How far the columns that were asked for are from those of the first run: the largest difference with its time.
-fn columns_asked(runs: &[Run]) -> Vec<String> {
+fn columns_asked(runs: &[Run]) -> Vec<Row> {
     let differences = |run: &Run| run.summary.get("differences").and_then(Value::as_object).cloned().unwrap_or_default();
     let mut names: Vec<String> = Vec::new();
     for name in runs.iter().flat_map(|run| differences(run).into_iter().map(|(name, _)| name)) {
@@ -121,8 +143,7 @@ fn columns_asked(runs: &[Run]) -> Vec<String> {
                 _ => r#"<td class="number">–</td>"#.to_owned(),
             }
         };
-        let cells: String = runs.iter().map(cell).collect();
-        format!(r#"<tr><th scope="row">{} largest difference{}</th>{cells}</tr>"#, html(name), in_unit(&unit))
+        Row { heading: format!("{} largest difference{}", html(name), in_unit(&unit)), cells: runs.iter().map(cell).collect() }
     };
     names.iter().map(row).collect()
 }

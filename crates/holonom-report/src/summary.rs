@@ -1,5 +1,6 @@
 //! `summary.json` as a table: one line per key, and one column per run where the runs differ.
 
+use crate::comparison::abreast;
 use crate::escape::html;
 use crate::{Run, format};
 use serde_json::Value;
@@ -71,13 +72,16 @@ fn halves(columns: &[Vec<(String, &Value)>], keys: &[&str], out: &mut dyn io::Wr
 
 /// One column for each run: short numbers, and units once in a line.
 fn side_by_side(runs: &[Run], columns: &[Vec<(String, &Value)>], keys: &[&str], out: &mut dyn io::Write) -> io::Result<()> {
-    let heads: String = runs.iter().map(|run| format!("<th scope=\"col\">{}</th>", html(run.label))).collect();
-    writeln!(out, r#"<div class="scroll"><table class="summary compact"><thead><tr><th></th>{heads}</tr></thead><tbody>"#)?;
-    for key in keys {
-        let cells: String = columns.iter().map(|column| short_cell(column, key)).collect();
-        writeln!(out, r#"<tr><th scope="row">{} <small>{}</small></th>{cells}</tr>"#, html(key), unit(key))?;
+    for some in abreast(runs.len()) {
+        let heads: String = runs[some.clone()].iter().map(|run| format!("<th scope=\"col\">{}</th>", html(run.label))).collect();
+        writeln!(out, r#"<div class="scroll"><table class="summary compact"><thead><tr><th></th>{heads}</tr></thead><tbody>"#)?;
+        for key in keys {
+            let cells: String = columns[some.clone()].iter().map(|column| short_cell(column, key)).collect();
+            writeln!(out, r#"<tr><th scope="row">{} <small>{}</small></th>{cells}</tr>"#, html(key), unit(key))?;
+        }
+        writeln!(out, "</tbody></table></div>")?;
     }
-    writeln!(out, "</tbody></table></div>")
+    Ok(())
 }
 
 fn is_shared(columns: &[Vec<(String, &Value)>], key: &str) -> bool {

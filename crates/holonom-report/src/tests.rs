@@ -216,6 +216,32 @@ fn runs_are_compared_in_a_table_with_the_best_marked() {
     assert!(table.contains("ggl, index\u{a0}2") && !table.contains("step 0.01 s"));
 }
 
+/// Columns of more than eight runs are wider than a page: their tables stand one above the other.
+#[test]
+fn many_runs_are_compared_without_scrolling() {
+    for (count, parts) in [(8, vec![8]), (9, vec![5, 4]), (12, vec![6, 6]), (20, vec![7, 7, 6])] {
+        let names: Vec<String> = (0..count).map(|k| format!("run {k}")).collect();
+        let of = |k: usize| {
+            let mut summary = summary("completed", 0.1 + k as f64, 1.0);
+            summary["peaks"] = json!({ "joints": [{"name": "hinge", "unit": "N", "value": 50.0 + k as f64, "at": 1.0}] });
+            summary
+        };
+        let runs: Vec<(&str, f64, Value)> = names.iter().enumerate().map(|(k, name)| (name.as_str(), 9.0, of(k))).collect();
+        let page = compared(&runs);
+        for table in ["answers", "summary compact"] {
+            let begin = format!(r#"<table class="{table}">"#);
+            let tables = page.split(&begin).skip(1).map(|rest| rest.split_once("</table>").unwrap().0);
+            let columns: Vec<usize> = tables.clone().map(|table| table.matches(r#"<th scope="col""#).count()).collect();
+            assert_eq!(columns, parts, "{table} of {count} runs");
+            for (table, columns) in tables.zip(&parts) {
+                let rows = table.split_once("<tbody>").unwrap().1.split("<tr>").skip(1);
+                assert!(rows.clone().count() > 0 && rows.clone().all(|row| row.matches("<td").count() == *columns), "{table}");
+            }
+        }
+        assert!(names.iter().all(|name| page.matches(&format!("{name}</th>")).count() >= 2), "{count} runs");
+    }
+}
+
 #[test]
 fn answers_come_before_the_health_of_the_solver() {
     let run = |lift: f64, drift: f64| {
