@@ -8,6 +8,7 @@ use holonom::record::{Column, Recording, Scene};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, HashSet};
+use std::ops::Range;
 
 /// Columns that go into the page as they are, and how they are thinned.
 const COLUMNS: [(&str, Keep); 11] = [
@@ -59,6 +60,8 @@ struct ChannelData<'a> {
     is_measure: bool,
     /// What is added to `values`: 0, or the middle of a column that varies little around it, which single precision would turn into stairs.
     middle: f64,
+    /// What `values` are multiples of: 1, or the largest of a column whose numbers single precision does not have.
+    scale: f64,
     /// Base64 of 32-bit floats.
     values: String,
     /// Least value, its time, largest value, its time, of all recorded rows; none where no value is finite.
@@ -67,6 +70,9 @@ struct ChannelData<'a> {
 
 /// A column whose middle is so many times as large as its variation counts from there.
 const FLAT: f64 = 100.0;
+
+/// Sizes of columns for which single precision has all numbers, down to 1e-8 of the largest.
+const SINGLE: Range<f64> = 1e-30..1e38;
 
 /// Numbers that a page holds per run for these; what comes last is left out where there are more.
 const MAX_NUMBERS: usize = 600_000;
@@ -179,13 +185,16 @@ fn channels<'a>(run: &Run<'a>, thinning: &Thinning) -> Vec<ChannelData<'a>> {
         let (centre, span) = extremes.map_or((0.0, 0.0), |[least, _, most, _]| (0.5 * least + 0.5 * most, most - least));
         let middle = if centre.abs() > FLAT * span { centre } else { 0.0 };
         let values = if is_measured(run.summary) { bridged(times, &column.values) } else { column.values.clone() };
-        let values: Vec<f32> = thinning.apply(&values, Keep::Range).into_iter().map(|value| (value - middle) as f32).collect();
+        let size = extremes.map_or(0.0, |[least, _, most, _]| (least - middle).abs().max((most - middle).abs()));
+        let scale = if size == 0.0 || SINGLE.contains(&size) { 1.0 } else { size };
+        let values: Vec<f32> = thinning.apply(&values, Keep::Range).into_iter().map(|value| ((value - middle) / scale) as f32).collect();
         ChannelData {
             name: &heading.name,
             unit: &heading.unit,
             meaning: &heading.meaning,
             is_measure: is_measure(&column),
             middle,
+            scale,
             values: base64::singles(&values),
             extremes,
         }

@@ -302,6 +302,26 @@ fn numbers_out_of_all_bounds() {
     loads(&open("blown-up", &[sample::blown_up()]), 3);
 }
 
+/// An energy of 1, and efforts up to 2, in units in which they are tiny or huge, also where single precision has no such numbers. Tiny efforts count as
+/// rounding.
+#[test]
+fn axes_have_ticks_in_any_unit() {
+    let efforts = ["0.5", "1.0", "1.5", "2.0"];
+    for (unit, power, efforts) in [
+        (1e-60, "·10⁻⁶⁰", &[][..]),
+        (1e-25, "·10⁻²⁵", &[]),
+        (1e35, "·10³⁵", &efforts),
+        (1e45, "·10⁴⁵", &efforts),
+        (1e300, "·10³⁰⁰", &efforts),
+    ] {
+        let seen = open("units", &[sample::motor_of(unit)]);
+        loads(&seen, 6);
+        let written = seen["written"].as_array().unwrap().iter();
+        let ticks: Vec<&str> = written.filter_map(|text| text.as_str()?.strip_suffix(power)).collect();
+        assert_eq!(ticks, [efforts, &["0.950", "0.975", "1.000", "1.025", "1.050"]].concat(), "{unit:e}: {}", seen["written"]);
+    }
+}
+
 #[test]
 fn nothing_to_show() {
     let seen = open("empty", &[sample::empty()]);

@@ -246,6 +246,7 @@
   } catch (fault) {
     faults.push(String(fault.stack ?? fault));
   }
+  seen.written = [...written];
   seen.faults = faults;
   const node = document.createElement("script");
   node.type = "application/json";

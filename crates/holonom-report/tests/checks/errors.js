@@ -11,5 +11,13 @@ for (const level of ["error", "warn"]) {
   };
 }
 
+// What is written in plots is in no element.
+window.written = new Set();
+const { fillText } = CanvasRenderingContext2D.prototype;
+CanvasRenderingContext2D.prototype.fillText = function (text, ...place) {
+  written.add(text);
+  fillText.call(this, text, ...place);
+};
+
 // A browser without a screen draws hardly any frame while its virtual time runs; timers do run.
 window.requestAnimationFrame = (act) => setTimeout(() => act(performance.now()), 16);

@@ -56,6 +56,11 @@ pub fn measured(run: &Sample, column: &str, from: f64) -> Sample {
 
 /// The slider with a motor, of which effort, power and angle are recorded, and a measure without a unit; it completes.
 pub fn motor() -> Sample {
+    motor_of(1.0)
+}
+
+/// The same with so many times the effort and the energy.
+pub fn motor_of(unit: f64) -> Sample {
     let mut sample = slider();
     let heading =
         |name: &str, unit: &'static str, meaning: &str| Heading { name: name.to_owned(), unit: unit.into(), meaning: meaning.to_owned() };
@@ -70,7 +75,8 @@ pub fn motor() -> Sample {
     for row in 0..sample.recording.rows() {
         let mut values: Vec<f64> = sample.recording.columns().iter().map(|column| column.values[row]).collect();
         let t = values[0];
-        values.extend([2.0 * t.sin(), 2.0 * t.sin() * 0.3, 0.3 * t, 0.5 * t * (3.0 - t)]);
+        values[1] *= unit;
+        values.extend([unit * 2.0 * t.sin(), 2.0 * t.sin() * 0.3, 0.3 * t, 0.5 * t * (3.0 - t)]);
         recording.push(&values);
     }
     sample.recording = recording;

@@ -4,6 +4,7 @@ import type uPlot from "uplot";
 import type { Clock } from "./clock";
 import { element } from "./dom";
 import type { Channel, Run } from "./payload";
+import { energyMoved } from "./plots/bounds";
 import type { Chart } from "./plots/charts";
 import { Extremes } from "./plots/extremes";
 import { buildPhasePlot } from "./plots/phase";
@@ -29,7 +30,7 @@ const MOST_MEASURES = 12;
 const MOST_COMPARED = 4;
 /** Units of what is selected: what acts comes before motion. */
 const ORDER = ["N", "N·m", "W", "rad", "m", "rad/s", "m/s", "rad/s²", "m/s²"];
-/** Less is rounding of what is zero, and drawn as zero: of the largest channel with the same unit, and of angles. */
+/** Less is rounding of what is zero, and drawn as zero: of the largest channel with the same unit, and of angles; and of 1, or of the energy that moves where that is less. */
 const ROUNDING = 1e-12;
 const LEAST_SPAN = 1e-15;
 /** Measures share a plot where none is so many times as large as another: the small one would be a flat line. */
@@ -263,7 +264,7 @@ function size({ extremes }: Channel): number {
 function leastSpan(runs: Run[], unit: string): number {
   const alike = runs.flatMap((run) => [...run.channelOf.values()].filter((channel) => channel.unit === unit));
   const largest = alike.map(size).filter(Number.isFinite).reduce((most, one) => Math.max(most, one), unit === "rad" ? 1 : 0);
-  return Math.max(LEAST_SPAN, ROUNDING * largest);
+  return Math.max(LEAST_SPAN * Math.min(energyMoved(runs) || 1, 1), ROUNDING * largest);
 }
 
 /** Measures of one unit and of like size share a plot. */

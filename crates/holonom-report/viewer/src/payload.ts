@@ -118,7 +118,7 @@ interface RawRun {
   points: Record<string, string>;
   bodies: Record<string, string>;
   events: [string, number][];
-  channels: (Omit<Channel, "values"> & { values: string; middle: number })[];
+  channels: (Omit<Channel, "values"> & { values: string; middle: number; scale: number })[];
 }
 
 /** What the page holds. */
@@ -155,8 +155,8 @@ function decodeRuns(runs: RawRun[], origin: Vec3): Run[] {
     const columns = decodeAll(raw.columns, (bytes) => new Float64Array(bytes));
     const points = decodeAll(raw.points, (bytes) => new Float32Array(bytes));
     const bodies = decodeAll(raw.bodies, (bytes) => new Float32Array(bytes));
-    const channels = raw.channels.map(({ middle, ...channel }) => {
-      const values = Float64Array.from(new Float32Array(bytesOf(channel.values)), (value) => middle + value);
+    const channels = raw.channels.map(({ middle, scale, ...channel }) => {
+      const values = Float64Array.from(new Float32Array(bytesOf(channel.values)), (value) => middle + scale * value);
       return { ...channel, values };
     });
     const channelOf = new Map(channels.map((channel) => [channel.name, channel]));

@@ -10,7 +10,7 @@ import { Readout } from "./comparison";
 import { FONT, HEIGHT, LABEL_WIDTH, onClick, UNIT_WIDTH } from "./plot";
 import { straight } from "./path";
 import { pictureButton } from "./picture";
-import { linearAxis, linearLabels } from "./scales";
+import { linearAxis, linearTicks } from "./scales";
 import { rowNear } from "./values";
 
 export function buildPhasePlot(container: HTMLElement, chart: Chart, clock: Clock, visibility: Visibility): uPlot {
@@ -90,8 +90,8 @@ function phaseOptions(chart: Chart, width: number): uPlot.Options {
     cursor: { x: false, y: false, points: { show: false }, dataIdx: () => null as unknown as number },
     scales: { x: { time: false, range }, y: { range } },
     axes: [
-      { ...axis, label: withUnit(chart.over!.column, chart.over!.unit), labelSize: 16, labelGap: 0, size: 26, values: linearLabels },
-      { ...axis, label: chart.unit || " ", labelSize: UNIT_WIDTH, labelGap: 0, size: LABEL_WIDTH, space: 32, values: linearLabels },
+      { ...axis, label: withUnit(chart.over!.column, chart.over!.unit), labelSize: 16, labelGap: 0, size: 26, ...linearTicks(50) },
+      { ...axis, label: chart.unit || " ", labelSize: UNIT_WIDTH, labelGap: 0, size: LABEL_WIDTH, ...linearTicks(32) },
     ],
     series: [
       {},

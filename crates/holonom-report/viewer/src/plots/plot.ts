@@ -12,7 +12,7 @@ import { ComparedHeading, Readout } from "./comparison";
 import { Heading } from "./heading";
 import { straight } from "./path";
 import { pictureButton } from "./picture";
-import { linearLabels, logFloor, logLabels, logSplits } from "./scales";
+import { linearLabels, linearTicks, logFloor, logLabels, logSplits } from "./scales";
 
 export const HEIGHT = 215;
 export const FONT = "11px system-ui, sans-serif";
@@ -194,10 +194,10 @@ function plotOptions(chart: Chart, width: number): uPlot.Options {
       y: { distr: log ? 3 : 1, range: axisRange(chart) },
     },
     axes: [
-      { ...axis, label: "t (s)", labelSize: 16, labelGap: 0, size: 26, values: linearLabels },
+      { ...axis, label: "t (s)", labelSize: 16, labelGap: 0, size: 26, ...linearTicks(50) },
       log
         ? { ...axis, ...labelled, splits: logSplits, values: logLabels, filter: (_, splits) => splits }
-        : { ...axis, ...labelled, space: 32, values: linearLabels, ...(chart.scale === "steps" ? { incrs: [1, 2, 5, 10, 20, 50, 100] } : {}) },
+        : { ...axis, ...labelled, ...(chart.scale === "steps" ? { space: 32, values: linearLabels, incrs: [1, 2, 5, 10, 20, 50, 100] } : linearTicks(32)) },
     ],
     series: [
       {},

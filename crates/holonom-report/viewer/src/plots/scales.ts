@@ -55,6 +55,30 @@ export function logLabels(_: uPlot, splits: number[]): string[] {
   return splits.map((value) => power(exponent(value)));
 }
 
+/** Ticks of a linear axis that are so many px apart at least. uPlot's own are none where they would be less than 1e-16 or more than 1e32 apart. */
+export function linearTicks(space: number): Pick<uPlot.Axis, "space" | "incrs" | "splits" | "values"> {
+  let increment = 1;
+  return {
+    space,
+    // One that it takes for any axis: how much room that has tells how long the axis is.
+    incrs: (_, __, min, max) => [Math.max(5, max - min)],
+    splits: (_, __, min, max, taken, room) => {
+      increment = roundUp((taken / room) * space);
+      const first = Math.ceil(min / increment);
+      // No zero is negative.
+      return Array.from({ length: Math.floor(max / increment) - first + 1 }, (_, k) => (first + k) * increment + 0);
+    },
+    values: (_, splits) => ticks(splits, increment),
+  };
+}
+
+/** The least of 1, 2, 2.5 and 5 times a power of ten that is no less. */
+function roundUp(value: number): number {
+  const power = Math.floor(Math.log10(value));
+  const found = [1, 2, 2.5, 5, 10].map((first) => Number(`${first}e${power}`)).find((increment) => increment >= value);
+  return found ?? Number(`1e${power + 1}`);
+}
+
 export function linearLabels(_: uPlot, splits: number[], __: number, ___: number, increment: number): string[] {
   return ticks(splits, increment);
 }
