@@ -65,6 +65,8 @@ units! {
     lengths_by_a_power_of_four: "length × 2^20", 1_048_576.0, 1.0, 1.0;
     lengths_by_a_smaller_power_of_four: "length × 2^10", 1024.0, 1.0, 1.0;
     lengths_by_a_power_of_a_quarter: "length × 2^-20", 1.0 / 1_048_576.0, 1.0, 1.0;
+    lengths_by_a_large_power_of_four: "length × 2^60", 1_152_921_504_606_846_976.0, 1.0, 1.0;
+    lengths_by_a_tiny_power_of_four: "length × 2^-60", 1.0 / 1_152_921_504_606_846_976.0, 1.0, 1.0;
     masses_by_a_power_of_four: "mass × 2^20", 1.0, 1_048_576.0, 1.0;
     masses_by_a_power_of_a_quarter: "mass × 2^-20", 1.0, 1.0 / 1_048_576.0, 1.0;
     times_by_a_power_of_four: "time × 2^10", 1.0, 1.0, 1024.0;

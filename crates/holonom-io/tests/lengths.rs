@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{model, run_every};
+use common::{model, run_every, source};
 
 /// Lengths by a power of four round nothing differently: in such units every figure is the same to its last bit, also where a spring begins without a
 /// length or goes through that. Lengths below 1e-9 counted as 1e-9 m in whatever unit, and no method took a step of this one in units of 1e10 m.
@@ -45,5 +45,28 @@ fn springs_do_not_depend_on_the_unit_of_length() {
                 assert_eq!(first, None, "{of}, in units of 2^{} m: the first row in which {name} is another", -power);
             }
         }
+    }
+}
+
+/// What of a profile counts as rounding where it begins, at the coordinate 0 of its joint, is told by the size of the mechanism: a tenth of that is none.
+#[test]
+fn profiles_begin_at_zero_in_any_unit() {
+    let driven = |m: f64, begins: f64| {
+        let text = format!(
+            "plane = \"xy\"\n[body.a]\nmass = 1\ninertia = {:e}\nposition = [{m:e}, 0]\n[body.b]\nmass = 1\ninertia = {:e}\nposition = [{:e}, 0]\n\
+             [joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"a\"]\naxis = [1, 0]\n\
+             [joint.pin]\ntype = \"revolute\"\nbetween = [\"a\", \"b\"]\nat = [{m:e}, 0]\n\
+             [drive.push]\ntype = \"displacement\"\njoint = \"rail\"\nprofile = \"{:e} + {m:e}*t\"\n",
+            m * m,
+            m * m,
+            2.0 * m,
+            begins * m
+        );
+        source(&text).model().map(|_| ())
+    };
+    for m in [1e-9, 1e-3, 1.0, 1e3, 1e9] {
+        assert!(driven(m, 1e-4).is_ok(), "{m} m");
+        let refused = driven(m, 0.1).expect_err("it begins elsewhere");
+        assert!(refused.contains("at t = 0, and the joint is at 0"), "{refused}");
     }
 }

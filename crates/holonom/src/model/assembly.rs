@@ -142,8 +142,7 @@ pub struct Assembly<'a> {
     pub(in crate::model) signals: Signals,
     /// Where the joints of the entry are that is built.
     pub(in crate::model) geometries: std::vec::IntoIter<Geometry>,
-    /// How far the nodes are apart when forces are built, m; 0 where they do not show it.
-    extent: OnceCell<f64>,
+    size: OnceCell<Option<f64>>,
 }
 
 /// What a drive exerts: −λ of its row, times the length where the row is one of half a square.
@@ -200,7 +199,7 @@ impl<'a> Assembly<'a> {
             shows: Shows::Power,
             signals: Signals::default(),
             geometries: Vec::new().into_iter(),
-            extent: OnceCell::new(),
+            size: OnceCell::new(),
         }
     }
 }
@@ -236,10 +235,14 @@ impl Assembly<'_> {
 
     /// What shorter distances count as for a force between places that are `start` apart at the start, with a length of `rest` without tension, m.
     pub(in crate::model) fn shortest(&self, start: f64, rest: f64) -> f64 {
-        let extent = *self.extent.get_or_init(|| Some(self.builder.extent()).filter(|extent| extent.is_finite()).unwrap_or(0.0));
         // What nodes do not show the force does; where it has no length any unit will do.
-        let size = start.max(if extent > 0.0 { extent } else { rest });
+        let size = start.max(self.size().unwrap_or(rest));
         SHORTEST * if size > 0.0 { size } else { 1.0 }
+    }
+
+    /// How large the mechanism is when drives and forces are built, m, where its nodes show it.
+    pub(in crate::model) fn size(&self) -> Option<f64> {
+        *self.size.get_or_init(|| Some(self.builder.extent()).filter(|size| size.is_finite() && *size > 0.0))
     }
 
     /// Has this recorded of the laws and loads of the entry that is built. Of those of which nothing is said it is the power alone.

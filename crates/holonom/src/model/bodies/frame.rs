@@ -49,6 +49,9 @@ type Factor = [f64; 2];
 /// Largest part of a point or direction, over its size, that a basis may miss and still hold it.
 const HELD: f64 = 1e-9;
 
+/// Share of the largest parts of a factor that is round-off.
+const ROUNDED: f64 = 4e-15;
+
 impl Frame {
     /// A body with these nodes, the first of them a point.
     pub fn new(dim: usize, basis: Vec<Basis>) -> Self {
@@ -109,11 +112,11 @@ impl Frame {
     fn combine(&self, one: f64, x: Vec3) -> Vec<Term> {
         let Self::Body { dim, basis, inverse } = self else { unreachable!("only bodies combine nodes") };
         let largest = |factors: &mut dyn Iterator<Item = &Factor>| factors.flatten().fold(0.0_f64, |m, c| m.max(c.abs()));
-        let size = largest(&mut inverse.iter().flatten()) * (one + geometry::norm(x));
+        let (of_one, of_length) = (largest(&mut inverse.iter().map(|row| &row[0])), largest(&mut inverse.iter().flat_map(|row| &row[1..])));
         // Edges between points are differences of rounded places.
         let places = basis.iter().filter(|node| node.is_point).map(|node| geometry::norm(node.at));
-        let rounded = 2.0 * f64::EPSILON * places.fold(0.0, f64::max) * largest(&mut inverse.iter().flat_map(|row| &row[1..]));
-        let nothing = rounded.max(1e-15) * size;
+        let rounded = 2.0 * f64::EPSILON * places.fold(0.0, f64::max) * of_length;
+        let nothing = rounded.max(ROUNDED) * (of_one * one + of_length * geometry::norm(x));
         let terms = basis.iter().zip(inverse).map(|(basis, row)| {
             let (mut factor, mut turn) = (row[0][0] * one, row[0][1] * one);
             if *dim == 2 {

@@ -22,7 +22,7 @@ pub(super) fn drive(assembly: &mut Assembly<'_>, entry: &Entry<'_>, joint: &str,
         ));
     }
     let start = profile.at(0.0)[0];
-    if start.abs() > LARGEST_START {
+    if start.abs() > LARGEST_START * if is_angle { 1.0 } else { assembly.size().unwrap_or(1.0) } {
         let cure = "coordinates of joints count from the start: subtract the value at t = 0, and give a joint that begins elsewhere its place in [start]";
         return Err(entry.refuse("profile", format!("the profile is {start} at t = 0, and the joint is at 0"), cure));
     }
@@ -40,5 +40,5 @@ pub(super) fn drive(assembly: &mut Assembly<'_>, entry: &Entry<'_>, joint: &str,
     Ok(())
 }
 
-/// Largest value of a profile at the start that is taken for rounding and corrected.
+/// Largest value of a profile at the start that is taken for rounding and corrected, rad, or over the size of the mechanism.
 const LARGEST_START: f64 = 1e-3;

@@ -67,7 +67,7 @@ impl Curve {
             let curvature = square - dot(arm, bend);
             let step = dot(arm, tangent) / if curvature > 0.1 * square { curvature } else { square };
             s += step;
-            if step.abs() <= 1e-15 * (1.0 + s.abs()) {
+            if step.abs() <= 1e-15 * (self.length + s.abs()) {
                 break;
             }
         }
