@@ -25,13 +25,57 @@ const OTHERS: &[&str] = &[
     "penalty-3/newmark",
 ];
 
-fn gallery() -> Vec<(String, Model)> {
+/// What follows a point of a curve: which of those nearby is the nearest is found from that of the step before.
+const BARREL_CAM: &str = r#"
+[body.cam]
+mass = 4
+inertia = [0.02, 0.02, 0.006]
+position = [0, 0, 0]
+angular_velocity = [0, 0, 18]
+
+[joint.shaft]
+type = "revolute"
+between = ["ground", "cam"]
+at = [0, 0, 0]
+axis = [0, 0, 1]
+
+[body.pin]
+mass = 0.8
+inertia = [1e-3, 1e-3, 1e-3]
+position = [0.05, 0, 0]
+
+[joint.guide]
+type = "planar"
+between = ["ground", "pin"]
+at = [0.05, 0, 0]
+axis = [0, 1, 0]
+
+[force.spring]
+type = "spring"
+between = [[0.3, 0, 0], "pin"]
+stiffness = 300
+rest_length = 0.2
+
+[joint.groove]
+type = "point-on-curve"
+between = ["cam", "pin"]
+at = [0.05, 0, 0]
+closed = true
+curve = [[0.05, 0, 0], [0.03, 0.04, 0.04], [-0.02, 0.05, 0.06], [-0.05, 0.01, 0], [-0.03, -0.04, -0.05], [0.02, -0.05, -0.04]]
+
+[simulation]
+step = 1e-3
+"#;
+
+/// The gallery, and a curve, which no model there has.
+fn models() -> Vec<(String, Model)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
     let mut found: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     found.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
     found.sort();
     let name = |path: &Path| path.file_stem().unwrap().to_string_lossy().into_owned();
-    found.iter().map(|path| (name(path), model(path))).collect()
+    let cam = Source::read("barrel-cam", BARREL_CAM.as_bytes()).and_then(|source| source.model()).unwrap();
+    found.iter().map(|path| (name(path), model(path))).chain([("barrel-cam".into(), cam)]).collect()
 }
 
 fn model(path: &Path) -> Model {
@@ -138,7 +182,7 @@ fn diff(a: &str, b: &str) -> String {
 fn a_resumed_run_has_the_same_bits() {
     let mut cases = 0;
     let mut wrong = Vec::new();
-    for (name, model) in gallery() {
+    for (name, model) in models() {
         let mut seed = name.bytes().fold(1_u64, |sum, byte| sum.wrapping_mul(31).wrapping_add(u64::from(byte)));
         let methods = NAMED.iter().map(|named| (named.name, STOPS[0])).chain(OTHERS.iter().map(|name| (*name, STOPS[1])));
         let by_accuracy = |(method, stops): (&'static str, u64)| {
@@ -175,7 +219,7 @@ const TOO_LONG: f64 = 1e7;
 #[test]
 fn a_rejected_step_leaves_no_trace() {
     let (mut cases, mut wrong) = (0, Vec::new());
-    for (name, model) in gallery() {
+    for (name, model) in models() {
         for method in NAMED.iter().map(|named| named.name).chain(OTHERS.iter().copied()) {
             let choice = Choice::default().named(method);
             let case = Case { model: &model, choice, step: model.settings.step.unwrap_or(0.01), every: 1 };

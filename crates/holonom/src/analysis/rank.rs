@@ -15,9 +15,10 @@ pub struct Rank {
     pub weakest: Option<(String, f64)>,
 }
 
-/// Finds the rank of the rows at the positions `x` of all nodes and time `t`, by their geometry alone.
+/// Finds the rank of the rows at the positions `x` of all nodes and time `t`, by their geometry alone. Points of curves are looked for from where they are
+/// at the start.
 pub fn rank(system: &System, x: &[f64], t: f64) -> Rank {
-    counted(system, &independence(system, x, t))
+    counted(system, &independence(system, x, &system.evaluation().functions.angle, t))
 }
 
 /// The same at the present state of a simulation, by what it has planned.

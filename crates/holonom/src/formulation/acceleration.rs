@@ -32,7 +32,10 @@ impl Newton {
     /// The same with hardly any δ for rows that are independent by their geometry.
     pub fn factor_inertia_of_independent(&mut self, system: &System, t: f64, work: &Workspace) -> bool {
         let least = independent(system.coordinates());
-        self.proximal_of_others(independence(system, &work.end.x, t).into_iter().map(|share| share > least), &work.scales);
+        self.proximal_of_others(
+            independence(system, &work.end.x, &work.end.at.functions.angle, t).into_iter().map(|share| share > least),
+            &work.scales,
+        );
         self.assemble_inertia(work);
         self.factor(&work.scales).is_ok()
     }

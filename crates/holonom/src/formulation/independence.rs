@@ -50,9 +50,10 @@ pub const VANISHED: f64 = 1e-9;
 /// others. Directions are nodes with a length, so that all coordinates are lengths and weigh alike; rows are scaled to unit
 /// gradients (methods §13). The pivots of [1 Gᵀ; G 0] are minus these numbers. Rows that add little are dropped from it, as what
 /// they leave is near round-off, which would be divided by it in the rows after them; what they add to all others is the
-/// part of their gradients that these leave, and that those measured before leave of it.
-pub fn independence(system: &System, x: &[f64], t: f64) -> Vec<f64> {
-    Independence::new(system).shares(system, x, t)
+/// part of their gradients that these leave, and that those measured before leave of it. What is followed, as a place on a curve, is found from what
+/// it is `near` these positions.
+pub fn independence(system: &System, x: &[f64], near: &[f64], t: f64) -> Vec<f64> {
+    Independence::new(system).shares(system, x, near, t)
 }
 
 /// Room for finding that at many positions, with a matrix of its own or one that is lent.
@@ -98,21 +99,28 @@ impl<K: BorrowMut<Kkt>> Independence<K> {
     }
 
     /// What [`independence`] gives at the positions `x` and the time `t`.
-    pub fn shares(mut self, system: &System, x: &[f64], t: f64) -> Vec<f64> {
-        self.measure(system, x, t);
+    pub fn shares(mut self, system: &System, x: &[f64], near: &[f64], t: f64) -> Vec<f64> {
+        self.measure(system, x, near, t);
         self.shares
     }
 
     /// How many rows follow from others at the positions `x` and the time `t`.
-    pub fn count_redundant(&mut self, system: &System, x: &[f64], t: f64) -> usize {
-        self.measure(system, x, t);
+    pub fn count_redundant(&mut self, system: &System, x: &[f64], near: &[f64], t: f64) -> usize {
+        self.measure(system, x, near, t);
         self.shares.iter().filter(|share| **share <= self.least).count()
     }
 
+    /// The same at the start.
+    pub fn count_redundant_at_start(&mut self, system: &System) -> usize {
+        let near = system.evaluation().functions.angle;
+        self.count_redundant(system, &system.start_position, &near, 0.0)
+    }
+
     /// Measures at the positions `x` and the time `t`.
-    fn measure(&mut self, system: &System, x: &[f64], t: f64) {
+    fn measure(&mut self, system: &System, x: &[f64], near: &[f64], t: f64) {
         let Self { kkt, at, natural, shares, dropped, left, others, least } = self;
         let kkt: &mut Kkt = kkt.borrow_mut();
+        at.count_on(near);
         system.evaluate_again(x, t, at);
         for (row, natural) in natural.iter().enumerate() {
             let free = system.slots.rows[row].clone().filter(|&slot| kkt.is_free(slot));

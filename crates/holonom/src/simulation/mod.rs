@@ -415,13 +415,16 @@ impl Simulation {
     /// How much each row (r) adds to those before it at the present state, as [`crate::formulation::independence`] has it. It is found in the room
     /// of the matrix of the steps, which go on as if nobody had asked.
     pub fn independence(&mut self) -> Vec<f64> {
-        self.ask(|own| Independence::within(&own.system, &mut own.newton.kkt).shares(&own.system, &own.state.x, own.state.t))
+        self.ask(|own| {
+            Independence::within(&own.system, &mut own.newton.kkt).shares(&own.system, &own.state.x, &own.state.angle, own.state.t)
+        })
     }
 
     /// How many rows follow from others at the present state.
     fn redundant_rows(&self) -> usize {
         let least = independent(self.system.coordinates());
-        let shares = Independence::like(&self.system, &self.newton.kkt).shares(&self.system, &self.state.x, self.state.t);
+        let shares =
+            Independence::like(&self.system, &self.newton.kkt).shares(&self.system, &self.state.x, &self.state.angle, self.state.t);
         shares.into_iter().filter(|share| *share < least).count()
     }
 

@@ -85,7 +85,7 @@ impl Way<'_> {
         for (i, x) in x.iter_mut().enumerate() {
             *x = at_start * start.state.x[i] + at_end * end.x[i] + along_start * start.v[i] + along_end * simulation.shown_v[i];
         }
-        self.independence.count_redundant(&simulation.system, x, start.state.t + share * *length);
+        self.independence.count_redundant(&simulation.system, x, &start.state.angle, start.state.t + share * *length);
         self.independence.weakest(self.redundant).sqrt()
     }
 

@@ -154,7 +154,7 @@ impl Pilot {
         let accuracy = if is_loose { LOOSE * method.accuracy? } else { method.accuracy? };
         let control = Control::new(accuracy, method.order(), estimate, system.coordinates());
         let mut independence = Independence::like(system, &newton.kkt);
-        let redundant = independence.count_redundant(system, &state.x, state.t);
+        let redundant = independence.count_redundant(system, &state.x, &state.angle, state.t);
         let smooth = smoothing(method);
         Some(Box::new(Self {
             control,
@@ -266,7 +266,7 @@ impl Pilot {
 
     /// Counts the rows that are redundant here: those that are so everywhere are the fewest, as a run may begin at a singular position.
     pub fn count_redundant(&mut self, system: &System, state: &State) {
-        self.redundant = self.redundant.min(self.independence.count_redundant(system, &state.x, state.t));
+        self.redundant = self.redundant.min(self.independence.count_redundant(system, &state.x, &state.angle, state.t));
     }
 
     /// Begins anew at the present state, where inputs were set: what was found beyond it was of others.

@@ -77,7 +77,8 @@ impl Places {
 
     /// How many rows follow from others at the place.
     pub fn redundant_rows(&self) -> usize {
-        Independence::like(&self.system, &self.newton.kkt).count_redundant(&self.system, &self.work.end.x, 0.0)
+        let end = &self.work.end;
+        Independence::like(&self.system, &self.newton.kkt).count_redundant(&self.system, &end.x, &end.at.functions.angle, 0.0)
     }
 
     /// The system, at the place that was kept last.

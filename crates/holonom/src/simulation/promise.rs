@@ -366,11 +366,11 @@ impl Judge {
         self.compare(promise, unit, work).or_else(|_| {
             let (independence, redundant) = self.independence.get_or_insert_with(|| {
                 let mut independence = Box::new(Independence::new(system));
-                let redundant = independence.count_redundant(system, &system.start_position, 0.0);
+                let redundant = independence.count_redundant_at_start(system);
                 (independence, redundant)
             });
             // Those that are redundant everywhere are the fewest.
-            *redundant = (*redundant).min(independence.count_redundant(system, &work.end.x, t));
+            *redundant = (*redundant).min(independence.count_redundant(system, &work.end.x, &work.end.at.functions.angle, t));
             let amplified = independence.amplification(*redundant);
             work.rows.iter_mut().for_each(|size| *size *= amplified);
             self.compare(promise, unit, work)

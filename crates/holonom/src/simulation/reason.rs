@@ -102,15 +102,16 @@ impl Simulation {
         let (system, state, step) = (&*self.system, &self.state, self.nominal_step());
         let mut independence = Independence::new(system);
         let ahead: Vec<f64> = state.x.iter().zip(&state.v).map(|(x, v)| x + step * v).collect();
-        let elsewhere = [&system.start_position, &ahead].map(|x| independence.count_redundant(system, x, state.t));
-        independence.count_redundant(system, &state.x, state.t);
+        let at_start = independence.count_redundant_at_start(system);
+        let elsewhere = [at_start, independence.count_redundant(system, &ahead, &state.angle, state.t)];
+        independence.count_redundant(system, &state.x, &state.angle, state.t);
         independence.weakest(elsewhere[0].min(elsewhere[1])) < NEAR_SINGULAR
     }
 
     /// That redundant rows may not agree, where there are any.
     fn disagreement(&self) -> String {
         // At a singular position more rows follow from others than otherwise.
-        let at_start = Independence::new(&self.system).count_redundant(&self.system, &self.system.start_position, 0.0);
+        let at_start = Independence::new(&self.system).count_redundant_at_start(&self.system);
         match self.redundant_rows().min(at_start) {
             0 => String::new(),
             redundant => {

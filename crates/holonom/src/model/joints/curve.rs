@@ -56,22 +56,24 @@ impl Curve {
         vector(&self.place, |spline| spline.slope(s))
     }
 
-    /// The parameter of the point nearest to `x`, from one nearby: |x − C(s)|² is least.
-    pub fn nearest(&self, x: Vec3, near: f64) -> f64 {
-        let mut s = near;
+    /// How far beyond `start` the parameter of the point nearest to `x` is, from `near` on: |x − C(s)|² is least. From what it has found it
+    /// finds the same again, to the bit, so that a resumed run goes on with the numbers of one that was not stopped.
+    fn nearest(&self, x: Vec3, start: f64, near: f64) -> f64 {
+        let mut way = near;
         for _ in 0..STEPS {
+            let s = start + way;
             let (arm, tangent) = (subtract(x, self.at(s)), self.tangent(s));
             let bend = vector(&self.place, |spline| spline.bend(s));
             let square = dot(tangent, tangent);
             // Where the curve bends away too strongly for Newton's step, that of Gauss.
             let curvature = square - dot(arm, bend);
             let step = dot(arm, tangent) / if curvature > 0.1 * square { curvature } else { square };
-            s += step;
             if step.abs() <= 1e-15 * (self.length + s.abs()) {
                 break;
             }
+            way += step;
         }
-        s
+        way
     }
 
     /// The parameter of the point nearest to `x` of all.
@@ -79,7 +81,7 @@ impl Curve {
         let samples = 400;
         let distance = |s: f64| norm(subtract(x, self.at(s)));
         let best = (0..=samples).map(|k| length * f64::from(k) / f64::from(samples)).min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
-        self.nearest(x, best.expect("samples"))
+        self.nearest(x, 0.0, best.expect("samples"))
     }
 
     /// s with derivatives: the root of (x − C(s))·C'(s) for an `x` that carries some, from the root for its value.
@@ -152,7 +154,7 @@ pub enum What {
 impl FollowedFunction for Measured {
     fn locate(&self, value: &[f64], near: f64) -> f64 {
         let x = std::array::from_fn(|c| value.get(c).copied().unwrap_or(0.0));
-        self.curve.nearest(x, near + self.start) - self.start
+        self.curve.nearest(x, self.start, near)
     }
 
     fn least_change(&self) -> f64 {
