@@ -130,10 +130,15 @@ pub fn many_parts(simulation: &Simulation) -> Option<f64> {
 
 /// That nominal steps were taken in many parts, as they failed as a whole.
 fn in_parts(simulation: &Simulation) -> Option<String> {
+    // What is advised is another method than that of the run.
+    let others = match simulation.method().name.as_str() {
+        "conserving-ggl" => "radau often takes longer steps",
+        _ => "conserving-ggl and radau take longer steps than most",
+    };
     many_parts(simulation).map(|parts| {
         format!(
-            "nominal steps failed as a whole and were taken in {parts:.0} parts on average, as if the step were {} s (conserving-ggl and radau take longer \
-             steps than most where redundant or singular constraints are why)",
+            "nominal steps failed as a whole and were taken in {parts:.0} parts on average, as if the step were {} s ({others} where redundant or singular \
+             constraints are why)",
             short(simulation.nominal_step() / parts)
         )
     })

@@ -146,6 +146,37 @@ fn steps_in_many_parts_are_told() {
     assert!(on_one_line(&stopped).contains("may ask for different motions within a step of this method"), "{stopped}");
     let well = said("--method conserving-ggl --step 0.01 --end 0.3");
     assert!(well.contains("completed") && !well.contains(in_parts), "{well}");
+    // A car whose front wheels are steered about one centre: between the ends of a step their mean angles are not about one, and radau takes rows as they
+    // are at its stages.
+    let each = "repeat = \"i = 0 to 1\"\n";
+    let wheels = |name: &str, x: f64| {
+        format!(
+            "[body.{name}]\n{each}mass = 20\ninertia = [0.5, 1, 0.5]\nposition = [{x}, \"0.75 - 1.5*i\", 0.3]\nvelocity = [4, 0, 0]\n\
+             angular_velocity = [0, \"4/0.3\", 0]\n[joint.road-{name}]\n{each}type = \"rolling\"\nbetween = [\"ground\", \"{name}[i]\"]\n\
+             at = \"{name}[i]\"\naxis = [0, 1, 0]\nnormal = [0, 0, 1]\nradius = 0.3\n"
+        )
+    };
+    let car = format!(
+        "[body.car]\nmass = 1200\ninertia = [400, 1500, 1700]\nposition = [1.2, 0, 0.55]\nvelocity = [4, 0, 0]\n{}{}\
+         [joint.axle]\n{each}type = \"revolute\"\nbetween = [\"car\", \"rear[i]\"]\nat = \"rear[i]\"\naxis = [0, 1, 0]\n\
+         [joint.knuckle]\n{each}type = \"universal\"\nbetween = [\"car\", \"front[i]\"]\nat = \"front[i]\"\naxes = [[0, 0, 1], [0, 1, 0]]\n\
+         [drive.steering]\n{each}type = \"angle\"\njoint = \"knuckle[i].angle1\"\n\
+         profile = \"atan2(2.6*tan(0.25*t^2), 2.6 - (0.75 - 1.5*i)*tan(0.25*t^2))\"\n",
+        wheels("rear", 0.0),
+        wheels("front", 2.6)
+    );
+    fs::write(folder.path().join("cart.toml"), &car).unwrap();
+    let slow = said("--step 0.02 --end 0.2");
+    assert!(slow.contains("completed") && slow.contains(in_parts) && slow.contains("(radau often takes longer steps"), "{slow}");
+    let stopped = on_one_line(&said("--step 0.05 --end 1"));
+    assert!(stopped.contains("within a step of this method, and do not with radau; otherwise"), "{stopped}");
+    let well = said("--method radau --step 0.05 --end 1");
+    assert!(well.contains("completed") && !well.contains(in_parts), "{well}");
+    // Both wheels turned by the same angle cannot roll.
+    let wrong = car.replace("2.6 - (0.75 - 1.5*i)*tan", "2.6 - 0*tan");
+    fs::write(folder.path().join("cart.toml"), wrong).unwrap();
+    let stopped = on_one_line(&said("--method radau --step 0.05 --end 1"));
+    assert!(stopped.contains("contradict each other, as those of wheels that do not all go round one centre"), "{stopped}");
 }
 
 /// Steps that are long for what spins, and a method that loses much of the energy, are told beside figures that are all round-off.

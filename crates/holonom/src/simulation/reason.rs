@@ -115,14 +115,21 @@ impl Simulation {
         match self.redundant_rows().min(at_start) {
             0 => String::new(),
             redundant => {
-                // Positions and velocities at the end of a step are not those of one motion, and redundant rows of both ask for different ones.
-                let takes_them = ["conserving-ggl", "radau"].contains(&self.method.name.as_str());
-                let of_rates = match self.system.is_nonholonomic() && !takes_them {
-                    true => {
-                        "those that hold velocities, as two wheels on one axle, may ask for different motions within a step of this method, and do not with \
-                         conserving-ggl and radau; otherwise "
+                // Positions and velocities at the end of a step are not those of one motion, and redundant rows of both ask for different ones. Those of
+                // conserving-ggl are, but the mean direction of a wheel that is steered differs from that in the middle of the step.
+                let of_rates = match self.method.name.as_str() {
+                    _ if !self.system.is_nonholonomic() => "",
+                    "radau" => {
+                        "those that hold velocities may contradict each other, as those of wheels that do not all go round one centre; otherwise "
                     }
-                    false => "",
+                    "conserving-ggl" => {
+                        "those that hold velocities, as four wheels of which two are steered, may ask for different motions within a step of this method, and do \
+                         not with radau; otherwise "
+                    }
+                    _ => {
+                        "those that hold velocities, as two wheels on one axle, may ask for different motions within a step of this method, and do not with radau \
+                         nor, where no wheel is steered, with conserving-ggl; otherwise "
+                    }
                 };
                 format!(
                     "; {redundant} of the equations of the constraints follow from the others (redundant): {of_rates}either they differ from these in the last \
