@@ -85,6 +85,18 @@ fn what_can_fall_hangs() {
     for text in [across, upright] {
         assert_stays(&text, &[("r0.z", -0.5), ("r1.z", -1.5), ("r1.x", 0.0)]);
     }
+    // It falls to the same side with more nodes.
+    let stop = "[force.stop]\ntype = \"torsion\"\njoint = \"h0\"\nstiffness = 5\nangle = 0\n".to_string();
+    let text = planar(&[rod(0, "ground"), rod(1, "r0"), stop]);
+    let text = text.replace("position = [0.5, 0]", "position = [0, 0.5]\norientation = { angle = \"90*deg\" }");
+    let text = text
+        .replace("position = [1.5, 0]", "position = [0, 1.5]\norientation = { angle = \"90*deg\" }")
+        .replace("at = [1, 0]", "at = [0, 1]");
+    let angle = |reactions: bool| {
+        let model = model(&format!("{text}[output]\nreactions = {reactions}\n"));
+        run(&model, Choice::default(), 0.01, 0.01).1.column("h0.angle").unwrap()[0]
+    };
+    assert!(angle(false).abs() > 0.5 && (angle(true) - angle(false)).abs() < 1e-10, "{} {}", angle(true), angle(false));
 }
 
 /// A light ball that carries a heavy rod by a hinge: what holds the rod still hides how the ball falls off the ridge on which the forces balance first.

@@ -45,8 +45,8 @@ pub enum NoModes {
     /// Freedoms without mass.
     #[error("something that is free to move has no mass: its motion has no s")]
     Massless,
-    /// A matrix without inverse, or one whose eigenvalues are not found.
-    #[error("the linearised equations have no solution")]
+    /// Forces of the rows at rest, or eigenvalues, that are not found.
+    #[error("the forces that hold the mechanism at rest, or its motions about that, cannot be found")]
     Singular,
     /// Too many freedoms for a dense analysis.
     #[error("the mechanism has {0} degrees of freedom, and modes are found of up to {MOST_FREEDOMS}")]

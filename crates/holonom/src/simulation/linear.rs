@@ -2,10 +2,14 @@
 
 use super::places::Places;
 use super::rest::{FIRST, GOLDEN, PUSH};
+use crate::energy;
 use crate::linalg::{eigenpairs, largest};
 
-/// How far what is left of the forces would move the mechanism while their whole would move it by its size, over that: more is no rest.
-const BALANCED: f64 = 1e-9;
+/// Lengths of the step that forces at rest are found by, over that which is tried first.
+const TRIES: [f64; 5] = [1.0, 0.1, 10.0, 0.01, 100.0];
+
+/// Share of the forces that may be left at rest.
+const BALANCED: f64 = 1e-6;
 
 /// Steps over the time of the fastest motion with which falls are looked for.
 const LONG: f64 = 1e4;
@@ -55,17 +59,21 @@ impl Places {
         if !self.newton.factor_inertia(&self.work) {
             return Err(NoRest::Singular);
         }
-        let (here, way) = self.balance(x)?;
-        if way.is_nan() || way > BALANCED * FIRST * self.work.scales.length {
+        let (here, left) = self.balance(x)?;
+        if left.is_nan() || left > BALANCED {
             return Err(NoRest::Unbalanced);
         }
         let (whole, size) = (self.pushed_at_most(), self.work.scales.length);
         let push = self.pushed().map_err(|_| NoRest::Unbalanced)?;
         let beside = |by: f64| here.x.iter().zip(&push).map(|(x, push)| x + by * push).collect::<Vec<f64>>();
-        self.put(&beside(1.0)).map_err(|_| NoRest::Unbalanced)?;
-        self.begin_at_end();
         // How fast forces drive back what is pushed, and dampers brake what moves.
-        let driven = self.pushed_at_most() / PUSH;
+        let driven = match self.put(&beside(1.0)) {
+            Ok(()) => {
+                self.begin_at_end();
+                self.pushed_at_most() / PUSH
+            }
+            Err(_) => 0.0,
+        };
         let braked = self.work.resistance(&self.system, 0.0, &push);
         let braked = self.work.farthest(&self.system, &braked[..self.system.coordinates()]) / (PUSH * size);
         let (there, _) = self.balance(beside(BESIDE / PUSH))?;
@@ -73,16 +81,18 @@ impl Places {
         Ok(Rest { speed: (driven.max(whole) / size).sqrt().max(braked), spots: [here, there] })
     }
 
-    /// The multipliers that balance all forces at a place, as far as they do, and how far what is left moves the mechanism in a short step, m.
+    /// The multipliers that balance all forces at a place, as far as they do, and what share of the forces is left.
     fn balance(&mut self, x: Vec<f64>) -> Result<(Spot, f64), NoRest> {
         self.put(&x).map_err(|_| NoRest::Unbalanced)?;
         self.begin_at_end();
         let (whole, size) = (self.pushed_at_most(), self.work.scales.length);
-        if whole > 0.0 {
-            // What forces leave may be too little for an iteration to end.
-            let _ = self.step((FIRST * size / whole).sqrt());
+        if whole == 0.0 {
+            return Ok((Spot { x, lambda: self.work.lambda.clone() }, 0.0));
         }
-        Ok((Spot { x, lambda: self.work.lambda.clone() }, largest(&self.work.d)))
+        let first = (FIRST * size / whole).sqrt();
+        let way = TRIES.iter().find_map(|by| Some((by * first, self.step(by * first)?)));
+        let (h, way) = way.ok_or(NoRest::Singular)?;
+        Ok((Spot { x, lambda: self.work.lambda.clone() }, way / (h * h * whole)))
     }
 
     /// The motions that the mechanism is free for, where it was put last.
@@ -139,9 +149,18 @@ impl Places {
         for (motion, [share, _]) in motions.basis.iter().zip(shares) {
             push.iter_mut().zip(motion).for_each(|(push, q)| *push += share * q);
         }
-        let by = PUSH * self.work.scales.length / largest(&push);
+        let by = PUSH * self.work.scales.length / largest(&push) * self.side(&push);
         push.iter_mut().for_each(|push| *push *= by);
         Some(Some(push))
+    }
+
+    /// 1 or −1, so that a motion (full) times that has momenta to the same side whatever nodes it is told of.
+    fn side(&self, push: &[f64]) -> f64 {
+        let mut parts = vec![0.0; push.len()];
+        let momenta = energy::momenta(&self.system, &self.work.end.x, push, &mut parts);
+        let [linear, angular] = [0, 3].map(|k| momenta[k] + GOLDEN * (momenta[k + 1] + GOLDEN * momenta[k + 2]));
+        let whole: f64 = parts.iter().map(|part| part.abs()).sum();
+        if linear.abs() > FOLLOWS * whole { linear.signum() } else { angular.signum() }
     }
 
     /// M q of the free coordinates.

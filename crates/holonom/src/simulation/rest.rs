@@ -15,7 +15,8 @@ pub(super) const FIRST: f64 = 0.01;
 /// Share of its size and of how far it has gone by which a mechanism moves in a step at most.
 const LONGEST: f64 = 0.1;
 
-/// Share of the size that a step moves the mechanism by at its end, and of the step before that it is then, at most.
+/// Share of the size, and of how far the forces would move it, that a step moves the mechanism by at its end, and of the step before that it is then, at
+/// most.
 const AT_REST: f64 = 1e-12;
 const QUICK: f64 = 0.1;
 
@@ -126,8 +127,9 @@ impl Places {
                     self.begin_at_end();
                     gone += way;
                     let is_quick = way <= QUICK * before;
-                    let rounded = ROUNDED * (size + h * h * self.work.pushed_at_most(&self.system));
-                    if way <= rounded || is_quick && way <= AT_REST * size {
+                    // How far all forces would move the mechanism in such a step.
+                    let reach = h * h * self.work.pushed_at_most(&self.system);
+                    if way <= ROUNDED * (size + reach) || is_quick && way <= AT_REST * size.min(reach) {
                         return Ok(());
                     }
                     if gone > FARTHEST * size {
