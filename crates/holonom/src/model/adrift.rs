@@ -38,14 +38,21 @@ pub(super) fn moved(assembly: &Assembly<'_>) -> Option<String> {
     }
     let moved = bodies.iter().zip(&assembly.frames).zip(&tied).filter(|(_, tied)| !**tied).filter_map(|((body, frame), _)| {
         let (way, turn) = moved_by(assembly, body, frame);
-        (way > ADRIFT * assembly.builder.size() || turn > ADRIFT)
-            .then(|| format!("`{}` by {} m and {} rad", body.name, short(way), short(turn)))
+        by_in_words(&body.name, way, turn, ADRIFT * assembly.builder.size())
     });
     let moved = list(moved)?;
     Some(format!(
         "bodies that no joint ties to the ground were moved, as little as they can be in the metric of the mass: {moved} (they stay where they are \
          in a file that is written in the pose in which the run begins)"
     ))
+}
+
+/// That something has moved by more than `least` (m), or turned, in words.
+pub(super) fn by_in_words(name: &str, way: f64, turn: f64, least: f64) -> Option<String> {
+    let moved = (way > least).then(|| format!("{} m", short(way)));
+    let turned = (turn > ADRIFT).then(|| format!("{} rad", short(turn)));
+    let by: Vec<String> = moved.into_iter().chain(turned).collect();
+    (!by.is_empty()).then(|| format!("`{name}` by {}", by.join(" and ")))
 }
 
 /// How far the centre of a body is from where that is written, m, and by what it is turned, rad.

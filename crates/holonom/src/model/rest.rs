@@ -2,15 +2,14 @@
 
 use std::sync::Arc;
 
-use super::adrift::{list, moved_by};
+use super::adrift::{by_in_words, list, moved_by};
 use super::assembly::Assembly;
-use super::bodies::short;
 use super::geometry::{norm, subtract};
 use super::start::Target;
 use crate::simulation::{Places, Restless};
 use crate::system::{Constant, place_of};
 
-/// What moves by less than this share of the mechanism, or turns by less, rad, has not moved.
+/// What moves by less than this share of the mechanism has not moved.
 const MOVED: f64 = 1e-6;
 
 /// Moves the mechanism to where it comes to rest, while the coordinates at which joints are put, drives and all constraints stay as they are. Says
@@ -61,18 +60,17 @@ fn require_no_motion(assembly: &Assembly<'_>) -> Result<(), (String, &'static st
 
 /// The bodies and points that are farthest from where they were before.
 fn moved(assembly: &Assembly<'_>, before: &[f64]) -> Option<String> {
-    let least = MOVED * assembly.builder.size();
-    let bodies = assembly.bodies.iter().zip(&assembly.frames).map(|(body, frame)| {
+    let (dim, least) = (assembly.dimension(), MOVED * assembly.builder.size());
+    let bodies = assembly.bodies.iter().zip(&assembly.frames).filter_map(|(body, frame)| {
         let (way, turn) = moved_by(assembly, body, frame);
-        (way, turn, format!("`{}` by {} m and {} rad", body.name, short(way), short(turn)))
+        Some((way, by_in_words(&body.name, way, turn, least)?))
     });
-    let dim = assembly.dimension();
-    let points = assembly.points.iter().map(|point| {
+    let points = assembly.points.iter().filter_map(|point| {
         let terms = &point.end.terms;
         let way = norm(subtract(place_of(terms, assembly.builder.position(), dim), place_of(terms, before, dim)));
-        (way, 0.0, format!("`{}` by {} m", point.name, short(way)))
+        Some((way, by_in_words(&point.name, way, 0.0, least)?))
     });
-    let mut moved: Vec<_> = bodies.chain(points).filter(|(way, turn, _)| *way > least || *turn > MOVED).collect();
+    let mut moved: Vec<_> = bodies.chain(points).collect();
     moved.sort_by(|a, b| b.0.total_cmp(&a.0));
-    list(moved.into_iter().map(|(.., words)| words))
+    list(moved.into_iter().map(|(_, words)| words))
 }
