@@ -64,10 +64,7 @@ impl From<NoRest> for NoModes {
 }
 
 /// Most freedoms for which this dense analysis is made.
-pub const MOST_FREEDOMS: usize = 1000;
-
-/// Steps over the time in which the fastest motion turns by one radian that the slowest one is first looked for with.
-const LONG: f64 = 1e4;
+pub const MOST_FREEDOMS: usize = 300;
 
 /// By how much windows of speeds differ in which motions are found together, how many there are, and the step over the time of the middle of one: no
 /// step should be as long as what grows takes.
@@ -106,7 +103,7 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
     }
     let mut places = Places::new(system.clone())?;
     let rest = places.rest(system.start_position().to_vec())?;
-    let freedom = system.coordinates() + places.redundant_rows() - system.constraints();
+    let freedom = places.freedom();
     if freedom > MOST_FREEDOMS {
         return Err(NoModes::Large(freedom));
     }
@@ -117,7 +114,7 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
     }
     let mut seen = |h: f64| look_twice(&mut places, &rest, &motions, h);
     // A long step shows the slowest motion, and one that is about as long as a motion takes shows that well.
-    let speeds = seen(LONG / rest.speed)?.into_iter().filter_map(|found| found.is_sure.then_some(found.s[0].hypot(found.s[1])));
+    let speeds = seen(rest.long_step())?.into_iter().filter_map(|found| found.is_sure.then_some(found.s[0].hypot(found.s[1])));
     let slowest = speeds.fold(f64::INFINITY, f64::min);
     if slowest == f64::INFINITY {
         return Ok(none);

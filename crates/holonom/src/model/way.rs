@@ -75,8 +75,7 @@ pub(super) fn assemble(builder: &mut SystemBuilder, targets: &[Target], released
 
 /// Whether nodes may move where the coordinates that lead stand still.
 pub(super) fn leaves_free(places: &Places) -> bool {
-    let system = places.system();
-    system.coordinates() + places.redundant_rows() > system.constraints()
+    places.freedom() > 0
 }
 
 /// Says that the way ends at a share of it, and the cure.

@@ -11,7 +11,7 @@ const TRIES: [f64; 5] = [1.0, 0.1, 10.0, 0.01, 100.0];
 /// Share of the forces that may be left at rest.
 const BALANCED: f64 = 1e-6;
 
-/// Steps over the time of the fastest motion with which falls are looked for.
+/// A long step over the time of the fastest motion.
 const LONG: f64 = 1e4;
 
 /// How far the place is beside it, over the mechanism's size.
@@ -37,6 +37,13 @@ pub(crate) struct Rest {
     pub speed: f64,
     /// The place at rest, and one a little beside it, where other numbers are rounded.
     pub spots: [Spot; 2],
+}
+
+impl Rest {
+    /// A step that is long for all motions but very slow ones, s.
+    pub fn long_step(&self) -> f64 {
+        LONG / self.speed
+    }
 }
 
 /// A place (full), with the multipliers that balance the forces there.
@@ -97,8 +104,7 @@ impl Places {
 
     /// The motions that the mechanism is free for, where it was put last.
     pub fn motions(&mut self) -> Result<Motions, NoRest> {
-        let n = self.system.coordinates();
-        let freedom = n + self.redundant_rows() - self.system.constraints();
+        let (n, freedom) = (self.system.coordinates(), self.freedom());
         let mut found = Motions { basis: Vec::new(), momenta: Vec::new() };
         if !self.newton.factor_inertia(&self.work) {
             return Err(NoRest::Singular);
@@ -132,7 +138,7 @@ impl Places {
     /// cannot be told.
     pub fn falls(&mut self, most: usize) -> Option<Option<Vec<f64>>> {
         let rest = self.rest(self.work.end.x.clone()).ok()?;
-        let freedom = self.system.coordinates() + self.redundant_rows() - self.system.constraints();
+        let freedom = self.freedom();
         if freedom > most {
             return None;
         }
@@ -141,7 +147,7 @@ impl Places {
             return Some(None);
         }
         // A long step goes back to where it came from, but for what rests nowhere: (I + h² K)⁻¹.
-        let whole = self.propagator(&motions, &rest.spots[0], LONG / rest.speed).ok()?;
+        let whole = self.propagator(&motions, &rest.spots[0], rest.long_step()).ok()?;
         let of_velocity: Vec<f64> = whole.chunks_exact(2 * freedom).take(freedom).flat_map(|line| &line[freedom..]).copied().collect();
         let falling = eigenpairs(freedom, &of_velocity)?.into_iter().filter(|([share, _], _)| *share < 0.0);
         let Some((_, shares)) = falling.max_by(|(a, _), (b, _)| a[0].total_cmp(&b[0])) else { return Some(None) };

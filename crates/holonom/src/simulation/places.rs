@@ -81,6 +81,11 @@ impl Places {
         Independence::like(&self.system, &self.newton.kkt).count_redundant(&self.system, &end.x, &end.at.functions.angle, 0.0)
     }
 
+    /// How many motions the rows leave free at the place.
+    pub fn freedom(&self) -> usize {
+        self.system.coordinates() + self.redundant_rows() - self.system.constraints()
+    }
+
     /// The system, at the place that was kept last.
     pub fn system(&self) -> &System {
         &self.system

@@ -8,8 +8,7 @@ use crate::formulation::{Prediction, RowsAt, Sampling, Stage, Workspace, solve};
 use crate::linalg::largest;
 use crate::system::{System, scatter};
 
-/// Share of the mechanism's size that the first step would be long, were nothing in the way of the forces that are left, and what the whole forces
-/// would make it at most.
+/// Share of its size that all forces would move the mechanism by in the first step, were nothing in their way.
 pub(super) const FIRST: f64 = 0.01;
 
 /// Share of its size and of how far it has gone by which a mechanism moves in a step at most.
