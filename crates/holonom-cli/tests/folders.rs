@@ -69,6 +69,9 @@ fn the_same_run_goes_to_the_same_folder_and_another_to_another() {
     // Another method has a name of its own.
     prints(&folder, "run pendulum.toml --end 0.5 --method lagrange-2/bdf-3/velocity --quiet", 0);
     assert!(folder.path().join("results/pendulum-lagrange-2-bdf-3-velocity/summary.json").exists());
+    // Levels of projections are joined by either sign.
+    prints(&folder, "run pendulum.toml --end 0.5 --method lagrange-3/trapezoidal/velocity,acceleration --quiet", 0);
+    assert!(folder.path().join("results/pendulum-lagrange-3-trapezoidal-velocity+acceleration/summary.json").exists());
 }
 
 #[test]

@@ -60,7 +60,7 @@ pub enum MethodError {
 }
 
 /// The parts of a name that is none of [`NAMED`]: an integrator alone, or formulation, integrator and projection levels
-/// joined by strokes, with the order behind the integrator, as in `bdf-3` and `lagrange-2/bdf-3/velocity+acceleration`.
+/// joined by strokes, with the order behind the integrator, as in `bdf-3` and `lagrange-2/bdf-3/velocity+acceleration`; a comma does as well.
 pub(super) fn spell(choice: &Choice) -> Option<Choice> {
     let name = choice.method.as_deref().filter(|name| NAMED.iter().all(|named| named.name != *name))?;
     let parts: Vec<&str> = name.split('/').collect();
@@ -78,7 +78,7 @@ pub(super) fn spell(choice: &Choice) -> Option<Choice> {
     if formulation.is_none() && !is_known(integrator) {
         return None;
     }
-    let levels = levels.map_or(Vec::new(), |levels| levels.split('+').map(str::to_string).collect());
+    let levels = levels.map_or(Vec::new(), |levels| levels.split(['+', ',']).map(str::to_string).collect());
     Some(Choice {
         method: None,
         formulation: formulation.map(str::to_string),
