@@ -8,7 +8,7 @@ use super::bodies::nodes::Member;
 use super::bodies::{RigidBody, short};
 use super::geometry::{norm, subtract};
 use super::start::{Target, leading};
-use crate::simulation::Places;
+use crate::simulation::{GOLDEN, Places};
 use crate::system::{GaugeValues, System, SystemBuilder, Term, place_of};
 
 /// Most bodies or coordinates that are named.
@@ -16,9 +16,6 @@ const NAMED: usize = 3;
 
 /// What bodies move by less than, over the size of the mechanism, and turn by, rad, without a word; of rates it is a share of the largest.
 const ADRIFT: f64 = 1e-6;
-
-/// Of the golden ratio, whose multiples fall everywhere between whole numbers.
-const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// Says how bodies that no joint ties to the ground were moved to a start where coordinates are given: they only move as little as they can.
 pub(super) fn moved(assembly: &Assembly<'_>) -> Option<String> {

@@ -5,7 +5,6 @@ use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-use super::adrift;
 use super::assembly::{Assembly, Axes};
 use super::bodies::nodes::{self, Member};
 use super::bodies::{Files, Placing, RigidBody, short};
@@ -21,14 +20,13 @@ use super::geometry::{self, Vec3, unit};
 use super::joints::{self, Geometry, Survey};
 use super::jumps;
 use super::knocks;
-use super::lengths::DrivenLength;
 use super::repeat::{self, Repetition};
 use super::settings::{Output, Settings};
 use super::signals::{Formula, Signals};
 use super::tables::Tables;
 use super::unseen::OverTime;
 use super::value::{Table, Value, key_path};
-use super::{GRAVITY, Model, SCHEMA, finish, measure, parameters, points, rest, spinless, start, tables};
+use super::{GRAVITY, Model, SCHEMA, finish, measure, parameters, points, spinless, start, tables};
 use crate::record::Constraints;
 use crate::system::{self, SystemBuilder};
 
@@ -92,29 +90,13 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
         for program in sink.switches.take() {
             assembly.builder.switch(Arc::new(TimeProgram(program)));
         }
-        let starts = std::mem::take(&mut assembly.starts);
-        let lengths = std::mem::take(&mut assembly.lengths);
-        // Where forces balance it is told what has moved.
-        let is_told = description.equilibrium;
-        let before = (!starts.is_empty() && !is_told).then(|| adrift::measured(&assembly.builder).1);
-        let begun = compiler.begin(description, &mut assembly, &starts, &lengths);
-        if let Err((message, cure)) = begun {
+        if let Err((message, cure)) = start::begin(&mut assembly, description.equilibrium) {
             drop(assembly);
             let _: Refused = sink.report(|| Fault::new("start", "start", message, cure));
             return Err(sink.finish().expect_err("there is a fault"));
         }
-        if begun == Ok(true)
-            && let Some(message) = before.and_then(|before| adrift::followed(&assembly, &starts, &before))
-        {
-            sink.note("start", || message);
-        }
-        if !is_told
-            && starts.iter().any(start::Target::is_placed)
-            && let Some(message) = adrift::moved(&assembly)
-        {
-            sink.note("start", || message);
-        }
-        if !is_told {
+        // Stops push where forces balance.
+        if !description.equilibrium {
             forces::note_pushing(&assembly);
         }
         if let Some(fault) = spinless::refuse(&assembly) {
@@ -426,23 +408,6 @@ impl Compiler<'_> {
         let settings = description.simulation.as_ref().map(|keys| keys.settings(&self.entry("", "simulation", keys), assembly));
         let output = description.output.as_ref().map(|keys| keys.output(&self.entry("", "output", keys), assembly));
         (settings.unwrap_or_default(), output.unwrap_or_default())
-    }
-
-    /// Puts the mechanism where the run begins, and sets it off. Says whether what is given leaves anything free.
-    fn begin(
-        &self,
-        description: &Description,
-        assembly: &mut Assembly<'_>,
-        starts: &[start::Target],
-        lengths: &[DrivenLength],
-    ) -> Result<bool, (String, &'static str)> {
-        let leaves_free = start::place(&mut assembly.builder, starts, lengths, &mut assembly.efforts)?;
-        if description.equilibrium
-            && let Some(message) = rest::settle(assembly, starts)?
-        {
-            self.sink.note("start.equilibrium", || message);
-        }
-        Ok(start::set_off(&mut assembly.builder, starts)? || leaves_free)
     }
 
     /// Calls `each` for all that the entries of a section make. Hands back the names of those in which something was wrong.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::adrift;
 use super::assembly::{Assembly, Effort};
 use super::entry::Entry;
 use super::fault::{Read, nearest};
@@ -9,6 +10,7 @@ use super::fields::{Keys, Number};
 use super::joints::{Coordinate, coordinate};
 use super::key::{Key, Shape};
 use super::lengths::{DrivenLength, extend, released, require_held};
+use super::rest;
 use super::way::{self, assemble};
 use crate::simulation::Places;
 use crate::system::{Constant, Shifted, Signal, SystemBuilder};
@@ -179,11 +181,31 @@ pub(super) fn one_of(joint: &str) -> Option<String> {
     Some(format!("for `{joint}` alone write [start.{base}] with repeat = \"{}\", and a longer range for several", ranges.join(", ")))
 }
 
+/// Puts the mechanism where the run begins, at equilibrium or not, and sets it off. Notes what that moves.
+///
+/// # Errors
+/// Why that cannot be, and the cure.
+pub(super) fn begin(assembly: &mut Assembly<'_>, equilibrium: bool) -> Result<(), (String, &'static str)> {
+    let targets = std::mem::take(&mut assembly.starts);
+    let lengths = std::mem::take(&mut assembly.lengths);
+    let before = (!targets.is_empty() && !equilibrium).then(|| adrift::measured(&assembly.builder).1);
+    let mut leaves_free = place(&mut assembly.builder, &targets, &lengths, &mut assembly.efforts)?;
+    let settled = if equilibrium { rest::settle(assembly, &targets)? } else { None };
+    leaves_free |= set_off(&mut assembly.builder, &targets)?;
+    // Where forces balance, what has moved there is all that is told.
+    let followed = before.filter(|_| leaves_free).and_then(|before| adrift::followed(assembly, &targets, &before));
+    let adrift = (!equilibrium && targets.iter().any(Target::is_placed)).then(|| adrift::moved(assembly)).flatten();
+    for (path, message) in [("start.equilibrium", settled), ("start", followed), ("start", adrift)] {
+        message.into_iter().for_each(|message| assembly.sink.note(path, || message));
+    }
+    Ok(())
+}
+
 /// Puts the mechanism where its coordinates are given. Says whether these leave anything free.
 ///
 /// # Errors
 /// Why that cannot be, and the cure.
-pub(super) fn place(
+fn place(
     builder: &mut SystemBuilder,
     targets: &[Target],
     lengths: &[DrivenLength],
@@ -227,7 +249,7 @@ pub(super) fn leading(builder: &SystemBuilder, rates: &[(&Target, f64)]) -> Syst
 
 /// Gives the nodes the velocities at which coordinates have their rates and all constraints are met, with as little as possible of a change
 /// of those that are written, in the metric of the mass. Says whether the rates leave anything free.
-pub(super) fn set_off(builder: &mut SystemBuilder, targets: &[Target]) -> Result<bool, (String, &'static str)> {
+fn set_off(builder: &mut SystemBuilder, targets: &[Target]) -> Result<bool, (String, &'static str)> {
     let rated: Vec<(&Target, f64)> = targets.iter().filter_map(|target| Some((target, target.rate?))).collect();
     if rated.is_empty() {
         return Ok(false);

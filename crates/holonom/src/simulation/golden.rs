@@ -1,6 +1,7 @@
 //! The golden section.
 
-const GOLDEN: f64 = 0.618_033_988_749_894_8;
+/// Share of a way at which its golden section is. Fractional parts of its multiples fall everywhere between whole numbers.
+pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
 /// Where a number is highest that rises and then falls between two places, and how high. The search ends where `ends` says so of the way that is
 /// left and of the highest number so far, or where places are no longer told apart.

@@ -1,7 +1,8 @@
 //! The equations of motion of a mechanism that is at rest, linearised there and reduced to its freedoms.
 
+use super::golden::GOLDEN;
 use super::places::Places;
-use super::rest::{FIRST, GOLDEN, PUSH};
+use super::rest::{FIRST, PUSH};
 use crate::energy;
 use crate::linalg::{eigenpairs, largest};
 
@@ -134,30 +135,30 @@ impl Places {
         Ok(found)
     }
 
-    /// A small move along which forces drive a mechanism at rest on, where it was put last, if there is one; neither where it has more freedoms, or they
-    /// cannot be told.
-    pub fn falls(&mut self, most: usize) -> Option<Option<Vec<f64>>> {
-        let rest = self.rest(self.work.end.x.clone()).ok()?;
-        let freedom = self.freedom();
-        if freedom > most {
-            return None;
-        }
-        let motions = self.motions().ok()?;
+    /// A small move along which forces drive a mechanism at rest on, where it was put last, if there is one.
+    ///
+    /// # Errors
+    /// When its motions cannot be told.
+    pub fn falls(&mut self) -> Result<Option<Vec<f64>>, NoRest> {
+        let rest = self.rest(self.work.end.x.clone())?;
+        let motions = self.motions()?;
+        let freedom = motions.basis.len();
         if rest.speed == 0.0 || freedom == 0 {
-            return Some(None);
+            return Ok(None);
         }
         // A long step goes back to where it came from, but for what rests nowhere: (I + h² K)⁻¹.
-        let whole = self.propagator(&motions, &rest.spots[0], rest.long_step()).ok()?;
+        let whole = self.propagator(&motions, &rest.spots[0], rest.long_step())?;
         let of_velocity: Vec<f64> = whole.chunks_exact(2 * freedom).take(freedom).flat_map(|line| &line[freedom..]).copied().collect();
-        let falling = eigenpairs(freedom, &of_velocity)?.into_iter().filter(|([share, _], _)| *share < 0.0);
-        let Some((_, shares)) = falling.max_by(|(a, _), (b, _)| a[0].total_cmp(&b[0])) else { return Some(None) };
+        let pairs = eigenpairs(freedom, &of_velocity).ok_or(NoRest::Singular)?;
+        let falling = pairs.into_iter().filter(|([share, _], _)| *share < 0.0).max_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]));
+        let Some((_, shares)) = falling else { return Ok(None) };
         let mut push = vec![0.0; self.work.end.x.len()];
         for (motion, [share, _]) in motions.basis.iter().zip(shares) {
             push.iter_mut().zip(motion).for_each(|(push, q)| *push += share * q);
         }
         let by = PUSH * self.work.scales.length / largest(&push) * self.side(&push);
         push.iter_mut().for_each(|push| *push *= by);
-        Some(Some(push))
+        Ok(Some(push))
     }
 
     /// 1 or −1, so that a motion (full) times that has momenta to the same side whatever nodes it is told of.

@@ -37,6 +37,7 @@ pub use audit::Audit;
 pub use checkpoint::Checkpoint;
 pub use conflict::Conflict;
 pub use events::Happening;
+pub(crate) use golden::GOLDEN;
 pub(crate) use linear::{Motions, NoRest, Rest};
 pub use method::{
     Choice, LEVELS, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, OMEGA, PENALTY, ProjectionChoice, TOLERANCE, XI, combinations,

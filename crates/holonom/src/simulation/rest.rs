@@ -1,6 +1,7 @@
 //! Where a mechanism comes to rest (methods §20), by pseudo-transient continuation (Kelley and Keyes 1998): steps of implicit Euler, each from rest, at
 //! a time that stands still. Short ones go down the forces, and long ones are those of Newton's iteration for their balance.
 
+use super::golden::GOLDEN;
 use super::places::Places;
 use super::start::{Asked, Start, StartError, correct_velocities};
 use crate::energy;
@@ -41,9 +42,6 @@ const BACK: f64 = 10.0;
 const RIDGES: usize = 20;
 const MOST_FREEDOMS: usize = 200;
 
-/// Of the golden ratio, whose multiples fall everywhere between whole numbers.
-pub(super) const GOLDEN: f64 = 0.618_033_988_749_895;
-
 /// Why a mechanism does not come to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Restless {
@@ -65,7 +63,7 @@ impl Places {
         self.come_to_rest()?;
         for _ in 0..RIDGES {
             let rest = self.work.end.x.clone();
-            let Some(push) = self.way_down() else { break };
+            let Some(push) = self.way_down() else { return Ok(()) };
             let ahead: Vec<f64> = rest.iter().zip(&push).map(|(x, push)| x + push).collect();
             let comes_back = self.put(&ahead).is_err() || {
                 self.come_to_rest()?;
@@ -76,19 +74,16 @@ impl Places {
                 return self.put(&rest).map_err(|_| Restless::Stuck);
             }
         }
-        Ok(())
+        Err(Restless::Moves)
     }
 
     /// A small move along which the mechanism at rest may leave that. `None` where it comes back from all.
     fn way_down(&mut self) -> Option<Vec<f64>> {
         let x = self.work.end.x.clone();
-        let falls = self.falls(MOST_FREEDOMS);
+        let falls = (self.freedom() <= MOST_FREEDOMS).then(|| self.falls().ok()).flatten();
         self.put(&x).ok()?;
         self.begin_at_end();
-        match falls {
-            Some(falls) => falls,
-            None => self.pushed().ok(),
-        }
+        falls.unwrap_or_else(|| self.pushed().ok())
     }
 
     /// A move of all nodes that the rows allow.
