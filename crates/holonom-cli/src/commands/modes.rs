@@ -58,15 +58,19 @@ fn cure(error: &NoModes) -> &'static str {
 fn swings(model: &Model, mode: &Mode, size: f64) -> Vec<(Swing, f64)> {
     let part = |k: usize| model.swings(&mode.shape.iter().map(|entry| entry[k]).collect::<Vec<f64>>());
     let parts: Vec<(Swing, f64, f64)> = part(0).into_iter().zip(part(1)).map(|(re, im)| (re.clone(), re.rate, im.rate)).collect();
-    // A turn counts as what it moves at the distance of the mechanism's size.
-    let weight = |(swing, re, im): &(Swing, f64, f64)| re.hypot(*im) * if swing.is_angle { 1.0 } else { 1.0 / size };
-    let Some((_, re, im)) = parts.iter().max_by(|a, b| weight(a).total_cmp(&weight(b))) else { return Vec::new() };
+    let far = |(swing, re, im): &(Swing, f64, f64)| way(swing, re.hypot(*im), size);
+    let Some((_, re, im)) = parts.iter().max_by(|a, b| far(a).total_cmp(&far(b))) else { return Vec::new() };
     let (most, turned) = (re.hypot(*im), im.atan2(*re));
     let relative = |(swing, re, im): &(Swing, f64, f64)| {
         let phase = (im.atan2(*re) - turned).sin().atan2((im.atan2(*re) - turned).cos());
         (Swing { rate: re.hypot(*im) / most, ..swing.clone() }, phase)
     };
     parts.iter().map(relative).collect()
+}
+
+/// How far something moves, m: a turn counts as what it moves at the distance of the mechanism's size.
+fn way(swing: &Swing, amplitude: f64, size: f64) -> f64 {
+    amplitude * if swing.is_angle { size } else { 1.0 }
 }
 
 fn describe(loaded: &Loaded, found: &Modes, swings: &[Vec<(Swing, f64)>]) -> String {
@@ -88,11 +92,11 @@ fn describe(loaded: &Loaded, found: &Modes, swings: &[Vec<(Swing, f64)>]) -> Str
 }
 
 fn row(k: usize, mode: &Mode, swings: &[(Swing, f64)], size: f64) -> Vec<String> {
-    let weight = |swing: &Swing| swing.rate * if swing.is_angle { size } else { 1.0 };
+    let way = |swing: &Swing| way(swing, swing.rate, size);
     let mut most: Vec<&(Swing, f64)> = swings.iter().collect();
-    most.sort_by(|a, b| weight(&b.0).total_cmp(&weight(&a.0)));
-    let least = most.first().map_or(0.0, |(swing, _)| LEAST * weight(swing));
-    let moves = most.iter().take(NAMED).filter(|(swing, _)| weight(swing) > least).map(|(swing, phase)| {
+    most.sort_by(|a, b| way(&b.0).total_cmp(&way(&a.0)));
+    let least = most.first().map_or(0.0, |(swing, _)| LEAST * way(swing));
+    let moves = most.iter().take(NAMED).filter(|(swing, _)| way(swing) > least).map(|(swing, phase)| {
         let unit = if swing.is_angle { "rad" } else { "m" };
         format!("{} {:.2} {unit}", swing.name, swing.rate * phase.cos().signum())
     });

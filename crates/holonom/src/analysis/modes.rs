@@ -43,7 +43,7 @@ pub enum NoModes {
     #[error("forces do not balance at the start, and modes are small vibrations about a state at rest")]
     Unbalanced,
     /// Freedoms without mass.
-    #[error("something that is free to move has no mass: its motion has no s")]
+    #[error("something that is free to move has no mass, so that its motion has no frequency")]
     Massless,
     /// Forces of the rows at rest, or eigenvalues, that are not found.
     #[error("the forces that hold the mechanism at rest, or its motions about that, cannot be found")]

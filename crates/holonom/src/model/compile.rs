@@ -95,7 +95,7 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
             let _: Refused = sink.report(|| Fault::new("start", "start", message, cure));
             return Err(sink.finish().expect_err("there is a fault"));
         }
-        // Stops push where forces balance.
+        // At equilibrium a stop that pushes is no slip.
         if !description.equilibrium {
             forces::note_pushing(&assembly);
         }
