@@ -3,6 +3,7 @@
 mod common;
 
 use common::model;
+use holonom::analysis::rank;
 use holonom::simulation::{Simulation, Status, Verdict};
 
 /// A disc that leans and is let go falls over the tangent where it touches, as an inverted pendulum, and lies flat after a time known by quadrature: no
@@ -39,5 +40,107 @@ fn a_disc_that_lies_down_does_not_bounce() {
     let spinning = disc(0.3);
     for of in ["conserving-ggl", "conserving"] {
         common::run_every(&spinning, of, 2e-3, 0.6, 1);
+    }
+}
+
+/// Wheels of a car: name, and place on the road from the middle of the rear axle, m.
+const WHEELS: [(&str, f64, f64); 4] = [("rl", 0.0, 0.75), ("rr", 0.0, -0.75), ("fl", 2.6, 0.75), ("fr", 2.6, -0.75)];
+
+/// How a car turns at the time t: 1/m.
+fn curvature(t: f64) -> f64 {
+    0.15 * (1.0 - t.cos())
+}
+
+/// A car on four wheels without slip, whose front wheels are steered by these angles.
+fn car(angle: impl Fn(f64) -> String) -> holonom::model::Model {
+    let mut text = "[body.car]\nmass = 1200\ninertia = [400, 1500, 1700]\nposition = [1.2, 0, 0.55]\nvelocity = [4, 0, 0]\n".to_string();
+    for (name, x, y) in WHEELS {
+        text += &format!(
+            "[body.{name}]\nmass = 20\ninertia = [0.5, 1, 0.5]\nposition = [{x}, {y}, 0.3]\nvelocity = [4, 0, 0]\nangular_velocity = [0, \"4/0.3\", 0]\n\
+             [joint.road-{name}]\ntype = \"rolling\"\nbetween = [\"ground\", \"{name}\"]\nat = \"{name}\"\naxis = [0, 1, 0]\nnormal = [0, 0, 1]\nradius = 0.3\n\
+             [joint.hub-{name}]\nbetween = [\"car\", \"{name}\"]\nat = \"{name}\"\n"
+        );
+        text += &match x {
+            0.0 => "type = \"revolute\"\naxis = [0, 1, 0]\n".to_string(),
+            _ => format!(
+                "type = \"universal\"\naxes = [[0, 0, 1], [0, 1, 0]]\n[drive.{name}-steering]\ntype = \"angle\"\njoint = \"hub-{name}.angle1\"\nprofile = \"{}\"\n",
+                angle(y)
+            ),
+        };
+    }
+    model(&text)
+}
+
+/// Place of the middle of the rear axle, heading and speed after a time, of the one coordinate that is left (Kane's equation): all that the car does along
+/// the way that its curvature leads.
+fn driven(end: f64) -> [f64; 4] {
+    let angle = |y: f64, t: f64| (2.6 * curvature(t)).atan2(1.0 - y * curvature(t));
+    let derivative = |f: &dyn Fn(f64) -> f64, t: f64| (f(t + 1e-4) - f(t - 1e-4)) / 2e-4;
+    let second = |f: &dyn Fn(f64) -> f64, t: f64| (f(t + 1e-3) - 2.0 * f(t) + f(t - 1e-3)) / 1e-6;
+    // What a metre a second of the axle moves, squared, of masses and of what spins.
+    let moves = |t: f64| {
+        let k = curvature(t);
+        let square = |x: f64, y: f64| (1.0 - y * k).powi(2) + (x * k).powi(2);
+        1200.0 * square(1.2, 0.0) + WHEELS.iter().map(|&(_, x, y)| (20.0 + 1.0 / 0.09) * square(x, y)).sum::<f64>()
+    };
+    let rate = |t: f64, [_, _, heading, speed]: [f64; 4]| {
+        let (k, about) = (curvature(t), 1700.0 + 4.0 * 0.5);
+        let steered: f64 = [0.75, -0.75].iter().map(|&y| 0.5 * second(&|t| angle(y, t), t)).sum();
+        let push = speed * (0.5 * derivative(&moves, t) + about * k * derivative(&curvature, t)) + k * steered;
+        [speed * heading.cos(), speed * heading.sin(), speed * k, -push / (moves(t) + about * k * k)]
+    };
+    let (steps, mut state) = (2000, [0.0, 0.0, 0.0, 4.0]);
+    let h = end / f64::from(steps);
+    for step in 0..steps {
+        let t = h * f64::from(step);
+        let add = |by: f64, slope: [f64; 4]| std::array::from_fn(|i| state[i] + by * slope[i]);
+        let first = rate(t, state);
+        let second = rate(t + 0.5 * h, add(0.5 * h, first));
+        let third = rate(t + 0.5 * h, add(0.5 * h, second));
+        let last = rate(t + h, add(h, third));
+        state = std::array::from_fn(|i| state[i] + h / 6.0 * (first[i] + 2.0 * second[i] + 2.0 * third[i] + last[i]));
+    }
+    state
+}
+
+/// At every moment all wheels go round one centre, and a third of what holds them follows from the rest; in the middle of a step their mean directions do not.
+/// Steps leave out what follows, whichever way the car heads, and are as long and as exact as others.
+#[test]
+fn a_car_that_is_steered_takes_whole_steps() {
+    let k = "(0.15*(1 - cos(t)))";
+    let rolls = car(|y| format!("atan2(2.6*{k}, 1 - ({y})*{k})"));
+    let end = 6.0;
+    let [x, y, heading, speed] = driven(end);
+    for of in ["conserving-ggl", "conserving", "generalized-alpha", "trapezoidal-projected", "radau"] {
+        let errors = [0.02, 0.01].map(|step| {
+            let (simulation, recording) = common::run_every(&rolls, of, step, end, 100);
+            let work = simulation
+                .summary("car", end, &Status::Completed, rank(&rolls.system, &simulation.state().x, end).size(&rolls.system))
+                .work;
+            assert!(work.rejected_steps <= 2 && work.iterations_per_step < 8.0, "{of}, {step} s: {work:?}");
+            let last = |name: &str| common::last(&recording, name);
+            let place = [last("car.x") - 1.2 * heading.cos(), last("car.y") - 1.2 * heading.sin()];
+            assert!(
+                (last("car.vx").hypot(last("car.vy")) / speed / (1.0 + (1.2 * curvature(end)).powi(2)).sqrt() - 1.0).abs() < 2e-3,
+                "{of}, {step} s"
+            );
+            (place[0] - x).hypot(place[1] - y)
+        });
+        match of {
+            "radau" => assert!(errors[1] < 1e-6, "{errors:?}"),
+            _ => assert!(errors[1] < 5e-3 && errors[0] / errors[1] > 3.3, "{of}: {errors:?}"),
+        }
+    }
+}
+
+/// Front wheels that are turned by one and the same angle go round no common centre with the others: no step is taken as if one of them might slip.
+#[test]
+fn a_car_that_cannot_roll_stops() {
+    let stuck = car(|_| "atan2(2.6*0.15*(1 - cos(t)), 1)".to_string());
+    for of in ["conserving-ggl", "conserving", "generalized-alpha", "trapezoidal-projected", "radau"] {
+        let mut simulation = common::simulation(&stuck, of, 0.01);
+        let Status::Stopped { at, reason } = simulation.run(6.0, &mut |_: &Simulation| Verdict::GoOn) else { panic!("{of}: it went on") };
+        assert!(at < 0.5, "{of}: {at} s, {reason}");
+        assert!(reason.contains("as those of wheels that do not all go round one centre"), "{of}: {reason}");
     }
 }

@@ -2,6 +2,8 @@
 
 use std::borrow::BorrowMut;
 
+use smallvec::SmallVec;
+
 use super::kkt::Kkt;
 use super::pattern::{ALL, Block};
 use super::scales::Scales;
@@ -110,6 +112,22 @@ impl<K: BorrowMut<Kkt>> Independence<K> {
         self.shares.iter().filter(|share| **share <= self.least).count()
     }
 
+    /// Leaves in `left` what all other rows leave of the gradients of the rows that hold velocities only, by the unit of these (n each), at the positions `x`
+    /// and the time `t`.
+    pub(super) fn project_velocity_rows(&mut self, system: &System, x: &[f64], near: &[f64], t: f64, left: &mut Vec<f64>) {
+        let rows = &system.velocity_rows;
+        self.measure_without(system, x, near, t, rows);
+        let Self { kkt, at, left: room, others, least, .. } = self;
+        let kkt: &mut Kkt = kkt.borrow_mut();
+        let coordinates = kkt.free * kkt.dim;
+        let mut beside = Beside { kkt, gradient: &at.gradient, least: *least, left: room, others };
+        left.clear();
+        for &row in rows {
+            beside.leave(&[row as usize], |_| 1.0);
+            left.extend_from_slice(&beside.left[..coordinates]);
+        }
+    }
+
     /// The same at the start.
     pub fn count_redundant_at_start(&mut self, system: &System) -> usize {
         let near = system.evaluation().functions.angle;
@@ -118,6 +136,11 @@ impl<K: BorrowMut<Kkt>> Independence<K> {
 
     /// Measures at the positions `x` and the time `t`.
     fn measure(&mut self, system: &System, x: &[f64], near: &[f64], t: f64) {
+        self.measure_without(system, x, near, t, &[]);
+    }
+
+    /// The same of all rows but some, whose gradients it leaves by their units.
+    fn measure_without(&mut self, system: &System, x: &[f64], near: &[f64], t: f64, without: &[u32]) {
         let Self { kkt, at, natural, shares, dropped, left, others, least } = self;
         let kkt: &mut Kkt = kkt.borrow_mut();
         at.count_on(near);
@@ -129,12 +152,22 @@ impl<K: BorrowMut<Kkt>> Independence<K> {
             let factor = if size > VANISHED * natural { 1.0 / size } else { 0.0 };
             at.gradient[kkt.gradient_of(row)].iter_mut().for_each(|g| *g *= factor);
         }
+        let mut set_aside: SmallVec<[f64; 64]> = SmallVec::new();
+        for &row in without {
+            let gradient = &mut at.gradient[kkt.gradient_of(row as usize)];
+            set_aside.extend_from_slice(gradient);
+            gradient.fill(0.0);
+        }
         let block = Block(0, 0);
         kkt.clear();
         kkt.start_with_weights(std::iter::repeat(&1.0));
         kkt.write_sum(block);
         kkt.add_columns(block, &at.gradient, 1.0);
         kkt.add_rows(block, &at.gradient, 1.0);
+        let mut set_aside = set_aside.iter();
+        for &row in without {
+            at.gradient[kkt.gradient_of(row as usize)].iter_mut().zip(&mut set_aside).for_each(|(g, own)| *g = *own);
+        }
         if kkt.solver.factor_dropping(PLAIN).is_err() {
             shares.fill(0.0);
             return;
@@ -147,7 +180,7 @@ impl<K: BorrowMut<Kkt>> Independence<K> {
         }
         dropped.clear();
         for (row, share) in shares.iter_mut().enumerate().filter(|(row, _)| kkt.solver.is_dropped(kkt.multiplier(*row, 0))) {
-            if *share < nothing {
+            if *share < nothing || without.binary_search(&(row as u32)).is_ok() {
                 *share = 0.0;
             } else {
                 dropped.push(row);

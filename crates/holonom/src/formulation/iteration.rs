@@ -99,8 +99,12 @@ impl Equations for OneStage<'_> {
                 newton.proximal_by_rank(&work.scales);
                 work.expect_multipliers(newton.rank.is_full());
             }
-            Multipliers::Augmented(penalty) => newton.proximal(inertia, penalty, &work.scales),
+            Multipliers::Augmented(penalty) => {
+                newton.proximal(inertia, penalty, &work.scales);
+                newton.leave_out(&work.scales);
+            }
         }
+        [&mut work.lambda, &mut work.prediction.lambda_change].into_iter().for_each(|multipliers| newton.rank.leave_out_of(multipliers));
     }
 
     fn restart(&mut self, again: usize, _newton: &mut Newton, work: &mut Workspace) -> bool {
@@ -214,6 +218,7 @@ fn penalties(stage: &Stage, penalty: Option<f64>, newton: &mut Newton, work: &Wo
     for (delta, &softness) in newton.delta.iter_mut().zip(&work.scales.softness) {
         *delta = penalty.map_or(softness / LOOP_RHO, |alpha| scale / (stage.inertia * alpha));
     }
+    newton.leave_out(&work.scales);
 }
 
 /// One increment of the coordinates at the multipliers λ + αΦ; its 2-norm, m.

@@ -31,6 +31,9 @@ const ROUNDED: f64 = 0.01 * f64::EPSILON;
 const WEAK: f64 = 100.0;
 const RULING: f64 = 3.0;
 
+/// δ over the rows' own stiffness that leaves nothing of a row: its multiplier is nothing beside all others.
+const LEFT_OUT: f64 = 1e100;
+
 /// What the last factorisations said of the rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rank {
@@ -43,6 +46,9 @@ pub struct Rank {
     changes: bool,
     /// Attempts to come that are near a singular position.
     singular: u32,
+    /// Rows that hold velocities only and follow from the others, which steps leave out; `None` as long as that is not looked for.
+    #[serde(default)]
+    pub left_out: Option<Vec<u32>>,
     /// What a row with hardly any proximal term must add to be regular, and what rounding makes of that.
     least: f64,
     rounded: f64,
@@ -61,6 +67,7 @@ impl Rank {
             redundant: None,
             changes: false,
             singular: 0,
+            left_out: None,
             least,
             rounded: ROUNDED * coordinates as f64,
             spares_regular: false,
@@ -76,6 +83,11 @@ impl Rank {
     /// Whether no row was redundant when last factored, nor has a proximal term to speak of: multipliers have one solution then.
     pub(super) fn is_full(&self) -> bool {
         self.spares_regular && self.redundant == Some(0)
+    }
+
+    /// Has rows that are left out have no multiplier.
+    pub(super) fn leave_out_of(&self, multipliers: &mut [f64]) {
+        self.left_out.iter().flatten().for_each(|&row| multipliers[row as usize] = 0.0);
     }
 
     /// Share of what rows hold that an iteration with proximal terms may leave.
@@ -95,9 +107,10 @@ impl Rank {
 
     /// Becomes the same, without any allocation where no row is weak.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { regular, weak, redundant, changes, singular, least: _, rounded: _, spares_regular, weakest } = other;
+        let Self { regular, weak, redundant, changes, singular, left_out, least: _, rounded: _, spares_regular, weakest } = other;
         self.regular.copy_from_slice(regular);
         self.weak.clone_from(weak);
+        self.left_out.clone_from(left_out);
         (self.redundant, self.changes, self.singular) = (*redundant, *changes, *singular);
         (self.spares_regular, self.weakest) = (*spares_regular, *weakest);
     }
@@ -115,6 +128,10 @@ impl Rank {
         for (row, regular) in self.regular.iter_mut().enumerate() {
             let share = share(row);
             let is_spared = delta[row] < 0.5 * scales.softness[row] / RHO;
+            if delta[row] > LEFT_OUT * scales.softness[row] {
+                *regular = false;
+                continue;
+            }
             *regular = share > if is_spared { self.least } else { REDUNDANT } || (is_spared && self.weak.binary_search(&row).is_ok());
             if *regular {
                 self.weakest = self.weakest.min(share);
@@ -156,11 +173,20 @@ impl Newton {
         rank.spares_regular = !shares;
         rank.singular = rank.singular.saturating_sub(1);
         if shares {
-            return self.proximal(1.0, None, scales);
+            self.proximal(1.0, None, scales);
+        } else {
+            let part = SPARE * rank.least;
+            self.delta.iter_mut().zip(&scales.softness).for_each(|(delta, softness)| *delta = part * softness);
+            rank.weak.iter().for_each(|&row| self.delta[row] = RULING * rank.rounded * scales.softness[row]);
         }
-        let part = SPARE * rank.least;
-        self.delta.iter_mut().zip(&scales.softness).for_each(|(delta, softness)| *delta = part * softness);
-        rank.weak.iter().for_each(|&row| self.delta[row] = RULING * rank.rounded * scales.softness[row]);
+        self.leave_out(scales);
+    }
+
+    /// Has rows that are left out hold nothing.
+    pub(super) fn leave_out(&mut self, scales: &Scales) {
+        for &row in self.rank.left_out.iter().flatten() {
+            self.delta[row as usize] = LEFT_OUT * LEFT_OUT * scales.softness[row as usize];
+        }
     }
 
     /// Hardly any δ for the rows that are regular, and ρ = [`RHO`] for the others.

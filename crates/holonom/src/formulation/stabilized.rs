@@ -349,6 +349,10 @@ impl Equations for BothLevels<'_> {
             mu.iter_mut().zip(&work.lambda).for_each(|(mu, lambda)| *mu = self.stage.inertia * lambda);
             gamma.iter_mut().zip(gamma_change).for_each(|(gamma, change)| *gamma += std::mem::take(change));
         }
+        let Stabilized { mu, gamma, gamma_change, .. } = &mut *self.own;
+        [mu, gamma, gamma_change, &mut work.prediction.lambda_change]
+            .into_iter()
+            .for_each(|multipliers| newton.rank.leave_out_of(multipliers));
     }
 
     /// From the solution without velocity rows. If that leads nowhere, the step is too long for rows at both levels, and shares of

@@ -127,6 +127,10 @@ impl Bdf {
 }
 
 impl Integrator for Bdf {
+    fn has_one_stage(&self) -> bool {
+        false
+    }
+
     fn carry(&self, carried: &mut Vec<f64>) {
         self.stage.carry(carried);
     }

@@ -201,6 +201,10 @@ impl Explicit {
 }
 
 impl Integrator for Explicit {
+    fn has_one_stage(&self) -> bool {
+        false
+    }
+
     fn carry(&self, carried: &mut Vec<f64>) {
         carried.push(f64::from(u8::from(self.extended)));
     }

@@ -27,6 +27,11 @@ pub trait Integrator: Send {
         0
     }
 
+    /// Whether its equations are those of one stage, in which rows that follow from others may ask for other motions than these.
+    fn has_one_stage(&self) -> bool {
+        true
+    }
+
     /// Adds what else it knows from the steps before, of which the next step is made and which is not part of the state.
     fn carry(&self, _carried: &mut Vec<f64>) {}
 

@@ -169,6 +169,10 @@ impl RungeKutta {
 }
 
 impl Integrator for RungeKutta {
+    fn has_one_stage(&self) -> bool {
+        false
+    }
+
     fn carry(&self, carried: &mut Vec<f64>) {
         self.stages.carry(carried);
     }

@@ -1,7 +1,7 @@
 //! A nominal step: in parts where it fails as a whole, each audited, projected and judged before it becomes the state.
 
 use super::{Audit, Simulation};
-use crate::formulation::{Failure, Iteration, Sampling};
+use crate::formulation::{Failure, Followers, Iteration, Sampling};
 use crate::integrator::{Estimate, Step};
 
 /// Halvings of a step before a run gives up.
@@ -118,7 +118,30 @@ impl Simulation {
             outcome = self.try_step(step, target);
             self.newton.settings.tolerance = tolerance;
         }
-        outcome
+        match outcome {
+            Err(failure) if self.leaves_out_others(failure) => self.try_step(step, target),
+            outcome => outcome,
+        }
+    }
+
+    /// Whether steps leave out other rows than those of the step that failed: the rows that follow from others, where that was not looked for, or none,
+    /// where one of them does not follow after all.
+    fn leaves_out_others(&mut self, failure: Failure) -> bool {
+        match (failure, &mut self.newton.rank.left_out) {
+            (Failure::Broken { row: Some(row), .. }, Some(left_out)) if left_out.contains(&(row as u32)) => left_out.clear(),
+            (Failure::Broken { .. } | Failure::NotConverged { .. }, left_out @ None)
+                if self.system.is_nonholonomic() && self.integrator.has_one_stage() =>
+            {
+                let followers = self.followers.get_or_insert_with(|| Box::new(Followers::new(&self.system)));
+                let found = followers.find(&self.system, &self.state.x, &self.state.angle, self.state.t, &[]);
+                if found.is_empty() {
+                    return false;
+                }
+                *left_out = Some(found.to_vec());
+            }
+            _ => return false,
+        }
+        true
     }
 
     /// Integrates and finishes a step. One that fails leaves the start of the workspace at the present state: the last part of a composed
@@ -172,6 +195,11 @@ impl Simulation {
         method.projection.apply(system, target, step, &mut self.newton, work)?;
         audit.projected(system, method, &self.found_v, accounts, target, work);
         self.judge.velocities(system, target, step, work)?;
+        if let Some(left_out) = &self.newton.rank.left_out {
+            let followers = self.followers.get_or_insert_with(|| Box::new(Followers::new(system)));
+            let found = followers.find(system, &work.end.x, &work.end.at.functions.angle, target, left_out);
+            self.judge.followers(left_out, found, work)?;
+        }
         audit.closed(system, method, &self.found_a, target, &self.newton, work);
         self.judge.accelerations(step, work)?;
         let of_places = self.judge.of_places(system, work);
@@ -207,6 +235,10 @@ impl Simulation {
         std::mem::swap(&mut work.start.at, &mut work.end.at);
         std::mem::swap(&mut self.gauges, &mut self.next_gauges);
         self.state.measured.copy_from_slice(self.gauges.counted());
+        if let (Some(left_out), Some(followers)) = (&mut self.newton.rank.left_out, &self.followers) {
+            left_out.clear();
+            left_out.extend_from_slice(followers.found());
+        }
         self.hints.keep(&self.newton, &*self.integrator);
     }
 }

@@ -56,7 +56,7 @@ pub use words::MethodError;
 
 use std::sync::Arc;
 
-use crate::formulation::{Independence, Newton, Sure, Workspace, independent};
+use crate::formulation::{Followers, Independence, Newton, Sure, Workspace, independent};
 use crate::integrator::Integrator;
 use crate::system::{Evaluation, GaugeValues, System};
 use checkpoint::{Grid, Hints};
@@ -162,6 +162,8 @@ pub struct Simulation {
     sure: Option<Option<Sure>>,
     /// What was known after the last step that was taken.
     hints: Hints,
+    /// Finds the rows that steps leave out, once that was asked.
+    followers: Option<Box<Followers>>,
     /// Events so far.
     happenings: Vec<Happening>,
     /// Indicators of the events at the end of the last step, and its time, s.
@@ -262,6 +264,7 @@ impl Simulation {
         let pilot = Pilot::new(&system, &method, &newton, &state, &gauges, (&audit, &shares));
         let mut simulation = Self {
             hints: Hints::of(&newton, &*integrator),
+            followers: None,
             grid: Grid::new(state.t, step),
             integrator,
             shown_v: state.v.clone(),

@@ -342,6 +342,15 @@ impl Judge {
         self.compare_near_singular(Promise::Velocity, work.scales.length / h.abs(), system, t, work)
     }
 
+    /// Looks whether as many rows that hold velocities follow from others at the end of a step, where these do, as were `left_out` of it. Φ̇ is in `rows`.
+    pub(super) fn followers(&self, left_out: &[u32], follow: &[u32], work: &Workspace) -> Result<(), Failure> {
+        let row = left_out.iter().find(|row| !follow.contains(row)).map_or(0, |&row| row as usize);
+        match follow.len() < left_out.len() {
+            true => Err(Failure::Broken { promise: Promise::Velocity.words(), by: work.rows[row].abs(), bound: 0.0, row: Some(row) }),
+            false => Ok(()),
+        }
+    }
+
     /// Looks at Φ̈ at the end of a step of length `h` (s), in `rows`.
     pub(super) fn accelerations(&self, h: f64, work: &Workspace) -> Result<(), Failure> {
         if !self.promises(Promise::Acceleration) {

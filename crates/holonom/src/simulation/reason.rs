@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use super::pilot::is_rough;
-use crate::formulation::{Failure, Independence, SMOOTH, Workspace};
+use crate::formulation::{Failure, Independence, Level, SMOOTH, Workspace};
 
 /// A row that is missed by less than this share of the mechanism's size is not to blame for a step that fails.
 const BLAMED: f64 = 1e-10;
@@ -115,20 +115,18 @@ impl Simulation {
         match self.redundant_rows().min(at_start) {
             0 => String::new(),
             redundant => {
-                // Positions and velocities at the end of a step are not those of one motion, and redundant rows of both ask for different ones. Those of
-                // conserving-ggl are, but the mean direction of a wheel that is steered differs from that in the middle of the step.
-                let of_rates = match self.method.name.as_str() {
-                    _ if !self.system.is_nonholonomic() => "",
-                    "radau" => {
+                // Off their positions rows of wheels contradict each other. In the middle of a step they are off them, too, but steps of one stage leave out
+                // what follows from others.
+                let settings = &self.method.settings;
+                let holds_places = settings.doubled || (settings.level == Level::POSITION && self.integrator.has_one_stage());
+                let of_rates = match self.system.is_nonholonomic() {
+                    false => "",
+                    true if holds_places => {
                         "those that hold velocities may contradict each other, as those of wheels that do not all go round one centre; otherwise "
                     }
-                    "conserving-ggl" => {
-                        "those that hold velocities, as four wheels of which two are steered, may ask for different motions within a step of this method, and do \
-                         not with radau; otherwise "
-                    }
-                    _ => {
+                    true => {
                         "those that hold velocities, as two wheels on one axle, may ask for different motions within a step of this method, and do not with radau \
-                         nor, where no wheel is steered, with conserving-ggl; otherwise "
+                         nor with conserving-ggl; otherwise "
                     }
                 };
                 format!(
