@@ -290,7 +290,25 @@ pub fn slips(loaded: &Loaded) -> impl Iterator<Item = String> {
 pub fn of_start(model: &Model, simulation: &mut Simulation, rank: &Rank) -> Vec<String> {
     let mut notes = corrections(model, simulation);
     notes.extend(locked(model, rank).or_else(|| rivals(simulation, rank)));
+    notes.extend(struck(model, simulation, rank));
     notes
+}
+
+/// That drives which move at once strike what was put to rest.
+fn struck(model: &Model, simulation: &Simulation, rank: &Rank) -> Option<String> {
+    // Rates of joints in [start] are meant, and other velocities that were written are told when they change.
+    let begins_at_rest = model.at_equilibrium && model.system.start_velocity().iter().all(|v| *v == 0.0);
+    if !begins_at_rest || rank.size(&model.system).dof == 0 {
+        return None;
+    }
+    let changes = model.start_changes(&simulation.state().x, simulation.velocities());
+    (!changes.is_empty()).then(|| {
+        format!(
+            "start.equilibrium: the run does not begin at rest, as drives move at t = 0 and strike what they lead: {} (let their profiles begin at rest, or \
+             give all bodies and points the velocity of the vehicle)",
+            changes_in_words(&changes)
+        )
+    })
 }
 
 /// What was put right before the start.

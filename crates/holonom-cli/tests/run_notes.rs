@@ -40,6 +40,28 @@ fn what_looks_like_a_slip_is_noted_by_run_and_check() {
     assert_eq!(json(&folder, "check door.toml --json --set simulation.step=5")["notes"].as_array().unwrap().len(), 3);
 }
 
+/// A load that hangs at rest from a crab which a drive moves at once begins with the swing of a blow; one that has the velocity of the crab does not.
+#[test]
+fn drives_that_strike_what_is_at_rest_are_told() {
+    let folder = folder();
+    let crane = |velocity: &str, profile: &str| {
+        format!(
+            "plane = \"xz\"\n[body]\ncrab = {{ mass = 10, inertia = 1, position = [0, 0]{velocity} }}\n\
+             load = {{ mass = 5, inertia = 1, position = [0.5, -2]{velocity} }}\n\
+             [joint]\nrail = {{ type = \"prismatic\", between = [\"ground\", \"crab\"], axis = [1, 0] }}\n\
+             hook = {{ type = \"revolute\", between = [\"crab\", \"load\"], at = [0, 0] }}\n\
+             [drive.motor]\ntype = \"displacement\"\njoint = \"rail\"\nprofile = \"{profile}\"\n[start]\nequilibrium = true\n"
+        )
+    };
+    for (velocity, profile, told) in [("", "3*t", true), ("", "1.5*t^2", false), (", velocity = [3, 0]", "3*t", false)] {
+        fs::write(folder.path().join("m.toml"), crane(velocity, profile)).unwrap();
+        let notes = text(&holonom(&folder, "run m.toml --end 0.1 --step 0.01 --no-report --out a --force").stderr);
+        let notes = on_one_line(&notes);
+        let note = "start.equilibrium: the run does not begin at rest, as drives move at t = 0 and strike what they lead: `crab` by 3 m/s, `load` by";
+        assert_eq!(notes.contains(note), told, "{velocity} {profile}\n{notes}");
+    }
+}
+
 /// What a drive moves needs no velocity of its own; one that was written and is another in the run is told.
 #[test]
 fn velocities_that_were_written_and_changed_are_told() {

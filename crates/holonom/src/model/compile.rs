@@ -106,6 +106,7 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
         }
         let title = description.model.title.clone().unwrap_or_default();
         let mut model = finish::finish(assembly, title, settings, output, bars, over_time);
+        model.at_equilibrium = description.equilibrium;
         let measures = compiler.measures(description, &mut model);
         compiler.columns(description, &model, measures);
         if sink.count() == 0 {

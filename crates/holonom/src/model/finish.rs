@@ -93,6 +93,7 @@ pub(super) fn finish(
         bodies,
         joints,
         notes,
+        at_equilibrium: false,
         over_time,
         frames,
     }

@@ -240,6 +240,8 @@ pub struct Model {
     pub channels: Channels,
     /// What looks like a slip and was taken all the same, each with its place in the description.
     pub notes: Vec<String>,
+    /// Whether it begins where all forces balance.
+    pub at_equilibrium: bool,
     over_time: Vec<unseen::OverTime>,
     frames: Vec<Frame>,
 }
