@@ -55,4 +55,10 @@ fn says_what_is_missing() {
     let message = fails(&folder, "modes example:heavy-top", 2);
     assert!(message.contains("moves at the start"), "{message}");
     assert!(prints(&folder, "modes example:robot-arm --set start.equilibrium=true", 0).contains("nothing vibrates"));
+    // A door with a closer that only damps: of its two exponents one is zero.
+    let door = "plane = \"xz\"\ngravity = [0, 0]\n[body.door]\nmass = 2\ninertia = 1\nposition = [1, 0]\n[joint.hinge]\ntype = \"revolute\"\n\
+                between = [\"ground\", \"door\"]\nat = [0, 0]\n[force.closer]\ntype = \"torsion\"\njoint = \"hinge\"\ndamping = 3\n";
+    fs::write(folder.path().join("door.toml"), door).unwrap();
+    let told = prints(&folder, "modes door.toml", 0);
+    assert!(told.contains("1 more exponent is zero: of a motion that nothing drives back"), "{told}");
 }

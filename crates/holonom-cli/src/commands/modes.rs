@@ -83,7 +83,8 @@ fn describe(loaded: &Loaded, found: &Modes, swings: &[Vec<(Swing, f64)>]) -> Str
         text.push_str(&table(&["mode", "Hz", "damping", "1/e in s", "what moves, over what moves most"], &rows));
     }
     if found.free > 0 {
-        text.push_str(&format!("\n\n{} more exponents are zero: of motions that nothing drives back", found.free));
+        let (are, motions) = if found.free == 1 { ("exponent is", "a motion") } else { ("exponents are", "motions") };
+        text.push_str(&format!("\n\n{} more {are} zero: of {motions} that nothing drives back", found.free));
     }
     if found.unsure > 0 {
         text.push_str(&format!("\n\n{} more cannot be told from rounding beside the others", found.unsure));

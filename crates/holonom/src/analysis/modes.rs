@@ -89,7 +89,8 @@ const ROUNDED: f64 = 1e-10;
 impl Mode {
     /// The share of the critical damping, −1 … 1.
     pub fn damping(&self) -> f64 {
-        -self.growth / self.growth.hypot(TAU * self.frequency)
+        // Nothing taken away, and not −0, where it stays.
+        0.0 - self.growth / self.growth.hypot(TAU * self.frequency)
     }
 }
 
