@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::Mutex;
 
+use holonom::formulation::FORMULATIONS;
 use holonom::model::{Model, Table, Value, nearest};
 use holonom::run::RunError;
 use holonom::simulation::{Method, MethodError, StartError};
@@ -320,7 +321,17 @@ pub fn method(model: &Model, name: Option<&str>) -> Result<Method, Failure> {
 
 /// A method that cannot be, with its cure.
 pub fn method_failure(error: MethodError) -> Failure {
-    Failure::usage(error.to_string(), "`holonom methods` shows what there is and what goes together")
+    let formulation = match &error {
+        MethodError::Unknown { kind: "method", given, .. } => {
+            FORMULATIONS.iter().any(|line| line.full_name() == *given || line.name == given).then_some(given)
+        }
+        _ => None,
+    };
+    let cure = match formulation {
+        Some(name) => format!("`{name}` is a formulation: give --set simulation.formulation={name} in place of it"),
+        None => "`holonom methods` shows what there is and what goes together".into(),
+    };
+    Failure::usage(error.to_string(), cure)
 }
 
 /// A model that cannot start, with its cure.

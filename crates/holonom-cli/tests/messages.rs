@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{csv, folder, holonom, on_one_line, text};
+use common::{csv, folder, holonom, on_one_line, prints, text};
 
 /// All that a run of a model says, and its exit status.
 fn run(model: &str) -> (String, Option<i32>) {
@@ -411,5 +411,18 @@ fn a_driven_shaft_without_inertia_about_its_axis_runs() {
             // A rounding of the torque, of 1.5 at most, and what velocities are rounded by over a step of 0.01.
             assert!(rows.len() == 101 && off < 1e-12, "{off}");
         }
+    }
+}
+
+#[test]
+fn a_formulation_in_place_of_a_method_is_told() {
+    for name in ["penalty", "lagrange-2"] {
+        let folder = folder();
+        let output = holonom(&folder, &format!("run example:four-bar --method {name}"));
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        let cure = format!("cure: `{name}` is a formulation: give --set simulation.formulation={name} in place of it");
+        assert!(said.contains(&cure), "{said}");
+        prints(&folder, &format!("run example:four-bar --set simulation.formulation={name} --end 0.01 --no-report"), 0);
     }
 }
