@@ -13,7 +13,7 @@ use super::element::Boxed;
 use super::entries::{Entries, Named};
 use super::entry::{Entry, Written};
 use super::expression::{Functions, Mistake, Program, Scope, TimeProgram, Value as Known};
-use super::fault::{Fault, Faults, Read, Refused, Sink};
+use super::fault::{Fault, Faults, Read, Refused, Sink, nearest};
 use super::fields as field;
 use super::forces;
 use super::geometry::{self, Vec3, unit};
@@ -257,7 +257,8 @@ impl Compiler<'_> {
             )),
         });
         let planes: Vec<&'static str> = Axes::ALL[1..].iter().map(|axes| axes.name).collect();
-        let plane = root.optional("plane", &keys.plane, |plane, root, key| root.choice(key, plane, &planes)).unwrap_or(None);
+        let meant = |plane: &str| nearest(plane, planes.iter().copied()).unwrap_or_default();
+        let plane = keys.plane.as_deref().map(|plane| root.choice("plane", plane, &planes).unwrap_or_else(|Refused| meant(plane)));
         let axes = Axes::ALL.into_iter().find(|axes| plane.is_some_and(|plane| axes.name == plane)).unwrap_or(Axes::ALL[0]);
         let gravity = root.optional("gravity", &keys.gravity, |gravity, root, key| match gravity.len() {
             3 => {

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::entry::Entry;
-use super::expression::{Mistake, Names, Program};
+use super::expression::{Mistake, Names, Program, beside, nearest_beside};
 use super::fault::{Fault, Read, Sink, nearest};
 use super::fields::{Field, Keys, Number};
 use super::key::Shape;
@@ -148,7 +148,12 @@ pub(super) fn require_free_name(entry: &Entry<'_>) -> Read<()> {
 }
 
 /// The name of a column that is like a name, for a cure.
-pub(super) fn like<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    nearest(name, known)
-        .map_or("name one of these, such as BODY.x, BODY.vx or JOINT.angle".into(), |near| format!("did you mean `{near}`?"))
+pub(super) fn like(name: &str, known: &[String]) -> String {
+    let beside = beside(name, known);
+    let near = if beside.is_empty() { nearest(name, known.iter().map(String::as_str)) } else { nearest_beside(name, &beside) };
+    match near {
+        Some(near) => format!("did you mean `{near}`?"),
+        None if beside.is_empty() => "name one of these, such as BODY.x, BODY.vx or JOINT.angle".into(),
+        None => format!("known are: {}", beside.join(", ")),
+    }
 }

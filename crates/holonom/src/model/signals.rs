@@ -259,16 +259,21 @@ impl<'a, 'b> Reader<'a, 'b> {
     fn names(&self) -> Vec<String> {
         let assembly = &self.assembly;
         let axes = assembly.axes.name;
-        let coordinates = |owner: &str| axes.chars().map(|axis| format!("{owner}.{axis}")).collect::<Vec<_>>();
+        let of_axes = |owner: &str, first: &str| axes.chars().map(|axis| format!("{owner}.{first}{axis}")).collect::<Vec<_>>();
+        let coordinates = |owner: &str| [of_axes(owner, ""), of_axes(owner, "v")].concat();
+        let turns = |owner: &str| match assembly.dimension() {
+            2 => vec![format!("{owner}.angle"), format!("{owner}.angle_rate")],
+            _ => of_axes(owner, "w"),
+        };
         let points = assembly.points.iter().flat_map(|point| coordinates(&point.name));
         let bodies = assembly.bodies.iter().flat_map(|body| {
             let places = body.points.iter().flat_map(|(place, _)| coordinates(&format!("{}.{place}", body.name)));
-            coordinates(&body.name).into_iter().chain(places).collect::<Vec<_>>()
+            coordinates(&body.name).into_iter().chain(turns(&body.name)).chain(places).collect::<Vec<_>>()
         });
-        let joints = assembly
-            .joints
-            .iter()
-            .flat_map(|joint| joint.coordinates.iter().map(|coordinate| format!("{}.{}", joint.name, coordinate.name)).collect::<Vec<_>>());
+        let joints = assembly.joints.iter().flat_map(|joint| {
+            let names = joint.coordinates.iter().map(|coordinate| format!("{}.{}", joint.name, coordinate.name));
+            names.flat_map(|name| [name.clone(), format!("{name}_rate")]).collect::<Vec<_>>()
+        });
         let inputs = assembly.signals.inputs.iter().map(|input| input.name.clone());
         let mut measures: Vec<String> = assembly.signals.measures.keys().cloned().collect();
         measures.sort_unstable();
@@ -335,7 +340,7 @@ impl Names for Reader<'_, '_> {
             let cure = match column {
                 "length" => "write distance(A, B) of its two ends".into(),
                 "length_rate" => "write speed(A, B) of its two ends".into(),
-                _ => like(name, names.iter().map(String::as_str)),
+                _ => like(name, &names),
             };
             // Constraints come before the coordinates of joints.
             let coordinates = if self.assembly.joints.is_empty() { "" } else { "coordinates of joints, " };

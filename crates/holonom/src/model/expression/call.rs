@@ -28,6 +28,9 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("heaviside", "step(x)"),
     ("if", "step(x)*a + (1 - step(x))*b, which is a from x = 0 on and b below"),
     ("cot", "1/tan(x)"),
+    ("clamp", "max(low, min(x, high))"),
+    ("saturate", "max(0, min(x, 1))"),
+    ("hypot", "sqrt(x^2 + y^2)"),
     ("mean", "integral(x)/t, where measures know it"),
 ];
 
@@ -127,6 +130,9 @@ impl Parser<'_> {
                 _ => return Err(Mistake::new(start, format!("`{name}` takes {arguments} arguments"), format!("write {name}(a, b)"))),
             }
             self.sum()?;
+        }
+        if *self.peek() == Token::Comma && matches!(function, Function::Min | Function::Max) {
+            return Err(self.mistake(format!("`{name}` takes {arguments} arguments"), format!("write {name}(a, {name}(b, c))")));
         }
         self.close()?;
         match (function, arguments) {

@@ -65,6 +65,25 @@ pub(super) const UNITS: &[(&str, f64)] =
 /// Names of SI units that numbers have without saying so.
 pub(super) const SI: [&str; 10] = ["kg", "m", "s", "N", "Nm", "J", "W", "Pa", "Hz", "rad"];
 
+/// Names of units that a model may have as parameters, and what they are in SI units.
+pub(super) const OTHERS: &[(&str, &str)] = &[
+    ("ms", "1e-3"),
+    ("kN", "1e3"),
+    ("MN", "1e6"),
+    ("Nmm", "1e-3"),
+    ("kNm", "1e3"),
+    ("kPa", "1e3"),
+    ("MPa", "1e6"),
+    ("GPa", "1e9"),
+    ("kJ", "1e3"),
+    ("kW", "1e3"),
+    ("MW", "1e6"),
+    ("kHz", "1e3"),
+    ("inch", "25.4e-3"),
+    ("kph", "1/3.6"),
+    ("kmh", "1/3.6"),
+];
+
 impl Function {
     /// The value of a function of one number.
     pub(super) fn of_one<N: Number>(self, x: N) -> N {

@@ -30,7 +30,7 @@ pub use curve::{Beyond, Curve, refusal};
 pub(in crate::model) use external::central;
 pub use external::{External, ExternalFunction, Functions, differences};
 use functions::Function;
-pub use names::{Names, Nothing};
+pub use names::{Names, Nothing, beside, nearest_beside};
 
 /// Numbers at once, while an expression is evaluated, that are not put on the heap.
 const NUMBERS: usize = 32;

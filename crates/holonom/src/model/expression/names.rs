@@ -1,6 +1,7 @@
 //! What the expressions of a mechanism name beside parameters: its coordinates, forces and measures.
 
 use super::{Mistake, Program};
+use crate::model::fault::nearest;
 use crate::record::Running;
 
 /// Numbers what an expression names of a mechanism.
@@ -47,6 +48,21 @@ impl Names for Nothing {
     fn variable(&mut self, _name: &str) -> Result<Option<usize>, Mistake> {
         Ok(None)
     }
+}
+
+/// Of names of columns, those of the thing that a name is of: all that begin as it does up to its last dot, and have no further one.
+pub fn beside<'a>(name: &str, columns: &'a [String]) -> Vec<&'a str> {
+    let Some((thing, _)) = name.rsplit_once('.') else { return Vec::new() };
+    let is_beside = |column: &&str| column.rsplit_once('.').is_some_and(|(of, _)| of == thing);
+    columns.iter().map(String::as_str).filter(is_beside).collect()
+}
+
+/// The one of these columns that a name means by what stands behind its last dot.
+pub fn nearest_beside<'a>(name: &str, beside: &[&'a str]) -> Option<&'a str> {
+    let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_string();
+    let known: Vec<String> = beside.iter().map(|column| last(column)).collect();
+    let near = nearest(&last(name), known.iter().map(String::as_str))?;
+    known.iter().position(|known| known == near).map(|k| beside[k])
 }
 
 /// Names of the running values.

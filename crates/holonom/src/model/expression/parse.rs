@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::functions::{CONSTANTS, FUNCTIONS, Function, SI, UNITS};
+use super::functions::{CONSTANTS, FUNCTIONS, Function, OTHERS, SI, UNITS};
 use super::lex::{Token, lex};
-use super::names::Names;
+use super::names::{self, Names};
 use super::{Mistake, Op, Program, Scope, Value};
 use crate::model::fault::{nearest, suggest};
 
@@ -254,14 +254,20 @@ impl Parser<'_> {
         let all = || known.iter().copied().chain(of_mechanism.iter().map(String::as_str));
         // A name with a hyphen was read as a difference.
         let cut = all().find(|known| known.strip_prefix(name).is_some_and(|rest| rest.starts_with('-')));
-        let near = cut.or_else(|| nearest(name, all())).filter(|near| !(SI.contains(&name) && UNITS.iter().any(|unit| unit.0 == *near)));
+        let beside = names::beside(name, &of_mechanism);
+        let near = cut
+            .or_else(|| if beside.is_empty() { nearest(name, all()) } else { names::nearest_beside(name, &beside) })
+            .filter(|near| !(SI.contains(&name) && UNITS.iter().any(|unit| unit.0 == *near)));
+        let other = OTHERS.iter().find(|unit| unit.0 == name);
         let cure = match near {
             _ if name == "π" => "write pi".into(),
+            _ if let Some((_, value)) = other => format!("add {name} = \"{value}\" to [parameters]: numbers are in SI units and radians"),
             None if SI.contains(&name) => {
                 format!("add `{name}` to [parameters], or leave it out if it is a unit: numbers are in SI units and radians")
             }
             Some(near) if near.contains('-') => format!("did you mean '{near}'? A name with a hyphen stands in single quotes here"),
             Some(near) => format!("did you mean `{near}`?"),
+            None if !beside.is_empty() => format!("known are: {}", beside.join(", ")),
             None if name.contains('.') => suggest(name, of_mechanism.iter().map(String::as_str)),
             None => {
                 let known = suggest(name, known).replace("known are", "use what is known here");
