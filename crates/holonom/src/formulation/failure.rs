@@ -56,6 +56,13 @@ pub enum Failure {
         /// All there was to move, J.
         supply: f64,
     },
+    /// Energy that nothing took and no damping of the method either is most of what there was to move.
+    Vanished {
+        /// What is missing, J.
+        lost: f64,
+        /// All there was to move, J.
+        supply: f64,
+    },
     /// Steps are too long for a strong damper, which turns a motion round in each of them instead of ending it.
     Ringing {
         /// Which of the system's laws.
@@ -135,6 +142,9 @@ impl Failure {
             }
             Self::Unsupplied { excess, supply } => format!(
                 "{excess:.1e} J of energy came from nothing where {supply:.1e} J could move (shorter steps help, or a method that keeps the energy)"
+            ),
+            Self::Vanished { lost, supply } => format!(
+                "{lost:.1e} J of the {supply:.1e} J of energy that could move went nowhere (a method that keeps the energy helps, and one that holds positions)"
             ),
             Self::Ringing { law, taken, supply } => format!(
                 "the step turns round what `{}` brakes, which would take {taken:.1e} J of the {supply:.1e} J that could move: it is too long for a damper so strong (shorter steps help, or conserving-ggl and radau, where dampers do not ring)",

@@ -192,6 +192,11 @@ impl Audit {
         self.integrator_total + self.projection_total
     }
 
+    /// The share of the integrator in that, J.
+    pub(super) fn made_by_integrator(&self) -> f64 {
+        self.integrator_total
+    }
+
     /// Energy and work at the start of the nominal step, J.
     pub(super) fn start_of_step(&self) -> [f64; 2] {
         [self.before.energy, self.before.work]

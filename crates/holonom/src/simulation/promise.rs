@@ -113,6 +113,9 @@ const STILL: f64 = 1e-12;
 /// Energy of nothing over all there was to move from which on nothing is left of a motion: as much as there is.
 const SUPPLY: f64 = 1.0;
 
+/// The same of energy that went nowhere, where the method damps nothing.
+const LOST: f64 = 0.5;
+
 /// Angles turn by at most so much in a step, rad, where steps are divided: schemes of order 2 lag by a twelfth of its cube.
 const FARTHEST: f64 = 1.0;
 
@@ -125,6 +128,8 @@ pub(super) struct Judge {
     promises: [bool; PROMISES],
     /// Whether there are dampers, and the method may turn round what they stop: those that keep the energy take their rates later.
     looks_at_dampers: bool,
+    /// Whether the method takes energy out of what is fast for its steps.
+    damps: bool,
     /// Tolerance of the iteration, over the size of the mechanism.
     tolerance: f64,
     /// All mass that moves, kg, or what stands in for it where there is none.
@@ -162,7 +167,7 @@ impl Judge {
         let tolerance = TOLERANCES * tolerance;
         let mut kept = [false; PROMISES];
         promises.iter().for_each(|promise| kept[*promise as usize] = true);
-        Self { promises: kept, looks_at_dampers, tolerance, mass, weight, farthest, stiffest, shortest, independence: None }
+        Self { promises: kept, looks_at_dampers, damps: method.integrator.damps, tolerance, mass, weight, farthest, stiffest, shortest, independence: None }
     }
 
     fn promises(&self, promise: Promise) -> bool {
@@ -221,6 +226,10 @@ impl Judge {
         let nothing = self.mass * moved * moved + self.nothing(h, 0.0, after, work) + self.still(work);
         // What sets off in this step has its energy of forces that may have jumped at its end, where their work is not seen: the next step shows it.
         let sets_off = work.is_worked_on() && after.kinetic_at_start_of_step() <= nothing;
+        let lost = -after.made_by_integrator();
+        if !self.damps && lost > LOST * supply + nothing && !sets_off {
+            return Err(Failure::Vanished { lost, supply });
+        }
         // What is no number is no energy.
         match excess <= SUPPLY * supply + nothing || (sets_off && excess.is_finite()) {
             true => Ok(()),
