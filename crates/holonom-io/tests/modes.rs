@@ -106,6 +106,24 @@ fn a_chain_of_springs_has_its_spectrum() {
     assert_exponents(&two, &[[0.0, 5.0], [0.0, 5e5]]);
 }
 
+/// As many freedoms as one likes: points on lines, with springs from one to the next.
+#[test]
+fn chains_of_every_length_have_their_spectra() {
+    for n in 1..=24 {
+        let mut text = "gravity = [0, 0, 0]\n".to_string();
+        for k in 1..=n {
+            let before = if k == 1 { "ground".to_string() } else { format!("p{}", k - 1) };
+            text += &format!(
+                "[point.p{k}]\nmass = 1\nposition = [{k}, 0, 0]\n\
+                 [joint.r{k}]\ntype = \"point-on-line\"\nbetween = [\"ground\", \"p{k}\"]\nat = [{k}, 0, 0]\naxis = [1, 0, 0]\n\
+                 [force.k{k}]\ntype = \"spring\"\nbetween = [\"{before}\", \"p{k}\"]\nstiffness = 100\n"
+            );
+        }
+        let expected: Vec<[f64; 2]> = (1..=n).map(|j| [0.0, 20.0 * ((2 * j - 1) as f64 * PI / (4 * n + 2) as f64).sin()]).collect();
+        assert_exponents(&text, &expected);
+    }
+}
+
 /// A pendulum in space has the same frequency twice; a deck on three cranks, of which two would do, one; a wheel that rolls against a spring
 /// has its moment beside its mass.
 #[test]

@@ -21,6 +21,9 @@ const BESIDE: f64 = 1e-13;
 /// Share of a motion's size that is left of it when it follows from those before.
 const FOLLOWS: f64 = 1e-6;
 
+/// The golden ratio in 64 bits.
+const MIXING: u64 = 0x9e37_79b9_7f4a_7c15;
+
 /// Why motions about a state are not those of small vibrations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum NoRest {
@@ -111,8 +114,9 @@ impl Places {
             return Err(NoRest::Singular);
         }
         for motion in 0..freedom {
-            let push: Vec<f64> = (motion * n..(motion + 1) * n).map(scattered).collect();
-            let momentum = self.momentum(&push);
+            // As large as nodes are heavy: what light ones do is then no rounding of the others.
+            let weight = |k: usize| self.system.mass.diagonal(k / self.system.dim).sqrt();
+            let momentum: Vec<f64> = (0..n).map(|k| weight(k) * scattered(motion * n + k)).collect();
             let mut q = self.newton.solve_along_rows(&momentum);
             let mut left = 0.0;
             // What rounding leaves of the others after once is gone after twice.
@@ -206,9 +210,10 @@ impl Places {
     }
 }
 
-/// Numbers between −½ and ½ without order: fractional parts of squares times an irrational number.
+/// Numbers between −½ and ½ without order. Fractional parts of squares have one: such vectors may follow from each other.
 fn scattered(k: usize) -> f64 {
-    ((k * k) as f64 * GOLDEN).fract() - 0.5
+    let mixed = (0..3).fold(k as u64 + 1, |bits, _| (bits ^ (bits >> 32)).wrapping_mul(MIXING));
+    mixed as f64 / u64::MAX as f64 - 0.5
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
