@@ -57,6 +57,11 @@ fn rod(k: usize, holder: &str) -> String {
     )
 }
 
+/// What a column has at the start.
+fn at_start(text: &str, column: &str) -> f64 {
+    run(&model(text), Choice::default(), 0.01, 0.01).1.column(column).unwrap_or_else(|| panic!("there is no column {column}"))[0]
+}
+
 /// Says that what columns of a run record begins at these values and stays there, but for rounding.
 #[track_caller]
 fn assert_stays(text: &str, columns: &[(&str, f64)]) {
@@ -106,6 +111,21 @@ fn heavy_parts_do_not_hide_how_light_ones_fall() {
     let found = modes(&model(&text).system).unwrap();
     assert_eq!((found.modes.len(), found.free, found.unsure), (3, 0, 0));
     assert!(found.modes.iter().all(|mode| mode.growth == 0.0), "{:?}", found.modes.iter().map(|mode| mode.growth).collect::<Vec<_>>());
+}
+
+/// Dampers that creep for a quarter of an hour let go as far as rounding, beside heavy and light parts.
+#[test]
+fn dampers_hold_nothing() {
+    for (first, second) in [(1.0, 1.0), (1e3, 1e-3)] {
+        let text = format!(
+            "plane = \"xz\"\n[point.a]\nmass = {first}\nposition = [0.3, -0.5]\n[point.b]\nmass = {second}\nposition = [0.6, -1]\n\
+             [force.k]\ntype = \"spring\"\nbetween = [\"ground\", \"a\"]\nstiffness = 1e3\nrest_length = 0.5\n\
+             [force.l]\ntype = \"spring\"\nbetween = [\"a\", \"b\"]\nstiffness = 1e3\nrest_length = 0.5\ndamping = 1e6\n{BEGIN}"
+        );
+        let (upper, lower) = (0.5 + (first + second) * G / 1e3, 0.5 + second * G / 1e3);
+        let off = (at_start(&text, "b.z") + upper + lower).abs().max(at_start(&text, "b.x").abs());
+        assert!(off < 1e-12 * upper, "{off:.1e}");
+    }
 }
 
 /// A joint that is put somewhere stays there while all others come to rest, and is let go in the run.

@@ -20,7 +20,7 @@ const LONGEST: f64 = 0.1;
 const AT_REST: f64 = 1e-12;
 const QUICK: f64 = 0.1;
 
-/// A step that rounding alone makes of forces and places, over the larger of both.
+/// A step that rounding alone makes of forces and places, over the larger of both: no other step is a tenth of it then.
 const ROUNDED: f64 = 64.0 * f64::EPSILON;
 
 /// By how much steps grow after one that is slow, and shrink after one that leads nowhere.
@@ -123,7 +123,8 @@ impl Places {
                     let is_quick = way <= QUICK * before;
                     // How far all forces would move the mechanism in such a step.
                     let reach = h * h * self.work.pushed_at_most(&self.system);
-                    if way <= ROUNDED * (size + reach) || is_quick && way <= AT_REST * size.min(reach) {
+                    let rounded = ROUNDED * (size + reach);
+                    if is_quick && way <= AT_REST * size.min(reach) || !is_quick && way <= rounded && way + self.dragged(h) <= rounded {
                         return Ok(());
                     }
                     if gone > FARTHEST * size {
@@ -136,11 +137,24 @@ impl Places {
                 way if h > least => {
                     let shrinkage = way.map_or(SHRINKAGE, |way| SHRINKAGE.max(0.5 * (longest / way).sqrt()));
                     (h, before) = (shrinkage * h, f64::INFINITY);
+                    // What a long step leaves of the rows would be uphill for short ones.
+                    let x = self.work.start.x.clone();
+                    self.put(&x).map_err(|_| Restless::Stuck)?;
+                    self.begin_at_end();
                 }
                 _ => return Err(Restless::Stuck),
             }
         }
         Err(Restless::Moves)
+    }
+
+    /// How far what resisted the last step, of length h, would move what it resisted most in such a step, m.
+    fn dragged(&mut self, h: f64) -> f64 {
+        let Self { system, work, .. } = self;
+        let mut way = work.d.clone();
+        way.resize(work.end.x.len(), 0.0);
+        let resisted = work.resistance(system, 0.0, &way);
+        h * work.farthest(system, &resisted[..system.coordinates()])
     }
 
     /// Has the next step begin where the last one ended, at rest.
