@@ -15,6 +15,9 @@ const BALANCED: f64 = 1e-6;
 /// A long step over the time of the fastest motion.
 const LONG: f64 = 1e4;
 
+/// By what share of a move forces drive it on in a long step that is no rounding.
+const DRIVEN: f64 = 1e-5;
+
 /// How far the place is beside it, over the mechanism's size.
 const BESIDE: f64 = 1e-13;
 
@@ -39,6 +42,8 @@ pub(crate) enum NoRest {
 pub(crate) struct Rest {
     /// How fast its motions may be, as far as forces tell, 1/s; 0 without forces.
     pub speed: f64,
+    /// The same without dampers.
+    driven: f64,
     /// The place at rest, and one a little beside it, where other numbers are rounded.
     pub spots: [Spot; 2],
 }
@@ -47,6 +52,11 @@ impl Rest {
     /// A step that is long for all motions but very slow ones, s.
     pub fn long_step(&self) -> f64 {
         LONG / self.speed
+    }
+
+    /// A longer one where dampers are stronger than other forces: what these drive on is slow then.
+    fn longer_step(&self) -> f64 {
+        LONG / self.driven.max(self.speed / LONG)
     }
 }
 
@@ -89,7 +99,8 @@ impl Places {
         let braked = self.work.farthest(&self.system, &braked[..self.system.coordinates()]) / (PUSH * size);
         let (there, _) = self.balance(beside(BESIDE / PUSH))?;
         self.put(&here.x).map_err(|_| NoRest::Unbalanced)?;
-        Ok(Rest { speed: (driven.max(whole) / size).sqrt().max(braked), spots: [here, there] })
+        let driven = (driven.max(whole) / size).sqrt();
+        Ok(Rest { speed: driven.max(braked), driven, spots: [here, there] })
     }
 
     /// The multipliers that balance all forces at a place, as far as they do, and what share of the forces is left.
@@ -150,11 +161,12 @@ impl Places {
         if rest.speed == 0.0 || freedom == 0 {
             return Ok(None);
         }
-        // A long step goes back to where it came from, but for what rests nowhere: (I + h² K)⁻¹.
-        let whole = self.propagator(&motions, &rest.spots[0], rest.long_step())?;
-        let of_velocity: Vec<f64> = whole.chunks_exact(2 * freedom).take(freedom).flat_map(|line| &line[freedom..]).copied().collect();
-        let pairs = eigenpairs(freedom, &of_velocity).ok_or(NoRest::Singular)?;
-        let falling = pairs.into_iter().filter(|([share, _], _)| *share < 0.0).max_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]));
+        // A long step leaves a share of each move, (I + h C + h² K)⁻¹ (I + h C): less than all of it, but of what forces drive on.
+        let whole = self.propagator(&motions, &rest.spots[0], rest.longer_step())?;
+        let of_position: Vec<f64> = whole.chunks_exact(2 * freedom).take(freedom).flat_map(|line| &line[..freedom]).copied().collect();
+        let pairs = eigenpairs(freedom, &of_position).ok_or(NoRest::Singular)?;
+        let driven = pairs.into_iter().map(|([share, _], shares)| (1.0 - 1.0 / share, shares));
+        let falling = driven.filter(|(on, _)| *on > DRIVEN).max_by(|(a, _), (b, _)| a.total_cmp(b));
         let Some((_, shares)) = falling else { return Ok(None) };
         let mut push = vec![0.0; self.work.end.x.len()];
         for (motion, [share, _]) in motions.basis.iter().zip(shares) {

@@ -34,8 +34,10 @@ const FARTHEST: f64 = 100.0;
 /// The least step, over the first.
 const SHORTEST: f64 = 1e-12;
 
-/// Share of the size by which a mechanism at rest is moved to see whether it comes back, and how many times that it may then be off.
+/// Share of the size by which a mechanism at rest is moved to see whether it comes back, and how many times that it may then be off: along what forces
+/// drive on, and along what may be free.
 pub(super) const PUSH: f64 = 1e-4;
+const NEAR: f64 = 0.1;
 const BACK: f64 = 10.0;
 
 /// Ridges that a mechanism may come to on its way, and the most freedoms of one that is looked at from all sides.
@@ -63,12 +65,12 @@ impl Places {
         self.come_to_rest()?;
         for _ in 0..RIDGES {
             let rest = self.work.end.x.clone();
-            let Some(push) = self.way_down() else { return Ok(()) };
+            let Some((push, back)) = self.way_down() else { return Ok(()) };
             let ahead: Vec<f64> = rest.iter().zip(&push).map(|(x, push)| x + push).collect();
             let comes_back = self.put(&ahead).is_err() || {
                 self.come_to_rest()?;
                 let apart = rest.iter().zip(&self.work.end.x).fold(0.0, |apart: f64, (x, other)| apart.max((x - other).abs()));
-                apart <= BACK * PUSH * self.work.scales.length
+                apart <= back * PUSH * self.work.scales.length
             };
             if comes_back {
                 return self.put(&rest).map_err(|_| Restless::Stuck);
@@ -77,13 +79,17 @@ impl Places {
         Err(Restless::Moves)
     }
 
-    /// A small move along which the mechanism at rest may leave that. `None` where it comes back from all.
-    fn way_down(&mut self) -> Option<Vec<f64>> {
+    /// A small move along which the mechanism at rest may leave that, and how many times it may then be off to have come back. `None` where it comes
+    /// back from all.
+    fn way_down(&mut self) -> Option<(Vec<f64>, f64)> {
         let x = self.work.end.x.clone();
         let falls = (self.freedom() <= MOST_FREEDOMS).then(|| self.falls().ok()).flatten();
         self.put(&x).ok()?;
         self.begin_at_end();
-        falls.unwrap_or_else(|| self.pushed().ok())
+        match falls {
+            Some(falls) => Some((falls?, NEAR)),
+            None => Some((self.pushed().ok()?, BACK)),
+        }
     }
 
     /// A move of all nodes that the rows allow.
