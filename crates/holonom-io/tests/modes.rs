@@ -167,6 +167,15 @@ fn forces_that_follow_make_it_flutter() {
     assert!(beyond.iter().any(|[re, im]| *re > 1e-3 && *im > 0.1), "{beyond:?}");
 }
 
+/// A stop that just touches: one side of it counts, beside whatever else drives back.
+#[test]
+fn kinks_have_one_side() {
+    let text = format!("{}[force.s]\ntype = \"stop\"\njoint = \"r\"\nlower = 0\nstiffness = 150\n", rail(0.0));
+    let found = exponents(&text);
+    let off = |omega: f64| (found[0][1] - omega).abs();
+    assert!(found.len() == 1 && off(5.0).min(off(10.0)) < 1e-9, "{found:?}");
+}
+
 /// What is free is counted, and what moves or is not at rest is refused.
 #[test]
 fn modes_are_about_rest() {

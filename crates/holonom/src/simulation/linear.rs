@@ -18,7 +18,7 @@ const LONG: f64 = 1e4;
 /// By what share of a move forces drive it on in a long step that is no rounding.
 const DRIVEN: f64 = 1e-5;
 
-/// How far the place is beside it, over the mechanism's size.
+/// How far the places are beside it and each other, over the mechanism's size.
 const BESIDE: f64 = 1e-13;
 
 /// Share of a motion's size that is left of it when it follows from those before.
@@ -44,7 +44,7 @@ pub(crate) struct Rest {
     pub speed: f64,
     /// The same without dampers.
     driven: f64,
-    /// The place at rest, and one a little beside it, where other numbers are rounded.
+    /// Two places a little beside that at rest, where other numbers are rounded.
     pub spots: [Spot; 2],
 }
 
@@ -97,10 +97,11 @@ impl Places {
         };
         let braked = self.work.resistance(&self.system, 0.0, &push);
         let braked = self.work.farthest(&self.system, &braked[..self.system.coordinates()]) / (PUSH * size);
-        let (there, _) = self.balance(beside(BESIDE / PUSH))?;
+        // On one side of kinks that the mechanism is at.
+        let spots = [self.balance(beside(BESIDE / PUSH))?.0, self.balance(beside(2.0 * BESIDE / PUSH))?.0];
         self.put(&here.x).map_err(|_| NoRest::Unbalanced)?;
         let driven = (driven.max(whole) / size).sqrt();
-        Ok(Rest { speed: driven.max(braked), driven, spots: [here, there] })
+        Ok(Rest { speed: driven.max(braked), driven, spots })
     }
 
     /// The multipliers that balance all forces at a place, as far as they do, and what share of the forces is left.
