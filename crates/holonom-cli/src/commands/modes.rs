@@ -48,7 +48,9 @@ fn cure(error: &NoModes) -> &'static str {
     match error {
         NoModes::Start(_) | NoModes::Singular => "`holonom check` says more of the start",
         NoModes::Moving => "remove the velocities",
-        NoModes::Unbalanced => "write equilibrium = true in [start], or --set start.equilibrium=true",
+        NoModes::Unbalanced => {
+            "write equilibrium = true in [start], or --set start.equilibrium=true; a joint that [start] puts somewhere is let go there"
+        }
         NoModes::Massless => "give every free point some mass",
         NoModes::Large(_) => "take a model of a part of it",
     }
