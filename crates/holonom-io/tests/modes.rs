@@ -176,6 +176,22 @@ fn kinks_have_one_side() {
     assert!(found.len() == 1 && off(5.0).min(off(10.0)) < 1e-9, "{found:?}");
 }
 
+/// Six masses of one frequency, each led by the one before: rounding splits their exponents, and none is told to be zero.
+#[test]
+fn what_is_not_found_is_not_free() {
+    let mut text = "gravity = [0, 0, 0]\n".to_string();
+    for k in 0..6 {
+        let leader = if k == 0 { String::new() } else { format!("angle = \"r{}.displacement\"\n", k - 1) };
+        text += &format!(
+            "[body.m{k}]\nmass = 2\ninertia = [1, 1, 1]\nposition = [{k}, 0, 1]\n\
+             [joint.r{k}]\ntype = \"prismatic\"\nbetween = [\"ground\", \"m{k}\"]\naxis = [0, 0, 1]\n\
+             [force.t{k}]\ntype = \"torsion\"\njoint = \"r{k}\"\nstiffness = 50\n{leader}"
+        );
+    }
+    let found = found(&text);
+    assert_eq!((found.free, found.unsure > 0), (0, true), "{found:?}");
+}
+
 /// What is free is counted, and what moves or is not at rest is refused.
 #[test]
 fn modes_are_about_rest() {

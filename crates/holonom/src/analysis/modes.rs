@@ -114,8 +114,11 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
         return Ok(none);
     }
     let mut seen = |h: f64| look_twice(&mut places, &rest, &motions, h);
-    // A long step shows the slowest motion, and one that is about as long as a motion takes shows that well.
-    let speeds = seen(rest.long_step())?.into_iter().filter_map(|found| found.is_sure.then_some(found.s[0].hypot(found.s[1])));
+    // A long step shows the slowest motion, and one that is about as long as a motion takes shows that well. What rounding makes of a zero is slower than
+    // a long step.
+    let long = rest.long_step();
+    let speeds = seen(long)?.into_iter().map(|found| (found.s[0].hypot(found.s[1]), found.is_sure));
+    let speeds = speeds.filter_map(|(speed, is_sure)| (is_sure || speed * long >= 1.0).then_some(speed));
     let slowest = speeds.fold(f64::INFINITY, f64::min);
     if slowest == f64::INFINITY {
         return Ok(none);
