@@ -49,7 +49,7 @@ const MOST_FREEDOMS: usize = 200;
 pub(crate) enum Restless {
     /// It goes on and on.
     Moves,
-    /// Steps however short lead nowhere.
+    /// Steps however short, or however many, do not lead there.
     Stuck,
 }
 
@@ -151,7 +151,7 @@ impl Places {
                 _ => return Err(Restless::Stuck),
             }
         }
-        Err(Restless::Moves)
+        Err(Restless::Stuck)
     }
 
     /// How far what resisted the last step, of length h, would move what it resisted most in such a step, m.
