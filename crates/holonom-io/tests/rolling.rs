@@ -144,3 +144,75 @@ fn a_car_that_cannot_roll_stops() {
         assert!(reason.contains("as those of wheels that do not all go round one centre"), "{of}: {reason}");
     }
 }
+
+/// A car whose front wheels turn by one and the same angle, on knuckles of their own.
+const STUCK_CAR: &str = r#"
+[body.chassis]
+mass = 1000
+inertia = [300, 1200, 1300]
+position = [0, 0, 0.5]
+velocity = [5, 0, 0]
+
+[body.wheel]
+repeat = "i = 0 to 3"
+mass = 20
+inertia = [0.6, 0.6, 1]
+position = ["2.5*floor(i/2) - 1.25", "0.75 - 1.5*mod(i, 2)", 0.3]
+orientation = { axis = [1, 0, 0], angle = "-90*deg" }
+velocity = [5, 0, 0]
+angular_velocity = [0, "5/0.3", 0]
+
+[body.knuckle]
+repeat = "i = 2 to 3"
+mass = 5
+inertia = [0.1, 0.1, 0.1]
+position = [1.25, "0.75 - 1.5*mod(i, 2)", 0.3]
+velocity = [5, 0, 0]
+
+[joint.road]
+repeat = "i = 0 to 3"
+type = "rolling"
+between = ["ground", "wheel[i]"]
+at = "wheel[i]"
+axis = [0, 1, 0]
+normal = [0, 0, 1]
+radius = 0.3
+
+[joint.rear]
+repeat = "i = 0 to 1"
+type = "revolute"
+between = ["chassis", "wheel[i]"]
+at = "wheel[i]"
+axis = [0, 1, 0]
+
+[joint.front]
+repeat = "i = 2 to 3"
+type = "revolute"
+between = ["knuckle[i]", "wheel[i]"]
+at = "wheel[i]"
+axis = [0, 1, 0]
+
+[joint.kingpin]
+repeat = "i = 2 to 3"
+type = "revolute"
+between = ["chassis", "knuckle[i]"]
+at = "wheel[i]"
+axis = [0, 0, 1]
+
+[drive.steering]
+repeat = "i = 2 to 3"
+type = "angle"
+joint = "kingpin[i]"
+profile = "atan(0.25*sin(t))"
+
+"#;
+
+/// Rows of accelerations alone, off which it drifts, let the car stand still all at once: what takes no energy by itself has lost it.
+#[test]
+fn energy_that_goes_nowhere_stops_a_run() {
+    for step in [0.005, 0.01] {
+        let mut simulation = common::simulation(&model(STUCK_CAR), "gauss", step);
+        let Status::Stopped { at, reason } = simulation.run(0.2, &mut |_: &Simulation| Verdict::GoOn) else { panic!("it went on") };
+        assert!(at <= 0.05 && reason.contains("of energy that could move went nowhere"), "{at} s: {reason}");
+    }
+}

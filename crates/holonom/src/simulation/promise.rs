@@ -167,7 +167,18 @@ impl Judge {
         let tolerance = TOLERANCES * tolerance;
         let mut kept = [false; PROMISES];
         promises.iter().for_each(|promise| kept[*promise as usize] = true);
-        Self { promises: kept, looks_at_dampers, damps: method.integrator.damps, tolerance, mass, weight, farthest, stiffest, shortest, independence: None }
+        Self {
+            promises: kept,
+            looks_at_dampers,
+            damps: method.integrator.damps,
+            tolerance,
+            mass,
+            weight,
+            farthest,
+            stiffest,
+            shortest,
+            independence: None,
+        }
     }
 
     fn promises(&self, promise: Promise) -> bool {
