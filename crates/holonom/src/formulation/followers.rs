@@ -1,6 +1,6 @@
 //! Which of the rows that hold velocities only, as those of wheels, follow from all others. At every place of the mechanism they agree with these; in the
-//! middle of a step, where directions are means of those at its ends, they ask for motions that differ by the square of its length. Steps
-//! leave them out (methods §14).
+//! middle of a step, where directions are means of those at its ends, they ask for motions that differ by the square of its length. Steps leave them out
+//! (methods §14).
 
 use super::independence::{Independence, independent};
 use crate::system::System;
@@ -10,6 +10,9 @@ const MOST: usize = 100;
 
 /// What a row that is left out adds counts so much less, so that rows do not come and go with every rounding.
 const STAYS: f64 = 0.25;
+
+/// Rows that add this share of the most are alike, and the first of them is kept, whatever rounding says.
+const ALIKE: f64 = 0.999;
 
 /// Finds them at the places where steps end.
 pub struct Followers {
@@ -33,8 +36,8 @@ impl Followers {
         &self.found
     }
 
-    /// Looks at the positions `x` and the time `t`, with turns counted from `near`. Of rows that follow from each other those are kept that add most: along one of its two rows a wheel may roll, and the other holds it
-    /// across. What is `left_out` already stays so unless it adds several times more.
+    /// Looks at the positions `x` and the time `t`, with turns counted from `near`. Of rows that follow from each other those are kept that add most: along
+    /// one of its two rows a wheel may roll, and the other holds it across. What is `left_out` already stays so unless it adds several times more.
     pub fn find(&mut self, system: &System, x: &[f64], near: &[f64], t: f64, left_out: &[u32]) -> &[u32] {
         self.found.clear();
         let (rows, n) = (system.velocity_rows.len(), system.coordinates());
@@ -49,7 +52,9 @@ impl Followers {
         let mut follow: Vec<usize> = (0..rows).collect();
         let is_left_out = |place: usize| left_out.binary_search(&system.velocity_rows[place]).is_ok();
         let weighed = |own: &Self, place| own.adds(place) * if is_left_out(place) { STAYS } else { 1.0 };
-        while let Some(place) = (0..follow.len()).max_by(|&a, &b| weighed(self, follow[a]).total_cmp(&weighed(self, follow[b]))) {
+        while !follow.is_empty() {
+            let most = follow.iter().map(|&place| weighed(self, place)).fold(0.0, f64::max);
+            let place = follow.iter().position(|&place| weighed(self, place) >= ALIKE * most).unwrap_or(0);
             let pivot = follow[place];
             let square = self.adds(pivot);
             if square <= independent(n) {
