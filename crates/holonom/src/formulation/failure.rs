@@ -138,7 +138,8 @@ impl Failure {
             }
             Self::Broken { promise, by, bound, row } => {
                 let of = row.map_or(String::new(), |row| format!(" of `{}`", system.row_names()[row]));
-                format!("the step breaks a promise of the method: {promise}{of} is off by {by:.1e}, where round-off explains {bound:.1e}")
+                let [by, bound] = told_apart(by, bound);
+                format!("the step breaks a promise of the method: {promise}{of} is off by {by}, where round-off explains {bound}")
             }
             Self::Unsupplied { excess, supply } => format!(
                 "{excess:.1e} J of energy came from nothing where {supply:.1e} J could move (shorter steps help, or a method that keeps the energy)"
@@ -182,5 +183,24 @@ impl Failure {
                 "the accuracy asks for steps of {pace:.1e} s, of which the rest of the run would take {left:.0e}: ask for less, or end the run sooner"
             ),
         }
+    }
+}
+
+/// Two numbers for people, with the digits that tell them apart: two at least.
+fn told_apart(a: f64, b: f64) -> [String; 2] {
+    let told = |digits: usize| [a, b].map(|number| format!("{number:.digits$e}"));
+    (1..f64::DIGITS as usize).map(told).find(|[a, b]| a != b).unwrap_or_else(|| told(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_off_is_told_from_what_round_off_explains() {
+        assert_eq!(told_apart(2.41e-5, 1.1e-7), ["2.4e-5", "1.1e-7"]);
+        assert_eq!(told_apart(2.412e-5, 2.398e-5), ["2.41e-5", "2.40e-5"]);
+        assert_eq!(told_apart(2.4123e-5, 2.4119e-5), ["2.4123e-5", "2.4119e-5"]);
+        assert_eq!(told_apart(1.0, 1.0), ["1.0e0", "1.0e0"]);
     }
 }
