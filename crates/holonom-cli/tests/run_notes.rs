@@ -403,6 +403,6 @@ fn vibrations_that_steps_do_not_see_are_told() {
     }
     fs::write(folder.path().join("bob.toml"), &stretched).unwrap();
     let swept = on_one_line(&text(&holonom(&folder, "sweep bob.toml --vary simulation.step=0.01,5e-4 --no-report --out s").stderr));
-    assert!(swept.contains("1 of 2 runs has notes, in the column `notes`: run 1: much of the kinetic energy"), "{swept}");
+    assert!(swept.contains("1 of 2 runs has this note, as run 1 in the column `notes`: much of the kinetic energy"), "{swept}");
     assert!(!is_told(&bob(1.0001, ""), "") && !is_told(&bob(1.01, "damping = 1e3\n"), ""));
 }

@@ -366,7 +366,7 @@ fn notes_of_runs_are_in_the_table_and_named() {
         notes[0].is_empty() && notes[1].starts_with("forces act for so few steps") && notes[1].contains("`buffer` for 1 step at 0.016 s"),
         "{notes:?}"
     );
-    let of_run = format!("1 of 2 runs has notes, in the column `notes`: run 2: {}", notes[1]);
+    let of_run = format!("1 of 2 runs has this note, as run 2 in the column `notes`: {}", notes[1]);
     let told = ["nothing uses the parameter `idle`".to_string(), of_run];
     assert_eq!(summary["notes"], serde_json::json!(told));
     let report = fs::read_to_string(folder.path().join("a/report.html")).unwrap();
@@ -374,4 +374,24 @@ fn notes_of_runs_are_in_the_table_and_named() {
         assert!(said.contains(&format!("note: {one}\n")), "{said}");
         assert!(report.contains(&format!("<li><strong>note:</strong> {one}</li>")), "{one}");
     }
+}
+
+/// A note that all runs have does not hide that of some of them: each is told once, however its numbers differ. A mass on a spring sinks by m g/k into its
+/// equilibrium, and steps of 10 ms see a push of a second and none of a millisecond.
+#[test]
+fn each_note_of_the_runs_is_told_once() {
+    let folder = folder();
+    let text = "[parameters]\nlong = 1\nk = 100\n[point.A]\nmass = 1\nposition = [0, 0, 0]\n\
+                [force.spring]\ntype = \"spring\"\nbetween = [[0, 0, 1], \"A\"]\nstiffness = \"k\"\n[start]\nequilibrium = true\n\
+                [force.push]\ntype = \"expression\"\npoint = \"A\"\nforce = [0, 0, \"100*step(t - 0.513)*step(0.513 + long - t)\"]\n\
+                [simulation]\nend = 1\nstep = 1e-2\n";
+    fs::write(folder.path().join("sunk.toml"), text).unwrap();
+    let vary = "--vary parameters.k=100,200 --vary parameters.long=1,1e-3";
+    let output = holonom(&folder, &format!("sweep sunk.toml {vary} --columns A.z --json --out a"));
+    let (said, summary): (String, Value) = (common::text(&output.stderr), serde_json::from_slice(&output.stdout).unwrap());
+    let told: Vec<&str> = summary["notes"].as_array().unwrap().iter().map(|note| note.as_str().unwrap()).collect();
+    assert_eq!(told.len(), 2, "{said}");
+    let of_start = "4 of 4 runs have this note, as run 1 in the column `notes`: start.equilibrium: the run begins where all forces balance; that has moved";
+    let of_push = "2 of 4 runs have this note, as run 2 in the column `notes`: force.push.force[2]: steps of 0.01 s do not see";
+    assert!(told[0].starts_with(of_start) && told[1].starts_with(of_push), "{said}");
 }

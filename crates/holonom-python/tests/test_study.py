@@ -83,7 +83,7 @@ def test_what_is_not_sure_is_warned_of_and_kept():
         study = hm.sweep(m, {"simulation.step": [1e-2, 1e-4]}, columns=COLUMNS, end=0.4)
     # In contact for pi*sqrt(m/k) = 3.1 ms, from 0.3193 s on.
     assert "`floor`" in study["notes"][0] and not study["notes"][1]
-    assert study.notes[0] == "nothing uses the parameter `idle`" and study.notes[1].startswith("1 of 2 runs has notes")
+    assert study.notes[0] == "nothing uses the parameter `idle`" and study.notes[1].startswith("1 of 2 runs has this note")
     assert [str(one.message) for one in warned] == study.notes
 
 

@@ -14,6 +14,12 @@ const FIGURES: [&str; 6] = ["steps", "energy_drift", "position_violation", "velo
 const RUN: &str = "run";
 const ENDING: [&str; 4] = ["status", "stopped_at", "reason", "notes"];
 
+/// What is between the notes of a run in their cell.
+const BETWEEN_NOTES: &str = " | ";
+
+/// Most notes that are told of all runs.
+const MOST_NOTES: usize = 5;
+
 /// What the columns of a sweep are called.
 pub struct Sheet {
     /// Varied keys, and whether all their values are numbers.
@@ -47,7 +53,7 @@ impl Sheet {
             outcome.ending.word().into(),
             optional(outcome.stopped_at),
             one_line(&outcome.reason),
-            one_line(&outcome.notes.join("\n")),
+            outcome.notes.iter().map(|note| one_line(note)).collect::<Vec<_>>().join(BETWEEN_NOTES),
         ]);
         match &outcome.figures {
             None => cells.resize(self.width(), String::new()),
@@ -112,14 +118,27 @@ impl Sheet {
         failed.map(words).collect()
     }
 
-    /// How many runs of a table have notes, with those of the first.
-    pub fn noted(&self, table: &Table) -> Option<String> {
-        let notes = &table.columns[self.varied.len() + ENDING.len()].1;
-        let noted: Vec<usize> = (0..table.rows()).filter(|&row| !notes.text(row).is_empty()).collect();
-        let first = *noted.first()?;
-        let have = if noted.len() == 1 { "has" } else { "have" };
-        let [run, text] = [&table.columns[0].1, notes].map(|cells| cells.text(first));
-        Some(format!("{} of {} runs {have} notes, in the column `notes`: run {run}: {text}", noted.len(), table.rows()))
+    /// What the runs of a table have notes of: each note once, as the first run has it, with how many have it but for its numbers.
+    pub fn noted(&self, table: &Table) -> Vec<String> {
+        let cells = &table.columns[self.varied.len() + ENDING.len()].1;
+        let mut kinds: Vec<Noted> = Vec::new();
+        for row in 0..table.rows() {
+            for note in cells.text(row).split(BETWEEN_NOTES).filter(|note| !note.is_empty()) {
+                let words = without_numbers(note);
+                match kinds.iter_mut().find(|kind| kind.words == words) {
+                    Some(kind) if kind.last == row => {}
+                    Some(kind) => (kind.runs, kind.last) = (kind.runs + 1, row),
+                    None => kinds.push(Noted { words, text: note.into(), first: row, last: row, runs: 1 }),
+                }
+            }
+        }
+        let told = |kind: &Noted| {
+            let (have, run) = (if kind.runs == 1 { "has" } else { "have" }, table.columns[0].1.text(kind.first));
+            format!("{} of {} runs {have} this note, as run {run} in the column `notes`: {}", kind.runs, table.rows(), kind.text)
+        };
+        let more = kinds.len().saturating_sub(MOST_NOTES);
+        let more = (more > 0).then(|| format!("{more} more {} in the column `notes`", if more == 1 { "note is" } else { "notes are" }));
+        kinds.iter().take(MOST_NOTES).map(told).chain(more).collect()
     }
 
     fn width(&self) -> usize {
@@ -138,7 +157,49 @@ impl Sheet {
     }
 }
 
+/// A note of some runs.
+struct Noted {
+    /// Without its numbers, which differ from run to run.
+    words: String,
+    /// As the first of the runs has it.
+    text: String,
+    /// Rows of the first and the last of the runs so far.
+    first: usize,
+    last: usize,
+    runs: usize,
+}
+
+/// A text without its numbers and their signs; digits of names stay.
+fn without_numbers(text: &str) -> String {
+    let mut kept = String::new();
+    let mut is_inside = false;
+    for c in text.chars() {
+        let begins = c.is_ascii_digit() && !kept.ends_with(|last: char| last.is_alphanumeric() || last == '_');
+        is_inside = begins || (is_inside && (c.is_ascii_digit() || matches!(c, '.' | 'e' | '-' | '+')));
+        if !is_inside {
+            kept.push(c);
+        } else if kept.ends_with('-') {
+            kept.pop();
+        }
+    }
+    kept
+}
+
 /// A text without line breaks and other things that are not to be seen.
 fn one_line(text: &str) -> String {
     text.replace('\n', "; ").chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn notes_are_alike_but_for_their_numbers() {
+        let alike = |a: &str, b: &str| without_numbers(a) == without_numbers(b);
+        assert!(alike("`arm2` began 1.5e-3 m off, -4 N", "`arm2` began 12 m off, 3e+7 N"));
+        assert!(!alike("`arm2` began 1 m off", "`arm3` began 1 m off"));
+        assert!(!alike("`a_2` began 1 m off", "`a_12` began 1 m off"));
+        assert!(!alike("3 rows follow", "3 rows lead"));
+    }
 }
