@@ -77,6 +77,18 @@ fn a_body_may_be_placed_at_a_point_of_another() {
     }
 }
 
+/// So are points, those of bodies and bodies of points.
+#[test]
+fn a_point_may_be_placed_at_another_or_at_a_body() {
+    let text = "plane = \"xy\"\n[point.last]\nmass = 1\nposition = \"arm\"\n[point.first]\nfixed = true\nposition = [1, 2]\n\
+                [point.hook]\nmass = 1\nposition = \"arm.tip\"\n[point.base]\nfixed = true\nposition = \"first\"\n\
+                [body.arm]\nmass = 1\ninertia = 0.1\ncom = [0.5, 0.25]\nposition = \"base\"\norientation = { angle_deg = 90 }\npoints = { tip = [2, 0] }\n";
+    let (_, found) = run(&model(text), Choice::default().named("radau"), 0.01, 0.01);
+    let places = ["last.x", "last.y", "hook.x", "hook.y"].map(|name| found.column(name).unwrap()[0]);
+    let expected = [0.75, 2.5, 1.0, 4.0];
+    assert!(places.iter().zip(expected).all(|(found, place)| (found - place).abs() < 1e-14), "{places:?}");
+}
+
 /// A bar between two bodies moves as a body that is a rod, on two balls.
 #[test]
 fn bars_end_at_places_of_bodies() {

@@ -1066,7 +1066,7 @@ class Builders:
         /,
         *,
         mass: Number | None = None,
-        position: Numbers | None = None,
+        position: Place | None = None,
         velocity: Numbers | None = None,
         fixed: bool | None = None,
         motion: Numbers | None = None,
@@ -1075,7 +1075,7 @@ class Builders:
         """Adds an entry of ``[point.NAME]``: a particle, a place that stays, or a driven support.
 
         mass: mass of the point itself; a free point without any must be the end of a bar with mass [kg]; default: 0
-        position: where it is at the start [m]; default: none: needed unless there is a motion
+        position: where it is at the start; or the name of another point, or of a body or a place of one, where that is [m]; default: none: needed unless there is a motion
         velocity: how fast it is at the start [m/s]; default: 0
         fixed: true ties it to the ground; default: false
         motion: makes it a driven support: its coordinates as formulas of the time t [m]; default: none

@@ -43,11 +43,11 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
     let compiler = Compiler { tables: &tables, room: room(), ..first };
     compiler.functions();
     let (axes, gravity) = compiler.head(description);
-    let (specs, faulty_points) = compiler.points(&description.points, axes);
+    let (mut specs, faulty_points) = compiler.points(&description.points, axes);
     let (mut bodies, faulty_bodies) = compiler.bodies(&description.bodies, axes);
     let mut faulty: HashSet<String> =
         [&faulty_points, &faulty_bodies, &unread.points, &unread.bodies, &unread.bars].into_iter().flatten().cloned().collect();
-    let misplaced = compiler.place(&description.bodies, &specs, &mut bodies, &faulty);
+    let misplaced = compiler.place(description, &mut specs, &mut bodies, &faulty);
     faulty.extend(misplaced);
     let mut assembly = Assembly::new(SystemBuilder::new(axes.dimension(), gravity), axes, gravity, &sink, bodies);
     assembly.faulty = faulty;
@@ -296,24 +296,27 @@ impl Compiler<'_> {
         (bodies, faulty)
     }
 
-    /// Moves the bodies that are placed at points of others there. Hands back the names of those for which that was not possible.
+    /// Moves the bodies and points that are placed at others there. Hands back the names of those for which that was not possible.
     fn place(
         &self,
-        entries: &Entries<super::Body>,
-        specs: &[points::Spec],
+        description: &Description,
+        specs: &mut [points::Spec],
         bodies: &mut [RigidBody],
         faulty: &HashSet<String>,
     ) -> HashSet<String> {
-        let mut placing = Placing::new(bodies, specs.iter().map(points::Spec::place).collect(), faulty);
+        let mut placing = Placing::new(bodies, specs, faulty);
         // What is wrong with others has been told, and they may repeat without end.
-        let sound = || entries.iter().filter(|named| !faulty.contains(&named.name));
+        let bodies = || description.bodies.iter().filter(|named| !faulty.contains(&named.name));
+        let points = || description.points.iter().filter(|named| !faulty.contains(&named.name));
         let again = Compiler { room: Cell::new(usize::MAX), ..*self };
-        let unnamed = again.each_of("body", sound(), |entry, body| match &body.position {
-            field::Place::Named(name) => placing.wait(entry, name),
-            field::Place::Fixed(_) => Ok(()),
-        });
-        let mut lost = again.each_of("body", sound(), |entry, _| placing.place(entry));
-        lost.extend(unnamed);
+        let mut wait = |entry: &Entry<'_>, place: Option<&field::Place>| match place {
+            Some(field::Place::Named(name)) => placing.wait(entry, name),
+            _ => Ok(()),
+        };
+        let mut lost = again.each_of("body", bodies(), |entry, body| wait(entry, Some(&body.position)));
+        lost.extend(again.each_of("point", points(), |entry, point| wait(entry, point.position.as_ref())));
+        lost.extend(again.each_of("body", bodies(), |entry, _| placing.place(entry)));
+        lost.extend(again.each_of("point", points(), |entry, _| placing.place(entry)));
         lost
     }
 

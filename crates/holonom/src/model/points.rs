@@ -8,7 +8,7 @@ use super::ends::{fixed, node};
 use super::entry::{Entry, Spot};
 use super::expression::{Program, TimeProgram};
 use super::fault::{Fault, Read};
-use super::fields::{Keys, List, Number};
+use super::fields::{Keys, List, Number, Place};
 use super::key::Shape;
 use super::tables::require_inside;
 use crate::system::{Constant, Signal};
@@ -20,9 +20,9 @@ pub struct Point {
     /// mass of the point itself; a free point without any must be the end of a bar with mass
     #[key(unit = "kg", default = "0")]
     pub mass: Option<Number>,
-    /// where it is at the start
-    #[key(unit = "m", default = "none: needed unless there is a motion", shape = Shape::Vector)]
-    pub position: Option<List<Number>>,
+    /// where it is at the start; or the name of another point, or of a body or a place of one, where that is
+    #[key(unit = "m", default = "none: needed unless there is a motion")]
+    pub position: Option<Place>,
     /// how fast it is at the start
     #[key(unit = "m/s", default = "0", shape = Shape::Vector)]
     pub velocity: Option<List<Number>>,
@@ -36,18 +36,12 @@ pub struct Point {
 
 /// A point as it was read.
 pub struct Spec {
-    name: String,
+    pub name: String,
     path: String,
     mass: f64,
-    start: [f64; 3],
+    /// Where it is at the start.
+    pub start: [f64; 3],
     motion: Motion,
-}
-
-impl Spec {
-    /// Its name and where it is at the start.
-    pub fn place(&self) -> (&str, [f64; 3]) {
-        (&self.name, self.start)
-    }
 }
 
 enum Motion {
@@ -57,10 +51,13 @@ enum Motion {
 }
 
 impl Point {
-    /// The point with its numbers.
+    /// The point with its numbers, at the origin where its place has a name.
     pub(super) fn spec(&self, entry: &Entry<'_>, dim: usize) -> Read<Spec> {
         let mass = entry.optional("mass", &self.mass, Number::not_negative);
-        let position = entry.optional("position", &self.position, |position, entry, key| position.vector(entry, key, dim));
+        let position = entry.optional("position", &self.position, |position, entry, key| match position {
+            Place::Fixed(numbers) => numbers.vector(entry, key, dim),
+            Place::Named(_) => Ok([0.0; 3]),
+        });
         let velocity = entry.optional("velocity", &self.velocity, |velocity, entry, key| velocity.vector(entry, key, dim));
         let motion = entry.optional("motion", &self.motion, |motion, entry, key| motion.motions(entry, key, dim));
         let (mass, position, velocity, motion) = (mass?, position?, velocity?, motion?);

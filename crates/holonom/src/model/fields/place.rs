@@ -27,7 +27,7 @@ impl Field for Place {
                 })
             }
             other => {
-                let message = format!("the name of a point is wanted here, and this is {}", other.type_name());
+                let message = format!("a place is wanted here, and this is {}", other.type_name());
                 Err(entry.refuse(spot, message, "write \"NAME\", \"ground\" or a list of coordinates"))
             }
         }
