@@ -337,7 +337,9 @@ pub(super) fn read(value: &Value, kinds: &Kinds, sink: &Sink) -> Read<Partial> {
     let (points, unread_points) = section(&root, "point", &mut names, |reader| keys::<Point>("a point", reader));
     let (bodies, unread_bodies) = section(&root, "body", &mut names, |reader| keys::<Body>("a body", reader));
     let (bars, unread_bars) = section(&root, "bar", &mut names, |reader| keys::<Bar>("a bar", reader));
-    let elements = |names: &mut Names<'_>, name: &str, kinds: &[Kind]| section(&root, name, names, |reader| element(name, kinds, reader));
+    let is_planar = table.get("plane").is_some();
+    let elements =
+        |names: &mut Names<'_>, name: &str, kinds: &[Kind]| section(&root, name, names, |reader| element(name, kinds, is_planar, reader));
     let (constraints, _) = elements(&mut names, "constraint", &kinds.constraints);
     let (joints, unread_joints) = elements(&mut names, "joint", &kinds.joints);
     let (drives, _) = elements(&mut names, "drive", &kinds.drives);
@@ -437,7 +439,7 @@ fn keys<T: Keys>(what: &str, reader: &Reader<'_>) -> Read<T> {
 }
 
 /// An entry of one of some kinds.
-fn element(section: &str, kinds: &[Kind], reader: &Reader<'_>) -> Read<Boxed> {
+fn element(section: &str, kinds: &[Kind], is_planar: bool, reader: &Reader<'_>) -> Read<Boxed> {
     let names = || kinds.iter().map(|kind| kind.name);
     if reader.table.get("type").is_none() {
         let known: Vec<String> = names().map(|name| format!("\"{name}\"")).collect();
@@ -447,6 +449,10 @@ fn element(section: &str, kinds: &[Kind], reader: &Reader<'_>) -> Read<Boxed> {
     let Some(kind) = kinds.iter().find(|kind| kind.name == text) else {
         return Err(reader.refuse("type", format!("there is no {section} of type \"{text}\""), suggest(&text, names())));
     };
+    // Before its keys are asked for, which no cure is.
+    if let Some(cure) = kind.in_plane.filter(|_| is_planar) {
+        return Err(reader.refuse_in_plane(section, kind.name, cure));
+    }
     let type_key = Key::required("type", Shape::Text, "", "");
     reader.refuse_unknown_keys(&format!("a {section} of type \"{}\"", kind.name), kind.keys.iter().chain([&type_key, &REPEAT]));
     (kind.read)(reader)

@@ -6,7 +6,7 @@ use super::assembly::Assembly;
 use super::entry::{Entry, Written};
 use super::fault::Read;
 use super::fields::{Described, Keys};
-use super::joints::{AnyJoint, Joint, Layout, pair};
+use super::joints::{AnyJoint, Joint, Layout, OTHERS_IN_PLANE, pair};
 use super::value::Table;
 
 /// An element of a model: a joint, a coupler, a constraint, a drive or a force.
@@ -16,6 +16,9 @@ pub trait Element: Described + Debug + Send + Sync + 'static {
 
     /// Whether it looks at other entries of its section, as couplers at joints, and is built when all of these are there.
     const NEEDS_OTHERS: bool = false;
+
+    /// What to use in a planar model, of what is in space alone.
+    const IN_PLANE: Option<&'static str> = None;
 
     /// Itself as a joint between two bodies, if it is one.
     fn as_joint(&self) -> Option<&dyn AnyJoint> {
@@ -36,6 +39,11 @@ pub trait Element: Described + Debug + Send + Sync + 'static {
 
 impl<T: Joint> Element for T {
     const LAYOUT: Option<Layout> = Some(<T as Joint>::LAYOUT);
+
+    const IN_PLANE: Option<&'static str> = match <T as Joint>::LAYOUT.freedom[1] {
+        Some(_) => None,
+        None => Some(OTHERS_IN_PLANE),
+    };
 
     fn as_joint(&self) -> Option<&dyn AnyJoint> {
         Some(self)

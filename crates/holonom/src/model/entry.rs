@@ -68,6 +68,11 @@ impl<'a> Entry<'a> {
         self.sink.report(|| Fault::new(self.path, self.name, self.told(message.into()), cure))
     }
 
+    /// Records a `type` that a planar model does not have.
+    pub(super) fn refuse_in_plane(&self, section: &str, name: &str, cure: &str) -> Refused {
+        self.refuse("type", format!("there is no {name} {section} in a planar model"), cure)
+    }
+
     /// Records what looks like a slip and is taken all the same; of an entry that is repeated for the first alone.
     pub fn note<'s>(&self, spot: impl Into<Spot<'s>>, message: impl Into<String>) {
         self.sink.note(&self.path_of(spot.into()), || self.told(message.into()));

@@ -119,6 +119,8 @@ pub struct Kind {
     pub example: &'static str,
     /// How it sits between two bodies, of a joint.
     pub layout: Option<Layout>,
+    /// What to use in a planar model, of what is in space alone.
+    pub in_plane: Option<&'static str>,
     pub(super) read: fn(&Reader<'_>) -> Read<Boxed>,
 }
 
@@ -132,6 +134,7 @@ impl Kind {
             keys: T::KEYS,
             example: T::EXAMPLE,
             layout: T::LAYOUT,
+            in_plane: T::IN_PLANE,
             read: element::read::<T>,
         }
     }

@@ -3,7 +3,7 @@ use crate::model::element::Element;
 use crate::model::ends::{difference, fixed, from_to};
 use crate::model::entry::Entry;
 use crate::model::fault::Read;
-use crate::model::fields::{Keys, List, Number, Place};
+use crate::model::fields::{Described, Keys, List, Number, Place};
 use crate::model::geometry::{dot, norm};
 use crate::model::key::Shape;
 
@@ -35,10 +35,14 @@ pub struct PointOnPlane {
     pub through: Option<Place>,
 }
 
+const USE_A_LINE: &str = "use point-on-line";
+
 impl Element for PointOnPlane {
+    const IN_PLANE: Option<&'static str> = Some(USE_A_LINE);
+
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         if assembly.dimension() == 2 {
-            return Err(entry.refuse("type", "there is no point-on-plane in a planar model", "use point-on-line"));
+            return Err(entry.refuse_in_plane("constraint", Self::NAME, USE_A_LINE));
         }
         let (point, normal) = (assembly.point(entry, "point", &self.point), self.normal.vector(entry, "normal", 3));
         let through = entry.optional("through", &self.through, |through, entry, key| assembly.end(entry, key, through));

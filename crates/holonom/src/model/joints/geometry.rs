@@ -1,6 +1,6 @@
 //! Where a joint is at the start, from its keys `between`, `at`, `axis` and `axes`.
 
-use super::{AnyJoint, Feature, Seat};
+use super::{AnyJoint, Feature, OTHERS_IN_PLANE, Seat};
 use crate::model::assembly::Assembly;
 use crate::model::bodies::RigidBody;
 use crate::model::bodies::nodes::{Member, Shared};
@@ -109,11 +109,7 @@ impl Geometry {
         let layout = joint.layout();
         let dim = assembly.dimension();
         if layout.freedom[usize::from(dim == 2)].is_none() {
-            return Err(entry.refuse(
-                "type",
-                format!("there is no {} joint in a planar model", joint.name()),
-                "use one of those in the plane",
-            ));
+            return Err(entry.refuse_in_plane("joint", joint.name(), OTHERS_IN_PLANE));
         }
         let at = match (layout.at, joint.at()) {
             (Seat::Any, None) => {

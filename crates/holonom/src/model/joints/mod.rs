@@ -68,6 +68,9 @@ use super::fault::Read;
 use super::fields::{Described, Site};
 use super::key::Kind;
 
+/// What to use in place of a joint that a planar model does not have.
+pub(super) const OTHERS_IN_PLANE: &str = "use one of those in the plane";
+
 /// A joint between two bodies, beside its keys.
 pub trait Joint: Described + Sides + Debug + Send + Sync + 'static {
     /// How it sits between its bodies.
