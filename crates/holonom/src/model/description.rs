@@ -8,7 +8,7 @@ use super::element::Boxed;
 use super::entries::{Entries, Named};
 use super::event::Event;
 use super::expression::{BAR, External, ExternalFunction, Functions};
-use super::fault::{Fault, Faults, Read, Refused, Sink, suggest};
+use super::fault::{Fault, Faults, Read, Refused, Sink, nearest, suggest};
 use super::fields::{Field, Keys, List, Number};
 use super::input::Input;
 use super::key::{Key, Kind, Kinds, REPEAT, Shape};
@@ -441,9 +441,11 @@ fn keys<T: Keys>(what: &str, reader: &Reader<'_>) -> Read<T> {
 /// An entry of one of some kinds.
 fn element(section: &str, kinds: &[Kind], is_planar: bool, reader: &Reader<'_>) -> Read<Boxed> {
     let names = || kinds.iter().map(|kind| kind.name);
+    let any_of = |names: &[&str]| names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(" or ");
     if reader.table.get("type").is_none() {
-        let known: Vec<String> = names().map(|name| format!("\"{name}\"")).collect();
-        return Err(reader.refuse_all(format!("`{}` has no `type`", reader.name), format!("add type = {}", known.join(" or "))));
+        let fitting = Some(fitting(kinds, reader.table)).filter(|fitting| !fitting.is_empty());
+        let names = fitting.unwrap_or_else(|| names().collect());
+        return Err(reader.refuse_all(format!("`{}` has no `type`", reader.name), format!("add type = {}", any_of(&names))));
     }
     let text: String = reader.must_have("type")?;
     let Some(kind) = kinds.iter().find(|kind| kind.name == text) else {
@@ -454,8 +456,28 @@ fn element(section: &str, kinds: &[Kind], is_planar: bool, reader: &Reader<'_>) 
         return Err(reader.refuse_in_plane(section, kind.name, cure));
     }
     let type_key = Key::required("type", Shape::Text, "", "");
-    reader.refuse_unknown_keys(&format!("a {section} of type \"{}\"", kind.name), kind.keys.iter().chain([&type_key, &REPEAT]));
+    let what = format!("a {section} of type \"{}\"", kind.name);
+    let known = kind.keys.iter().chain([&type_key, &REPEAT]);
+    // A key that is like none of its own, where all that is written are those of one other kind.
+    let strange = reader.table.keys().find(|key| nearest(key, known.clone().map(|known| known.name)).is_none());
+    if let Some(key) = strange
+        && let [other] = fitting(kinds, reader.table)[..]
+    {
+        return Err(reader.refuse_key(key, format!("{what} has no key `{key}`"), format!("write type = \"{other}\"")));
+    }
+    reader.refuse_unknown_keys(&what, known);
     (kind.read)(reader)
+}
+
+/// The kinds whose keys are all that stand in a table, by their names or by what else they are called.
+fn fitting<'k>(kinds: &'k [Kind], table: &Table) -> Vec<&'k str> {
+    let written = || table.keys().filter(|key| *key != "type" && *key != REPEAT.name);
+    let fits = |kind: &&Kind| {
+        let needed = kind.keys.iter().filter(|key| key.required);
+        written().all(|key| same(key, kind.keys.iter().map(|key| key.name)).is_some())
+            && needed.clone().all(|needed| written().any(|key| same(key, [needed.name]).is_some()))
+    };
+    kinds.iter().filter(fits).map(|kind| kind.name).collect()
 }
 
 /// Names of entries so far: they are unique over all sections.

@@ -55,7 +55,7 @@ const SYNONYMS: &[(&str, &[&str])] = &[
     ("stiffness", &["k", "rate", "spring-constant"]),
     ("damping", &["c", "d", "damping-coefficient"]),
     ("rest_length", &["l0", "length", "free-length", "natural-length", "unstretched-length"]),
-    ("profile", &["motion", "function", "trajectory"]),
+    ("profile", &["motion", "function", "trajectory", "value", "angle", "displacement", "distance"]),
     ("end", &["tend", "tstop", "tmax", "tfinal", "tf", "duration", "stop-time", "end-time", "final-time"]),
     ("step", &["dt", "h", "timestep", "step-size", "max-step"]),
     ("method", &["solver", "scheme"]),
