@@ -426,3 +426,19 @@ fn a_formulation_in_place_of_a_method_is_told() {
         prints(&folder, &format!("run example:four-bar --set simulation.formulation={name} --end 0.01 --no-report"), 0);
     }
 }
+
+/// What is redundant is told by joints, and the rank of what is solved, where bodies share nodes: two hinges of a car with one direction are both needed,
+/// and two of the rows of its nodes follow from the others.
+#[test]
+fn rows_of_shared_nodes_do_not_contradict_what_is_redundant() {
+    let folder = folder();
+    let body = |name: &str, y: f64| format!("[body.{name}]\nmass = 25\ninertia = [0.3, 0.8, 0.7]\nposition = [-0.2, {y}, 0.3]\n");
+    let hinge = |name: &str, y: f64| {
+        format!("[joint.of-{name}]\ntype = \"revolute\"\nbetween = [\"car\", \"{name}\"]\nat = [0.1, {y}, 0.35]\naxis = [0, 1, 0]\n")
+    };
+    let model = [body("car", 0.0), body("left", 0.6), body("right", -0.6), hinge("left", 0.5), hinge("right", -0.5)].concat();
+    fs::write(folder.path().join("arms.toml"), model + "[simulation]\nend = 0.01\nstep = 0.01\n").unwrap();
+    let said = text(&holonom(&folder, "check arms.toml").stdout);
+    assert!(said.contains("21 rows of rank 19; without shared nodes 36 coordinates, 28 rows of rank 28"), "{said}");
+    assert!(said.contains("none without shared nodes; with them 2 rows follow from the others, which makes no difference"), "{said}");
+}

@@ -89,7 +89,7 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
         });
     }
     let redundant = match (found.redundant.is_empty(), &held.conflict) {
-        (true, _) => "none".to_string(),
+        (true, _) => none_redundant(size.redundant),
         (false, None) => format!("{}: these follow from the others and may stay", listed(&found.redundant)),
         (false, Some(_)) => format!("{}: these follow from the others", listed(&found.redundant)),
     };
@@ -146,6 +146,15 @@ fn sizes(solved: &ModelSize, plain: &ModelSize) -> String {
     match solved == plain {
         true => words(solved),
         false => format!("{}; without shared nodes {}", words(solved), words(plain)),
+    }
+}
+
+/// That no row is redundant but so many of the rows that are solved, where bodies share nodes.
+fn none_redundant(solved: usize) -> String {
+    match solved {
+        0 => "none".into(),
+        1 => "none without shared nodes; with them one row follows from the others, which makes no difference".into(),
+        count => format!("none without shared nodes; with them {count} rows follow from the others, which makes no difference"),
     }
 }
 
