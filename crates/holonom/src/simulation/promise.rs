@@ -165,20 +165,11 @@ impl Judge {
         let farthest = if method.subdivide { FARTHEST } else { PI };
         let (stiffest, shortest) = (0.0, f64::INFINITY);
         let tolerance = TOLERANCES * tolerance;
+        // What projections take they have the integrator take, too, in steps that are long.
+        let damps = method.integrator.damps || method.projection.velocity;
         let mut kept = [false; PROMISES];
         promises.iter().for_each(|promise| kept[*promise as usize] = true);
-        Self {
-            promises: kept,
-            looks_at_dampers,
-            damps: method.integrator.damps,
-            tolerance,
-            mass,
-            weight,
-            farthest,
-            stiffest,
-            shortest,
-            independence: None,
-        }
+        Self { promises: kept, looks_at_dampers, damps, tolerance, mass, weight, farthest, stiffest, shortest, independence: None }
     }
 
     fn promises(&self, promise: Promise) -> bool {
