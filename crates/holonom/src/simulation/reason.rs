@@ -44,7 +44,8 @@ impl Simulation {
         {
             return format!("{what}; the force of `{force}` jumps there with what it moves ({SMOOTH})");
         }
-        let is_of_rows = matches!(failure, Failure::NotConverged { .. } | Failure::Broken { .. } | Failure::Singular(_));
+        let is_of_rows =
+            matches!(failure, Failure::NotConverged { .. } | Failure::Broken { .. } | Failure::Vanished { .. } | Failure::Singular(_));
         // What cannot move has no step that is short enough either.
         if !is_of_rows && failure != Failure::TooSmall {
             return what;
