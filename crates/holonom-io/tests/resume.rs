@@ -1,5 +1,7 @@
 //! A run that was stopped and resumed from its checkpoint has the bits of one that was not, in every column.
 
+mod common;
+
 use std::path::Path;
 
 use holonom::analysis;
@@ -67,55 +69,6 @@ curve = [[0.05, 0, 0], [0.03, 0.04, 0.04], [-0.02, 0.05, 0.06], [-0.05, 0.01, 0]
 step = 1e-3
 "#;
 
-/// Rows of wheels that follow from others: steps find these out on their way, and leave them out.
-const STEERED_CAR: &str = r#"
-[body.car]
-mass = 1200
-inertia = [400, 1500, 1700]
-position = [1.2, 0, 0.55]
-velocity = [4, 0, 0]
-
-[body.wheel]
-repeat = "i = 0 to 3"
-mass = 20
-inertia = [0.5, 1, 0.5]
-position = ["2.6*floor(i/2)", "0.75 - 1.5*mod(i, 2)", 0.3]
-velocity = [4, 0, 0]
-angular_velocity = [0, "4/0.3", 0]
-
-[joint.road]
-repeat = "i = 0 to 3"
-type = "rolling"
-between = ["ground", "wheel[i]"]
-at = "wheel[i]"
-axis = [0, 1, 0]
-normal = [0, 0, 1]
-radius = 0.3
-
-[joint.hub]
-repeat = "i = 0 to 1"
-type = "revolute"
-between = ["car", "wheel[i]"]
-at = "wheel[i]"
-axis = [0, 1, 0]
-
-[joint.knuckle]
-repeat = "i = 0 to 1"
-type = "universal"
-between = ["car", "wheel[i+2]"]
-at = "wheel[i+2]"
-axes = [[0, 0, 1], [0, 1, 0]]
-
-[drive.steering]
-repeat = "i = 0 to 1"
-type = "angle"
-joint = "knuckle[i].angle1"
-profile = "atan2(2.6*tan(t^2), 2.6 - (0.75 - 1.5*i)*tan(t^2))"
-
-[simulation]
-step = 0.01
-"#;
-
 /// The gallery, and a curve and wheels that follow from others, which no model there has.
 fn models() -> Vec<(String, Model)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
@@ -123,8 +76,9 @@ fn models() -> Vec<(String, Model)> {
     found.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
     found.sort();
     let name = |path: &Path| path.file_stem().unwrap().to_string_lossy().into_owned();
-    let own = [("barrel-cam", BARREL_CAM), ("steered-car", STEERED_CAR)]
-        .map(|(name, text)| (name.into(), Source::read(name, text.as_bytes()).and_then(|source| source.model()).unwrap()));
+    // Rows of wheels follow from others: steps find these out on their way, and leave them out.
+    let car = common::car(4.0, "atan2(2.5*tan(t^2), 2.5 - (0.75 - 1.5*mod(i, 2))*tan(t^2))");
+    let own = [("barrel-cam".into(), common::model(BARREL_CAM)), ("steered-car".into(), car)];
     found.iter().map(|path| (name(path), model(path))).chain(own).collect()
 }
 

@@ -43,53 +43,33 @@ fn a_disc_that_lies_down_does_not_bounce() {
     }
 }
 
-/// Wheels of a car: name, and place on the road from the middle of the rear axle, m.
-const WHEELS: [(&str, f64, f64); 4] = [("rl", 0.0, 0.75), ("rr", 0.0, -0.75), ("fl", 2.6, 0.75), ("fr", 2.6, -0.75)];
+/// Wheels of the car: place on the road from the middle of the rear axle, m, and mass with that of the knuckle, kg.
+const WHEELS: [[f64; 3]; 4] = [[0.0, 0.75, 20.0], [0.0, -0.75, 20.0], [2.5, 0.75, 25.0], [2.5, -0.75, 25.0]];
 
 /// How a car turns at the time t: 1/m.
 fn curvature(t: f64) -> f64 {
     0.15 * (1.0 - t.cos())
 }
 
-/// A car on four wheels without slip, whose front wheels are steered by these angles.
-fn car(angle: impl Fn(f64) -> String) -> holonom::model::Model {
-    let mut text = "[body.car]\nmass = 1200\ninertia = [400, 1500, 1700]\nposition = [1.2, 0, 0.55]\nvelocity = [4, 0, 0]\n".to_string();
-    for (name, x, y) in WHEELS {
-        text += &format!(
-            "[body.{name}]\nmass = 20\ninertia = [0.5, 1, 0.5]\nposition = [{x}, {y}, 0.3]\nvelocity = [4, 0, 0]\nangular_velocity = [0, \"4/0.3\", 0]\n\
-             [joint.road-{name}]\ntype = \"rolling\"\nbetween = [\"ground\", \"{name}\"]\nat = \"{name}\"\naxis = [0, 1, 0]\nnormal = [0, 0, 1]\nradius = 0.3\n\
-             [joint.hub-{name}]\nbetween = [\"car\", \"{name}\"]\nat = \"{name}\"\n"
-        );
-        text += &match x {
-            0.0 => "type = \"revolute\"\naxis = [0, 1, 0]\n".to_string(),
-            _ => format!(
-                "type = \"universal\"\naxes = [[0, 0, 1], [0, 1, 0]]\n[drive.{name}-steering]\ntype = \"angle\"\njoint = \"hub-{name}.angle1\"\nprofile = \"{}\"\n",
-                angle(y)
-            ),
-        };
-    }
-    model(&text)
-}
-
 /// Place of the middle of the rear axle, heading and speed after a time, of the one coordinate that is left (Kane's equation): all that the car does along
 /// the way that its curvature leads.
 fn driven(end: f64) -> [f64; 4] {
-    let angle = |y: f64, t: f64| (2.6 * curvature(t)).atan2(1.0 - y * curvature(t));
+    let angle = |y: f64, t: f64| (2.5 * curvature(t)).atan2(1.0 - y * curvature(t));
     let derivative = |f: &dyn Fn(f64) -> f64, t: f64| (f(t + 1e-4) - f(t - 1e-4)) / 2e-4;
     let second = |f: &dyn Fn(f64) -> f64, t: f64| (f(t + 1e-3) - 2.0 * f(t) + f(t - 1e-3)) / 1e-6;
     // What a metre a second of the axle moves, squared, of masses and of what spins.
     let moves = |t: f64| {
         let k = curvature(t);
         let square = |x: f64, y: f64| (1.0 - y * k).powi(2) + (x * k).powi(2);
-        1200.0 * square(1.2, 0.0) + WHEELS.iter().map(|&(_, x, y)| (20.0 + 1.0 / 0.09) * square(x, y)).sum::<f64>()
+        1000.0 * square(1.25, 0.0) + WHEELS.iter().map(|&[x, y, mass]| (mass + 1.0 / 0.09) * square(x, y)).sum::<f64>()
     };
     let rate = |t: f64, [_, _, heading, speed]: [f64; 4]| {
-        let (k, about) = (curvature(t), 1700.0 + 4.0 * 0.5);
-        let steered: f64 = [0.75, -0.75].iter().map(|&y| 0.5 * second(&|t| angle(y, t), t)).sum();
+        let (k, about) = (curvature(t), 1300.0 + 4.0 * 0.6 + 2.0 * 0.1);
+        let steered: f64 = [0.75, -0.75].iter().map(|&y| (0.6 + 0.1) * second(&|t| angle(y, t), t)).sum();
         let push = speed * (0.5 * derivative(&moves, t) + about * k * derivative(&curvature, t)) + k * steered;
         [speed * heading.cos(), speed * heading.sin(), speed * k, -push / (moves(t) + about * k * k)]
     };
-    let (steps, mut state) = (2000, [0.0, 0.0, 0.0, 4.0]);
+    let (steps, mut state) = (2000, [0.0, 0.0, 0.0, 3.5]);
     let h = end / f64::from(steps);
     for step in 0..steps {
         let t = h * f64::from(step);
@@ -108,7 +88,7 @@ fn driven(end: f64) -> [f64; 4] {
 #[test]
 fn a_car_that_is_steered_takes_whole_steps() {
     let k = "(0.15*(1 - cos(t)))";
-    let rolls = car(|y| format!("atan2(2.6*{k}, 1 - ({y})*{k})"));
+    let rolls = common::car(3.5, &format!("atan2(2.5*{k}, 1 - (0.75 - 1.5*mod(i, 2))*{k})"));
     let end = 6.0;
     let [x, y, heading, speed] = driven(end);
     for of in ["conserving-ggl", "conserving", "generalized-alpha", "trapezoidal-projected", "radau"] {
@@ -119,9 +99,9 @@ fn a_car_that_is_steered_takes_whole_steps() {
                 .work;
             assert!(work.rejected_steps <= 2 && work.iterations_per_step < 8.0, "{of}, {step} s: {work:?}");
             let last = |name: &str| common::last(&recording, name);
-            let place = [last("car.x") - 1.2 * heading.cos(), last("car.y") - 1.2 * heading.sin()];
+            let place = [last("chassis.x") - 1.25 * (heading.cos() - 1.0), last("chassis.y") - 1.25 * heading.sin()];
             assert!(
-                (last("car.vx").hypot(last("car.vy")) / speed / (1.0 + (1.2 * curvature(end)).powi(2)).sqrt() - 1.0).abs() < 2e-3,
+                (last("chassis.vx").hypot(last("chassis.vy")) / speed / (1.0 + (1.25 * curvature(end)).powi(2)).sqrt() - 1.0).abs() < 2e-3,
                 "{of}, {step} s"
             );
             (place[0] - x).hypot(place[1] - y)
@@ -136,7 +116,7 @@ fn a_car_that_is_steered_takes_whole_steps() {
 /// Front wheels that are turned by one and the same angle go round no common centre with the others: no step is taken as if one of them might slip.
 #[test]
 fn a_car_that_cannot_roll_stops() {
-    let stuck = car(|_| "atan2(2.6*0.15*(1 - cos(t)), 1)".to_string());
+    let stuck = common::car(4.0, "atan2(2.5*0.15*(1 - cos(t)), 1)");
     for of in ["conserving-ggl", "conserving", "generalized-alpha", "trapezoidal-projected", "radau"] {
         let mut simulation = common::simulation(&stuck, of, 0.01);
         let Status::Stopped { at, reason } = simulation.run(6.0, &mut |_: &Simulation| Verdict::GoOn) else { panic!("{of}: it went on") };
@@ -145,73 +125,11 @@ fn a_car_that_cannot_roll_stops() {
     }
 }
 
-/// A car whose front wheels turn by one and the same angle, on knuckles of their own.
-const STUCK_CAR: &str = r#"
-[body.chassis]
-mass = 1000
-inertia = [300, 1200, 1300]
-position = [0, 0, 0.5]
-velocity = [5, 0, 0]
-
-[body.wheel]
-repeat = "i = 0 to 3"
-mass = 20
-inertia = [0.6, 0.6, 1]
-position = ["2.5*floor(i/2) - 1.25", "0.75 - 1.5*mod(i, 2)", 0.3]
-orientation = { axis = [1, 0, 0], angle = "-90*deg" }
-velocity = [5, 0, 0]
-angular_velocity = [0, "5/0.3", 0]
-
-[body.knuckle]
-repeat = "i = 2 to 3"
-mass = 5
-inertia = [0.1, 0.1, 0.1]
-position = [1.25, "0.75 - 1.5*mod(i, 2)", 0.3]
-velocity = [5, 0, 0]
-
-[joint.road]
-repeat = "i = 0 to 3"
-type = "rolling"
-between = ["ground", "wheel[i]"]
-at = "wheel[i]"
-axis = [0, 1, 0]
-normal = [0, 0, 1]
-radius = 0.3
-
-[joint.rear]
-repeat = "i = 0 to 1"
-type = "revolute"
-between = ["chassis", "wheel[i]"]
-at = "wheel[i]"
-axis = [0, 1, 0]
-
-[joint.front]
-repeat = "i = 2 to 3"
-type = "revolute"
-between = ["knuckle[i]", "wheel[i]"]
-at = "wheel[i]"
-axis = [0, 1, 0]
-
-[joint.kingpin]
-repeat = "i = 2 to 3"
-type = "revolute"
-between = ["chassis", "knuckle[i]"]
-at = "wheel[i]"
-axis = [0, 0, 1]
-
-[drive.steering]
-repeat = "i = 2 to 3"
-type = "angle"
-joint = "kingpin[i]"
-profile = "atan(0.25*sin(t))"
-
-"#;
-
 /// Rows of accelerations alone, off which it drifts, let the car stand still all at once: what takes no energy by itself has lost it.
 #[test]
 fn energy_that_goes_nowhere_stops_a_run() {
     for step in [0.005, 0.01] {
-        let mut simulation = common::simulation(&model(STUCK_CAR), "gauss", step);
+        let mut simulation = common::simulation(&common::car(5.0, "atan(0.25*sin(t))"), "gauss", step);
         let Status::Stopped { at, reason } = simulation.run(0.2, &mut |_: &Simulation| Verdict::GoOn) else { panic!("it went on") };
         assert!(at <= 0.05 && reason.contains("of energy that could move went nowhere"), "{at} s: {reason}");
     }

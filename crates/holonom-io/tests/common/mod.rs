@@ -102,6 +102,72 @@ pub fn last(recording: &Recording, name: &str) -> f64 {
     *recording.column(name).unwrap_or_else(|| panic!("there is no column {name}")).last().unwrap()
 }
 
+/// A car on four wheels without slip, at a speed (m/s), whose front wheels `i`, 2 on the left and 3 on the right, are turned by angles with this profile.
+/// At every place two of the eight rows that hold the speeds of wheels follow from all others.
+pub fn car(speed: f64, profile: &str) -> Model {
+    model(&format!(
+        r#"
+[body.chassis]
+mass = 1000
+inertia = [300, 1200, 1300]
+position = [0, 0, 0.5]
+velocity = [{speed}, 0, 0]
+
+[body.wheel]
+repeat = "i = 0 to 3"
+mass = 20
+inertia = [0.6, 0.6, 1]
+position = ["2.5*floor(i/2) - 1.25", "0.75 - 1.5*mod(i, 2)", 0.3]
+orientation = {{ axis = [1, 0, 0], angle = "-90*deg" }}
+velocity = [{speed}, 0, 0]
+angular_velocity = [0, "{speed}/0.3", 0]
+
+[body.knuckle]
+repeat = "i = 2 to 3"
+mass = 5
+inertia = [0.1, 0.1, 0.1]
+position = [1.25, "0.75 - 1.5*mod(i, 2)", 0.3]
+velocity = [{speed}, 0, 0]
+
+[joint.road]
+repeat = "i = 0 to 3"
+type = "rolling"
+between = ["ground", "wheel[i]"]
+at = "wheel[i]"
+axis = [0, 1, 0]
+normal = [0, 0, 1]
+radius = 0.3
+
+[joint.rear]
+repeat = "i = 0 to 1"
+type = "revolute"
+between = ["chassis", "wheel[i]"]
+at = "wheel[i]"
+axis = [0, 1, 0]
+
+[joint.front]
+repeat = "i = 2 to 3"
+type = "revolute"
+between = ["knuckle[i]", "wheel[i]"]
+at = "wheel[i]"
+axis = [0, 1, 0]
+
+[joint.kingpin]
+repeat = "i = 2 to 3"
+type = "revolute"
+between = ["chassis", "knuckle[i]"]
+at = "wheel[i]"
+axis = [0, 0, 1]
+
+[drive.steering]
+repeat = "i = 2 to 3"
+type = "angle"
+joint = "kingpin[i]"
+profile = "{profile}"
+"#
+    ))
+}
+
 /// A mass on a spring: x = 1 + cos(2 t), so that what measures say is known.
 pub const OSCILLATOR: &str = r#"
 gravity = [0, 0, 0]

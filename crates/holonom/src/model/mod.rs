@@ -137,6 +137,7 @@ mod references;
 mod repeat;
 mod rest;
 mod schema;
+mod sections;
 mod settings;
 mod signals;
 mod spinless;
@@ -261,8 +262,8 @@ impl Model {
     /// Everything that is wrong with it, with paths into the table.
     pub fn from_value_with(value: &Value, kinds: &Kinds, files: &dyn Files) -> Result<Self, Faults> {
         let sink = Sink::default();
-        match description::read(value, kinds, &sink) {
-            Ok(description::Partial { description, unread }) => compile::model(&description, &unread, files, sink),
+        match sections::read(value, kinds, &sink) {
+            Ok(sections::Partial { description, unread }) => compile::model(&description, &unread, files, sink),
             Err(Refused) => Err(sink.finish().expect_err("what is refused has a fault")),
         }
     }
