@@ -25,7 +25,10 @@ pub fn view(arguments: &ViewArguments) -> Result<ExitCode, Failure> {
     let html = Header::from_bytes("Content-Type", "text/html; charset=utf-8").expect("the header is valid");
     for request in server.incoming_requests() {
         let response = match request.url() {
-            "/" | "/report.html" => request.respond(Response::from_data(page.clone()).with_header(html.clone())),
+            "/" | "/report.html" => {
+                // With its length and not in chunks: what is sent is the file, byte for byte.
+                request.respond(Response::from_data(page.clone()).with_header(html.clone()).with_chunked_threshold(usize::MAX))
+            }
             _ => request.respond(Response::from_string("not here").with_status_code(404)),
         };
         // A browser that went away is none of our business.
