@@ -243,7 +243,7 @@ impl Assembly<'_> {
             return Ok(Named::Point(k));
         }
         let base = full.split('[').next().unwrap_or(&full);
-        if self.faulty.contains(base) {
+        if self.faulty.contains(base) || split_place(base).is_some_and(|(body, _)| self.faulty.contains(body)) {
             return Err(Refused);
         }
         if self.sink.is_full() {
