@@ -36,6 +36,7 @@ pub const EXAMPLES: &[(&str, &str)] = &[
     ("differential", include_str!("../../../examples/differential.toml")),
     ("suspension", include_str!("../../../examples/suspension.toml")),
     ("stewart-platform", include_str!("../../../examples/stewart-platform.toml")),
+    ("flexible-four-bar", include_str!("../../../examples/flexible-four-bar.toml")),
     ("robot-arm", include_str!("../../../examples/robot-arm.toml")),
 ];
 

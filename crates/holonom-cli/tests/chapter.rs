@@ -25,7 +25,7 @@ fn the_schema_is_json_and_knows_every_section() {
     let schema = json(&folder(), "schema");
     assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
     let sections = ["title", "gravity", "plane", "parameters", "simulation", "output"];
-    let named = ["table", "input", "point", "body", "bar", "joint", "constraint", "drive", "force", "start", "measure", "event"];
+    let named = ["table", "input", "point", "body", "bar", "beam", "joint", "constraint", "drive", "force", "start", "measure", "event"];
     for section in sections.into_iter().chain(named) {
         assert!(schema["properties"][section].is_object(), "{section}");
     }

@@ -1,8 +1,8 @@
 //! What builders are made of: all kinds with their keys, as the reader of model files has them.
 
 use holonom::model::{
-    Bar, Body, Curve, Event, Input, Key, Keys, Kind, Kinds, Measure, ModelKeys, OutputKeys, Point, REPEAT, Shape, SimulationKeys, Solid,
-    Start,
+    Bar, Beam, Body, Curve, Event, Input, Key, Keys, Kind, Kinds, Measure, ModelKeys, OutputKeys, Point, REPEAT, Shape, SimulationKeys,
+    Solid, Start,
 };
 use pyo3::prelude::*;
 
@@ -13,12 +13,13 @@ type KeyParts = (&'static str, &'static str, bool, &'static str, &'static str, &
 type Definition = (&'static str, Option<&'static str>, &'static str, &'static str, Vec<KeyParts>);
 
 /// Sections of entries without kinds, and what an entry is.
-const PLAIN: [(&str, &str, &[Key]); 8] = [
+const PLAIN: [(&str, &str, &[Key]); 9] = [
     ("table", "a curve, which formulas call as a function", Curve::KEYS),
     ("input", "a number from outside, which is set while the model runs", Input::KEYS),
     ("point", "a particle, a place that stays, or a driven support", Point::KEYS),
     ("body", "a rigid body", Body::KEYS),
     ("bar", "a uniform rigid rod between two points", Bar::KEYS),
+    ("beam", "an elastic beam", Beam::KEYS),
     ("start", "where a joint is at the start: the mechanism is moved there before it runs", Start::KEYS),
     ("measure", "a formula of what the mechanism does, recorded as a column and read by other formulas", Measure::KEYS),
     ("event", "a condition whose time is found, and what happens then", Event::KEYS),

@@ -16,7 +16,7 @@ use crate::function::{self, Trouble, external};
 use crate::value;
 
 /// Sections of entries whose names are unique among all of them.
-const NAMED: [&str; 11] = ["table", "input", "point", "body", "bar", "joint", "constraint", "drive", "force", "measure", "event"];
+const NAMED: [&str; 12] = ["table", "input", "point", "body", "bar", "beam", "joint", "constraint", "drive", "force", "measure", "event"];
 
 /// The section whose keys are names that people choose.
 const PARAMETERS: &str = "parameters";

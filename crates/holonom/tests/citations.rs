@@ -72,7 +72,7 @@ fn citations_lead_somewhere() {
 
     let section = Regex::new(r"§(\d+(?:\.\d+)?|[IVX]+\.\d+)").unwrap();
     let of_methods = Regex::new(r"methods (?:§[\d.]+, )*$").unwrap();
-    let name = r"(?:García Orden|García de Jalón|Van Loan|[A-ZÀ-Ž][a-zà-ž]+)";
+    let name = r"(?:García Orden|García de Jalón|Van Loan|[A-ZÀ-Ž][a-zà-ž]+(?:[A-Z][a-z]+)?)";
     let work = Regex::new(&format!(r"({name}(?:, {name})*(?: and {name})?),? \(?((?:19|20)\d\d)\b")).unwrap();
     let equation = Regex::new(r"[^§\w]\((\d{1,2})\)").unwrap();
 

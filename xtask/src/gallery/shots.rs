@@ -49,6 +49,7 @@ pub const GALLERY: &[Shot] = &[
     at("car-axis", 1.0),
     at("andrews", 0.02),
     near("bricard", 1.0, 1.2, [0.0, 0.0]),
+    near("flexible-four-bar", 6.0, 1.2, [0.0, 0.0]),
     near("flyball-governor", 1.25, 1.3, [0.0, 0.0]),
     near("slider-crank", 0.3, 1.1, [0.0, -40.0]),
     at("spatial-four-bar", 0.5),

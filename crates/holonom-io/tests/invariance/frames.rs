@@ -53,8 +53,12 @@ fn far_from_the_origin() {
 #[test]
 fn mirrored() {
     let mirror = [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    check_change("mirrored", |_| Some(Change { turn: mirror, ..Change::default() }));
-    check_change("mirrored and turned", |case| Some(Change { turn: product(&turn(case), &mirror), ..Change::default() }));
+    // Axes of a body may be turned over along x; those of a beam follow from its ends.
+    let without_beams = |case: &Case| entries(&case.description).iter().all(|(section, ..)| *section != "beam");
+    check_change("mirrored", |case| without_beams(case).then(|| Change { turn: mirror, ..Change::default() }));
+    check_change("mirrored and turned", |case| {
+        without_beams(case).then(|| Change { turn: product(&turn(case), &mirror), ..Change::default() })
+    });
 }
 
 /// Models that are tied to no place may move at any speed.

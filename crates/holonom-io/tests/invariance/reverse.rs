@@ -21,11 +21,13 @@ fn back_in_time() {
 const IRREVERSIBLE: &[&str] = &[
     "car-axis",
     "differential",
+    "flexible-four-bar",
     "flyball-governor",
     "jansen-linkage",
     "robot-arm",
     "stewart-platform",
     "suspension",
+    "flexible-pendulum",
     "planetary",
     "stiff-and-soft",
     "constraint:distance",

@@ -1,9 +1,9 @@
 //! The sections of a model file and the keys of their entries.
 
-use holonom::model::{Bar, Body, Key, Keys, Kind, Point, Table, Value, constraints, drives, forces, joints};
+use holonom::model::{Bar, Beam, Body, Key, Keys, Kind, Point, Table, Value, constraints, drives, forces, joints};
 
 /// Sections of named entries.
-pub const SECTIONS: [&str; 7] = ["point", "body", "bar", "joint", "constraint", "drive", "force"];
+pub const SECTIONS: [&str; 8] = ["point", "body", "bar", "beam", "joint", "constraint", "drive", "force"];
 
 /// What `type` of an entry says.
 pub fn kind(entry: &Table) -> &str {
@@ -23,6 +23,7 @@ pub fn keys(section: &str, entry: &Table) -> &'static [Key] {
         "point" => Point::KEYS,
         "body" => Body::KEYS,
         "bar" => Bar::KEYS,
+        "beam" => Beam::KEYS,
         "joint" => find(joints::kinds().collect()),
         "constraint" => find(constraints::KINDS.iter().collect()),
         "drive" => find(drives::KINDS.iter().collect()),

@@ -1,6 +1,6 @@
 //! Keys and entries whose change does not follow from shape and unit alone.
 
-use holonom::model::{Table, Value};
+use holonom::model::{Keys, Section, Table, Value};
 
 use super::change::{Change, Matrix, SAME, product, rotation};
 use super::sections::{items, kind, list, number, numbers, table};
@@ -58,6 +58,13 @@ pub fn shape(value: &Value, length: f64) -> Value {
     Value::Table(shape.iter().map(|(key, value)| (key, scaled(value, length))).collect())
 }
 
+/// The section of a beam, whose keys have units of their own.
+pub fn section(value: &Value, change: &Change) -> Value {
+    let Value::Table(section) = value else { panic!("a section is a table") };
+    let unit = |name: &str| Section::KEYS.iter().find(|key| key.name == name).expect("the key is known").unit;
+    Value::Table(section.iter().map(|(name, value)| (name, scaled(value, change.factor(powers(unit(name)))))).collect())
+}
+
 /// What concerns several keys of an entry.
 pub fn finish(section: &str, old: &Table, new: &mut Table, context: &Context<'_>) {
     let change = context.change;
@@ -66,6 +73,15 @@ pub fn finish(section: &str, old: &Table, new: &mut Table, context: &Context<'_>
             new.push("velocity", list(&change.drift[..context.dimension()]));
         }
         ("body", _) => body(old, new, context),
+        ("beam", _) => {
+            if change.drift != [0.0; 3] && old.get("velocity").is_none() {
+                new.push("velocity", list(&change.drift[..context.dimension()]));
+            }
+            // The default; no beam of these models goes along z.
+            if context.dimension() == 3 && old.get("up").is_none() {
+                new.push("up", list(&context.vector(&change.turn, &[0.0, 0.0, 1.0], 1.0)));
+            }
+        }
         ("joint", "screw") => times(new, "pitch", change.parity()),
         ("joint", "rack-and-pinion") => times(new, "radius", change.parity()),
         ("joint", "gear") => {

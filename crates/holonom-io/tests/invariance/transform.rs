@@ -106,10 +106,11 @@ impl<'a> Context<'a> {
             Shape::Formulas(_) => self.formulas(value, &self.axes(), factor(key.unit), false),
             Shape::Torque(_) if self.dimension() == 2 => self.formula(value, factor(key.unit) * self.change.parity()),
             Shape::Torque(_) => self.formulas(value, &self.axes(), factor(key.unit) * self.change.parity(), false),
-            Shape::Flag | Shape::Text | Shape::Choice(_) | Shape::Words(_) | Shape::Members | Shape::Named => value.clone(),
+            Shape::Flag | Shape::Text | Shape::Whole | Shape::Choice(_) | Shape::Words(_) | Shape::Members | Shape::Named => value.clone(),
             // What `special` does.
             Shape::Table(_) | Shape::Coordinates | Shape::Tables(_) => match key.name {
                 "shape" => special::shape(value, self.change.length),
+                "section" => special::section(value, self.change),
                 _ => value.clone(),
             },
             _ => panic!("nothing is known of what becomes of the key {}", key.name),

@@ -25,10 +25,8 @@ pub fn powers(unit: &str) -> Powers {
     let (mut sign, mut rest) = (1, unit);
     loop {
         let end = rest.find(['·', '/']).unwrap_or(rest.len());
-        let (symbol, exponent) = match rest[..end].strip_suffix('²') {
-            Some(symbol) => (symbol, 2),
-            None => rest[..end].strip_suffix('³').map_or((&rest[..end], 1), |symbol| (symbol, 3)),
-        };
+        let raised = ["²", "³", "⁴"].iter().zip(2..).find_map(|(mark, exponent)| Some((rest[..end].strip_suffix(mark)?, exponent)));
+        let (symbol, exponent) = raised.unwrap_or((&rest[..end], 1));
         let known = SYMBOLS.iter().find(|(name, _)| *name == symbol).unwrap_or_else(|| panic!("`{symbol}` of {unit} is not known"));
         (0..3).for_each(|k| powers[k] += sign * exponent * known.1[k]);
         let Some(separator) = rest[end..].chars().next() else { return powers };
@@ -55,6 +53,7 @@ pub fn of_coordinate(unit: &str, is_angle: bool) -> &str {
 fn units_have_their_powers() {
     assert_eq!(powers("N·m·s/rad"), [2, 1, -1]);
     assert_eq!(powers("kg/m³"), [-3, 1, 0]);
+    assert_eq!(powers("m⁴"), [4, 0, 0]);
     assert_eq!(powers("1/s"), [0, 0, -1]);
     assert_eq!(powers(of_coordinate("s/rad or s/m", false)), [-1, 0, 1]);
 }

@@ -10,17 +10,20 @@ struct Scope<'a> {
     known: Table,
     /// Bodies by the names that they have before their indices.
     bodies: &'a [String],
+    /// Beams, whose bodies keep their indices.
+    beams: &'a [String],
 }
 
 /// A description written out.
 pub fn out(description: &Table) -> Table {
     let parameters = table(description, "parameters");
     let all = entries(description);
-    let bodies: Vec<String> = all.iter().filter(|entry| entry.0 == "body").map(|entry| entry.1.clone()).collect();
+    let of = |section: &str| -> Vec<String> { all.iter().filter(|entry| entry.0 == section).map(|entry| entry.1.clone()).collect() };
+    let (bodies, beams) = (of("body"), of("beam"));
     let mut written = Vec::new();
     for (section, name, entry) in &all {
         for indices in repetitions(entry, &parameters) {
-            let mut scope = Scope { known: parameters.clone(), bodies: &bodies };
+            let mut scope = Scope { known: parameters.clone(), bodies: &bodies, beams: &beams };
             let mut full = name.clone();
             for (index, value) in indices {
                 full.push_str(&format!("_{value}"));
@@ -29,7 +32,7 @@ pub fn out(description: &Table) -> Table {
             written.push((*section, full, scope.entry(section, entry)));
         }
     }
-    let scope = Scope { known: parameters, bodies: &bodies };
+    let scope = Scope { known: parameters, bodies: &bodies, beams: &beams };
     let mut plain = Table::default();
     for key in ["title", "plane"] {
         description.get(key).into_iter().for_each(|value| plain.push(key, value.clone()));
@@ -127,8 +130,12 @@ impl Scope<'_> {
     /// `P[i-1]` as `P_2`.
     fn renamed(&self, name: &str) -> String {
         let mut out = String::new();
+        let is_of_beam = self.beams.iter().any(|beam| name.split('[').next() == Some(beam));
         for (k, part) in name.split('[').enumerate() {
             match part.split_once(']') {
+                Some((index, behind)) if is_of_beam && k > 0 => {
+                    out.push_str(&format!("[{}]{behind}", number(index, &self.known).round()));
+                }
                 Some((index, behind)) if k > 0 => out.push_str(&format!("_{}{behind}", number(index, &self.known).round())),
                 _ => out.push_str(part),
             }

@@ -1,7 +1,9 @@
 //! Eigenvalues and inverses of small dense matrices, for analysis only.
 
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::evd::{ComputeEigenvectors, EvdParams, evd_real, evd_scratch};
 use faer::linalg::solvers::DenseSolveCore;
-use faer::{Mat, Side};
+use faer::{Auto, Col, Mat, Par, Side, Spec};
 
 /// Eigenvalues of M⁻¹A for symmetric A and positive definite M, ascending. `None` when M is not positive definite.
 pub fn relative_eigenvalues(size: usize, a: &[f64], m: &[f64]) -> Option<Vec<f64>> {
@@ -26,12 +28,39 @@ pub type Eigenpair = ([f64; 2], Vec<[f64; 2]>);
 
 /// Those of a matrix (size × size, row-major). `None` where they are not found.
 pub fn eigenpairs(size: usize, values: &[f64]) -> Option<Vec<Eigenpair>> {
-    let eigen = matrix(size, values).eigen().ok()?;
-    let pair = |k: usize| {
-        let vector = (0..size).map(|i| eigen.U()[(i, k)]).map(|entry| [entry.re, entry.im]).collect();
-        ([eigen.S()[k].re, eigen.S()[k].im], vector)
+    // One shift pair at a time: the reordering with which faer looks for several (0.24.4) may go on without end where eigenvalues lie close.
+    let mut params: EvdParams = Auto::<f64>::auto();
+    params.schur.blocking_threshold = usize::MAX;
+    let params = || Spec::new(params);
+    let scratch = evd_scratch::<f64>(size, ComputeEigenvectors::No, ComputeEigenvectors::Yes, Par::Seq, params());
+    let (mut re, mut im, mut vectors) = (Col::zeros(size), Col::zeros(size), Mat::zeros(size, size));
+    evd_real(
+        matrix(size, values).as_ref(),
+        re.as_diagonal_mut(),
+        im.as_diagonal_mut(),
+        None,
+        Some(vectors.as_mut()),
+        Par::Seq,
+        MemStack::new(&mut MemBuffer::new(scratch)),
+        params(),
+    )
+    .ok()?;
+    let column = |k: usize, of_imaginary: Option<(usize, f64)>| {
+        let imaginary = |i: usize| of_imaginary.map_or(0.0, |(column, sign)| sign * vectors[(i, column)]);
+        (0..size).map(|i| [vectors[(i, k)], imaginary(i)]).collect()
     };
-    Some((0..size).map(pair).collect())
+    // Of a complex pair the first column has the real parts of the vectors, and the second the imaginary ones of the first of them.
+    let mut pairs = Vec::with_capacity(size);
+    while pairs.len() < size {
+        let k = pairs.len();
+        if im[k] == 0.0 {
+            pairs.push(([re[k], 0.0], column(k, None)));
+        } else {
+            pairs.push(([re[k], im[k]], column(k, Some((k + 1, 1.0)))));
+            pairs.push(([re[k], -im[k]], column(k, Some((k + 1, -1.0)))));
+        }
+    }
+    Some(pairs)
 }
 
 /// Orthonormal vectors that a symmetric positive semidefinite matrix (size × size, row-major) takes to at most `share` of

@@ -252,12 +252,17 @@ impl Assembly<'_> {
 
     /// Builds an entry, and has recorded what its laws and loads do.
     pub(in crate::model) fn build(&mut self, entry: &Entry<'_>, element: &dyn AnyElement) -> Read<()> {
+        self.record(entry.name, |assembly| element.build(assembly, entry))
+    }
+
+    /// Has recorded what the laws and loads do that `build` adds.
+    pub(in crate::model) fn record<T>(&mut self, name: &str, build: impl FnOnce(&mut Self) -> T) -> T {
         let (laws, loads) = (self.builder.laws(), self.builder.loads());
-        let built = element.build(self, entry);
+        let built = build(self);
         let shows = std::mem::replace(&mut self.shows, Shows::Power);
         let (laws, loads) = (laws..self.builder.laws(), loads..self.builder.loads());
         if !(laws.is_empty() && loads.is_empty()) {
-            self.forces.push(RecordedForce { name: entry.name.to_string(), laws, loads, shows });
+            self.forces.push(RecordedForce { name: name.to_string(), laws, loads, shows });
         }
         built
     }

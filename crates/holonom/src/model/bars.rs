@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use super::assembly::Assembly;
-use super::bodies::frame::Frame;
 use super::ends::{End, difference, from_to};
 use super::entry::Entry;
 use super::fault::{Read, Refused};
 use super::fields::{Keys, List, Number, Place};
 use super::geometry::norm;
 use super::key::Shape;
+use super::spread::{Moving, spread};
 use crate::record::{LineKind, RecordedRod};
 use crate::system::{self, Constant};
 
@@ -71,38 +71,11 @@ fn zero_length(entry: &Entry<'_>, [a, b]: &[End; 2]) -> Refused {
     entry.refuse("between", message, "move one of them, or use a point with mass")
 }
 
-/// Adds the mass of a bar. Where ends are sums of nodes, x = Σ (f + g J) x_i, each product of two ends is one of all their nodes.
+/// Adds the mass of a bar.
 fn add_mass(assembly: &mut Assembly<'_>, ends: &[End; 2], mass: f64) {
-    let moving = ends.each_ref().map(|end| velocities(assembly, end));
-    for (k, l, share) in [(0, 0, mass / 3.0), (1, 1, mass / 3.0), (0, 1, mass / 6.0)] {
-        for (i, a) in ends[k].terms.iter().enumerate() {
-            // Of an end with itself each pair of nodes once, as a block comes with its transpose.
-            let first = if k == l { i } else { 0 };
-            for (b, velocity) in ends[l].terms.iter().zip(&moving[l]).skip(first) {
-                let m = share * (a.factor * b.factor + a.turn * b.turn);
-                let s = share * (a.factor * b.turn - a.turn * b.factor);
-                assembly.builder.couple([a.place, b.place], m, s, [moving[k][i], *velocity]);
-                // Of a node that both ends have the block is its own transpose, which moves as the other end.
-                if k != l && a.place == b.place {
-                    assembly.builder.couple([b.place, a.place], m, -s, [*velocity, moving[k][i]]);
-                }
-            }
-        }
-        let weighed = if k == l { &ends[k..=k] } else { &ends[..] };
-        weighed.iter().flat_map(|end| &end.terms).for_each(|&term| assembly.builder.weight(term, share));
+    let moving = ends.each_ref().map(|end| Moving::new(assembly, end.terms.clone(), end.body));
+    spread(&mut assembly.builder, &moving, &[(0, 0, mass / 3.0), (1, 1, mass / 3.0), (0, 1, mass / 6.0)]);
+    for moving in &moving {
+        moving.terms.iter().for_each(|&term| assembly.builder.weight(term, 0.5 * mass));
     }
-}
-
-/// Velocities at the start of the nodes and fixed places that an end is made of, m/s: those which the body of the end is written with there. Others that
-/// share a node may be written with another one, and what the ground holds is written as moving where its body is.
-fn velocities(assembly: &Assembly<'_>, end: &End) -> Vec<[f64; 3]> {
-    let of_body = end.body.map(|body| (&assembly.bodies[body], &assembly.frames[body]));
-    let Some((body, Frame::Body { basis, .. })) = of_body else {
-        return end.terms.iter().map(|term| assembly.builder.velocity_of(term.place)).collect();
-    };
-    // Terms come in the order of the basis.
-    let mut basis = basis.iter();
-    let mut of =
-        |place| basis.find(|node| node.place == place).map_or_else(|| assembly.builder.velocity_of(place), |node| node.velocity(body));
-    end.terms.iter().map(|term| of(term.place)).collect()
 }

@@ -6,6 +6,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::assembly::{Assembly, Axes};
+use super::beams::{self, Beam};
 use super::bodies::nodes::{self, Member};
 use super::bodies::{Files, Placing, RigidBody, short};
 use super::description::Description;
@@ -46,8 +47,9 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
     let (axes, gravity) = compiler.head(description);
     let (mut specs, faulty_points) = compiler.points(&description.points, axes);
     let (mut bodies, faulty_bodies) = compiler.bodies(&description.bodies, axes);
-    let mut faulty: HashSet<String> =
-        [&faulty_points, &faulty_bodies, &unread.points, &unread.bodies, &unread.bars].into_iter().flatten().cloned().collect();
+    let (beams, faulty_beams) = compiler.beams(&description.beams, axes, &mut bodies);
+    let told = [&faulty_points, &faulty_bodies, &faulty_beams, &unread.points, &unread.bodies, &unread.bars, &unread.beams];
+    let mut faulty: HashSet<String> = told.into_iter().flatten().cloned().collect();
     let misplaced = compiler.place(description, &mut specs, &mut bodies, &faulty);
     faulty.extend(misplaced);
     let mut assembly = Assembly::new(SystemBuilder::new(axes.dimension(), gravity), axes, gravity, &sink, bodies);
@@ -56,7 +58,8 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
     assembly.signals = compiler.signals(description, unread, &mut assembly.builder);
     points::add(&mut assembly, &specs);
     compiler.bars(description, &mut assembly);
-    let geometries = compiler.nodes(description, &mut assembly, &specs);
+    let geometries = compiler.nodes(description, &mut assembly, &specs, &beams);
+    beams.iter().for_each(|beam| beam.spread_mass(&mut assembly));
     points::complete(&mut assembly, specs);
     let mut bars = Vec::new();
     let faulty_bars = compiler.each("bar", &description.bars, |entry, bar| {
@@ -69,6 +72,13 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
     compiler.build("drive", &description.drives, &mut assembly);
     let motions = sink.over_time.take();
     compiler.build("force", &description.forces, &mut assembly);
+    let mut beams = beams.iter().peekable();
+    compiler.each("beam", &description.beams, |entry, _| {
+        if let Some(beam) = beams.next_if(|beam| beam.name == entry.name) {
+            beam.build(&mut assembly, entry);
+        }
+        Ok(())
+    });
     let forces = sink.over_time.take().into_iter().map(|force| OverTime { is_motion: false, ..force });
     let over_time = motions.into_iter().chain(forces).collect();
     let (settings, output) = compiler.settings(description, &assembly);
@@ -297,6 +307,16 @@ impl Compiler<'_> {
         (bodies, faulty)
     }
 
+    /// The beams, whose bodies go behind the others.
+    fn beams(&self, entries: &Entries<Beam>, axes: Axes, bodies: &mut Vec<RigidBody>) -> (Vec<beams::Evaluated>, HashSet<String>) {
+        let mut beams = Vec::new();
+        let faulty = self.each("beam", entries, |entry, beam| {
+            beams.push(beam.evaluate(entry, axes.dimension(), bodies)?);
+            Ok(())
+        });
+        (beams, faulty)
+    }
+
     /// Moves the bodies and points that are placed at others there. Hands back the names of those for which that was not possible.
     fn place(
         &self,
@@ -323,7 +343,13 @@ impl Compiler<'_> {
 
     /// Looks at joints and forces for what bodies share and need, and makes the nodes. Hands back where the joints of each entry are, unless
     /// something is wrong with them.
-    fn nodes(&self, description: &Description, assembly: &mut Assembly<'_>, specs: &[points::Spec]) -> Vec<Option<Vec<Geometry>>> {
+    fn nodes(
+        &self,
+        description: &Description,
+        assembly: &mut Assembly<'_>,
+        specs: &[points::Spec],
+        beams: &[beams::Evaluated],
+    ) -> Vec<Option<Vec<Geometry>>> {
         let reacts = description.output.as_ref().and_then(|output| output.reactions) == Some(true);
         let mut survey = Survey::default();
         let mut geometries = Vec::new();
@@ -356,6 +382,8 @@ impl Compiler<'_> {
                 Ok(())
             });
         }
+        // The section of a beam is a plate, and its elements need what is across that, too.
+        survey.needed.extend(beams.iter().flat_map(beams::Evaluated::bodies).flat_map(|body| (0..3).map(move |k| (body, unit(k)))));
         // A named point beside a rod or a plate is held by nodes, too.
         for (k, body) in assembly.bodies.iter().enumerate() {
             survey.needed.extend(body.points.iter().map(|&(_, at)| (k, geometry::subtract(at, body.position))));

@@ -1,11 +1,12 @@
 //! A model as it is written, without places in a file: what can be made by hand, changed, compiled, and compiled again.
 
 use super::bars::Bar;
+use super::beams::Beam;
 use super::bodies::{Body, Files, NoFiles};
 use super::element::Boxed;
 use super::entries::{Entries, Named};
 use super::event::Event;
-use super::expression::{BAR, External, ExternalFunction, Functions};
+use super::expression::{BAR, BEAM, External, ExternalFunction, Functions};
 use super::fault::{Faults, Refused, Sink};
 use super::fields::{Field, Keys, List, Number};
 use super::input::Input;
@@ -39,6 +40,8 @@ pub struct Description {
     pub bodies: Entries<Body>,
     /// `[bar.NAME]`: bars with mass between two points.
     pub bars: Entries<Bar>,
+    /// `[beam.NAME]`: elastic beams.
+    pub beams: Entries<Beam>,
     /// `[joint.NAME]`: joints between bodies, and couplers of their coordinates.
     pub joints: Entries<Boxed>,
     /// `[constraint.NAME]`: what holds points.
@@ -119,6 +122,11 @@ impl Description {
         self.bars.add(name, bar)
     }
 
+    /// Adds an elastic beam.
+    pub fn beam(&mut self, name: impl Into<String>, beam: Beam) -> &mut Named<Beam> {
+        self.beams.add(name, beam)
+    }
+
     /// Adds a joint or a coupler.
     pub fn joint(&mut self, name: impl Into<String>, joint: impl Into<Boxed>) -> &mut Named<Boxed> {
         self.joints.add(name, joint)
@@ -195,6 +203,7 @@ impl Description {
             ("point", self.points.write(Keys::write)),
             ("body", self.bodies.write(Keys::write)),
             ("bar", self.bars.write(Keys::write)),
+            ("beam", self.beams.write(Keys::write)),
             ("joint", self.joints.write(boxed)),
             ("constraint", self.constraints.write(boxed)),
             ("drive", self.drives.write(boxed)),
@@ -229,6 +238,7 @@ impl Description {
             "event" => Some("an event"),
             "table" => Some("a table"),
             "bar" => Some(BAR),
+            "beam" => Some(BEAM),
             "joint" => Some("a joint"),
             "constraint" => Some("a constraint"),
             "drive" => Some("a drive"),
@@ -247,7 +257,8 @@ impl Description {
             .chain(of("input", &self.inputs))
             .chain(of("measure", &self.measures))
             .chain(of("event", &self.events));
-        let parts = of("point", &self.points).chain(of("body", &self.bodies)).chain(of("bar", &self.bars));
+        let rigid = of("point", &self.points).chain(of("body", &self.bodies)).chain(of("bar", &self.bars));
+        let parts = rigid.chain(of("beam", &self.beams));
         let elements = of("constraint", &self.constraints).chain(of("joint", &self.joints));
         signals.chain(parts).chain(elements).chain(of("drive", &self.drives)).chain(of("force", &self.forces))
     }

@@ -4,7 +4,7 @@ use super::assembly::{Assembly, GROUND};
 use super::bodies::nodes::Member;
 use super::ends::{End, fixed};
 use super::entry::{Entry, Spot, all};
-use super::expression::{BAR, indexed};
+use super::expression::{BAR, BEAM, indexed};
 use super::fault::{Read, Refused, nearest, suggest};
 use super::fields::{self as field, Field, Number};
 use super::geometry::Vec3;
@@ -118,7 +118,7 @@ impl Assembly<'_> {
         if self.faulty.contains(base) {
             return Err(Refused);
         }
-        if let Some(refused) = refuse_other(entry, spot, &full, "a body or a point") {
+        if let Some(refused) = self.refuse_beam(entry, spot, &full).or_else(|| refuse_other(entry, spot, &full, "a body or a point")) {
             return Err(refused);
         }
         let bars = self.bar_names.keys().map(String::as_str).filter(|_| self.dimension() == 2);
@@ -129,6 +129,14 @@ impl Assembly<'_> {
             None => format!("add [body.{base}], or name one that is there"),
         };
         Err(entry.refuse(spot, format!("there is no body `{full}`"), cure))
+    }
+
+    /// Refuses the name of a beam where one of its bodies is wanted, and an index that none of them has.
+    fn refuse_beam(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Option<Refused> {
+        let begins = format!("{}[", name.split('[').next().filter(|_| entry.scope.called(name) == Some(BEAM))?);
+        let mut bodies = self.bodies.iter().map(|body| &body.name).filter(|body| body.starts_with(&begins));
+        let (first, last) = (bodies.next()?, bodies.next_back()?);
+        Some(entry.refuse(spot, format!("`{name}` is none of the bodies of a beam"), format!("name one of `{first}` to `{last}`")))
     }
 
     /// Whether a text names a place or a direction of a body: `BODY.NAME`.
@@ -249,7 +257,7 @@ impl Assembly<'_> {
         if self.sink.is_full() {
             return Err(entry.refuse(spot, "", ""));
         }
-        if let Some(refused) = refuse_other(entry, spot, &full, "a point or a body") {
+        if let Some(refused) = self.refuse_beam(entry, spot, &full).or_else(|| refuse_other(entry, spot, &full, "a point or a body")) {
             return Err(refused);
         }
         let begins = format!("{base}[");

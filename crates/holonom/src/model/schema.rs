@@ -4,8 +4,8 @@ use super::fields::Keys;
 use super::key::{Key, Kind, Shape};
 use super::value::{Table, Value};
 use super::{
-    Bar, Body, Curve, EQUILIBRIUM, Event, Input, Measure, ModelKeys, OutputKeys, Point, REPEAT, SimulationKeys, Start, constraints, drives,
-    forces, joints,
+    Bar, Beam, Body, Curve, EQUILIBRIUM, Event, Input, Measure, ModelKeys, OutputKeys, Point, REPEAT, SimulationKeys, Start, constraints,
+    drives, forces, joints,
 };
 
 /// JSON Schema (draft 2020-12) of the model file.
@@ -17,6 +17,7 @@ pub fn schema() -> Value {
     properties.push("point", entries(named(Point::KEYS)));
     properties.push("body", entries(named(Body::KEYS)));
     properties.push("bar", entries(named(Bar::KEYS)));
+    properties.push("beam", entries(named(Beam::KEYS)));
     properties.push("joint", entries(one_of(joints::kinds())));
     properties.push("constraint", entries(one_of(constraints::KINDS)));
     properties.push("drive", entries(one_of(drives::KINDS)));

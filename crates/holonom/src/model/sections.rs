@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::GROUND;
 use super::bars::Bar;
+use super::beams::Beam;
 use super::bodies::Body;
 use super::description::{Description, ModelKeys};
 use super::element::Boxed;
@@ -36,6 +37,7 @@ pub(super) struct Unread {
     pub points: HashSet<String>,
     pub bodies: HashSet<String>,
     pub bars: HashSet<String>,
+    pub beams: HashSet<String>,
     pub joints: HashSet<String>,
 }
 
@@ -45,13 +47,14 @@ fn is_equilibrium(starts: &Table) -> bool {
 }
 
 /// Names of the tables of a model.
-const TABLES: [&str; 15] = [
+const TABLES: [&str; 16] = [
     "parameters",
     "table",
     "input",
     "point",
     "body",
     "bar",
+    "beam",
     "joint",
     "constraint",
     "drive",
@@ -102,6 +105,7 @@ pub(super) fn read(value: &Value, kinds: &Kinds, sink: &Sink) -> Read<Partial> {
     let (points, unread_points) = section(&root, "point", &mut names, |reader| keys::<Point>("a point", reader));
     let (bodies, unread_bodies) = section(&root, "body", &mut names, |reader| keys::<Body>("a body", reader));
     let (bars, unread_bars) = section(&root, "bar", &mut names, |reader| keys::<Bar>("a bar", reader));
+    let (beams, unread_beams) = section(&root, "beam", &mut names, |reader| keys::<Beam>("a beam", reader));
     let is_planar = table.get("plane").is_some();
     let elements =
         |names: &mut Names<'_>, name: &str, kinds: &[Kind]| section(&root, name, names, |reader| element(name, kinds, is_planar, reader));
@@ -131,6 +135,7 @@ pub(super) fn read(value: &Value, kinds: &Kinds, sink: &Sink) -> Read<Partial> {
             points,
             bodies,
             bars,
+            beams,
             joints,
             constraints,
             drives,
@@ -148,6 +153,7 @@ pub(super) fn read(value: &Value, kinds: &Kinds, sink: &Sink) -> Read<Partial> {
             points: unread_points,
             bodies: unread_bodies,
             bars: unread_bars,
+            beams: unread_beams,
             joints: unread_joints,
         },
     })

@@ -9,7 +9,8 @@ const SYNONYMS: &[(&str, &[&str])] = &[
     // Tables of the model.
     ("point", &["node", "particle", "marker", "mass-point"]),
     ("body", &["link", "rigid-body", "bodies", "part", "segment"]),
-    ("bar", &["rod", "truss", "beam"]),
+    ("bar", &["rod", "truss"]),
+    ("beam", &["flexible", "flexible-beam", "boom"]),
     ("drive", &["motor", "actuator", "motion", "driver"]),
     ("force", &["load"]),
     ("parameters", &["constants", "variables", "const", "vars"]),

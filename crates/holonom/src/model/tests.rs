@@ -31,6 +31,8 @@ fn kinds_and_keys_have_their_own_names_and_documentation() {
     for (name, keys) in [
         ("point", Point::KEYS),
         ("bar", Bar::KEYS),
+        ("beam", Beam::KEYS),
+        ("section", Section::KEYS),
         ("body", Body::KEYS),
         ("model", ModelKeys::KEYS),
         ("simulation", SimulationKeys::KEYS),

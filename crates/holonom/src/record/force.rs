@@ -36,6 +36,8 @@ pub enum Shows {
     },
     /// What its laws exert along some coordinates.
     Along(Vec<Along>),
+    /// What its laws take along some coordinates: what is on the far side of a cut through an element exerts on the near side.
+    Section(Vec<Along>),
     /// What a bushing exerts along and about the axes of its first body, which are those of the model at the start.
     Bushing {
         /// Displacements, then sines of rotations.
@@ -142,6 +144,11 @@ impl Along {
     }
 }
 
+/// What a component of a force in a section is a component of.
+pub(super) fn quantity(suffix: &str) -> &str {
+    suffix.split('_').next().unwrap_or(suffix)
+}
+
 impl RecordedForce {
     /// Its columns, for a model with these axes.
     pub(super) fn headings(&self, axes: &str) -> Vec<Heading> {
@@ -164,7 +171,7 @@ impl RecordedForce {
                     headings.push(drum.effort_heading(&of));
                 }
             }
-            Shows::Along(coordinates) | Shows::Bushing { coordinates, .. } => {
+            Shows::Along(coordinates) | Shows::Section(coordinates) | Shows::Bushing { coordinates, .. } => {
                 // A bushing shows the sines of its angles.
                 let of_angle = if matches!(self.shows, Shows::Bushing { .. }) { "1" } else { Units::of(true).value };
                 let unit = |along: &Along| if along.is_angle { of_angle } else { Units::of(false).value };
@@ -194,6 +201,11 @@ impl RecordedForce {
             Shows::Power => Vec::new(),
             Shows::Tension { .. } => vec![vec![column("force")]],
             Shows::Along(coordinates) => coordinates.iter().map(|along| vec![column(&along.effort[0])]).collect(),
+            Shows::Section(coordinates) => {
+                // Components along y and z are those of one.
+                let of_one = coordinates.chunk_by(|a, b| quantity(&a.effort[0]) == quantity(&b.effort[0]));
+                of_one.map(|of_one| of_one.iter().map(|along| column(&along.effort[0])).collect()).collect()
+            }
             Shows::Bushing { coordinates, .. } => {
                 let (forces, moments) = coordinates.split_at(axes.len());
                 [forces, moments].map(|of| of.iter().map(|along| column(&along.effort[0])).collect()).into()
@@ -206,6 +218,11 @@ impl RecordedForce {
                 }
             }
         }
+    }
+
+    /// The beam that it is an element of, if it is one.
+    pub(super) fn beam(&self) -> Option<&str> {
+        matches!(self.shows, Shows::Section(_)).then(|| self.name.rfind('[').map_or(&*self.name, |at| &self.name[..at]))
     }
 
     /// The columns of the sines of a bushing's rotations; none of other forces.
@@ -241,13 +258,14 @@ impl RecordedForce {
                     }
                 }
             }
-            Shows::Along(coordinates) | Shows::Bushing { coordinates, .. } => {
+            Shows::Along(coordinates) | Shows::Section(coordinates) | Shows::Bushing { coordinates, .. } => {
+                let sign = if matches!(self.shows, Shows::Section(_)) { 1.0 } else { -1.0 };
                 let shown = coordinates.iter().filter(|along| along.value.is_some());
                 row.extend(shown.map(|along| at.value(along.coordinate.into())));
                 let first = row.len();
                 row.extend(coordinates.iter().map(|along| {
                     let own = |law: &LawEntry| law.arguments.first() == Some(&along.coordinate.into());
-                    let efforts = laws.iter().zip(&responses).filter(|(law, _)| own(law)).map(|(_, [_, force])| -force[0]);
+                    let efforts = laws.iter().zip(&responses).filter(|(law, _)| own(law)).map(|(_, [_, force])| sign * force[0]);
                     let of_loads = loads.iter().map(|load| at.along(load, along.coordinate.into()));
                     0.0 + efforts.sum::<f64>() + of_loads.sum::<f64>()
                 }));

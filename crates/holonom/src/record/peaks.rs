@@ -1,10 +1,12 @@
 //! What acts most in a run: the largest efforts of drives, forces of springs and other forces, and forces of joints.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 use serde::Serialize;
 
 use super::channels::Channels;
+use super::force::quantity;
 use super::joint::RecordedJoint;
 use super::{Bounds, Column, Largest, Recording};
 use crate::formulation::extent;
@@ -91,18 +93,37 @@ impl Peaks {
         };
         let told = channels.told();
         let drives = told.efforts.iter().filter_map(|effort| peak(&effort.name, &[format!("{}.effort", effort.name)]));
-        let groups = channels.forces.iter().flat_map(|force| force.acts(&channels.axes).into_iter().map(|columns| (&force.name, columns)));
-        let forces = groups.enumerate().filter_map(|(k, (name, columns))| {
+        let of_force = |k: usize, name: &str, columns: &[String]| {
             let unit = recording.find(columns.first()?)?.heading.unit.clone();
-            let of_rows = peak(name, &columns);
+            let of_rows = peak(name, columns);
             let square = of_rows.as_ref().map_or(0.0, |peak| peak.value * peak.value);
             match recording.between.get(k).map(Largest::parts) {
                 Some((at, between, value)) if between > (1.0 + ROUND_OFF) * square => Some(Peak::new(name, value, unit, at)),
                 _ => of_rows,
             }
-        });
+        };
         let drives: Vec<Peak> = drives.collect();
-        let forces: Vec<Peak> = forces.collect();
+        let mut forces: Vec<Peak> = Vec::new();
+        let mut beams: BTreeMap<(&str, String), Peak> = BTreeMap::new();
+        let mut k = 0;
+        for force in &channels.forces {
+            for columns in force.acts(&channels.axes) {
+                match force.beam() {
+                    None => forces.extend(of_force(k, &force.name, &columns)),
+                    Some(beam) => {
+                        let key = (beam, quantity(&columns[0][force.name.len() + 1..]).to_string());
+                        let Some(peak) = of_force(k, &format!("{}.{}", force.name, key.1), &columns) else { continue };
+                        // Of all elements of a beam the one in which it is largest.
+                        let known = beams.entry(key).or_insert_with(|| peak.clone());
+                        if peak.value.abs() > (1.0 + ROUND_OFF) * known.value.abs() {
+                            *known = peak;
+                        }
+                    }
+                }
+                k += 1;
+            }
+        }
+        forces.extend(beams.into_values());
         let couplings = told.couplings.iter().filter_map(|coupling| peak(&coupling.name, &[format!("{}.effort", coupling.name)]));
         let pushes = told.transmissions.iter().filter_map(|transmission| {
             let components: Vec<String> = channels.axes.chars().map(|axis| format!("{}.f{axis}", transmission.name)).collect();

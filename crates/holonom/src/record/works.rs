@@ -39,11 +39,11 @@ impl Works {
     pub fn of(channels: &Channels, simulation: &Simulation) -> Self {
         let (done, system) = (simulation.done(), simulation.system());
         let (least, mut rest) = (ROUNDED * simulation.audit().supply()[1], done.rest);
-        let mut named = |name: &String, work: f64, stored: f64| {
+        let mut named = |name: &str, work: f64, stored: f64| {
             let is_rounded = work.abs() <= least && stored.abs() <= least;
             rest += if is_rounded { work + stored } else { 0.0 };
             let [work, stored] = if is_rounded { [0.0; 2] } else { [work, stored] };
-            Work { name: name.clone(), work, stored }
+            Work { name: name.to_string(), work, stored }
         };
         let mut rows: BTreeMap<usize, f64> = done.rows.iter().copied().collect();
         let efforts = channels.efforts.iter();
@@ -51,9 +51,16 @@ impl Works {
         let mut others: Vec<Work> = rows.into_iter().map(|(row, work)| named(&system.row_names()[row], work, 0.0)).collect();
         let led = channels.points.iter().filter_map(|point| Some((point, node(point)?.index().checked_sub(system.free_nodes())?)));
         others.extend(led.map(|(point, k)| named(&point.name, done.nodes[k], 0.0)));
-        let forces = channels.forces.iter().map(|force| {
-            let [work, stored] = done.laws[force.laws.clone()].iter().fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
-            named(&force.name, work + done.loads[force.loads.clone()].iter().sum::<f64>(), stored)
+        // The elements of a beam stand behind each other and are told together.
+        let parts = channels.forces.chunk_by(|a, b| a.beam().is_some() && a.beam() == b.beam());
+        let forces = parts.map(|parts| {
+            let [mut work, mut stored] = [0.0; 2];
+            for force in parts {
+                let of_laws = &done.laws[force.laws.clone()];
+                work += of_laws.iter().map(|own| own[0]).sum::<f64>() + done.loads[force.loads.clone()].iter().sum::<f64>();
+                stored += of_laws.iter().map(|own| own[1]).sum::<f64>();
+            }
+            named(parts[0].beam().unwrap_or(&parts[0].name), work, stored)
         });
         let mut forces: Vec<Work> = forces.collect();
         [&mut others, &mut forces].into_iter().for_each(|own| own.retain(|own| own.work != 0.0 || own.stored != 0.0));

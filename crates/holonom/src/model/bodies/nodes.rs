@@ -197,7 +197,9 @@ impl Group<'_> {
     /// lie in it, but for directions of its own across it, which then have no mass.
     fn basis(&self, builder: &mut SystemBuilder, places: &mut [Option<Found>]) -> Vec<Basis> {
         let (dim, centre, solid) = (builder.dimension(), self.centre(), self.solid(builder.dimension()));
-        let lies_in = |edge: Vec3| solid.len() == 3 || norm(rest(&solid, edge)) <= THIN * norm(edge);
+        // The way to a place at the centre is rounding.
+        let rounded = SAME * self.wanted.extent;
+        let lies_in = |edge: Vec3| solid.len() == 3 || norm(rest(&solid, edge)) <= (THIN * norm(edge)).max(rounded);
         let mut own = self.shared.to_vec();
         let is_point = |k: usize| self.wanted.shared[k].is_point;
         // Fixed places first, as they are no unknowns; then points.

@@ -77,6 +77,7 @@ pub enum Value {
 
 /// What bars are in [`Scope::others`].
 pub(in crate::model) const BAR: &str = "a bar";
+pub(in crate::model) const BEAM: &str = "a beam";
 
 /// The names an expression may use beside its variables.
 #[derive(Clone, Copy, Default)]

@@ -22,6 +22,7 @@ mod torsion;
 
 pub use bushing::Bushing;
 pub use constant::Constant;
+pub(super) use coordinate_laws::{Resisting, Spring as LinearSpring, Viscous};
 pub use effort::Effort;
 pub use expression::Expression;
 pub use force::Force;

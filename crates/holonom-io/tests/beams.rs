@@ -1,0 +1,157 @@
+//! Beams beside closed forms, the elastica and other programs.
+
+mod common;
+
+use std::f64::consts::{PI, TAU};
+
+use common::{last, model, run_every};
+use holonom::analysis::{Modes, modes};
+use holonom::model::Model;
+
+/// Steel of 1 mm by 1 mm, 2 m long, clamped at its first end where `clamped`, in the plane or in space.
+fn steel(elements: u32, planar: bool, clamped: bool, more: &str) -> Model {
+    let (head, from, to) = if planar { ("plane = \"xz\"\n", "[0, 0]", "[2, 0]") } else { ("", "[0, 0, 0]", "[2, 0, 0]") };
+    let gravity = if planar { "[0, 0]" } else { "[0, 0, 0]" };
+    let clamp = if clamped { "[joint.clamp]\ntype = \"fixed\"\nbetween = [\"ground\", \"b[0]\"]\nat = \"b[0]\"\n" } else { "" };
+    model(&format!(
+        "{head}gravity = {gravity}\n[parameters]\nE = 2e11\nI = \"0.001^4/12\"\nN = {elements}\n\
+         [beam.b]\nfrom = {from}\nto = {to}\nelements = \"N\"\nsection = {{ rectangle = [0.001, 0.001] }}\nmodulus = \"E\"\ndensity = 7800\n\
+         {clamp}{more}[simulation]\nend = 1e-3\nstep = 1e-3\n"
+    ))
+}
+
+/// √(E I/ρ A)/L² of that, 1/s.
+fn unit_of_frequency() -> f64 {
+    (2e11_f64 * 1e-6 / 12.0 / 7800.0).sqrt() / 4.0
+}
+
+/// Place of the second end at the start of a run that begins where forces balance.
+fn settled(model: &Model, elements: u32, axes: &[char]) -> Vec<f64> {
+    let (_, recording) = run_every(model, "conserving-ggl", 1e-3, 1e-3, 1);
+    axes.iter().map(|axis| recording.column(&format!("b[{elements}].{axis}")).unwrap()[0]).collect()
+}
+
+/// A cantilever with a force across its free end: P L² = 1 E I and 10 E I bend it by these shares of its length, and draw its end in by those
+/// (Mattiasson 1981, elliptic integrals). The error falls with the fourth power of the length of the elements.
+#[test]
+fn a_cantilever_is_the_elastica() {
+    for (load, down, inward) in [(1.0, 0.30172, 0.05643), (10.0, 0.81061, 0.55500)] {
+        for planar in [false, true] {
+            let force = if planar { format!("[0, \"-{load}*E*I/4\"]") } else { format!("[0, 0, \"-{load}*E*I/4\"]") };
+            let of = |elements: u32| {
+                let more = format!("[force.tip]\ntype = \"force\"\nbody = \"b[N]\"\nforce = {force}\n[start]\nequilibrium = true\n");
+                let end = settled(&steel(elements, planar, true, &more), elements, &['x', 'z']);
+                [-0.5 * end[1], 1.0 - 0.5 * end[0]]
+            };
+            let [coarse, middle, fine, exact] = [4, 8, 16, 32].map(of);
+            // The table has five digits.
+            assert!((exact[0] - down).abs() < 1e-5 && (exact[1] - inward).abs() < 1e-5, "{load}: {exact:?}");
+            let errors = [coarse, middle, fine].map(|of| (of[0] - exact[0]).abs());
+            assert!(errors[0] < 5e-3 && errors[0] > 11.0 * errors[1] && errors[1] > 11.0 * errors[2], "{load}: {errors:?}");
+        }
+    }
+}
+
+/// A small force across the end of a stocky cantilever of one element bends and shears it as Timoshenko's beam: P L³/3 E I + P L/k G A. Its bending
+/// moment is that of half of the length, its shear and normal forces are the load's.
+#[test]
+fn one_element_has_the_stiffness_of_a_beam() {
+    let model = model(
+        "gravity = [0, 0, 0]\n[beam.b]\nfrom = [1, 2, 3]\nto = [1, 2.5, 3]\nelements = 1\nsection = { circle = 0.05 }\nmodulus = 2e11\ndensity = 7800\n\
+         [joint.clamp]\ntype = \"fixed\"\nbetween = [\"ground\", \"b[0]\"]\nat = \"b[0]\"\n\
+         [force.tip]\ntype = \"force\"\nbody = \"b[1]\"\nforce = [3, 5, 4]\n[start]\nequilibrium = true\n[simulation]\nend = 1e-3\nstep = 1e-3\n",
+    );
+    let (_, recording) = run_every(&model, "conserving-ggl", 1e-3, 1e-3, 1);
+    let at = |name: &str| recording.column(name).unwrap_or_else(|| panic!("no {name}"))[0];
+    let (area, second, shear) = (PI * 0.05_f64.powi(2), 0.25 * PI * 0.05_f64.powi(4), 6.0 * 1.3 / (7.0 + 6.0 * 0.3));
+    let soft = 0.5_f64.powi(3) / (3.0 * 2e11 * second) + 0.5 / (shear * 2e11 / 2.6 * area);
+    assert!(((at("b[1].x") - 1.0) / (3.0 * soft) - 1.0).abs() < 1e-6, "{}", (at("b[1].x") - 1.0) / (3.0 * soft));
+    assert!(((at("b[1].z") - 3.0) / (4.0 * soft) - 1.0).abs() < 1e-6);
+    let stretch = (at("b[1].y") - 2.5) * 2e11 * area / 0.5;
+    // The bending draws the end in by 3e-5 of that.
+    assert!((stretch - 5.0).abs() < 3e-4, "{stretch}");
+    // z of the beam is up, so that its y points against x of the model.
+    for (name, value) in [("normal", 5.0), ("shear_y", -3.0), ("shear_z", 4.0), ("torque", 0.0), ("moment_y", -1.0), ("moment_z", -0.75)] {
+        assert!((at(&format!("b[1].{name}")) - value).abs() < 1e-5, "{name}: {}", at(&format!("b[1].{name}")));
+    }
+}
+
+/// A moment 2 π E I/L at the free end bends a cantilever to a full circle, of three elements as of eight.
+#[test]
+fn a_moment_rolls_it_up() {
+    for (planar, torque) in [(false, "[0, \"-2*pi*E*I/2\", 0]"), (true, "\"2*pi*E*I/2\"")] {
+        for elements in [3, 8] {
+            let more = format!("[force.tip]\ntype = \"torque\"\nbody = \"b[N]\"\ntorque = {torque}\n[start]\nequilibrium = true\n");
+            let end = settled(&steel(elements, planar, true, &more), elements, &['x', 'z']);
+            assert!(end.iter().all(|x| x.abs() < 1e-9), "{elements}: {end:?}");
+        }
+    }
+}
+
+/// Frequencies of free vibrations over those of Euler and Bernoulli. Of n elements the k-th is off by less than (k π/n)⁴/600.
+#[test]
+fn frequencies_are_those_of_the_continuum() {
+    let pins = "[joint.left]\ntype = \"revolute\"\nbetween = [\"ground\", \"b[0]\"]\nat = [0, 0]\n\
+                [joint.right]\ntype = \"point-on-line\"\nbetween = [\"b[N]\", \"ground\"]\nat = [2, 0]\naxis = [1, 0]\n";
+    let of = |modes: &Modes, k: usize| TAU * modes.modes[k].frequency / unit_of_frequency();
+    // Clamped: cos β cosh β = −1; free: cos β cosh β = 1; pinned: k π. Rigid motions are no vibrations.
+    for (clamped, more, roots) in [
+        (true, "", [1.875_104_068_7, 4.694_091_133_0, 7.854_757_438_2]),
+        (false, "", [4.730_040_744_9, 7.853_204_624_1, 10.995_607_838_0]),
+        (false, pins, [PI, TAU, 3.0 * PI]),
+    ] {
+        for elements in [4, 8, 16] {
+            let found = modes(&steel(elements, true, clamped, more).system).unwrap_or_else(|error| panic!("{error}"));
+            for (k, root) in roots.iter().enumerate() {
+                let ratio = of(&found, k) / (root * root);
+                let bound = (root / f64::from(elements)).powi(4) / 600.0 + 1e-5;
+                assert!((ratio - 1.0).abs() < bound, "{elements} elements, {k}: {ratio}");
+            }
+        }
+    }
+    // In space both directions of bending, and twisting with π/2 √(G/ρ · J/(I_y + I_z))/L.
+    let found = modes(&steel(16, false, true, "").system).unwrap_or_else(|error| panic!("{error}"));
+    assert!((of(&found, 0) / of(&found, 1) - 1.0).abs() < 1e-9);
+    let twist = 0.25 * (2e11 / 2.6 / 7800.0 * 0.140_577 * 6.0_f64).sqrt() / 2.0;
+    assert!(found.modes.iter().any(|mode| (mode.frequency / twist - 1.0).abs() < 2e-3), "{twist} Hz");
+}
+
+/// A cantilever that is pushed along itself is softer against bending, and not stable any more at Euler's load: the square of its lowest frequency goes
+/// through zero there.
+#[test]
+fn it_buckles_at_eulers_load() {
+    let square = |share: f64| {
+        let more = format!(
+            "[force.push]\ntype = \"force\"\nbody = \"b[N]\"\nforce = [\"-{share}*pi^2*E*I/16\", 0]\n[start]\nequilibrium = true\n"
+        );
+        modes(&steel(8, true, true, &more).system).unwrap_or_else(|error| panic!("{error}")).modes[0].frequency.powi(2)
+    };
+    let (low, high) = (square(0.9), square(0.97));
+    let critical = 0.9 + 0.07 * low / (low - high);
+    assert!((critical - 1.0).abs() < 2e-3, "{critical}");
+}
+
+/// A free beam that is thrown keeps energy and momenta, with both conserving methods, whatever its step; order 2 beside `radau`.
+#[test]
+fn a_thrown_beam_keeps_energy_and_momenta() {
+    for planar in [false, true] {
+        let (velocity, spin) = if planar { ("[1, 2]", "3") } else { ("[1, 2, 0.5]", "[1, 3, -2]") };
+        let more = if planar { "" } else { "up = [0, 1, 1]\n" };
+        let [head, from, to] = if planar { ["plane = \"xz\"\n", "[0, 0]", "[1, 0.5]"] } else { ["", "[0, 0, 0]", "[1, 0.5, 0.2]"] };
+        let zero = if planar { "[0, 0]" } else { "[0, 0, 0]" };
+        let free = model(&format!(
+            "{head}gravity = {zero}\n[beam.b]\nfrom = {from}\nto = {to}\nelements = 4\nsection = {{ rectangle = [0.02, 0.01] }}\nmodulus = 1e8\n\
+             density = 1000\n{more}velocity = {velocity}\nangular_velocity = {spin}\n"
+        ));
+        for of in common::CONSERVING {
+            let summary = common::complete("thrown", &free, of, 0.01, 5.0);
+            assert!(summary.energy.max_drift < 1e-12 * summary.energy.initial, "{of}: {:?}", summary.energy);
+            assert!(summary.momentum.linear_drift < 1e-11 && summary.momentum.angular_drift < 1e-11, "{of}: {:?}", summary.momentum);
+            assert!(summary.violation.position < 1e-13, "{of}: {:?}", summary.violation);
+        }
+        let place = |of: &str, step: f64| last(&run_every(&free, of, step, 0.5, 1).1, "b[4].x");
+        let exact = place("radau", 1e-3);
+        let errors = [2e-3, 1e-3].map(|step| (place("conserving-ggl", step) - exact).abs());
+        assert!(errors[1] < 1e-3 && errors[0] / errors[1] > 3.5 && errors[0] / errors[1] < 4.5, "{errors:?}");
+    }
+}
