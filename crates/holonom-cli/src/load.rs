@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::Mutex;
 
+use holonom::analysis::NoModes;
 use holonom::formulation::FORMULATIONS;
 use holonom::model::{Model, Table, Value, nearest};
 use holonom::run::RunError;
@@ -331,6 +332,20 @@ pub fn method_failure(error: MethodError) -> Failure {
     let cure = match formulation {
         Some(name) => format!("`{name}` is a formulation: give --set simulation.formulation={name} in place of it"),
         None => "`holonom methods` shows what there is and what goes together".into(),
+    };
+    Failure::usage(error.to_string(), cure)
+}
+
+/// A model without modes, with its cure.
+pub fn modes_failure(error: NoModes) -> Failure {
+    let cure = match &error {
+        NoModes::Start(_) | NoModes::Singular => "`holonom check` says more of the start",
+        NoModes::Moving => "remove the velocities",
+        NoModes::Unbalanced => {
+            "write equilibrium = true in [start], or --set start.equilibrium=true; a joint that [start] puts somewhere is let go there"
+        }
+        NoModes::Massless => "give every free point some mass",
+        NoModes::Large(_) => "take a model of a part of it",
     };
     Failure::usage(error.to_string(), cure)
 }

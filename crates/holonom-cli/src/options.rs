@@ -175,7 +175,8 @@ pub struct SweepArguments {
     pub seed: u64,
     #[command(flatten)]
     pub method: MethodArguments,
-    /// Columns of the table: last values of columns of the trajectory or of formulas of some, or max(…), min(…), mean(…), rms(…), at(…, t) of them
+    /// Columns of the table: last values of columns of the trajectory or of formulas of some, or max(…), min(…), mean(…), rms(…), at(…, t) of them;
+    /// frequency(N), damping(N), growth(N) of modes
     /// [default: energy, and all of points, bodies, joints and drives]
     #[arg(long, value_name = "COLUMN,…")]
     pub columns: Vec<String>,

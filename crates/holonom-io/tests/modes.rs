@@ -70,6 +70,13 @@ fn dampers_damp() {
     assert_exponents(&rail(4.0), &[[-1.0, 24.0_f64.sqrt()]]);
     let root = (225.0_f64 - 25.0).sqrt();
     assert_exponents(&rail(60.0), &[[root - 15.0, 0.0], [-15.0 - root, 0.0]]);
+    // Both are of one freedom, also where the larger one is zero.
+    let numbers = |text: &str| {
+        let found = found(text);
+        (0..found.modes.len()).map(|mode| found.number(mode)).collect::<Vec<usize>>()
+    };
+    assert_eq!(numbers(&rail(60.0)), [1, 1]);
+    assert_eq!(numbers(&rail(60.0).replace("stiffness = 50\n", "")), [1]);
     let formula = rail(0.0).replace("damping = 0\n", "") + "[force.c]\ntype = \"effort\"\njoint = \"r\"\neffort = \"-4*q_rate - 3*q\"\n";
     assert_exponents(&formula, &[[-1.0, (26.5_f64 - 1.0).sqrt()]]);
     // Without a spring one exponent is zero.

@@ -194,3 +194,15 @@ def test_an_engine_makes_the_same_table(engine, tmp_path):
         assert written(study, tmp_path) == local == (tmp_path / "out" / "sweep.csv").read_bytes()
     finally:
         [end() for end in stack]
+
+
+def test_natural_frequencies_over_a_length_take_no_run():
+    m = hm.Model(plane="xz")
+    m.parameter("l", 1)
+    m.point("bob", mass=2, position=[0, "-l"])
+    m.constraint_distance("rod", between=["ground", "bob"])
+    lengths = np.array([0.1, 1, 4])
+    study = hm.sweep(m, {"parameters.l": lengths}, columns=["frequency(1)", "damping(1)", "growth(2)"])
+    assert np.allclose(study["frequency(1)"], np.sqrt(G / lengths) / (2 * np.pi), rtol=1e-12)
+    assert (study["damping(1)"] == 0).all() and np.isnan(study["growth(2)"]).all()
+    assert study.notes == ["`growth(2)` has no value in 3 runs of 3, where mode 2 does not vibrate or there are fewer"]

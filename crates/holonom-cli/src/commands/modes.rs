@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use holonom::analysis::{Mode, Modes, NoModes, modes};
+use holonom::analysis::{Mode, Modes, modes};
 use holonom::model::{Model, Swing};
 use serde_json::{Value, json};
 
@@ -32,28 +32,17 @@ pub fn modes_of(arguments: &ModesArguments) -> Result<ExitCode, Failure> {
 /// # Errors
 /// A model that is not at rest there.
 pub fn vibrations(loaded: &Loaded) -> Result<Found, Failure> {
-    let found = modes(&loaded.model.system).map_err(|error| Failure::usage(error.to_string(), cure(&error)))?;
+    let found = modes(&loaded.model.system).map_err(load::modes_failure)?;
     let swings: Vec<Vec<(Swing, f64)>> = found.modes.iter().map(|mode| swings(&loaded.model, mode, found.length)).collect();
-    let of_mode = |(mode, swings): (&Mode, &Vec<(Swing, f64)>)| {
+    let of_mode = |k: usize| {
+        let (mode, swings) = (&found.modes[k], &swings[k]);
         let moves: serde_json::Map<String, Value> =
             swings.iter().map(|(swing, phase)| (swing.name.clone(), json!([swing.rate, phase]))).collect();
-        json!({ "frequency": mode.frequency, "growth": mode.growth, "damping": mode.damping(), "moves": moves })
+        json!({ "number": found.number(k), "frequency": mode.frequency, "growth": mode.growth, "damping": mode.damping(), "moves": moves })
     };
-    let all: Vec<Value> = found.modes.iter().zip(&swings).map(of_mode).collect();
+    let all: Vec<Value> = (0..swings.len()).map(of_mode).collect();
     let value = json!({ "model": loaded.name, "modes": all, "zero": found.free, "unsure": found.unsure });
     Ok(Found { value, text: describe(loaded, &found, &swings) })
-}
-
-fn cure(error: &NoModes) -> &'static str {
-    match error {
-        NoModes::Start(_) | NoModes::Singular => "`holonom check` says more of the start",
-        NoModes::Moving => "remove the velocities",
-        NoModes::Unbalanced => {
-            "write equilibrium = true in [start], or --set start.equilibrium=true; a joint that [start] puts somewhere is let go there"
-        }
-        NoModes::Massless => "give every free point some mass",
-        NoModes::Large(_) => "take a model of a part of it",
-    }
 }
 
 /// What moves in a mode, each with its amplitude and its phase, rad; what moves most has the amplitude 1 and the phase 0.
@@ -77,7 +66,7 @@ fn way(swing: &Swing, amplitude: f64, size: f64) -> f64 {
 
 fn describe(loaded: &Loaded, found: &Modes, swings: &[Vec<(Swing, f64)>]) -> String {
     let rows: Vec<Vec<String>> =
-        found.modes.iter().zip(swings).enumerate().map(|(k, (mode, swings))| row(k, mode, swings, found.length)).collect();
+        found.modes.iter().zip(swings).enumerate().map(|(k, (mode, swings))| row(found.number(k), mode, swings, found.length)).collect();
     let mut text = format!("{}: small vibrations about the start\n\n", loaded.name);
     if rows.is_empty() {
         text.push_str("nothing vibrates or falls off");
@@ -94,7 +83,7 @@ fn describe(loaded: &Loaded, found: &Modes, swings: &[Vec<(Swing, f64)>]) -> Str
     text
 }
 
-fn row(k: usize, mode: &Mode, swings: &[(Swing, f64)], size: f64) -> Vec<String> {
+fn row(number: usize, mode: &Mode, swings: &[(Swing, f64)], size: f64) -> Vec<String> {
     let way = |swing: &Swing| way(swing, swing.rate, size);
     let mut most: Vec<&(Swing, f64)> = swings.iter().collect();
     most.sort_by(|a, b| way(&b.0).total_cmp(&way(&a.0)));
@@ -108,7 +97,6 @@ fn row(k: usize, mode: &Mode, swings: &[(Swing, f64)], size: f64) -> Vec<String>
         growth if growth > 0.0 => format!("grows in {}", short(1.0 / growth)),
         growth => short(-1.0 / growth),
     };
-    let hertz = if mode.frequency > 0.0 { short(mode.frequency) } else { "-".into() };
-    let damping = if mode.frequency > 0.0 { short(mode.damping()) } else { "-".into() };
-    vec![(k + 1).to_string(), hertz, damping, time, moves.collect::<Vec<_>>().join(", ")]
+    let [hertz, damping] = [mode.frequency, mode.damping()].map(|value| if mode.vibrates() { short(value) } else { "-".into() });
+    vec![number.to_string(), hertz, damping, time, moves.collect::<Vec<_>>().join(", ")]
 }

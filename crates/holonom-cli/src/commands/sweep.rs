@@ -132,11 +132,12 @@ fn tell_failures(failures: &[String], any_completed: bool) {
 
 /// The summary as people read it.
 fn describe(summary: &Value) -> String {
-    let time = |key: &str| summary["time"][key].as_f64().map_or("–".to_string(), measured);
+    let time = |key: &str, unit: &str| summary["time"][key].as_f64().map(|time| format!("{} {unit}", measured(time)));
+    let times = [time("cpu_s", "s of the processor"), time("us_per_step", "µs a step")];
     let items = [
         ("runs", format!("{} on {} threads", summary["runs"], summary["threads"])),
         ("status", format!("{} completed, {} stopped, {} refused", summary["completed"], summary["stopped"], summary["refused"])),
-        ("time", format!("{} s of the processor, {} µs a step", time("cpu_s"), time("us_per_step"))),
+        ("time", times.into_iter().flatten().collect::<Vec<_>>().join(", ")),
     ];
     format!("{}\n{}", summary["model"].as_str().unwrap_or(""), list(&items))
 }

@@ -30,6 +30,7 @@ pub fn check(asked: &[String], source: &mut Source, method: Option<&str>, plan: 
         first.put(&vary.path, setting.value).map_err(Failure::Model)?;
     }
     // A value may be missing in the file and given by each run, or the values of the first run may not be possible.
+    let runs = asked.is_empty() || !asked.iter().all(Asked::is_of_mode);
     let model = match compile(&first, &asked) {
         Err(faults) => {
             if let Some((message, cure)) = of_formula(&faults, &asked) {
@@ -39,11 +40,12 @@ pub fn check(asked: &[String], source: &mut Source, method: Option<&str>, plan: 
             if !of_keys.is_empty() {
                 return Err(Failure::Model(first.render(&Faults(of_keys))));
             }
-            sound(source, &asked, method).map_err(|_| Failure::Model(first.render(&faults)))?
+            sound(source, &asked, method, runs).map_err(|_| Failure::Model(first.render(&faults)))?
         }
+        Ok(model) if !runs => model,
         Ok(model) => match Task::new(&model, method) {
             Ok(_) => model,
-            Err(failure) => sound(source, &asked, method).map_err(|_| failure)?,
+            Err(failure) => sound(source, &asked, method, runs).map_err(|_| failure)?,
         },
     };
     refuse_late(&asked, source, plan)?;
@@ -104,10 +106,12 @@ pub fn files(source: &Source, plan: &Plan) -> BTreeMap<String, String> {
     source.files()
 }
 
-/// The model as it is, if it could run.
-fn sound(source: &Source, asked: &[Asked], method: Option<&str>) -> Result<Model, Failure> {
+/// The model as it is, if it could run where it is to.
+fn sound(source: &Source, asked: &[Asked], method: Option<&str>, runs: bool) -> Result<Model, Failure> {
     let model = compile(source, asked).map_err(|faults| Failure::Model(source.render(&faults)))?;
-    Task::new(&model, method)?;
+    if runs {
+        Task::new(&model, method)?;
+    }
     Ok(model)
 }
 
@@ -188,7 +192,8 @@ fn usual(model: &Model) -> Columns {
     let shown = written.iter().filter(|name| is_usual(name) && (*name == "energy" || !COLUMNS.contains(&name.as_str())));
     let asked: Vec<Asked> = shown.map(|name| Asked::last(name)).collect();
     let steps = takes.steps || asked.iter().any(|asked| is_orientation(&asked.of, model));
-    Columns { units: units(&asked, &recorders[takes.level]), asked, constraints: LEVELS[takes.level], steps, forces }
+    let units = units(&asked, &recorders[takes.level]);
+    Columns { units, asked, constraints: LEVELS[takes.level], runs: true, modes: false, steps, forces }
 }
 
 /// What may be recorded of the forces of constraints, the least first.
@@ -242,7 +247,7 @@ fn is_orientation(name: &str, model: &Model) -> bool {
 fn columns(model: &Model, asked: Vec<Asked>) -> Result<Columns, Failure> {
     let recorders = LEVELS.map(|level| recorder(model, level));
     let (mut all, mut steps, mut forces) = (Takes::default(), false, false);
-    for Asked { of, function, .. } in &asked {
+    for Asked { of, function, .. } in asked.iter().filter(|asked| !asked.is_of_mode()) {
         if *function == Function::TimeOf {
             if !model.system.event_names().any(|name| name == of) {
                 let cure = match nearest(of, model.system.event_names()) {
@@ -269,13 +274,16 @@ fn columns(model: &Model, asked: Vec<Asked>) -> Result<Columns, Failure> {
         steps |= takes.steps || *function != Function::Last;
         forces |= takes.needs_forces_of_steps(*function);
     }
-    Ok(Columns { units: units(&asked, &recorders[all.level]), asked, constraints: LEVELS[all.level], steps, forces })
+    let (units, modes) = (units(&asked, &recorders[all.level]), asked.iter().any(Asked::is_of_mode));
+    let runs = !asked.iter().all(Asked::is_of_mode);
+    Ok(Columns { units, asked, constraints: LEVELS[all.level], runs, modes, steps, forces })
 }
 
 /// Units of columns, which functions of them keep.
 fn units(asked: &[Asked], recorder: &Recorder<'_>) -> Vec<String> {
     let unit = |asked: &Asked| match asked.function {
         Function::TimeOf => "s".into(),
+        Function::Mode(of, _) => of.unit().into(),
         _ => recorder.recording().find(&asked.of).map_or("1".into(), |column| column.heading.unit.to_string()),
     };
     asked.iter().map(unit).collect()

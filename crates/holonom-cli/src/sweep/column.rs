@@ -1,9 +1,10 @@
 //! A column of the table as it is typed: a column of the trajectory or a formula of some, a function of these over the run, such as `max(chassis.az)`, or
-//! the time of an event.
+//! the time of an event; or a number of a mode of small vibrations.
 
 use holonom::model::{is_formula_function, nearest};
 
 use super::reduction::Function;
+use super::vibration::OfMode;
 use crate::failure::Failure;
 use crate::items::items;
 
@@ -12,7 +13,7 @@ use crate::items::items;
 pub struct Asked {
     /// As it was typed: what the column is called.
     pub text: String,
-    /// The column of the trajectory, the formula of such columns, or the event.
+    /// The column of the trajectory, the formula of such columns, the event, or the number of the mode.
     pub of: String,
     /// Whether that is a formula.
     pub is_formula: bool,
@@ -23,7 +24,7 @@ pub struct Asked {
 }
 
 const CURE: &str = "write a column of the trajectory such as chassis.az or a formula of some such as A.x - B.x, or max(chassis.az), min(…), mean(…), \
-                    rms(…), last(…), at(chassis.az, 2.5) of these, or time(EVENT)";
+                    rms(…), last(…), at(chassis.az, 2.5) of these, or time(EVENT), or frequency(1), damping(1), growth(1) of a mode";
 
 /// Signs that only a formula has. A name may have a minus, so that a difference has blanks.
 const OF_FORMULAS: [char; 7] = ['+', '*', '/', '^', '(', '\'', ' '];
@@ -32,6 +33,11 @@ impl Asked {
     /// The last value of a column of the trajectory.
     pub fn last(of: &str) -> Self {
         Self { text: of.into(), of: of.into(), is_formula: false, is_absolute: false, function: Function::Last }
+    }
+
+    /// Whether it is of small vibrations about the start, and not of a run.
+    pub fn is_of_mode(&self) -> bool {
+        matches!(self.function, Function::Mode(..))
     }
 
     /// Reads what was typed.
@@ -51,6 +57,11 @@ impl Asked {
                 (Function::At(t), inner.trim())
             }
             Some(("time", inner)) => (Function::TimeOf, inner),
+            Some((name, inner)) if let Some(of) = of_mode(name) => {
+                let number = inner.parse().ok().filter(|number| *number > 0);
+                let number = number.ok_or_else(|| refuse("wants the number of a mode in its brackets, 1, 2, …"))?;
+                (Function::Mode(of, number), inner)
+            }
             Some((name, inner)) => match Function::NAMED.iter().find(|(known, _)| *known == name) {
                 Some((_, function)) => (*function, inner),
                 None if is_formula_function(name) => (Function::Last, text),
@@ -81,7 +92,12 @@ impl Asked {
 
 /// Names of all functions of columns.
 fn functions() -> impl Iterator<Item = &'static str> {
-    Function::NAMED.iter().map(|(known, _)| *known).chain(["at", "abs", "time"])
+    Function::NAMED.iter().map(|(known, _)| *known).chain(["at", "abs", "time"]).chain(OfMode::NAMED.map(|(known, _)| known))
+}
+
+/// What is asked of a mode by the name of a function.
+fn of_mode(name: &str) -> Option<OfMode> {
+    OfMode::NAMED.iter().find(|(known, _)| *known == name).map(|(_, of)| *of)
 }
 
 /// Name and contents of a function, if the text is one and nothing else.
@@ -126,6 +142,7 @@ mod tests {
         assert_eq!(read("max(abs(strut.force))"), ("strut.force".into(), true, Function::Running(Running::Max)));
         assert_eq!(read("at( abs( m2.x ) , 1e-1 )"), ("m2.x".into(), true, Function::At(0.1)));
         assert_eq!(read("time(lands)"), ("lands".into(), false, Function::TimeOf));
+        assert_eq!(read("damping( 12 )"), ("12".into(), false, Function::Mode(OfMode::Damping, 12)));
         assert_eq!(Asked::parse("rms( m2.x )").unwrap().text, "rms( m2.x )");
     }
 
@@ -162,6 +179,12 @@ mod tests {
             ("at(m2.x, end)", "seconds"),
             ("at(m2.x, -1)", "no run has"),
             ("at(m2.x, NaN)", "no run has"),
+            ("frequency()", "number of a mode"),
+            ("frequency(0)", "number of a mode"),
+            ("growth(1.5)", "number of a mode"),
+            ("damping(m2)", "number of a mode"),
+            ("max(frequency(1))", "not abs"),
+            ("frequenzy(1)", "did you mean `frequency`?"),
             ("maximum(m2.x)", "there is no function `maximum`"),
             ("ms(m2.x)", "did you mean `rms`?"),
         ] {

@@ -12,6 +12,7 @@ mod sheet;
 mod store;
 mod study;
 mod vary;
+mod vibration;
 mod watch;
 
 pub use answers::Answers;

@@ -2,6 +2,7 @@
 
 use holonom::record::{Running, RunningValue};
 
+use super::vibration::OfMode;
 use crate::interpolation::Reading;
 
 /// A function of the values of a column over a run.
@@ -14,6 +15,8 @@ pub enum Function {
     At(f64),
     /// Not of a column: when an event happens first, s.
     TimeOf,
+    /// Not of a run: of the mode of small vibrations about the start with a number.
+    Mode(OfMode, usize),
 }
 
 impl Function {
@@ -39,7 +42,7 @@ impl Gathered {
     /// Nothing yet of a function of all steps; `None` of one that is known at the end.
     pub fn new(function: Function) -> Option<Self> {
         match function {
-            Function::Last | Function::TimeOf => None,
+            Function::Last | Function::TimeOf | Function::Mode(..) => None,
             Function::Running(running) => Some(Self::Running(running, RunningValue::default(), None)),
             Function::At(t) => Some(Self::At(Reading::new(t))),
         }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use holonom::analysis;
+use holonom::analysis::{self, modes};
 use holonom::linalg::Plans;
 use holonom::model::{Model, Value};
 use holonom::record::Constraints;
@@ -13,6 +13,7 @@ use holonom_io::Source;
 use super::check::of_formula;
 use super::plan::Plan;
 use super::vary::Setting;
+use super::vibration;
 use super::watch::{Columns, Watch};
 use crate::failure::Failure;
 use crate::load;
@@ -52,8 +53,18 @@ pub struct Outcome {
     pub reason: String,
     /// What is said of its model, its start and its results.
     pub notes: Vec<String>,
-    /// Nothing where the run was refused.
+    /// Nothing where the run was refused, or none was asked for.
     pub figures: Option<Figures>,
+    /// The columns asked for; `None` for those that this run's model does not have, or that have no value in it. Nothing where the run was refused.
+    pub columns: Vec<Option<f64>>,
+}
+
+impl Outcome {
+    /// Of a model of which no run is made.
+    fn still(model: &Model, columns: usize) -> Self {
+        let (notes, columns) = (model.notes.clone(), vec![None; columns]);
+        Self { ending: Ending::Completed, stopped_at: None, reason: String::new(), notes, figures: None, columns }
+    }
 }
 
 /// What a run is judged by.
@@ -67,8 +78,6 @@ pub struct Figures {
     pub velocity: f64,
     pub iterations_per_step: f64,
     pub rejected_steps: u64,
-    /// The columns asked for; `None` for those that this run's model does not have, or that have no value in it.
-    pub columns: Vec<Option<f64>>,
 }
 
 /// Runs the runs of a plan.
@@ -103,11 +112,29 @@ impl Runner<'_> {
             }
         };
         Arc::make_mut(&mut model.system).share_plans(&self.eliminations);
-        match self.simulate(&model) {
+        match self.ask(&model) {
             Ok(outcome) => outcome,
             Err(Failure::Usage { message, .. }) => Some(refused(message)),
             Err(failure) => Some(refused(failure.to_string())),
         }
+    }
+
+    /// Makes the run, and finds the modes, as far as the columns ask for them.
+    fn ask(&self, model: &Model) -> Result<Option<Outcome>, Failure> {
+        let modes = self.columns.modes.then(|| modes(&model.system)).transpose();
+        let modes = match modes.map_err(load::modes_failure) {
+            // What a start lacks is told with its cure.
+            Err(Failure::Usage { message, cure }) => return Ok(Some(refused(format!("{message}: {cure}")))),
+            modes => modes?,
+        };
+        let ran = if self.columns.runs { self.simulate(model)? } else { Some(Outcome::still(model, self.columns.asked.len())) };
+        Ok(ran.map(|mut outcome| {
+            if let Some(modes) = modes {
+                vibration::fill(&mut outcome.columns, &self.columns.asked, &modes);
+                outcome.notes.extend(vibration::notes(&modes));
+            }
+            outcome
+        }))
     }
 
     fn simulate(&self, model: &Model) -> Result<Option<Outcome>, Failure> {
@@ -128,16 +155,17 @@ impl Runner<'_> {
         if self.columns.constraints != Constraints::Nothing || !model.channels.efforts.is_empty() {
             model.find_reactions(&mut simulation);
         }
-        let figures = Some(figures(&simulation, watched.watch.values(&simulation)));
+        let columns = watched.watch.values(&simulation);
+        let figures = Some(figures(&simulation));
         notes.extend(doubts(&simulation, rank.size(&model.system).dof > 0, status == Status::Completed).chain(hasty(&simulation)));
         Ok(Some(match status {
-            Status::Completed => Outcome { ending: Ending::Completed, stopped_at: None, reason: String::new(), notes, figures },
-            Status::Stopped { at, reason } => Outcome { ending: Ending::Stopped, stopped_at: Some(at), reason, notes, figures },
+            Status::Completed => Outcome { ending: Ending::Completed, stopped_at: None, reason: String::new(), notes, figures, columns },
+            Status::Stopped { at, reason } => Outcome { ending: Ending::Stopped, stopped_at: Some(at), reason, notes, figures, columns },
         }))
     }
 }
 
-fn figures(simulation: &Simulation, columns: Vec<Option<f64>>) -> Figures {
+fn figures(simulation: &Simulation) -> Figures {
     let audit = simulation.audit();
     let (violation, work) = (audit.violation_summary(), simulation.work());
     Figures {
@@ -147,7 +175,6 @@ fn figures(simulation: &Simulation, columns: Vec<Option<f64>>) -> Figures {
         velocity: violation.velocity,
         iterations_per_step: work.iterations_per_step,
         rejected_steps: work.rejected_steps,
-        columns,
     }
 }
 
@@ -192,5 +219,5 @@ impl Task {
 }
 
 fn refused(reason: String) -> Outcome {
-    Outcome { ending: Ending::Refused, stopped_at: None, reason, notes: Vec::new(), figures: None }
+    Outcome { ending: Ending::Refused, stopped_at: None, reason, notes: Vec::new(), figures: None, columns: Vec::new() }
 }

@@ -56,14 +56,15 @@ impl Sheet {
             outcome.notes.iter().map(|note| one_line(note)).collect::<Vec<_>>().join(BETWEEN_NOTES),
         ]);
         match &outcome.figures {
-            None => cells.resize(self.width(), String::new()),
+            None => cells.resize(self.width() - self.shown.len(), String::new()),
             Some(figures) => {
                 cells.push(figures.steps.to_string());
                 cells.extend([figures.drift, figures.position, figures.velocity, figures.iterations_per_step].map(csv_number));
                 cells.push(figures.rejected_steps.to_string());
-                cells.extend(figures.columns.iter().map(|value| optional(*value)));
             }
         }
+        cells.extend(outcome.columns.iter().map(|value| optional(*value)));
+        cells.resize(self.width(), String::new());
         csv_line(&cells)
     }
 

@@ -74,18 +74,32 @@ impl Study {
 
     /// What looks like a slip in it.
     pub fn slips(&self) -> Vec<String> {
-        slips(&self.source, &self.plan)
+        slips(&self.source, &self.plan).into_iter().chain(self.idle()).collect()
     }
 
-    /// Columns of values at a time that runs of a table lack, as they ended before it.
-    fn late(&self, table: &Table) -> Vec<String> {
-        let at = |asked: &Asked| if let Function::At(t) = asked.function { Some(t) } else { None };
+    /// What was given for runs, where no column asks for one.
+    fn idle(&self) -> Option<String> {
+        let varied = self.plan.varied.iter().map(|vary| vary.path.as_str());
+        let keys = varied.chain(self.source.replaced().iter().map(|(key, _)| key.as_str()));
+        let of_runs = keys.filter(|key| key.starts_with("simulation.") || key.starts_with("output."));
+        let given: Vec<String> = of_runs.map(|key| format!("`{key}`")).chain(self.method.iter().map(|_| "the method".into())).collect();
+        (!self.columns.runs && !given.is_empty()).then(|| {
+            let make = if given.len() == 1 { "makes" } else { "make" };
+            format!("the columns are those of modes, which take no run, so that {} {make} no difference", given.join(", "))
+        })
+    }
+
+    /// Columns that runs of a table lack, as they ended before a time, or as there is no such vibration.
+    fn lacking(&self, table: &Table) -> Vec<String> {
         let told = |asked: &Asked| {
-            let (t, count) = (at(asked)?, self.sheet.lacking(table, &asked.text));
+            let why = match asked.function {
+                Function::At(t) => format!("which ended before {t} s or lack the column"),
+                Function::Mode(_, number) => format!("where mode {number} does not vibrate or there are fewer"),
+                _ => return None,
+            };
+            let count = self.sheet.lacking(table, &asked.text);
             let runs = if count == 1 { "one run".into() } else { format!("{count} runs") };
-            (count > 0).then(|| {
-                format!("`{}` has no value in {runs} of {}, which ended before {t} s or lack the column", asked.text, table.rows())
-            })
+            (count > 0).then(|| format!("`{}` has no value in {runs} of {}, {why}", asked.text, table.rows()))
         };
         self.columns.asked.iter().filter_map(told).collect()
     }
@@ -97,7 +111,7 @@ impl Study {
 
     /// The same of the runs alone.
     pub fn of_runs(&self, table: &Table) -> Vec<String> {
-        self.late(table).into_iter().chain(self.sheet.noted(table)).collect()
+        self.lacking(table).into_iter().chain(self.sheet.noted(table)).collect()
     }
 
     /// Number of runs.

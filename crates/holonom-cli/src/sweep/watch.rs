@@ -15,6 +15,9 @@ pub struct Columns {
     pub units: Vec<String>,
     /// What is recorded of the forces of constraints.
     pub constraints: Constraints,
+    /// Whether a run is made, and small vibrations are looked for.
+    pub runs: bool,
+    pub modes: bool,
     /// Whether every step is looked at, and not only the last.
     pub steps: bool,
     /// Whether these forces are needed after every step, and not only after the last.
@@ -36,7 +39,7 @@ pub struct Watch<'a> {
     /// Looks at every step where that is needed: at forces of constraints only where these are found.
     recorder: Recorder<'a>,
     needs_steps: bool,
-    /// What is gathered of each column; `None` for those that the run's model does not have.
+    /// What is gathered of each column; `None` for those that the run's model does not have, and for those that are not of a run.
     columns: Vec<Option<Column>>,
 }
 
@@ -62,6 +65,9 @@ impl<'a> Watch<'a> {
         let column = |asked: &Asked| {
             if asked.function == Function::TimeOf {
                 return Some(Column::Event(asked.of.clone()));
+            }
+            if asked.is_of_mode() {
+                return None;
             }
             let gathered = Gathered::new(asked.function);
             let row = if gathered.is_some() { &recorder } else { &at_end };

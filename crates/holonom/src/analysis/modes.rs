@@ -92,6 +92,47 @@ impl Mode {
         // Nothing taken away, and not −0, where it stays.
         0.0 - self.growth / self.growth.hypot(TAU * self.frequency)
     }
+
+    /// Whether it vibrates, and does not only grow or fall off.
+    pub fn vibrates(&self) -> bool {
+        self.frequency > 0.0
+    }
+}
+
+impl Modes {
+    /// The number of a mode: of the freedom that it is the motion of, counted from 1. Those that do not vibrate come first, and have two exponents each, which
+    /// may be zero, so that the numbers of the others stay when two of these become a vibration.
+    pub fn number(&self, mode: usize) -> usize {
+        let still = self.still();
+        match &self.modes[mode] {
+            found if found.vibrates() => (still + self.free).div_ceil(2) + mode - still + 1,
+            found if found.growth > 0.0 => mode / 2 + 1,
+            _ => (mode + self.free) / 2 + 1,
+        }
+    }
+
+    /// The mode with a number that vibrates.
+    pub fn vibration(&self, number: usize) -> Option<&Mode> {
+        let (still, before) = (self.still(), (self.still() + self.free).div_ceil(2));
+        self.modes.get(still + number.checked_sub(before + 1)?)
+    }
+
+    /// How fast the motion with a number grows, 1/s; of two exponents the larger one.
+    pub fn growth(&self, number: usize) -> Option<f64> {
+        let (exponent, still) = (2 * number.checked_sub(1)?, self.still());
+        let growing = self.modes[..still].iter().filter(|mode| mode.growth > 0.0).count();
+        match exponent {
+            _ if exponent < growing => Some(self.modes[exponent].growth),
+            _ if exponent < growing + self.free => Some(0.0),
+            _ if exponent < still + self.free => Some(self.modes[exponent - self.free].growth),
+            _ => self.vibration(number).map(|mode| mode.growth),
+        }
+    }
+
+    /// Exponents of modes that do not vibrate, but for those that are zero.
+    fn still(&self) -> usize {
+        self.modes.iter().take_while(|mode| !mode.vibrates()).count()
+    }
 }
 
 /// Finds the modes about the start of a system, which is at rest there. Drives stand still at the time 0.
