@@ -174,6 +174,39 @@ fn forces_that_follow_make_it_flutter() {
     assert!(beyond.iter().any(|[re, im]| *re > 1e-3 && *im > 0.1), "{beyond:?}");
 }
 
+/// A pendulum on a spring: what its weight stretches that by is a hundredth of a nanometre to a centimetre, and swings it all the same. Six points of a taut wire.
+#[test]
+fn what_is_stretched_by_little_drives_back() {
+    for (stiffness, rounded) in [(1e3, 1e-12), (1e6, 1e-11), (1e9, 1e-8), (1e12, 1e-4)] {
+        let length = 1.0 + G / stiffness;
+        let text = format!(
+            "[point.b]\nmass = 1\nposition = [0, 0, -{length}]\n\
+             [force.s]\ntype = \"spring\"\nbetween = [\"ground\", \"b\"]\nstiffness = {stiffness}\nrest_length = 1\n"
+        );
+        let found = exponents(&text);
+        assert_eq!(found.len(), 3, "{found:?}\n{text}");
+        for ([_, omega], expected) in found.iter().zip([G / length, G / length, stiffness].map(f64::sqrt)) {
+            assert!((omega - expected).abs() < rounded * expected, "{omega} for {expected}\n{text}");
+        }
+    }
+    let (tension, stiffness, apart) = (10.0, 1e8, 0.2);
+    let mut text = "plane = \"xy\"\n".to_string();
+    for k in 0..=6 {
+        text += &format!("[point.p{k}]\nmass = 0.01\nposition = [{}, 0]\nfixed = {}\n", apart * f64::from(k), k == 0);
+    }
+    for k in 0..=6 {
+        let to = if k < 6 { format!("\"p{}\"", k + 1) } else { format!("[{}, 0]", 7.0 * apart) };
+        let rest = apart - tension / stiffness;
+        text += &format!("[force.s{k}]\ntype = \"spring\"\nbetween = [\"p{k}\", {to}]\nstiffness = {stiffness}\nrest_length = {rest}\n");
+    }
+    let found = exponents(&text);
+    assert_eq!(found.len(), 12, "{found:?}");
+    for (k, [_, omega]) in found[..6].iter().enumerate() {
+        let expected = 2.0 * (tension / apart / 0.01).sqrt() * (PI * (k as f64 + 1.0) / 14.0).sin();
+        assert!((omega - expected).abs() < 1e-8 * expected, "{omega} for {expected}");
+    }
+}
+
 /// A stop that just touches: one side of it counts, beside whatever else drives back.
 #[test]
 fn kinks_have_one_side() {

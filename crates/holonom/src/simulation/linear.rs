@@ -4,7 +4,9 @@ use super::golden::GOLDEN;
 use super::places::Places;
 use super::rest::{FIRST, PUSH};
 use crate::energy;
+use crate::formulation::Workspace;
 use crate::linalg::{eigenpairs, largest};
+use crate::system::Look;
 
 /// Lengths of the step that forces at rest are found by, over that which is tried first.
 const TRIES: [f64; 5] = [1.0, 0.1, 10.0, 0.01, 100.0];
@@ -18,8 +20,11 @@ const LONG: f64 = 1e4;
 /// By what share of a move forces drive it on in a long step that is no rounding.
 const DRIVEN: f64 = 1e-5;
 
-/// How far the places are beside it and each other, over the mechanism's size.
+/// How far the places are beside it and each other, over the mechanism's size; how many times that the way back to rest may be; and by how much rounding
+/// may have them off.
 const BESIDE: f64 = 1e-13;
+const BACK: f64 = 10.0;
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
 /// Share of a motion's size that is left of it when it follows from those before.
 const FOLLOWS: f64 = 1e-6;
@@ -45,7 +50,7 @@ pub(crate) struct Rest {
     /// The same without dampers.
     driven: f64,
     /// Two places a little beside that at rest, where other numbers are rounded.
-    pub spots: [Spot; 2],
+    pub spots: Vec<Spot>,
 }
 
 impl Rest {
@@ -97,11 +102,38 @@ impl Places {
         };
         let braked = self.work.resistance(&self.system, 0.0, &push);
         let braked = self.work.farthest(&self.system, &braked[..self.system.coordinates()]) / (PUSH * size);
-        // On one side of kinks that the mechanism is at.
-        let spots = [self.balance(beside(BESIDE / PUSH))?.0, self.balance(beside(2.0 * BESIDE / PUSH))?.0];
-        self.put(&here.x).map_err(|_| NoRest::Unbalanced)?;
         let driven = (driven.max(whole) / size).sqrt();
-        Ok(Rest { speed: driven.max(braked), driven, spots })
+        let mut rest = Rest { speed: driven.max(braked), driven, spots: Vec::new() };
+        let places = [1.0, 2.0].map(|times| beside(times * BESIDE / PUSH));
+        let rounding: Vec<f64> = push.iter().map(|push| ROUNDED / PUSH * push).collect();
+        for x in self.eased(&places, &rounding, rest.long_step()).unwrap_or(places) {
+            rest.spots.push(self.balance(x)?.0);
+        }
+        self.put(&here.x).map_err(|_| NoRest::Unbalanced)?;
+        Ok(rest)
+    }
+
+    /// Where what is stiff has come to rest again beside places: what little it is stretched there may be more than what it bears. The second place is off by
+    /// what rounding may be. `None` where that leads farther away, or to the other side of a kink that the mechanism is at.
+    fn eased(&mut self, places: &[Vec<f64>; 2], rounding: &[f64], h: f64) -> Option<[Vec<f64>; 2]> {
+        let farthest = BACK * BESIDE * self.work.scales.length;
+        let mut ease = |x: &Vec<f64>, times: f64| {
+            self.put(x).ok()?;
+            let sides = self.sides();
+            self.begin_at_end();
+            let way = self.step(h)?;
+            let x: Vec<f64> = self.work.end.x.iter().zip(rounding).map(|(x, rounding)| x + times * rounding).collect();
+            self.put(&x).ok()?;
+            (way <= farthest && self.sides() == sides).then_some(x)
+        };
+        Some([ease(&places[0], 0.0)?, ease(&places[1], 1.0)?])
+    }
+
+    /// On which sides of their corners forces are, where the mechanism is.
+    fn sides(&self) -> Vec<[bool; 2]> {
+        let Workspace { end, inputs, .. } = &self.work;
+        let seen = self.system.see(Look { x: &end.x, v: &vec![0.0; end.v.len()], t: 0.0, at: &end.at, inputs, span: None });
+        self.system.bends(&seen).corners.iter().map(|corner| [*corner > 0.0, *corner < 0.0]).collect()
     }
 
     /// The multipliers that balance all forces at a place, as far as they do, and what share of the forces is left.
