@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use holonom::analysis::{self, Rank, Undetermined};
+use holonom::analysis::{self, Modes, Rank, Undetermined};
 use holonom::formulation::Multipliers;
 use holonom::model::{Model, StartChange};
 use holonom::record::{Channels, RecordedJoint, Recording};
@@ -309,6 +309,13 @@ fn struck(model: &Model, simulation: &Simulation, rank: &Rank) -> Option<String>
             changes_in_words(&changes)
         )
     })
+}
+
+/// That modes leave out what drives do.
+pub fn driven(modes: &Modes) -> Option<&'static str> {
+    modes.driven.then_some(
+        "drives move at the start, and stand still for the modes: what their speeds do, as by centrifugal and gyroscopic forces, is not in them",
+    )
 }
 
 /// What was put right before the start.

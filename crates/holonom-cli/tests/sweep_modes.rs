@@ -152,6 +152,26 @@ fn runs_are_made_where_columns_ask_for_them() {
     assert!(alone.said.contains("take no run, so that `simulation.step`, `simulation.end` make no difference"), "{}", alone.said);
 }
 
+/// A blade on a hub that turns: drives stand still for modes, and where they would not it is said.
+#[test]
+fn drives_that_move_are_told() {
+    let folder = folder();
+    let model = "plane = \"xy\"\n[parameters]\nw = 10\n[body.hub]\nmass = 1\ninertia = 1\nposition = [0, 0]\n\
+                 [body.blade]\nmass = 2\ninertia = 0.01\nposition = [1, 0]\n\
+                 [joint.shaft]\ntype = \"revolute\"\nbetween = [\"ground\", \"hub\"]\nat = [0, 0]\n\
+                 [joint.flap]\ntype = \"revolute\"\nbetween = [\"hub\", \"blade\"]\nat = [0.2, 0]\n\
+                 [force.k]\ntype = \"torsion\"\njoint = \"flap\"\nstiffness = 5\n\
+                 [drive.motor]\ntype = \"angle\"\njoint = \"shaft\"\nprofile = \"w*t + 0.3*(1 - cos(20*t))\"\n";
+    let found = sweep(&folder, model, "--vary parameters.w=0,1e-3,10 --columns frequency(1)", 0);
+    found.assert("frequency(1)", [(5.0_f64 / 1.29).sqrt() / TAU; 3]);
+    assert_eq!(
+        found.words("notes").iter().map(|note| note.contains("drives move at the start, and stand still")).collect::<Vec<bool>>(),
+        [false, true, true]
+    );
+    assert!(prints(&folder, "modes m.toml", 0).contains("centrifugal"));
+    assert_eq!(json(&folder, "modes m.toml --set parameters.w=0 --json")["driven"], false);
+}
+
 #[test]
 fn what_is_not_at_rest_is_told_how_it_may_be() {
     let folder = folder();

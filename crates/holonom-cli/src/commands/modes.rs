@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use crate::failure::Failure;
 use crate::found::Found;
 use crate::load::{self, Loaded};
+use crate::notes::driven;
 use crate::options::ModesArguments;
 use crate::table::{short, table};
 
@@ -41,7 +42,7 @@ pub fn vibrations(loaded: &Loaded) -> Result<Found, Failure> {
         json!({ "number": found.number(k), "frequency": mode.frequency, "growth": mode.growth, "damping": mode.damping(), "moves": moves })
     };
     let all: Vec<Value> = (0..swings.len()).map(of_mode).collect();
-    let value = json!({ "model": loaded.name, "modes": all, "zero": found.free, "unsure": found.unsure });
+    let value = json!({ "model": loaded.name, "modes": all, "zero": found.free, "unsure": found.unsure, "driven": found.driven });
     Ok(Found { value, text: describe(loaded, &found, &swings) })
 }
 
@@ -79,6 +80,9 @@ fn describe(loaded: &Loaded, found: &Modes, swings: &[Vec<(Swing, f64)>]) -> Str
     }
     if found.unsure > 0 {
         text.push_str(&format!("\n\n{} more cannot be told from rounding beside the others", found.unsure));
+    }
+    if let Some(note) = driven(found) {
+        text.push_str(&format!("\n\n{note}"));
     }
     text
 }

@@ -28,6 +28,8 @@ pub struct Modes {
     pub unsure: usize,
     /// Size of the mechanism, m, by which ways are compared with turns.
     pub length: f64,
+    /// Whether drives, which stand still here, move at the start.
+    pub driven: bool,
 }
 
 /// Why there are no modes.
@@ -79,6 +81,9 @@ const AGREE: f64 = 1e-4;
 /// An s over the slowest that may be zero, and the share that a step leaves of what is too fast for it.
 const SLOWER: f64 = 0.5;
 const FAST: f64 = 1e-9;
+
+/// A speed over that of the mechanism's size in its fastest motion that is none.
+const STILL: f64 = 1e-12;
 
 /// By how many times what both steps differ by a real part is round-off.
 const UNSURE: f64 = 10.0;
@@ -150,7 +155,9 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
         return Err(NoModes::Large(freedom));
     }
     let motions = places.motions()?;
-    let none = Modes { free: 2 * freedom, length: places.length(), ..Modes::default() };
+    let speed = places.velocities()?.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+    let driven = freedom > 0 && speed > STILL * places.length() * rest.speed;
+    let none = Modes { free: 2 * freedom, length: places.length(), driven, ..Modes::default() };
     if rest.speed == 0.0 || freedom == 0 {
         return Ok(none);
     }
