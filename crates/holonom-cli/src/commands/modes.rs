@@ -42,7 +42,7 @@ pub fn vibrations(loaded: &Loaded) -> Result<Found, Failure> {
         json!({ "number": found.number(k), "frequency": mode.frequency, "growth": mode.growth, "damping": mode.damping(), "moves": moves })
     };
     let all: Vec<Value> = (0..swings.len()).map(of_mode).collect();
-    let value = json!({ "model": loaded.name, "modes": all, "zero": found.free, "unsure": found.unsure, "driven": found.driven });
+    let value = json!({ "model": loaded.name, "modes": all, "zero": found.free, "within": found.within, "unsure": found.unsure, "driven": found.driven });
     Ok(Found { value, text: describe(loaded, &found, &swings) })
 }
 
@@ -76,7 +76,8 @@ fn describe(loaded: &Loaded, found: &Modes, swings: &[Vec<(Swing, f64)>]) -> Str
     }
     if found.free > 0 {
         let (are, motions) = if found.free == 1 { ("exponent is", "a motion") } else { ("exponents are", "motions") };
-        text.push_str(&format!("\n\n{} more {are} zero: of {motions} that nothing drives back", found.free));
+        let within = if found.within > 0.0 { format!(" to within {:.0e} 1/s", found.within) } else { String::new() };
+        text.push_str(&format!("\n\n{} more {are} zero{within}: of {motions} that nothing drives back", found.free));
     }
     if found.unsure > 0 {
         text.push_str(&format!("\n\n{} more cannot be told from rounding beside the others", found.unsure));

@@ -24,6 +24,8 @@ pub struct Modes {
     pub modes: Vec<Mode>,
     /// How many s are zero: two of each freedom that nothing resists, one of those that are only damped.
     pub free: usize,
+    /// Within which of zero rounding has them, 1/s.
+    pub within: f64,
     /// How many rounding leaves open, beside those that are much faster or much slower.
     pub unsure: usize,
     /// Size of the mechanism, m, by which ways are compared with turns.
@@ -165,11 +167,11 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
     // A long step shows the slowest motion, and one that is about as long as a motion takes shows that well. What rounding makes of a zero is slower than
     // a long step.
     let long = rest.long_step();
-    let speeds = seen(long)?.into_iter().map(|found| (found.s[0].hypot(found.s[1]), found.is_sure));
-    let speeds = speeds.filter_map(|(speed, is_sure)| (is_sure || speed * long >= 1.0).then_some(speed));
-    let slowest = speeds.fold(f64::INFINITY, f64::min);
+    let speeds: Vec<(f64, bool)> = seen(long)?.into_iter().map(|found| (found.s[0].hypot(found.s[1]), found.is_sure)).collect();
+    let told = speeds.iter().filter(|(speed, is_sure)| *is_sure || speed * long >= 1.0);
+    let slowest = told.fold(f64::INFINITY, |least, (speed, _)| speed.min(least));
     if slowest == f64::INFINITY {
-        return Ok(none);
+        return Ok(Modes { within: speeds.iter().fold(0.0, |most, (speed, _)| speed.max(most)), ..none });
     }
     let mut modes = Modes { free: 0, ..none };
     let mut left = 2 * freedom;
@@ -180,6 +182,7 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
             let is_here = share < WIDTH.sqrt() && (window == 0 || share >= 1.0 / WIDTH.sqrt());
             if window == 0 && !found.is_sure && share < SLOWER {
                 (modes.free, left) = (modes.free + 1, left.saturating_sub(1));
+                modes.within = modes.within.max(share * middle);
             } else if found.is_sure && is_here {
                 left = left.saturating_sub(1);
                 if found.s[1] >= 0.0 {
