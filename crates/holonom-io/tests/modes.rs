@@ -238,6 +238,10 @@ fn modes_are_about_rest() {
     let ball = "gravity = [0, 0, 0]\n[body.ball]\nmass = 1\nshape = { sphere = 0.1 }\nposition = [0, 0, 0]\n";
     let of_ball = found(ball);
     assert_eq!((of_ball.modes.len(), of_ball.free), (0, 12));
+    // A cart on a rail under its weight, whose exponents are zero to the last digit.
+    let cart = "plane = \"xz\"\n[body.b]\nmass = 1\ninertia = 1\nposition = [0, 0]\n\
+                [joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"b\"]\naxis = [1, 0]\n";
+    assert_eq!(found(cart).free, 2);
     let why = |text: &str| modes(&model(text).system).expect_err("it is not at rest");
     assert_eq!(why(&ball.replacen("gravity = [0, 0, 0]\n", "", 1)), NoModes::Unbalanced);
     assert_eq!(why(&format!("{ball}velocity = [1, 0, 0]\n")), NoModes::Moving);

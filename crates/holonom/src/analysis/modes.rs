@@ -219,7 +219,8 @@ fn look_twice(places: &mut Places, rest: &Rest, motions: &Motions, h: f64) -> Re
     let found = first.into_iter().map(|(s, shares)| {
         let apart = |other: &[f64; 2]| (s[0] - other[0]).hypot(s[1] - other[1]);
         let nearest = second.iter().map(|(other, _)| other).min_by(|a, b| apart(a).total_cmp(&apart(b)));
-        let is_sure = nearest.is_some_and(|other| apart(other) <= AGREE * s[0].hypot(s[1]));
+        // What is zero in both is not sure.
+        let is_sure = nearest.is_some_and(|other| apart(other) < AGREE * s[0].hypot(s[1]));
         Found { s, shares, is_sure, apart: nearest.map_or(f64::INFINITY, |other| (s[0] - other[0]).abs()) }
     });
     Ok(found.collect())
