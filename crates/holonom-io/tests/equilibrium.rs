@@ -113,6 +113,24 @@ fn heavy_parts_do_not_hide_how_light_ones_fall() {
     assert!(found.modes.iter().all(|mode| mode.growth == 0.0), "{:?}", found.modes.iter().map(|mode| mode.growth).collect::<Vec<_>>());
 }
 
+/// A heavy tip on two rods with hardly any mass, with springs in their hinges: their moments are those of its weight.
+#[test]
+fn light_parts_do_not_hide_how_heavy_ones_hang() {
+    let spring = |k: usize| format!("[force.s{k}]\ntype = \"torsion\"\njoint = \"h{k}\"\nstiffness = 5e4\n");
+    let tip = "[body.tip]\nmass = 1e3\ninertia = 1e-6\nposition = [2, 0]\n\
+               [joint.pin]\ntype = \"revolute\"\nbetween = [\"r1\", \"tip\"]\nat = [2, 0]\n";
+    for mass in ["1", "1e-7", "1e-12"] {
+        let rods = [rod(0, "ground"), rod(1, "r0")].concat().replace("mass = 1", &format!("mass = {mass}"));
+        let text = planar(&[rods, spring(0), spring(1), tip.to_string()]);
+        let [tip, first, second] = ["tip.x", "h0.angle", "h1.angle"].map(|column| at_start(&text, column));
+        let weight: f64 = mass.parse::<f64>().unwrap() * G;
+        let lower = 1e3 * G * (tip - first.cos()) + weight * 0.5 * (first + second).cos();
+        let upper = 1e3 * G * tip + weight * (1.5 * first.cos() + 0.5 * (first + second).cos());
+        let off = (5e4 * first + upper).abs().max((5e4 * second + lower).abs());
+        assert!(off < 1e-12 * upper, "{mass} kg: {off:.1e} N·m");
+    }
+}
+
 /// Dampers that creep for a quarter of an hour let go as far as rounding, beside heavy and light parts.
 #[test]
 fn dampers_hold_nothing() {

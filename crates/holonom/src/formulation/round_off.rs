@@ -90,8 +90,14 @@ impl Workspace {
         spread(dim, &mut self.full[..n]);
     }
 
-    /// How fast the forces at the sampled state and those of the rows, each by its size, would make the free node that they push most, m/s².
+    /// How fast [these](Self::pushes) would make the free node that they push most, m/s².
     pub fn pushed_at_most(&mut self, system: &System) -> f64 {
+        self.pushes(system);
+        self.farthest(system, &self.full[..system.coordinates()])
+    }
+
+    /// The forces on the free nodes at the sampled state and those of the rows, each by its size, N.
+    pub fn pushes(&mut self, system: &System) -> &[f64] {
         let (n, dim) = (system.coordinates(), system.dim);
         let Self { full, forces, sampled, lambda, rows, sizes, .. } = self;
         full.iter_mut().zip(&forces.weight).for_each(|(full, weight)| *full = weight.abs());
@@ -106,7 +112,7 @@ impl Workspace {
         }
         let of_loads = system.loads.iter().flat_map(|load| &load.nodes).zip(forces.of_loads.chunks_exact(dim));
         of_loads.for_each(|(node, force)| (0..dim).for_each(|c| full[node.index() * dim + c] += force[c].abs()));
-        self.farthest(system, &self.full[..n])
+        &self.full[..n]
     }
 
     /// Leaves the sizes of the terms of Φ in `rows`: of gradients times positions, whose last digits are lost.

@@ -127,10 +127,12 @@ impl Places {
                     self.begin_at_end();
                     gone += way;
                     let is_quick = way <= QUICK * before;
-                    // How far all forces would move the mechanism in such a step.
+                    // How far all forces would move the mechanism in such a step: what they move farthest may be light, and the largest of them elsewhere.
                     let reach = h * h * self.work.pushed_at_most(&self.system);
-                    let rounded = ROUNDED * (size + reach);
-                    if is_quick && way <= AT_REST * size.min(reach) || !is_quick && way <= rounded && way + self.dragged(h) <= rounded {
+                    let strongest = h * h * largest(self.work.pushes(&self.system));
+                    let [farthest, left] = self.left(h);
+                    let is_small = |way: f64, lengths: f64, share: f64| way <= share * lengths && left <= share * strongest;
+                    if is_quick && is_small(way, size.min(reach), AT_REST) || !is_quick && is_small(farthest, size + reach, ROUNDED) {
                         return Ok(());
                     }
                     if gone > FARTHEST * size {
@@ -154,13 +156,16 @@ impl Places {
         Err(Restless::Stuck)
     }
 
-    /// How far what resisted the last step, of length h, would move what it resisted most in such a step, m.
-    fn dragged(&mut self, h: f64) -> f64 {
+    /// What the last step, of length h, left of the forces, M d + h C d: how far that moves what it moves farthest, m, and the largest of it, kg·m.
+    fn left(&mut self, h: f64) -> [f64; 2] {
         let Self { system, work, .. } = self;
+        let n = system.coordinates();
         let mut way = work.d.clone();
         way.resize(work.end.x.len(), 0.0);
-        let resisted = work.resistance(system, 0.0, &way);
-        h * work.farthest(system, &resisted[..system.coordinates()])
+        let mut left = way.clone();
+        system.mass.times(system.dim, &way, &mut left);
+        left.iter_mut().zip(work.resistance(system, 0.0, &way)).for_each(|(left, resisted)| *left += h * resisted);
+        [work.farthest(system, &left[..n]), largest(&left[..n])]
     }
 
     /// Has the next step begin where the last one ended, at rest.
