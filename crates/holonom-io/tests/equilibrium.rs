@@ -131,6 +131,24 @@ fn light_parts_do_not_hide_how_heavy_ones_hang() {
     }
 }
 
+/// A wheel turns by the way over its radius, also on a plate that gives way under it.
+#[test]
+fn wheels_roll_to_where_forces_balance() {
+    for (stiffness, spring) in [(1e9, 10.0), (200.0, 50.0), (50.0, 10.0)] {
+        let text = format!(
+            "[body.plate]\nmass = 20\ninertia = [1, 2, 1]\nposition = [0, 0, 0]\n[body.wheel]\nmass = 4\ninertia = [0.1, 0.2, 0.1]\ncom = [0.1, 0, 0]\n\
+             position = [0.2, 0, 0.3]\npoints = {{ hub = [0, 0, 0] }}\n[joint]\n\
+             hinge = {{ type = \"revolute\", between = [\"ground\", \"plate\"], at = [0, 0, 0], axis = [0, 1, 0] }}\n\
+             guide = {{ type = \"planar\", between = [\"plate\", \"wheel\"], at = \"wheel.hub\", axis = [0, 1, 0] }}\n\
+             rolling = {{ type = \"rolling\", between = [\"plate\", \"wheel\"], at = \"wheel.hub\", axis = [0, 1, 0], normal = [0, 0, 1], radius = 0.3 }}\n\
+             [force]\ntilt = {{ type = \"torsion\", joint = \"hinge\", stiffness = {stiffness} }}\n\
+             pull = {{ type = \"spring\", between = [\"wheel\", [5, 0, 1]], stiffness = {spring}, rest_length = 0.5 }}\n{BEGIN}"
+        );
+        let [way, angle] = ["guide.x", "guide.angle"].map(|column| at_start(&text, column));
+        assert!(angle > 0.3 && (way - 0.3 * angle).abs() < 1e-12, "{way} m and {angle} rad");
+    }
+}
+
 /// Dampers that creep for a quarter of an hour let go as far as rounding, beside heavy and light parts.
 #[test]
 fn dampers_hold_nothing() {

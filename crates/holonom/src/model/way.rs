@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::bodies::short;
 use super::start::{Rising, Target};
-use crate::simulation::Places;
+use crate::simulation::{Places, along, follow};
 use crate::system::SystemBuilder;
 
 /// First share of the way that is tried at once, and the longest where something is left free; and the least.
@@ -14,12 +14,6 @@ const LEAST_SHARE: f64 = 1e-4;
 
 /// Parts of the way that are tried.
 const MOST_TRIES: usize = 1000;
-
-/// Ways of the modified midpoint rule that are extrapolated, of 2, 4, … steps.
-const MOST_WAYS: usize = 10;
-
-/// Share of the size of all coordinates to which the places are found.
-const FOUND: f64 = 1e-13;
 
 /// Moves all nodes on a way along which every constraint is met, with as little as possible of all else, in the metric of the mass. Says whether the
 /// coordinates leave anything free.
@@ -99,11 +93,6 @@ pub(super) struct Way {
     is_driven: bool,
 }
 
-/// Places `by` farther on at a rate.
-fn along(x: &[f64], by: f64, rate: &[f64]) -> Vec<f64> {
-    x.iter().zip(rate).map(|(x, rate)| x + by * rate).collect()
-}
-
 impl Way {
     /// From where a builder has its nodes. `None` where no matrix holds the rows.
     pub fn new(builder: &SystemBuilder, targets: &[Target], released: &[usize], is_driven: bool) -> Option<Self> {
@@ -144,26 +133,9 @@ impl Way {
     }
 
     /// Where the nodes at `here`, with the velocities `first` there, are at the end of a part of the way between two shares of it: the motion with the
-    /// least kinetic energy at each place is followed by extrapolation (Bulirsch and Stoer). `None` where that leads nowhere, or the part is too long
-    /// for it.
+    /// least kinetic energy at each place. `None` where that leads nowhere, or the part is too long for it.
     fn follow(&mut self, here: &[f64], first: &[f64], shares: [f64; 2]) -> Option<Vec<f64>> {
-        let size = here.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
-        let mut table: Vec<Vec<f64>> = Vec::new();
-        for k in 0..MOST_WAYS {
-            let mut next = self.midpoint(here, first, shares, 2 * (k + 1))?;
-            let mut off = f64::INFINITY;
-            for (j, before) in table.iter_mut().enumerate() {
-                let ratio = ((k + 1) as f64 / (k - j) as f64).powi(2);
-                off = next.iter().zip(&*before).fold(0.0, |most, (x, before)| f64::max(most, (x - before).abs() / (ratio - 1.0)));
-                let better: Vec<f64> = next.iter().zip(&*before).map(|(x, before)| x + (x - before) / (ratio - 1.0)).collect();
-                *before = std::mem::replace(&mut next, better);
-            }
-            if off <= FOUND * size {
-                return Some(next);
-            }
-            table.push(next);
-        }
-        None
+        follow(here, first, shares, |x, share| self.rate(x, share))
     }
 
     /// The same by one step of the classical Runge-Kutta method, for ways whose places meet all constraints by themselves.
@@ -174,19 +146,6 @@ impl Way {
         let last = self.rate(&along(here, h, &third), to)?;
         let mean = |k: usize| (first[k] + 2.0 * (second[k] + third[k]) + last[k]) / 6.0;
         Some(here.iter().enumerate().map(|(k, x)| x + h * mean(k)).collect())
-    }
-
-    /// Places at the end of so many steps of the modified midpoint rule.
-    fn midpoint(&mut self, here: &[f64], first: &[f64], [from, to]: [f64; 2], steps: usize) -> Option<Vec<f64>> {
-        let h = (to - from) / steps as f64;
-        let [mut before, mut x] = [here.to_vec(), along(here, h, first)];
-        for k in 1..steps {
-            let rate = self.rate(&x, from + k as f64 * h)?;
-            let next = along(&before, 2.0 * h, &rate);
-            (before, x) = (x, next);
-        }
-        let last = along(&before, h, &self.rate(&x, to)?);
-        Some(x.iter().zip(&last).map(|(x, last)| 0.5 * (x + last)).collect())
     }
 
     /// Velocities of all nodes over the share, with which constraints are met while the coordinates that lead go on and drives stand still.

@@ -11,6 +11,7 @@ mod control;
 mod crowd;
 mod doubts;
 mod events;
+mod follow;
 mod golden;
 mod landing;
 mod linear;
@@ -37,6 +38,7 @@ pub use audit::Audit;
 pub use checkpoint::Checkpoint;
 pub use conflict::Conflict;
 pub use events::Happening;
+pub(crate) use follow::{along, follow};
 pub(crate) use golden::GOLDEN;
 pub(crate) use linear::{Motions, NoRest, Rest};
 pub use method::{

@@ -1,6 +1,7 @@
 //! Where a mechanism comes to rest (methods §20), by pseudo-transient continuation (Kelley and Keyes 1998): steps of implicit Euler, each from rest, at
 //! a time that stands still. Short ones go down the forces, and long ones are those of Newton's iteration for their balance.
 
+use super::follow::follow;
 use super::golden::GOLDEN;
 use super::places::Places;
 use super::start::{Asked, Start, StartError, correct_velocities};
@@ -94,15 +95,30 @@ impl Places {
 
     /// A move of all nodes that the rows allow.
     pub(super) fn pushed(&mut self) -> Result<Vec<f64>, StartError> {
+        let push: Vec<f64> = (0..self.work.end.v.len()).map(|k| (k as f64 * GOLDEN).fract() - 0.5).collect();
+        let way = self.allowed(&push)?;
+        let by = PUSH * self.work.scales.length / largest(&way).max(f64::MIN_POSITIVE);
+        Ok(way.iter().map(|v| by * v).collect())
+    }
+
+    /// The velocities of all nodes at the place that meet all rows and are nearest to these.
+    fn allowed(&mut self, v: &[f64]) -> Result<Vec<f64>, StartError> {
         let Self { system, newton, work, .. } = self;
-        let push: Vec<f64> = (0..work.end.v.len()).map(|k| (k as f64 * GOLDEN).fract() - 0.5).collect();
-        let impulse = vec![0.0; system.coordinates()];
-        work.end.v.copy_from_slice(&push);
-        work.end.v[impulse.len()..].fill(0.0);
-        correct_velocities(system, &Asked { v: &push, impulse: &impulse, ..Asked::of(system, 1.0) }, newton, work, &mut Start::default())?;
-        let n = system.coordinates();
-        let by = PUSH * work.scales.length / largest(&work.end.v[..n]).max(f64::MIN_POSITIVE);
-        Ok(work.end.v.iter().enumerate().map(|(k, v)| if k < n { by * v } else { 0.0 }).collect())
+        let (n, impulse) = (system.coordinates(), vec![0.0; system.coordinates()]);
+        work.end.v.copy_from_slice(v);
+        work.end.v[n..].fill(0.0);
+        correct_velocities(system, &Asked { v, impulse: &impulse, ..Asked::of(system, 1.0) }, newton, work, &mut Start::default())?;
+        work.end.v[n..].fill(0.0);
+        Ok(work.end.v.clone())
+    }
+
+    /// Has wheels roll, with all else, the way of the last step, which holds rows of velocities but for the square of its length.
+    fn roll(&mut self) -> bool {
+        let (here, mut way) = (self.work.start.x.clone(), self.work.d.clone());
+        way.resize(here.len(), 0.0);
+        let mut rate = |x: &[f64], _| self.put(x).ok().and_then(|()| self.allowed(&way).ok());
+        let ahead = rate(&here, 0.0).and_then(|first| follow(&here, &first, [0.0, 1.0], &mut rate));
+        ahead.is_some_and(|ahead| self.put(&ahead).is_ok())
     }
 
     /// Takes steps until hardly any of one is left, or rounding alone.
@@ -119,31 +135,28 @@ impl Places {
             return if whole == 0.0 { Ok(()) } else { Err(Restless::Stuck) };
         }
         let least = SHORTEST * h;
+        let rolls = self.system.is_nonholonomic();
         let (mut gone, mut before) = (0.0, f64::INFINITY);
         for _ in 0..MOST {
             let longest = LONGEST * (size + gone);
-            match self.step(h) {
-                Some(way) if way <= longest => {
+            let way = self.step(h);
+            let is_at_rest = way.is_some_and(|way| self.is_at_rest(h, way, before));
+            match way {
+                Some(way) if way <= longest && (is_at_rest || !rolls || self.roll()) => {
                     self.begin_at_end();
                     gone += way;
-                    let is_quick = way <= QUICK * before;
-                    // How far all forces would move the mechanism in such a step: what they move farthest may be light, and the largest of them elsewhere.
-                    let reach = h * h * self.work.pushed_at_most(&self.system);
-                    let strongest = h * h * largest(self.work.pushes(&self.system));
-                    let [farthest, left] = self.left(h);
-                    let is_small = |way: f64, lengths: f64, share: f64| way <= share * lengths && left <= share * strongest;
-                    if is_quick && is_small(way, size.min(reach), AT_REST) || !is_quick && is_small(farthest, size + reach, ROUNDED) {
+                    if is_at_rest {
                         return Ok(());
                     }
                     if gone > FARTHEST * size {
                         return Err(Restless::Moves);
                     }
                     // Ways are as the squares of steps as long as nothing is in the way.
-                    let growth = if is_quick { 1.0 } else { GROWTH.min((longest / way).sqrt()) };
+                    let growth = if way <= QUICK * before { 1.0 } else { GROWTH.min((longest / way).sqrt()) };
                     (h, before) = (growth * h, way);
                 }
                 way if h > least => {
-                    let shrinkage = way.map_or(SHRINKAGE, |way| SHRINKAGE.max(0.5 * (longest / way).sqrt()));
+                    let shrinkage = way.map_or(SHRINKAGE, |way| SHRINKAGE.max(0.5 * (longest / way).sqrt()).min(0.5));
                     (h, before) = (shrinkage * h, f64::INFINITY);
                     // What a long step leaves of the rows would be uphill for short ones.
                     let x = self.work.start.x.clone();
@@ -154,6 +167,17 @@ impl Places {
             }
         }
         Err(Restless::Stuck)
+    }
+
+    /// Whether the last step, of length h, went hardly any way, as the one before had gone `before`, or one of rounding.
+    fn is_at_rest(&mut self, h: f64, way: f64, before: f64) -> bool {
+        let size = self.work.scales.length;
+        // How far all forces would move the mechanism in such a step: what they move farthest may be light, and the largest of them elsewhere.
+        let reach = h * h * self.work.pushed_at_most(&self.system);
+        let strongest = h * h * largest(self.work.pushes(&self.system));
+        let [farthest, left] = self.left(h);
+        let is_small = |way: f64, lengths: f64, share: f64| way <= share * lengths && left <= share * strongest;
+        if way <= QUICK * before { is_small(way, size.min(reach), AT_REST) } else { is_small(farthest, size + reach, ROUNDED) }
     }
 
     /// What the last step, of length h, left of the forces, M d + h C d: how far that moves what it moves farthest, m, and the largest of it, kg·m.
