@@ -49,6 +49,38 @@ stiffness = 475.418
 rest_length = 0
 "#;
 
+/// A boom of half a kilogram between its ball and a strong spring, and what weighs a milligram on it.
+const BOOM: &str = r#"
+[body.b0]
+mass = 0.5413
+inertia = [4.045, 5.586, 5.614]
+position = [-7.112, 2.494, 3.071]
+points = { e = [-0.07123, 3.372, 3.323] }
+[body.b1]
+mass = 1.311e-6
+inertia = [5.113e-6, 7.362e-6, 8.455e-6]
+position = [-4.942, 8.02, 4.968]
+points = { e = [2.242, 2.155, -1.427] }
+[joint.j0]
+type = "spherical"
+between = ["ground", "b0"]
+at = [-7.041, -0.8779, -0.2522]
+[force.s0]
+type = "spring"
+between = [[17.29, -8.309, -22.35], "b0.e"]
+stiffness = 113.5
+rest_length = 18.95
+[joint.j1]
+type = "revolute"
+between = ["b0", "b1"]
+at = [-7.183, 5.866, 6.395]
+axis = [-0.5465, 0.7498, -0.4569]
+[force.t1]
+type = "torsion"
+joint = "j1"
+stiffness = 2.956e5
+"#;
+
 /// A planar rod of 1 kg from x = k to k + 1, hinged where it begins.
 fn rod(k: usize, holder: &str) -> String {
     format!(
@@ -129,6 +161,19 @@ fn light_parts_do_not_hide_how_heavy_ones_hang() {
         let off = (5e4 * first + upper).abs().max((5e4 * second + lower).abs());
         assert!(off < 1e-12 * upper, "{mass} kg: {off:.1e} N·m");
     }
+}
+
+/// Large forces round what hardly anything holds, here how a boom turns about itself: long steps go on all the same, to where spring and weight balance.
+#[test]
+fn what_hardly_anything_holds_comes_to_rest() {
+    let text = format!("{BOOM}{BEGIN}");
+    let tip = ["b0.e.x", "b0.e.y", "b0.e.z"].map(|column| at_start(&text, column));
+    let [boom, spring] = [[-7.041, -0.8779, -0.2522], [17.29, -8.309, -22.35]].map(|from| [0, 1, 2].map(|k| tip[k] - from[k]));
+    let length = spring.iter().map(|d| d * d).sum::<f64>().sqrt();
+    let mut force = spring.map(|d| 113.5 * (18.95 - length) * d / length);
+    force[2] -= 0.5 * 0.5413 * G;
+    let moment = [0, 1, 2].map(|k| boom[(k + 1) % 3] * force[(k + 2) % 3] - boom[(k + 2) % 3] * force[(k + 1) % 3]);
+    assert!(moment.iter().all(|moment| moment.abs() < 1e-3), "{moment:?} N·m");
 }
 
 /// A wheel turns by the way over its radius, also on a plate that gives way under it.

@@ -6,7 +6,7 @@ use super::golden::GOLDEN;
 use super::places::Places;
 use super::start::{Asked, Start, StartError, correct_velocities};
 use crate::energy;
-use crate::formulation::{Prediction, RowsAt, Sampling, Stage, Workspace, solve};
+use crate::formulation::{Failure, Prediction, RowsAt, Sampling, Stage, Workspace, solve};
 use crate::linalg::largest;
 use crate::system::{System, scatter};
 
@@ -23,6 +23,10 @@ const QUICK: f64 = 0.1;
 
 /// A step that rounding alone makes of forces and places, over the larger of both: no other step is a tenth of it then.
 const ROUNDED: f64 = 64.0 * f64::EPSILON;
+
+/// Share of the size that a step may be off by: in long steps large forces round what hardly anything holds by more than Newton's iteration waits for, and
+/// the next step mends it.
+const SOLVED: f64 = 1e-9;
 
 /// By how much steps grow after one that is slow, and shrink after one that leads nowhere.
 const GROWTH: f64 = 2.0;
@@ -63,33 +67,41 @@ impl Places {
     pub fn settle(&mut self) -> Result<(), Restless> {
         let x = self.system.start_position().to_vec();
         self.put(&x).map_err(|_| Restless::Stuck)?;
-        self.come_to_rest()?;
+        let mut outcome = self.come_to_rest();
         for _ in 0..RIDGES {
             let rest = self.work.end.x.clone();
-            let Some((push, back)) = self.way_down() else { return Ok(()) };
+            let Some((push, back)) = self.way_down(outcome) else { return outcome };
             let ahead: Vec<f64> = rest.iter().zip(&push).map(|(x, push)| x + push).collect();
+            let before = outcome;
             let comes_back = self.put(&ahead).is_err() || {
-                self.come_to_rest()?;
+                outcome = self.come_to_rest();
+                if before.is_err() && outcome.is_err() {
+                    return outcome;
+                }
                 let apart = rest.iter().zip(&self.work.end.x).fold(0.0, |apart: f64, (x, other)| apart.max((x - other).abs()));
-                apart <= back * PUSH * self.work.scales.length
+                before.is_ok() && outcome.is_ok() && apart <= back * PUSH * self.work.scales.length
             };
             if comes_back {
-                return self.put(&rest).map_err(|_| Restless::Stuck);
+                return self.put(&rest).map_err(|_| Restless::Stuck).and(before);
             }
         }
         Err(Restless::Moves)
     }
 
-    /// A small move along which the mechanism at rest may leave that, and how many times it may then be off to have come back. `None` where it comes
-    /// back from all.
-    fn way_down(&mut self) -> Option<(Vec<f64>, f64)> {
+    /// A small move along which the mechanism may leave where it has come to, and how many times it may then be off to have come back. `None` where it
+    /// comes back from all, or where it is not at rest and on no ridge, near which long steps lead nowhere.
+    fn way_down(&mut self, outcome: Result<(), Restless>) -> Option<(Vec<f64>, f64)> {
+        if outcome == Err(Restless::Moves) {
+            return None;
+        }
         let x = self.work.end.x.clone();
         let falls = (self.freedom() <= MOST_FREEDOMS).then(|| self.falls().ok()).flatten();
         self.put(&x).ok()?;
         self.begin_at_end();
         match falls {
             Some(falls) => Some((falls?, NEAR)),
-            None => Some((self.pushed().ok()?, BACK)),
+            None if outcome.is_ok() => Some((self.pushed().ok()?, BACK)),
+            None => None,
         }
     }
 
@@ -229,7 +241,10 @@ impl Places {
         let Self { system, newton, work, .. } = self;
         let potential = |work: &Workspace| energy::potential(system, &work.forces.weight, &work.end.x, &work.end.at, None);
         let (before, at_start) = (potential(work), supplying(system, work));
-        solve(system, &stage, newton, work).ok()?;
+        match solve(system, &stage, newton, work) {
+            Ok(()) | Err(Failure::NotConverged { increment: ..SOLVED, .. }) => {}
+            Err(_) => return None,
+        }
         work.place(&stage);
         work.evaluate(system, &stage);
         let mean = at_start.iter().zip(supplying(system, work)).map(|(before, after)| 0.5 * (before + after));
