@@ -9,7 +9,7 @@ import holonom as hm
 from holonom._builders import builder_name
 
 EXAMPLES = sorted((pathlib.Path(__file__).parents[3] / "examples").glob("*.toml"))
-SECTIONS = ["table", "input", "point", "body", "bar", "constraint", "joint", "drive", "force", "start", "measure", "event"]
+SECTIONS = ["table", "input", "point", "body", "bar", "beam", "constraint", "joint", "drive", "force", "start", "measure", "event"]
 
 
 def built(tables):

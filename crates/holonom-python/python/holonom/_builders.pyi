@@ -1136,6 +1136,40 @@ class Builders:
         repeat: makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"; default: one entry
         """
 
+    def beam(
+        self,
+        name: str,
+        /,
+        *,
+        from_: Numbers,
+        to: Numbers,
+        elements: Number | None = None,
+        section: Mapping[str, Any],
+        modulus: Number,
+        poisson: Number | None = None,
+        density: Number,
+        up: Numbers | None = None,
+        damping: Number | None = None,
+        velocity: Numbers | None = None,
+        angular_velocity: Number | Numbers | None = None,
+        repeat: str | None = None,
+    ) -> Entry:
+        """Adds an entry of ``[beam.NAME]``: an elastic beam.
+
+        from_: its first end at the start [m]
+        to: its second end at the start [m]
+        elements: number of elements; the bodies at their ends are NAME[0] to NAME[elements]; default: 8
+        section: its cross section
+        modulus: Young's modulus [N/m²]
+        poisson: Poisson's ratio, which the shear modulus follows from; default: 0.3
+        density: of the material [kg/m³]
+        up: direction that z of the beam is as near to as it can be; x goes along it [any]; default: z of the model, or x for beams along z
+        damping: of the material: stress per rate of strain over the modulus [s]; default: 0
+        velocity: of its first end, at the start; the beam moves as a rigid body then [m/s]; default: 0
+        angular_velocity: in the axes of the model, at the start; one number in a planar model [rad/s]; default: 0
+        repeat: makes NAME[0], NAME[1], …: "i = 0 to N", also nested: "i = 0 to N, j = 1 to M"; default: one entry
+        """
+
     def start(
         self,
         name: str,
