@@ -155,3 +155,29 @@ fn a_thrown_beam_keeps_energy_and_momenta() {
         assert!(errors[1] < 1e-3 && errors[0] / errors[1] > 3.5 && errors[0] / errors[1] < 4.5, "{errors:?}");
     }
 }
+
+/// Joints lead beams to where `[start]` puts them without bending them, and set them off as rigid rods. A loop that cannot move so is refused, and bends
+/// where it comes to rest.
+#[test]
+fn a_start_takes_beams_along() {
+    let arm = "[beam.arm]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nsection = { circle = 0.01 }\nmodulus = 2e11\ndensity = 7800\n\
+               [joint.pin]\ntype = \"revolute\"\nbetween = [\"ground\", \"arm[0]\"]\nat = [0, 0, 0]\naxis = [0, 1, 0]\n\
+               [start.pin]\nangle = \"30*deg\"\nangle_rate = 2\n[simulation]\nend = 1e-3\nstep = 1e-3\n";
+    let (_, recording) = run_every(&model(arm), "conserving-ggl", 1e-3, 1e-3, 1);
+    let at = |name: &str| recording.column(name).unwrap_or_else(|| panic!("no {name}"))[0];
+    let area = PI * 1e-4;
+    let (mass, across) = (7800.0 * area, 7800.0 * 0.25 * PI * 1e-8);
+    assert!((at("arm[8].z") + 0.5).abs() < 1e-14 && (at("arm[4].vz") + 3.0_f64.sqrt() / 2.0).abs() < 1e-13);
+    assert!((at("potential") + mass * 9.81 * 0.25).abs() < 1e-12 * mass && (at("kinetic") - 2.0 * (mass / 3.0 + across)).abs() < 1e-12);
+
+    let with = |equilibrium: &str| {
+        let mut skew = common::source(&std::fs::read_to_string("../../examples/flexible-four-bar.toml").unwrap());
+        for (key, value) in [("start.B.angle", "0.2"), ("start.equilibrium", equilibrium)] {
+            skew.set(key, value).unwrap_or_else(|error| panic!("{error}"));
+        }
+        skew.model()
+    };
+    let refused = with("false").err().expect("it cannot move");
+    assert!(refused.contains("if beams stay as they are written") && refused.contains("equilibrium = true"), "{refused}");
+    with("true").unwrap_or_else(|error| panic!("{error}"));
+}

@@ -3,6 +3,7 @@
 use std::cell::LazyCell;
 
 use super::assembly::Assembly;
+use super::beams::stiffened;
 use super::bodies::frame::Frame;
 use super::bodies::nodes::Member;
 use super::bodies::{RigidBody, short};
@@ -21,7 +22,8 @@ const ADRIFT: f64 = 1e-6;
 pub(super) fn moved(assembly: &Assembly<'_>) -> Option<String> {
     let bodies = &assembly.bodies;
     let mut tied = vec![false; bodies.len()];
-    let pairs: Vec<[Member; 2]> = assembly.joints.iter().map(|joint| joint.geometry.members).collect();
+    let elastic = assembly.elastic.iter().map(|element| element.bodies.map(Member::Body));
+    let pairs: Vec<[Member; 2]> = assembly.joints.iter().map(|joint| joint.geometry.members).chain(elastic).collect();
     let mut grows = true;
     while std::mem::take(&mut grows) {
         for &[a, b] in pairs.iter().chain(pairs.iter().rev()) {
@@ -74,9 +76,10 @@ pub(super) fn measured(builder: &SystemBuilder) -> (System, GaugeValues) {
 
 /// Which coordinates of joints may still go on where those of some targets do not: a push of all nodes, as far as the rows let them, moves
 /// these.
-fn left_free<'t>(builder: &SystemBuilder, targets: impl Iterator<Item = &'t Target>) -> Option<Vec<bool>> {
+fn left_free<'t>(assembly: &Assembly<'_>, targets: impl Iterator<Item = &'t Target>) -> Option<Vec<bool>> {
+    let builder = &assembly.builder;
     let held: Vec<(&Target, f64)> = targets.filter(|target| target.row.is_none()).map(|target| (target, 0.0)).collect();
-    let led = leading(builder, &held);
+    let led = leading(&stiffened(builder, &assembly.elastic), &held);
     let size = builder.size();
     let rates = |pushed: f64| {
         let mut led = led.clone();
@@ -105,9 +108,7 @@ pub(super) fn followed(assembly: &Assembly<'_>, targets: &[Target], before: &Gau
     let size = |k: usize| if system.is_angle(k) { 1.0 } else { assembly.builder.size() };
     let quicker = |k: usize| (after.rate[k] - before.rate[k]).abs() / size(k);
     let quickest = (0..after.rate.len()).map(quicker).fold(0.0, f64::max);
-    let free = |is_given: fn(&Target) -> bool| {
-        LazyCell::new(move || left_free(&assembly.builder, targets.iter().filter(|target| is_given(target))))
-    };
+    let free = |is_given: fn(&Target) -> bool| LazyCell::new(move || left_free(assembly, targets.iter().filter(|target| is_given(target))));
     let (may_be_elsewhere, may_be_quick) = (free(Target::is_placed), free(Target::is_rated));
     let is_free = |free: &Option<Vec<bool>>, k: usize| free.as_ref().is_none_or(|free| free[k]);
     let moved = system.gauges().iter().enumerate().filter_map(|(k, name)| {

@@ -4,6 +4,7 @@ use std::cell::OnceCell;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
+use super::beams::Elastic;
 use super::bodies::RigidBody;
 use super::bodies::frame::Frame;
 use super::bodies::nodes::Member;
@@ -135,6 +136,8 @@ pub struct Assembly<'a> {
     pub(in crate::model) rods: Vec<RecordedRod>,
     /// Places, as they were written, whose distance bars and constraints keep as it is at the start.
     pub(in crate::model) kept_apart: Vec<[String; 2]>,
+    /// Elements of beams.
+    pub(in crate::model) elastic: Vec<Elastic>,
     /// What forces do, and what is to be shown of that which is built.
     pub(in crate::model) forces: Vec<RecordedForce>,
     shows: Shows,
@@ -195,6 +198,7 @@ impl<'a> Assembly<'a> {
             transmissions: Vec::new(),
             rods: Vec::new(),
             kept_apart: Vec::new(),
+            elastic: Vec::new(),
             forces: Vec::new(),
             shows: Shows::Power,
             signals: Signals::default(),

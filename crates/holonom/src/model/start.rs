@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::adrift;
 use super::assembly::{Assembly, Effort};
+use super::beams::{Elastic, stiffened};
 use super::entry::Entry;
 use super::fault::{Read, nearest};
 use super::fields::{Keys, Number};
@@ -189,9 +190,21 @@ pub(super) fn begin(assembly: &mut Assembly<'_>, equilibrium: bool) -> Result<()
     let targets = std::mem::take(&mut assembly.starts);
     let lengths = std::mem::take(&mut assembly.lengths);
     let before = (!targets.is_empty() && !equilibrium).then(|| adrift::measured(&assembly.builder).1);
-    let mut leaves_free = place(&mut assembly.builder, &targets, &lengths, &mut assembly.efforts)?;
+    let elastic = std::mem::take(&mut assembly.elastic);
+    let mut leaves_free = match place(&mut assembly.builder, &targets, &lengths, &mut assembly.efforts, &elastic) {
+        // Beams that cannot go along as they are come to rest bent.
+        Err(_) if equilibrium && !elastic.is_empty() => place(&mut assembly.builder, &targets, &lengths, &mut assembly.efforts, &[])?,
+        Err((message, _)) if !elastic.is_empty() => {
+            return Err((
+                format!("{message}, if beams stay as they are written"),
+                "write equilibrium = true in [start], where beams may bend on the way",
+            ));
+        }
+        placed => placed?,
+    };
     let settled = if equilibrium { rest::settle(assembly, &targets)? } else { None };
-    leaves_free |= set_off(&mut assembly.builder, &targets)?;
+    leaves_free |= set_off(&mut assembly.builder, &targets, &elastic).or_else(|_| set_off(&mut assembly.builder, &targets, &[]))?;
+    assembly.elastic = elastic;
     // Where forces balance, what has moved there is all that is told.
     let followed = before.filter(|_| leaves_free).and_then(|before| adrift::followed(assembly, &targets, &before));
     let adrift = (!equilibrium && targets.iter().any(Target::is_placed)).then(|| adrift::moved(assembly)).flatten();
@@ -210,13 +223,14 @@ fn place(
     targets: &[Target],
     lengths: &[DrivenLength],
     efforts: &mut [Effort],
+    elastic: &[Elastic],
 ) -> Result<bool, (String, &'static str)> {
     if !targets.iter().any(Target::is_placed) {
         return Ok(false);
     }
     let released = released(builder, targets, lengths, efforts);
     require_held(builder, lengths, efforts, &released)?;
-    let leaves_free = assemble(builder, targets, &released)?;
+    let leaves_free = assemble(builder, targets, &released, elastic)?;
     extend(builder, lengths, efforts)?;
     Ok(leaves_free)
 }
@@ -249,7 +263,7 @@ pub(super) fn leading(builder: &SystemBuilder, rates: &[(&Target, f64)]) -> Syst
 
 /// Gives the nodes the velocities at which coordinates have their rates and all constraints are met, with as little as possible of a change
 /// of those that are written, in the metric of the mass. Says whether the rates leave anything free.
-fn set_off(builder: &mut SystemBuilder, targets: &[Target]) -> Result<bool, (String, &'static str)> {
+fn set_off(builder: &mut SystemBuilder, targets: &[Target], elastic: &[Elastic]) -> Result<bool, (String, &'static str)> {
     let rated: Vec<(&Target, f64)> = targets.iter().filter_map(|target| Some((target, target.rate?))).collect();
     if rated.is_empty() {
         return Ok(false);
@@ -258,7 +272,7 @@ fn set_off(builder: &mut SystemBuilder, targets: &[Target]) -> Result<bool, (Str
         let message = format!("`{}.{}` is driven: its drive says how fast it is", coordinate.joint, coordinate.name);
         return Err((message, "remove the rate, or the drive"));
     }
-    let led = leading(builder, &rated);
+    let led = leading(&stiffened(builder, elastic), &rated);
     let here = led.clone().build();
     let mut places = Places::new(led.build());
     let velocities = places.as_mut().ok().and_then(|places| {

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::beams::{Elastic, stiffened};
 use super::bodies::short;
 use super::start::{Rising, Target};
 use crate::simulation::{Places, along, follow};
@@ -20,7 +21,12 @@ const MOST_TRIES: usize = 1000;
 ///
 /// # Errors
 /// Why that cannot be, and the cure.
-pub(super) fn assemble(builder: &mut SystemBuilder, targets: &[Target], released: &[usize]) -> Result<bool, (String, &'static str)> {
+pub(super) fn assemble(
+    builder: &mut SystemBuilder,
+    targets: &[Target],
+    released: &[usize],
+    elastic: &[Elastic],
+) -> Result<bool, (String, &'static str)> {
     if builder.is_moving() {
         let message = "a velocity is written for the pose in the file, and the mechanism is moved from there".to_string();
         return Err((
@@ -29,7 +35,7 @@ pub(super) fn assemble(builder: &mut SystemBuilder, targets: &[Target], released
         ));
     }
     let is_driven = builder.clone().build().is_driven();
-    let mut led = Way::new(builder, targets, released, is_driven).ok_or_else(|| stuck(0.0, is_driven))?;
+    let mut led = Way::new(&stiffened(builder, elastic), targets, released, is_driven).ok_or_else(|| stuck(0.0, is_driven))?;
     let rolls = led.places.system().is_nonholonomic();
     let mut here = led.places.system().start_position().to_vec();
     // How far all nodes went, over the share, and how fast they go on: at a dead centre no velocity leads there.

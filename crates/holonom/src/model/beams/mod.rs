@@ -27,7 +27,7 @@ use super::key::Shape;
 use super::repeat;
 use super::spread::{Moving, spread};
 use crate::record::{Along, LineKind, Shows};
-use crate::system::{FunctionId, Part, Term};
+use crate::system::{Constant, FunctionId, Part, SystemBuilder, Term};
 
 /// A straight elastic beam.
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -39,7 +39,7 @@ pub struct Beam {
     /// its second end at the start
     #[key(unit = "m", shape = Shape::Vector)]
     pub to: List<Number>,
-    /// number of elements; the bodies at their ends are NAME[0] to NAME[elements]
+    /// number of elements; n of them have n + 1 bodies at their ends, `NAME[0]` to `NAME[n]`
     #[key(default = "8", shape = Shape::Whole)]
     pub elements: Option<Number>,
     /// its cross section
@@ -194,6 +194,22 @@ fn stiffness(section: &Numbers, dim: usize, length: f64, modulus: f64, shear_mod
     }
 }
 
+/// An element of a beam: the bodies at its ends, and its deformations.
+pub struct Elastic {
+    pub bodies: [usize; 2],
+    coordinates: Vec<FunctionId>,
+}
+
+/// The same mechanism with elements that are not deformed from how they are written: beams go along as they are where joints lead a mechanism to its
+/// start.
+pub(super) fn stiffened(builder: &SystemBuilder, elastic: &[Elastic]) -> SystemBuilder {
+    let mut stiff = builder.clone();
+    for &coordinate in elastic.iter().flat_map(|element| &element.coordinates) {
+        stiff.row("beam", coordinate, Arc::new(Constant(0.0)));
+    }
+    stiff
+}
+
 impl Evaluated {
     /// Bodies at the ends of its elements.
     pub fn bodies(&self) -> std::ops::RangeInclusive<usize> {
@@ -251,6 +267,7 @@ impl Evaluated {
                 }
                 assembly.show(Shows::Section(shown(&coordinates)));
             });
+            assembly.elastic.push(Elastic { bodies, coordinates });
         }
     }
 
