@@ -1158,7 +1158,7 @@ class Builders:
 
         from_: its first end at the start [m]
         to: its second end at the start [m]
-        elements: number of elements; the bodies at their ends are NAME[0] to NAME[elements]; default: 8
+        elements: number of elements; n of them have n + 1 bodies at their ends, `NAME[0]` to `NAME[n]`; default: 8
         section: its cross section
         modulus: Young's modulus [N/m²]
         poisson: Poisson's ratio, which the shear modulus follows from; default: 0.3
