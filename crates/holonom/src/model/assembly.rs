@@ -278,7 +278,12 @@ impl Assembly<'_> {
 
     /// Draws a line between two ends that acts along an axis.
     pub fn draw_along(&mut self, entry: &Entry<'_>, kind: LineKind, from: &End, to: &End, along: Option<SceneAxis>) {
-        let line = Line { name: entry.name.to_string(), kind, from: self.anchor(from), to: self.anchor(to), along };
+        self.draw_line(entry.name, kind, from, to, along);
+    }
+
+    /// The same of what has this name.
+    pub(in crate::model) fn draw_line(&mut self, name: &str, kind: LineKind, from: &End, to: &End, along: Option<SceneAxis>) {
+        let line = Line { name: name.to_string(), kind, from: self.anchor(from), to: self.anchor(to), along };
         self.lines.push(line);
         for end in [from, to] {
             if let Some(k) = end.body {

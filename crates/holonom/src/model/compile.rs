@@ -72,13 +72,7 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
     compiler.build("drive", &description.drives, &mut assembly);
     let motions = sink.over_time.take();
     compiler.build("force", &description.forces, &mut assembly);
-    let mut beams = beams.iter().peekable();
-    compiler.each("beam", &description.beams, |entry, _| {
-        if let Some(beam) = beams.next_if(|beam| beam.name == entry.name) {
-            beam.build(&mut assembly, entry);
-        }
-        Ok(())
-    });
+    beams.iter().for_each(|beam| beam.build(&mut assembly));
     let forces = sink.over_time.take().into_iter().map(|force| OverTime { is_motion: false, ..force });
     let over_time = motions.into_iter().chain(forces).collect();
     let (settings, output) = compiler.settings(description, &assembly);

@@ -83,6 +83,8 @@ pub(super) struct Evaluated {
     stiffness: Vec<f64>,
     /// s
     damping: f64,
+    /// Whether it is too thin to be seen with its section.
+    is_thin: bool,
 }
 
 impl Beam {
@@ -142,12 +144,15 @@ impl Beam {
                 angular_velocity,
                 points: Vec::new(),
                 axes: Vec::new(),
-                shape: None,
+                shape: Some(
+                    section.outline.prism(if k == 0 { 0.0 } else { -0.5 * length }, if k == elements { 0.0 } else { 0.5 * length }),
+                ),
             });
         }
         let stiffness = stiffness(&section, dim, length, modulus, 0.5 * modulus / (1.0 + poisson));
         let line_density = density * section.area;
-        Ok(Evaluated { name: entry.name.to_string(), first, elements, length, line_density, axes, stiffness, damping })
+        let is_thin = section.outline.size() < THIN * norm(whole);
+        Ok(Evaluated { name: entry.name.to_string(), first, elements, length, line_density, axes, stiffness, damping, is_thin })
     }
 }
 
@@ -172,6 +177,9 @@ fn axes(entry: &Entry<'_>, dim: usize, along: Vec3, up: Option<Vec3>) -> Read<Ve
     let z = scale(across, 1.0 / norm(across));
     Ok(vec![along, geometry::cross(z, along), z])
 }
+
+/// Share of its length below which a beam is drawn as a line.
+const THIN: f64 = 0.01;
 
 /// Cosine of the angle with z from which on a beam counts as one along z.
 const UPRIGHT: f64 = 0.999;
@@ -250,15 +258,16 @@ impl Evaluated {
     }
 
     /// Adds what its elements do to the bodies at their ends; those have the name of the second.
-    pub fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) {
+    pub fn build(&self, assembly: &mut Assembly<'_>) {
         for k in 1..=self.elements {
             let bodies = [self.first + k - 1, self.first + k];
             let name = format!("{}[{k}]", self.name);
             let ends = bodies.map(|body| end(assembly, body));
             let coordinates = self.coordinates(assembly, bodies, &ends);
-            let entry = Entry { name: &name, ..*entry };
+            if self.is_thin {
+                assembly.draw_line(&name, LineKind::Bar, &ends[0], &ends[1], None);
+            }
             assembly.record(&name, |assembly| {
-                assembly.draw(&entry, LineKind::Bar, &ends[0], &ends[1]);
                 for (&q, &stiffness) in coordinates.iter().zip(&self.stiffness) {
                     assembly.builder.law(&*name, &[q], Arc::new(LinearSpring { stiffness, rest: 0.0 }));
                     if self.damping > 0.0 {

@@ -7,6 +7,7 @@ use crate::model::fault::{Read, Refused};
 use crate::model::fields::{Keys, List, Number};
 use crate::model::key::Shape;
 use crate::model::value::Value;
+use crate::record::SceneShape;
 
 /// The cross section of a beam: a circle, a tube, a rectangle, or the numbers of a profile.
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -43,6 +44,47 @@ pub(super) struct Numbers {
     pub torsion: f64,
     /// Shear coefficients along y and z (Cowper 1966); of a profile 1.
     pub shear: [f64; 2],
+    /// How it is drawn.
+    pub outline: Outline,
+}
+
+/// The outline of a section: of a profile the rectangle with its area's radii of gyration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Outline {
+    /// Radius, m.
+    Circle(f64),
+    /// Edges along y and z, m.
+    Rectangle([f64; 2]),
+}
+
+/// Corners of a circle as it is drawn.
+const CORNERS: usize = 12;
+
+impl Outline {
+    /// Its largest dimension, m.
+    pub fn size(self) -> f64 {
+        match self {
+            Self::Circle(radius) => 2.0 * radius,
+            Self::Rectangle([y, z]) => y.max(z),
+        }
+    }
+
+    /// A prism with this outline between two places along x, m.
+    pub fn prism(self, from: f64, to: f64) -> SceneShape {
+        let corners: Vec<[f64; 2]> = match self {
+            Self::Circle(radius) => {
+                (0..CORNERS).map(|k| 2.0 * PI * k as f64 / CORNERS as f64).map(|a| [radius * a.cos(), radius * a.sin()]).collect()
+            }
+            Self::Rectangle([y, z]) => [[0.5, 0.5], [-0.5, 0.5], [-0.5, -0.5], [0.5, -0.5]].map(|[a, b]| [a * y, b * z]).to_vec(),
+        };
+        let n = corners.len();
+        let end = |x: f64| corners.iter().map(move |[y, z]| [x, *y, *z]);
+        let vertices = end(from).chain(end(to)).collect();
+        let next = |k: usize| (k + 1) % n;
+        let sides = (0..n).flat_map(|k| [[k, next(k), n + k], [next(k), n + next(k), n + k]]);
+        let caps = (1..n - 1).flat_map(|k| [[0, k + 1, k], [n, n + k, n + k + 1]]);
+        SceneShape::Mesh { vertices, triangles: sides.chain(caps).map(|triangle| triangle.map(|k| k as u32)).collect() }
+    }
 }
 
 impl Section {
@@ -98,7 +140,10 @@ impl Section {
         };
         let (area, second, torsion) = (area?, second?, torsion?);
         let second = if dim == 2 { [0.0, second[0]] } else { [second[0], second[1]] };
-        Ok(Numbers { area, second, torsion, shear: [1.0; 2] })
+        // ∫ z² dA is that of the height along z.
+        let edge = |second: f64| (12.0 * second / area).sqrt();
+        let outline = Outline::Rectangle(if dim == 2 { [edge(second[1]); 2] } else { [edge(second[1]), edge(second[0])] });
+        Ok(Numbers { area, second, torsion, shear: [1.0; 2], outline })
     }
 }
 
@@ -113,7 +158,7 @@ fn round(outer: f64, inner: f64, poisson: f64) -> Numbers {
     let second = 0.25 * PI * outer.powi(4) * (1.0 - ratio.powi(4));
     let (m, one) = ((1.0 + ratio.powi(2)).powi(2), 1.0 + poisson);
     let shear = 6.0 * one * m / ((7.0 + 6.0 * poisson) * m + (20.0 + 12.0 * poisson) * ratio.powi(2));
-    Numbers { area, second: [second; 2], torsion: 2.0 * second, shear: [shear; 2] }
+    Numbers { area, second: [second; 2], torsion: 2.0 * second, shear: [shear; 2], outline: Outline::Circle(outer) }
 }
 
 /// A rectangle with edges along y and z.
@@ -124,7 +169,13 @@ fn rectangle(y: f64, z: f64, poisson: f64) -> Numbers {
     let odd = (0..12).map(|k| f64::from(2 * k + 1));
     let sum: f64 = odd.map(|n| (0.5 * n * PI * long / short).tanh() / n.powi(5)).sum();
     let torsion = long * short.powi(3) / 3.0 * (1.0 - 192.0 / PI.powi(5) * short / long * sum);
-    Numbers { area: y * z, second: [y * z.powi(3) / 12.0, z * y.powi(3) / 12.0], torsion, shear: [shear; 2] }
+    Numbers {
+        area: y * z,
+        second: [y * z.powi(3) / 12.0, z * y.powi(3) / 12.0],
+        torsion,
+        shear: [shear; 2],
+        outline: Outline::Rectangle([y, z]),
+    }
 }
 
 #[cfg(test)]
