@@ -190,7 +190,9 @@ fn a_resumed_run_has_the_same_bits() {
         let mut seed = name.bytes().fold(1_u64, |sum, byte| sum.wrapping_mul(31).wrapping_add(u64::from(byte)));
         let methods = NAMED.iter().map(|named| (named.name, STOPS[0])).chain(OTHERS.iter().map(|name| (*name, STOPS[1])));
         let by_accuracy = |(method, stops): (&'static str, u64)| {
-            let own = (stops == STOPS[0] || method == "ode/dop853").then_some((method, stops, Some(1e-4)));
+            // What damps nothing takes steps as short as the vibrations of an elastic bar along itself.
+            let is_slow = name == "flexible-four-bar" && method != "radau";
+            let own = ((stops == STOPS[0] || method == "ode/dop853") && !is_slow).then_some((method, stops, Some(1e-4)));
             [Some((method, stops, None)), own].into_iter().flatten()
         };
         for (method, stops, accuracy) in methods.flat_map(by_accuracy) {
