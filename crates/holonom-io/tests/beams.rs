@@ -7,6 +7,7 @@ use std::f64::consts::{PI, TAU};
 use common::{last, model, run_every};
 use holonom::analysis::{Modes, modes};
 use holonom::model::Model;
+use holonom::simulation::{Simulation, Status, Verdict};
 
 /// Steel of 1 mm by 1 mm, 2 m long, clamped at its first end where `clamped`, in the plane or in space.
 fn steel(elements: u32, planar: bool, clamped: bool, more: &str) -> Model {
@@ -180,4 +181,20 @@ fn a_start_takes_beams_along() {
     let refused = with("false").err().expect("it cannot move");
     assert!(refused.contains("if beams stay as they are written") && refused.contains("equilibrium = true"), "{refused}");
     with("true").unwrap_or_else(|error| panic!("{error}"));
+}
+
+/// An element that is twisted on beyond half a turn stops the run: its rotation is not known any more.
+#[test]
+fn half_a_turn_of_an_element_is_the_most() {
+    let model = model(
+        "gravity = [0, 0, 0]\n[beam.b]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nelements = 1\nsection = { circle = 0.01 }\nmodulus = 2e9\ndensity = 1000\n\
+         [joint.clamp]\ntype = \"fixed\"\nbetween = [\"ground\", \"b[0]\"]\nat = \"b[0]\"\n\
+         [joint.axle]\ntype = \"cylindrical\"\nbetween = [\"ground\", \"b[1]\"]\nat = \"b[1]\"\naxis = [1, 0, 0]\n\
+         [drive.d]\ntype = \"angle\"\njoint = \"axle.angle\"\nprofile = \"t\"\n",
+    );
+    for of in ["conserving-ggl", "conserving", "generalized-alpha", "radau"] {
+        let mut simulation = common::simulation(&model, of, 0.01);
+        let Status::Stopped { at, reason } = simulation.run(5.0, &mut |_: &Simulation| Verdict::GoOn) else { panic!("{of}: it went on") };
+        assert!(at > 2.9 && at < PI && reason.contains("half a turn") && reason.contains("b[1]"), "{of}, {at} s: {reason}");
+    }
 }

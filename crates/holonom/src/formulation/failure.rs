@@ -1,6 +1,6 @@
 //! Why a step was not taken.
 
-use crate::system::System;
+use crate::system::{Cornered, System};
 
 /// What to write in place of a force that jumps with what it moves.
 pub(crate) const SMOOTH: &str = "friction that holds is a force of type \"friction\", or a formula with tanh(x/small) in place of sign(x)";
@@ -77,10 +77,10 @@ pub enum Failure {
         /// Which of the system's laws.
         law: usize,
     },
-    /// A row has a corner that the step goes across, where no motion goes on smoothly.
+    /// A row or a law has a corner that the step goes across, where no motion goes on smoothly.
     Corner {
-        /// The row.
-        row: usize,
+        /// Which it is.
+        of: Cornered,
         /// What happens there, in words.
         what: &'static str,
     },
@@ -155,7 +155,8 @@ impl Failure {
                 "the method goes back in time in parts of its step, and `{}` is too strong a damper for that (shorter steps help, or conserving-ggl and radau, which only go ahead)",
                 system.laws[law].name
             ),
-            Self::Corner { row, what } => format!("at `{}` {what}", system.row_names()[row]),
+            Self::Corner { of: Cornered::Row(row), what } => format!("at `{}` {what}", system.row_names()[row]),
+            Self::Corner { of: Cornered::Law(law), what } => format!("at `{}` {what}", system.laws[law].name),
             Self::Turned { gauge, by } => {
                 format!("`{}` turns by {by:.2} rad in a step, too far for turns to be counted: give a shorter step", system.gauges()[gauge])
             }

@@ -321,10 +321,10 @@ impl Judge {
         ROUND_OFF * sizes + self.of_change(kinetic, scales.length * 2.0 / h.abs() * (ROUNDED + self.tolerance))
     }
 
-    /// Looks for corners of rows that a step goes across.
+    /// Looks for corners of rows and laws that a step goes across.
     pub(super) fn corners(&self, system: &System, work: &Workspace) -> Result<(), Failure> {
         match system.corner([&work.start.at, &work.end.at]) {
-            Some((row, what)) => Err(Failure::Corner { row, what }),
+            Some((of, what)) => Err(Failure::Corner { of, what }),
             None => Ok(()),
         }
     }

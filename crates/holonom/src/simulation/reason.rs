@@ -65,15 +65,15 @@ impl Simulation {
         self.blocked().map_or_else(|| what.clone() + &self.disagreement(), |conflict| format!("{conflict}; {what}"))
     }
 
-    /// The corner of a row that the motion comes to within a nominal step.
+    /// The corner of a row or a law that the motion comes to within a nominal step.
     fn corner_ahead(&mut self) -> Option<Failure> {
         let step = self.nominal_step();
         let (system, work, state) = (&*self.system, &mut self.work, &self.state);
         state.load(work);
         work.end.x.iter_mut().zip(&state.x).zip(&state.v).for_each(|((end, x), v)| *end = x + step * v);
         system.evaluate(&work.end.x, state.t + step, &work.start.at, &mut work.end.at);
-        let (row, what) = system.corner([&work.start.at, &work.end.at])?;
-        Some(Failure::Corner { row, what })
+        let (of, what) = system.corner([&work.start.at, &work.end.at])?;
+        Some(Failure::Corner { of, what })
     }
 
     /// Why no step is short enough for the accuracy, as far as that is known, and what to do.

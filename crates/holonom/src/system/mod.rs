@@ -198,6 +198,15 @@ pub struct System {
     pub(crate) plans: Arc<Plans>,
 }
 
+/// What has a corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cornered {
+    /// A row of the constraints.
+    Row(usize),
+    /// A law.
+    Law(usize),
+}
+
 impl System {
     /// Takes part in the plans that other systems made and will make. Where systems have the same structure and differ in numbers
     /// only, such as the runs of a sweep, the elimination is planned once for all of them.
@@ -230,12 +239,16 @@ impl System {
         !self.velocity_rows.is_empty()
     }
 
-    /// The first row with a corner that a step between these evaluations goes across, and what happens there, in words.
-    pub(crate) fn corner(&self, [from, to]: [&Evaluation; 2]) -> Option<(usize, &'static str)> {
-        self.function_rows.iter().map(|&row| row as usize).find_map(|row| match self.rows[row].quantity {
-            Quantity::Function(id) => Some((row, self.functions.corner(id, [&from.value, &to.value])?)),
+    /// The first row or law with a corner that a step between these evaluations goes across, and what happens there, in words.
+    pub(crate) fn corner(&self, [from, to]: [&Evaluation; 2]) -> Option<(Cornered, &'static str)> {
+        let across = |quantity: &Quantity| match quantity {
+            Quantity::Function(id) => self.functions.corner(*id, [&from.value, &to.value]),
             Quantity::Invariant(_) => None,
-        })
+        };
+        let mut rows = self.function_rows.iter().map(|&row| row as usize);
+        let row = rows.find_map(|row| Some((Cornered::Row(row), across(&self.rows[row].quantity)?)));
+        let mut laws = self.laws.iter().enumerate();
+        row.or_else(|| laws.find_map(|(k, law)| Some((Cornered::Law(k), law.arguments.iter().find_map(across)?))))
     }
 
     /// Whether there is nothing but masses, weight and rows that are quadratic.
