@@ -11,17 +11,17 @@ use super::bodies::nodes::{self, Member};
 use super::bodies::{Files, Placing, RigidBody, short};
 use super::description::Description;
 use super::element::Boxed;
-use super::entries::{Entries, Named};
+use super::entries::Entries;
 use super::entry::{Entry, Written};
 use super::expression::{Functions, Mistake, Program, Scope, TimeProgram, Value as Known};
-use super::fault::{Fault, Faults, Read, Refused, Sink, nearest};
+use super::fault::{Fault, Faults, Refused, Sink, nearest};
 use super::fields as field;
 use super::forces;
 use super::geometry::{self, Vec3, unit};
 use super::joints::{self, Geometry, Survey};
 use super::jumps;
 use super::knocks;
-use super::repeat::{self, Repetition};
+use super::repeat;
 use super::sections::Unread;
 use super::settings::{Output, Settings};
 use super::signals::{Formula, Signals};
@@ -123,7 +123,7 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
     Err(sink.finish().expect_err("there are faults"))
 }
 
-struct Compiler<'a> {
+pub(super) struct Compiler<'a> {
     sink: &'a Sink,
     files: &'a dyn Files,
     parameters: &'a HashMap<String, Known>,
@@ -134,11 +134,11 @@ struct Compiler<'a> {
     /// What the entries are that are neither points nor bodies.
     others: &'a HashMap<String, &'static str>,
     /// Entries that repetitions may still make.
-    room: Cell<usize>,
+    pub(super) room: Cell<usize>,
 }
 
 impl Compiler<'_> {
-    fn entry<'b>(&'b self, name: &'b str, path: &'b str, written: &'b dyn Written) -> Entry<'b> {
+    pub(super) fn entry<'b>(&'b self, name: &'b str, path: &'b str, written: &'b dyn Written) -> Entry<'b> {
         let scope = Scope {
             parameters: Some(self.parameters),
             degrees: Some(self.degrees),
@@ -437,69 +437,10 @@ impl Compiler<'_> {
         let output = description.output.as_ref().map(|keys| keys.output(&self.entry("", "output", keys), assembly));
         (settings.unwrap_or_default(), output.unwrap_or_default())
     }
-
-    /// Calls `each` for all that the entries of a section make. Hands back the names of those in which something was wrong.
-    fn each<T: Written>(&self, section: &str, entries: &Entries<T>, each: impl FnMut(&Entry<'_>, &T) -> Read<()>) -> HashSet<String> {
-        self.each_of(section, entries.iter(), each)
-    }
-
-    /// The same for some of the entries of a section.
-    fn each_of<'e, T: Written + 'e>(
-        &self,
-        section: &str,
-        entries: impl Iterator<Item = &'e Named<T>>,
-        mut each: impl FnMut(&Entry<'_>, &T) -> Read<()>,
-    ) -> HashSet<String> {
-        let mut faulty = HashSet::new();
-        for named in entries {
-            if self.instances(section, named, &mut each).is_err() {
-                faulty.insert(named.name.clone());
-            }
-        }
-        faulty
-    }
-
-    /// Calls `each` for what an entry makes, up to the first in which something is wrong: the others would repeat it.
-    fn instances<T: Written>(&self, section: &str, named: &Named<T>, each: &mut impl FnMut(&Entry<'_>, &T) -> Read<()>) -> Read<()> {
-        let path = key_path(section, &named.name);
-        let written = Repeated { written: &named.entry, repeat: named.repeat.as_deref() };
-        let entry = self.entry(&named.name, &path, &written);
-        let Some(text) = &named.repeat else { return each(&entry, &named.entry) };
-        let repetition =
-            Repetition::read(text, &entry.scope, self.room.get()).map_err(|mistake| entry.mistaken("repeat".into(), mistake))?;
-        self.room.set(self.room.get().saturating_sub(repetition.len()));
-        let mut indices: Vec<(String, f64)> = repetition.names.iter().map(|name| (name.clone(), 0.0)).collect();
-        let mut name = String::new();
-        for values in repetition.iter() {
-            name.clear();
-            name.push_str(entry.name);
-            for (index, &value) in indices.iter_mut().zip(values) {
-                index.1 = value;
-                name.push_str(&format!("[{value}]"));
-            }
-            each(&Entry { name: &name, scope: Scope { indices: &indices, ..entry.scope }, ..entry }, &named.entry)?;
-        }
-        Ok(())
-    }
 }
 
 impl Written for Boxed {
     fn value(&self, key: &str) -> Option<Value> {
         self.0.value(key)
-    }
-}
-
-/// An entry with its repetition.
-struct Repeated<'a> {
-    written: &'a dyn Written,
-    repeat: Option<&'a str>,
-}
-
-impl Written for Repeated<'_> {
-    fn value(&self, key: &str) -> Option<Value> {
-        match key {
-            "repeat" => self.repeat.map(Value::text),
-            _ => self.written.value(key),
-        }
     }
 }

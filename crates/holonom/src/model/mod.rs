@@ -126,6 +126,7 @@ mod fields;
 mod finish;
 mod geometry;
 mod input;
+mod instances;
 mod jumps;
 mod key;
 mod knocks;
