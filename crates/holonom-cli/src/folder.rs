@@ -15,9 +15,10 @@ use crate::message::note;
 use crate::options::Destination;
 
 /// Files by which a folder is known to hold results.
-const RESULTS: [&str; 11] = [
+const RESULTS: [&str; 12] = [
     "summary.json",
     "stability.json",
+    "modes.json",
     "checkpoint.json",
     "sweep.journal",
     "sweep.csv",
@@ -211,7 +212,7 @@ fn summary(folder: &Path) -> Value {
     struct Origin {
         provenance: Value,
     }
-    let written = ["summary.json", "stability.json"].into_iter().find_map(|name| read(&folder.join(name)));
+    let written = ["summary.json", "stability.json", "modes.json"].into_iter().find_map(|name| read(&folder.join(name)));
     written.or_else(|| Some(json!(in_checkpoint::<Origin>(folder)?))).unwrap_or(Value::Null)
 }
 

@@ -29,7 +29,7 @@ use clap::Parser;
 
 pub use commands::check::checked;
 pub use commands::compare::{side_by_side, write_side_by_side};
-pub use commands::modes::vibrations;
+pub use commands::modes::Vibrations;
 pub use commands::run::describe;
 pub use commands::stability::largest_steps;
 pub use failure::Failure;

@@ -13,7 +13,7 @@ use holonom::simulation::{Method, MethodError, StartError};
 use holonom_io::Source;
 
 use crate::failure::Failure;
-use crate::provenance::{Override, Provenance, VERSION, command_line, now};
+use crate::provenance::{Origin, Override, Provenance, VERSION, command_line, now};
 use crate::table::short;
 
 /// The gallery: name and text of every example.
@@ -236,6 +236,10 @@ pub fn end(model: &Model) -> Result<f64, Failure> {
     model.end().map_err(run_failure)
 }
 
+fn json(value: Option<&Value>) -> serde_json::Value {
+    value.map_or(serde_json::Value::Null, holonom_io::to_json)
+}
+
 impl Loaded {
     /// Nominal step, s: with an accuracy, the interval of the results.
     ///
@@ -263,34 +267,35 @@ impl Loaded {
         if self.model.title.is_empty() { &self.name } else { &self.model.title }
     }
 
+    /// What results of this model come from.
+    pub fn origin(&self) -> Origin {
+        let replaced = |(key, file): &(String, Option<Value>)| Override {
+            key: key.clone(),
+            file: json(file.as_ref()),
+            run: json(self.source.get(key)),
+        };
+        Origin {
+            version: VERSION.into(),
+            date: now(),
+            command: command_line(),
+            overrides: self.source.replaced().iter().map(replaced).collect(),
+            files: self.source.files(),
+            model: self.source.text().into(),
+        }
+    }
+
     /// What a run by a method is. The command line may have named the method, and the share of the steps that is recorded.
     ///
     /// # Errors
     /// A model without step or end.
     pub fn provenance(&self, method: &Method, named: Option<&str>, every: Option<u64>) -> Result<Provenance, Failure> {
         let [step, end] = self.model.times().map_err(run_failure)?;
-        let json = |value: Option<&Value>| value.map_or(serde_json::Value::Null, holonom_io::to_json);
-        let replaced = |(key, file): &(String, Option<Value>)| Override {
-            key: key.clone(),
-            file: json(file.as_ref()),
-            run: json(self.source.get(key)),
-        };
+        let Origin { version, date, command, mut overrides, files, model } = self.origin();
         let option = |key: &str, run| Override { key: key.into(), file: json(self.source.get(key)), run };
-        let mut overrides: Vec<Override> = self.source.replaced().iter().map(replaced).collect();
         overrides.extend(named.map(|name| option("simulation.method", name.into())));
         overrides.extend(every.map(|every| option("output.every", every.into())));
-        Ok(Provenance {
-            version: VERSION.into(),
-            date: now(),
-            command: command_line(),
-            method: method.name.clone(),
-            step,
-            end,
-            every: every.unwrap_or_else(|| self.every()),
-            overrides,
-            files: self.source.files(),
-            model: self.source.text().into(),
-        })
+        let (method, every) = (method.name.clone(), every.unwrap_or_else(|| self.every()));
+        Ok(Provenance { version, date, command, method, step, end, every, overrides, files, model })
     }
 
     /// Gravity for people.

@@ -25,7 +25,7 @@ pub enum Command {
     Stability(StabilityArguments),
     /// Validate a model: degrees of freedom, rank, redundant rows, what is near singular
     Check(CheckArguments),
-    /// Natural frequencies and damping of small vibrations about the start, and whether it is stable
+    /// Natural frequencies, damping and shapes of small vibrations about the start, and whether it is stable
     Modes(ModesArguments),
     /// Formulations, integrators and projections, and which go together
     Methods(MethodsArguments),
@@ -53,7 +53,7 @@ pub struct ModelArguments {
 /// Where results go, and what is said of them.
 #[derive(Debug, Args)]
 pub struct Destination {
-    /// Folder for the results [default: results/<model>-<method>, -compare, -sweep or -stability; with -2, -3, … where these hold others]
+    /// Folder for the results [default: results/<model>-<method>, -compare, -sweep, -stability or -modes; with -2, -3, … where these hold others]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Overwrite the results of another run
@@ -209,9 +209,11 @@ pub struct CheckArguments {
 pub struct ModesArguments {
     #[command(flatten)]
     pub model: ModelArguments,
-    /// Print the result as JSON on standard output, nothing else there
+    #[command(flatten)]
+    pub to: Destination,
+    /// Write no report
     #[arg(long)]
-    pub json: bool,
+    pub no_report: bool,
 }
 
 #[derive(Debug, Args)]

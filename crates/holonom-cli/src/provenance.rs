@@ -11,6 +11,22 @@ use serde_json::Value;
 /// The program's version, as results are marked with it.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
+/// What results of a model come from, however they are found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Origin {
+    pub version: String,
+    /// When they were asked for, UTC, as in ISO 8601.
+    pub date: String,
+    /// What was typed.
+    pub command: String,
+    /// Keys of the model file that the command line replaced.
+    pub overrides: Vec<Override>,
+    /// SHA-256 of the files that the model names.
+    pub files: BTreeMap<String, String>,
+    /// Text of the model file.
+    pub model: String,
+}
+
 /// Everything that the numbers of a run follow from, when it was started, and what was typed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {

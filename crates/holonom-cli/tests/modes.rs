@@ -23,6 +23,29 @@ fn prints_what_the_book_shows() {
     assert_eq!(prints(&folder, "modes quarter.toml", 0).trim_end(), shown.trim_end());
 }
 
+/// Results are kept as those of runs are, with a page.
+#[test]
+fn leaves_a_page_and_its_numbers() {
+    let (folder, _) = chapter();
+    let results = folder.path().join("results");
+    let printed = json(&folder, "modes quarter.toml --json");
+    let page = fs::read_to_string(results.join("quarter-modes/report.html")).unwrap();
+    assert!(page.contains("chassis.z 1.00 m") && page.contains("holonom modes quarter.toml --json"));
+    let kept: serde_json::Value = serde_json::from_slice(&fs::read(results.join("quarter-modes/modes.json")).unwrap()).unwrap();
+    assert_eq!(kept, printed);
+    // The same again takes its place, and another one does not.
+    prints(&folder, "modes quarter.toml --quiet", 0);
+    prints(&folder, "modes quarter.toml --quiet --no-report --set force.tyre.stiffness=200e3", 0);
+    let names =
+        |of: &str| fs::read_dir(results.join(of)).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap()).collect::<Vec<_>>();
+    let mut kept = names("");
+    kept.sort_unstable();
+    assert_eq!(kept, ["quarter-modes", "quarter-modes-2"]);
+    assert_eq!(names("quarter-modes-2"), ["modes.json"]);
+    let message = fails(&folder, "modes quarter.toml --set force.tyre.stiffness=1e3 --out results/quarter-modes", 2);
+    assert!(message.contains("holds the results of another run: holonom modes quarter.toml") && message.contains("--force"), "{message}");
+}
+
 /// A quarter of a car has the roots of its characteristic polynomial.
 #[test]
 fn tells_numbers_as_json() {

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use holonom_cli::{Finished, Found, Loaded, checked, largest_steps, side_by_side, vibrations, write_side_by_side};
+use holonom_cli::{Finished, Found, Loaded, Vibrations, checked, largest_steps, side_by_side, write_side_by_side};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -35,12 +35,26 @@ pub fn check(py: Python<'_>, draft: &Bound<'_, Draft>, changes: &Bound<'_, PyDic
 /// The small vibrations about the start of a model.
 #[pyfunction]
 pub fn modes(py: Python<'_>, draft: &Bound<'_, Draft>, changes: &Bound<'_, PyDict>) -> PyResult<Answer> {
+    let found = vibrations(py, draft, changes)?;
+    Ok((found.value().to_string(), found.describe()))
+}
+
+/// The page on which a model swings in its modes.
+#[pyfunction]
+pub fn modes_report(py: Python<'_>, draft: &Bound<'_, Draft>, changes: &Bound<'_, PyDict>) -> PyResult<String> {
+    let found = vibrations(py, draft, changes)?;
+    let mut page = Vec::new();
+    found.report(&mut page).expect("memory takes everything");
+    Ok(String::from_utf8(page).expect("a page is text"))
+}
+
+fn vibrations(py: Python<'_>, draft: &Bound<'_, Draft>, changes: &Bound<'_, PyDict>) -> PyResult<Vibrations> {
     let trouble = Trouble::default();
     let loaded = Draft::snapshot(draft)?.load_with(py, &read_changes(py, changes)?, &trouble)?;
-    let found = py.detach(|| vibrations(&loaded));
+    let found = py.detach(|| Vibrations::of(loaded));
     match trouble.take() {
         Some(raised) => Err(raised),
-        None => found.map(answer).map_err(|fault| failure(py, fault)),
+        None => found.map_err(|fault| failure(py, fault)),
     }
 }
 

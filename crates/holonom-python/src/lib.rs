@@ -22,7 +22,7 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _engine {
     #[pymodule_export]
-    use crate::analysis::{check, compare, compared_report, modes, stability};
+    use crate::analysis::{check, compare, compared_report, modes, modes_report, stability};
     #[pymodule_export]
     use crate::definitions::definitions;
     #[pymodule_export]

@@ -1,6 +1,7 @@
 """What is asked of models and of several runs, against closed forms and what the command says."""
 
 import json
+import pickle
 import subprocess
 import sys
 
@@ -23,13 +24,22 @@ def test_a_check_says_what_the_command_says():
     assert repr(check) == command("check", "example:bricard", "--projection").rstrip("\n")
 
 
-def test_modes_are_those_of_the_command():
+def test_modes_are_those_of_the_command(tmp_path):
     changes = {"start.equilibrium": True}
     found = hm.load("example:suspension").modes(set=changes)
     assert [mode["frequency"] > 0 for mode in found["modes"]] == [True] * 3
-    words = ("modes", "example:suspension", "--set", "start.equilibrium=true")
-    assert dict(found) == json.loads(command(*words, "--json"))
-    assert repr(found) == command(*words).rstrip("\n")
+    words = ("modes", "example:suspension", "--set", "start.equilibrium=true", "--no-report", "--out", str(tmp_path / "modes"))
+    told = json.loads(command(*words, "--json"))
+    del told["provenance"]
+    assert dict(found) == told
+    assert repr(found) == command(*words).rsplit("\n\n", 1)[0]
+    # The report is that of the model as it was.
+    m = hm.load("example:suspension")
+    found = pickle.loads(pickle.dumps(m.modes(set=changes)))
+    m.set("title", "another")
+    found.report(tmp_path / "modes.html")
+    page = (tmp_path / "modes.html").read_text(encoding="utf-8")
+    assert "another" not in page and all(f"mode {k}: " in page for k in (1, 2, 3))
 
 
 def test_a_model_begins_at_equilibrium():

@@ -122,19 +122,24 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// The middle of what moves in the first run that records places, at its start, in world axes, m. The places of a picture are counted from there, as single
 /// precision would leave too few digits of a small mechanism far from the origin of its model.
 pub fn origin(runs: &[Run]) -> [f64; 3] {
-    let middle = |run: &Run| -> Option<[f64; 3]> {
+    let of_run = |run: &Run| -> Option<[f64; 3]> {
         let points = run.scene.points.iter().map(|point| &point.name);
         let names: Vec<&String> = points.chain(run.scene.bodies.iter().map(|body| &body.name)).collect();
         let along = |axis: &str| -> Option<f64> {
             let starts = names.iter().filter_map(|name| run.recording.column(&format!("{name}.{axis}"))?.first().copied());
-            let starts: Vec<f64> = starts.filter(|x| x.is_finite()).collect();
-            (!starts.is_empty()).then(|| starts.iter().sum::<f64>() / starts.len() as f64)
+            middle(starts)
         };
         // A plane has two coordinates, and the third is 0.
         let along = AXES.map(along);
         along.iter().any(Option::is_some).then(|| along.map(Option::unwrap_or_default))
     };
-    runs.iter().find_map(middle).unwrap_or_default()
+    runs.iter().find_map(of_run).unwrap_or_default()
+}
+
+/// The mean of those coordinates that are numbers.
+pub fn middle(coordinates: impl Iterator<Item = f64>) -> Option<f64> {
+    let finite: Vec<f64> = coordinates.filter(|x| x.is_finite()).collect();
+    (!finite.is_empty()).then(|| finite.iter().sum::<f64>() / finite.len() as f64)
 }
 
 /// Endings of the columns of a point, and of the centre of mass and the orientation of a body.

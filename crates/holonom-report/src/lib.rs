@@ -1,4 +1,4 @@
-//! The HTML report of one or several runs, of a sweep, and of a search for the largest steps: one file that needs no network and opens from disk.
+//! The HTML report of one or several runs, of a sweep, of a search for the largest steps, and of modes: one file that needs no network and opens from disk.
 //!
 //! The page is made of three parts. What can be read without a script (title, key figures, summary, model file) is written as
 //! HTML here. The numbers go in as JSON. The viewer, bundled by `build.rs` from `viewer/`, turns them into the moving
@@ -13,6 +13,7 @@ mod escape;
 mod figures;
 mod format;
 mod live;
+mod modes;
 mod outcome;
 mod page;
 mod provenance;
@@ -29,6 +30,7 @@ use std::io;
 
 pub use answers::{Answer, answers};
 pub use live::{Frames, LIVE};
+pub use modes::{ModeShape, ModesReport};
 pub use outcome::ended;
 pub use stability::{Search, StabilityReport};
 pub use sweep::{SweepColumn, SweepKey, SweepReport, SweepRun};

@@ -18,12 +18,12 @@ pub const STYLE: &str = include_str!("style.css");
 
 /// Style sheet and script of the viewer, if it is part of this build.
 #[cfg(feature = "viewer")]
-const VIEWER: Option<(&str, &str)> =
+pub const VIEWER: Option<(&str, &str)> =
     Some((include_str!(concat!(env!("OUT_DIR"), "/bundle/viewer.css")), include_str!(concat!(env!("OUT_DIR"), "/bundle/viewer.js"))));
 #[cfg(not(feature = "viewer"))]
-const VIEWER: Option<(&str, &str)> = None;
+pub const VIEWER: Option<(&str, &str)> = None;
 
-const WITHOUT_VIEWER: &str = "<p class=\"note\">The moving picture and the plots were left out when this program was built \
+pub const WITHOUT_VIEWER: &str = "<p class=\"note\">The moving picture and the plots were left out when this program was built \
     (feature <code>viewer</code>).</p>";
 
 pub fn write(report: &Report, out: &mut dyn Write) -> io::Result<()> {

@@ -1,13 +1,15 @@
 //! `holonom modes`.
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use holonom::analysis::{Mode, Modes, modes};
 use holonom::model::{Model, Swing};
+use holonom_report::{ModeShape, ModesReport};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
-use crate::found::Found;
+use crate::folder::{Folder, holds};
 use crate::load::{self, Loaded};
 use crate::notes::driven;
 use crate::options::ModesArguments;
@@ -17,33 +19,108 @@ use crate::table::{short, table};
 const NAMED: usize = 4;
 const LEAST: f64 = 0.05;
 
+const NOTHING: &str = "nothing vibrates or falls off";
+
 /// Finds the small vibrations about the start of a model.
 pub fn modes_of(arguments: &ModesArguments) -> Result<ExitCode, Failure> {
     let loaded = load::load(&arguments.model.model, load::overrides(&arguments.model.set))?;
-    let Found { value, text } = vibrations(&loaded)?;
-    match arguments.json {
-        true => println!("{}", serde_json::to_string_pretty(&value).expect("a result is plain data")),
-        false => println!("{text}"),
+    let vibrations = Vibrations::of(loaded)?;
+    let mut value = vibrations.value();
+    value["provenance"] = json!(vibrations.loaded.origin());
+    let folder = Folder::claim(&arguments.to, &format!("{}-modes", vibrations.loaded.name), |path| holds(path, &value))?;
+    folder.write("modes.json", |out| holonom_io::write_json(&value, out))?;
+    if !arguments.no_report {
+        folder.write("report.html", |out| vibrations.report(out))?;
+    }
+    if arguments.to.json {
+        println!("{}", serde_json::to_string_pretty(&value).expect("a result is plain data"));
+    } else if !arguments.to.quiet {
+        println!("{}\n\nresults in {}", vibrations.describe(), folder.path.display());
     }
     Ok(ExitCode::SUCCESS)
 }
 
-/// The small vibrations about the start of a model, for a program.
-///
-/// # Errors
-/// A model that is not at rest there.
-pub fn vibrations(loaded: &Loaded) -> Result<Found, Failure> {
-    let found = modes(&loaded.model.system).map_err(load::modes_failure)?;
-    let swings: Vec<Vec<(Swing, f64)>> = found.modes.iter().map(|mode| swings(&loaded.model, mode, found.length)).collect();
-    let of_mode = |k: usize| {
-        let (mode, swings) = (&found.modes[k], &swings[k]);
-        let moves: serde_json::Map<String, Value> =
-            swings.iter().map(|(swing, phase)| (swing.name.clone(), json!([swing.rate, phase]))).collect();
-        json!({ "number": found.number(k), "frequency": mode.frequency, "growth": mode.growth, "damping": mode.damping(), "moves": moves })
-    };
-    let all: Vec<Value> = (0..swings.len()).map(of_mode).collect();
-    let value = json!({ "model": loaded.name, "modes": all, "zero": found.free, "within": found.within, "unsure": found.unsure, "driven": found.driven });
-    Ok(Found { value, text: describe(loaded, &found, &swings) })
+/// The small vibrations about the start of a model: its modes, each with what moves in it and the phase of that, rad.
+pub struct Vibrations {
+    loaded: Loaded,
+    found: Modes,
+    swings: Vec<Vec<(Swing, f64)>>,
+}
+
+impl Vibrations {
+    /// Finds them.
+    ///
+    /// # Errors
+    /// A model that is not at rest at its start.
+    pub fn of(loaded: Loaded) -> Result<Self, Failure> {
+        let found = modes(&loaded.model.system).map_err(load::modes_failure)?;
+        let swings = found.modes.iter().map(|mode| swings(&loaded.model, mode, found.length)).collect();
+        Ok(Self { loaded, found, swings })
+    }
+
+    /// As `--json` prints them, but for where they come from.
+    pub fn value(&self) -> Value {
+        let Self { loaded, found, swings } = self;
+        let of_mode = |k: usize| {
+            let (mode, swings) = (&found.modes[k], &swings[k]);
+            let moves: serde_json::Map<String, Value> =
+                swings.iter().map(|(swing, phase)| (swing.name.clone(), json!([swing.rate, phase]))).collect();
+            json!({ "number": found.number(k), "frequency": mode.frequency, "growth": mode.growth, "damping": mode.damping(), "moves": moves })
+        };
+        let all: Vec<Value> = (0..swings.len()).map(of_mode).collect();
+        json!({ "model": loaded.name, "modes": all, "zero": found.free, "within": found.within, "unsure": found.unsure, "driven": found.driven })
+    }
+
+    /// The table of the modes.
+    fn rows(&self) -> Vec<[String; 5]> {
+        let found = &self.found;
+        found
+            .modes
+            .iter()
+            .zip(&self.swings)
+            .enumerate()
+            .map(|(k, (mode, swings))| row(found.number(k), mode, swings, found.length))
+            .collect()
+    }
+
+    /// What is said below it.
+    fn notes(&self) -> Vec<String> {
+        let found = &self.found;
+        let mut notes = Vec::new();
+        if found.free > 0 {
+            let (are, motions) = if found.free == 1 { ("exponent is", "a motion") } else { ("exponents are", "motions") };
+            let within = if found.within > 0.0 { format!(" to within {:.0e} 1/s", found.within) } else { String::new() };
+            notes.push(format!("{} more {are} zero{within}: of {motions} that nothing drives back", found.free));
+        }
+        if found.unsure > 0 {
+            notes.push(format!("{} more cannot be told from rounding beside the others", found.unsure));
+        }
+        notes.extend(driven(found).map(str::to_string));
+        notes
+    }
+
+    /// As the command prints them.
+    pub fn describe(&self) -> String {
+        let rows: Vec<Vec<String>> = self.rows().into_iter().map(Vec::from).collect();
+        let shown = match rows.is_empty() {
+            true => NOTHING.to_string(),
+            false => table(&["mode", "Hz", "damping", "1/e in s", "what moves, over what moves most"], &rows),
+        };
+        let heading = format!("{}: small vibrations about the start", self.loaded.name);
+        [heading, shown].into_iter().chain(self.notes()).collect::<Vec<_>>().join("\n\n")
+    }
+
+    /// Writes the page on which the mechanism swings in them.
+    pub fn report(&self, out: &mut dyn Write) -> std::io::Result<()> {
+        let Loaded { model, source, .. } = &self.loaded;
+        let part = |mode: &Mode, k: usize| model.sways(&mode.shape.iter().map(|entry| entry[k]).collect::<Vec<f64>>());
+        let shapes = self.rows().into_iter().zip(&self.found.modes);
+        let modes: Vec<ModeShape> = shapes.map(|(row, mode)| ModeShape { row, real: part(mode, 0), imaginary: part(mode, 1) }).collect();
+        let nothing = modes.is_empty().then(|| NOTHING.to_string());
+        let notes: Vec<String> = nothing.into_iter().chain(self.notes()).collect();
+        let (title, model_text, provenance) = (self.loaded.title(), source.text(), &json!(self.loaded.origin()));
+        ModesReport { title, model_text, provenance, scene: &model.scene, modes: &modes, notes: &notes }.write(out)
+    }
 }
 
 /// What moves in a mode, each with its amplitude and its phase, rad; what moves most has the amplitude 1 and the phase 0.
@@ -65,30 +142,7 @@ fn way(swing: &Swing, amplitude: f64, size: f64) -> f64 {
     amplitude * if swing.is_angle { size } else { 1.0 }
 }
 
-fn describe(loaded: &Loaded, found: &Modes, swings: &[Vec<(Swing, f64)>]) -> String {
-    let rows: Vec<Vec<String>> =
-        found.modes.iter().zip(swings).enumerate().map(|(k, (mode, swings))| row(found.number(k), mode, swings, found.length)).collect();
-    let mut text = format!("{}: small vibrations about the start\n\n", loaded.name);
-    if rows.is_empty() {
-        text.push_str("nothing vibrates or falls off");
-    } else {
-        text.push_str(&table(&["mode", "Hz", "damping", "1/e in s", "what moves, over what moves most"], &rows));
-    }
-    if found.free > 0 {
-        let (are, motions) = if found.free == 1 { ("exponent is", "a motion") } else { ("exponents are", "motions") };
-        let within = if found.within > 0.0 { format!(" to within {:.0e} 1/s", found.within) } else { String::new() };
-        text.push_str(&format!("\n\n{} more {are} zero{within}: of {motions} that nothing drives back", found.free));
-    }
-    if found.unsure > 0 {
-        text.push_str(&format!("\n\n{} more cannot be told from rounding beside the others", found.unsure));
-    }
-    if let Some(note) = driven(found) {
-        text.push_str(&format!("\n\n{note}"));
-    }
-    text
-}
-
-fn row(number: usize, mode: &Mode, swings: &[(Swing, f64)], size: f64) -> Vec<String> {
+fn row(number: usize, mode: &Mode, swings: &[(Swing, f64)], size: f64) -> [String; 5] {
     let way = |swing: &Swing| way(swing, swing.rate, size);
     let mut most: Vec<&(Swing, f64)> = swings.iter().collect();
     most.sort_by(|a, b| way(&b.0).total_cmp(&way(&a.0)));
@@ -103,5 +157,5 @@ fn row(number: usize, mode: &Mode, swings: &[(Swing, f64)], size: f64) -> Vec<St
         growth => short(-1.0 / growth),
     };
     let [hertz, damping] = [mode.frequency, mode.damping()].map(|value| if mode.vibrates() { short(value) } else { "-".into() });
-    vec![number.to_string(), hertz, damping, time, moves.collect::<Vec<_>>().join(", ")]
+    [number.to_string(), hertz, damping, time, moves.collect::<Vec<_>>().join(", ")]
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
 import threading
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _engine
 from ._errors import list_of, refuse, texts_of
-from ._run import Run
+from ._run import Run, write_page
 
 if TYPE_CHECKING:
     from ._model import Model
@@ -28,11 +29,18 @@ class Check(dict[str, Any]):
 
 
 class Modes(dict[str, Any]):
-    """Small vibrations about the start: what ``holonom modes --json`` prints, by its keys; its text is that of the command."""
+    """Small vibrations about the start: what ``holonom modes --json`` prints of them, by its keys; its text is that of the command."""
 
-    def __init__(self, answer: tuple[str, str]) -> None:
-        super().__init__(json.loads(answer[0]))
-        self._text = answer[1]
+    def __init__(self, model: Model, changes: dict[str, Any]) -> None:
+        # The model may be another one when the report is asked for.
+        self._model = copy.copy(model)
+        self._changes = changes
+        value, self._text = _engine.modes(model._draft, changes)
+        super().__init__(json.loads(value))
+
+    def report(self, path: str | os.PathLike[str]) -> None:
+        """Writes the report: one HTML file on which the mechanism swings in the mode that is chosen."""
+        write_page(path, _engine.modes_report(self._model._draft, self._changes))
 
     def __repr__(self) -> str:
         return self._text
@@ -66,9 +74,7 @@ class Comparison:
 
     def report(self, path: str | os.PathLike[str]) -> None:
         """Writes the report of all runs, curves overlaid."""
-        page = _engine.compared_report(self._recorded, self._columns, self._json)
-        with open(path, "w", encoding="utf-8", newline="") as file:
-            file.write(page)
+        write_page(path, _engine.compared_report(self._recorded, self._columns, self._json))
 
     def __repr__(self) -> str:
         return self._text
@@ -131,11 +137,6 @@ def _run(model: Model, **keys: Any) -> Run:
 def of_check(model: Model, projection: bool, changes: dict[str, Any]) -> Check:
     """What a model is made of."""
     return Check(_engine.check(model._draft, changes, projection))
-
-
-def of_modes(model: Model, changes: dict[str, Any]) -> Modes:
-    """Small vibrations about the start of a model."""
-    return Modes(_engine.modes(model._draft, changes))
 
 
 def of_stability(model: Model, methods: Sequence[str], changes: dict[str, Any]) -> Stability:

@@ -178,7 +178,7 @@ class Model(Builders):
     def modes(self, *, set: Mapping[str, Any] | None = None) -> _analysis.Modes:
         """Finds natural frequencies (Hz), damping and what moves in the small vibrations about the start, where the model is at rest, as
         ``start.equilibrium`` has it."""
-        return _analysis.of_modes(self, changes_of({}, set))
+        return _analysis.Modes(self, changes_of({}, set))
 
     def stability(
         self,

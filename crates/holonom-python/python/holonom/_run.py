@@ -176,9 +176,7 @@ class Run:
 
     def report(self, path: str | os.PathLike[str]) -> None:
         """Writes the report: one HTML file with the moving mechanism, which needs no network."""
-        page = self._recorded.report()
-        with open(path, "w", encoding="utf-8", newline="") as file:
-            file.write(page)
+        write_page(path, self._recorded.report())
 
     def to_dataframe(self, columns: Sequence[str] | None = None) -> pandas.DataFrame:
         """Columns, all without `columns`, as a pandas table over the times; ``attrs["units"]`` has their units. Needs pandas."""
@@ -239,6 +237,12 @@ class Run:
             f"<Run of {self._recorded.title()!r} by {summary['method']['name']}: {ended}; {len(self)} rows of {len(self.columns)} columns "
             f"to {self.t[-1]:.6g} s, energy drift {summary['energy']['max_drift']:.1e} J>"
         )
+
+
+def write_page(path: str | os.PathLike[str], page: str) -> None:
+    """Writes a report, as it is on every system."""
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        file.write(page)
 
 
 def _unpickle(parts: Any) -> Run:

@@ -33,6 +33,8 @@ interface Input {
 const STEPS = 1000;
 /** How far back trails go, s of the simulation at its own speed. */
 const TRAIL = 1.5;
+/** A first frame does not say where the others will be: room around it, over its size. */
+const ROOM = 0.4;
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10];
 
 function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
@@ -52,7 +54,7 @@ function render({ model, el }: { model: Model; el: HTMLElement }): () => void {
     model.on(event, act);
   };
   page.append(stage, transport(model, clock, listen), inputs(model, listen));
-  buildStage(stage, [new Motion(film.run, TRAIL * (model.get("speed") as number))], clock, new Visibility(), new Selection());
+  buildStage(stage, [new Motion(film.run, TRAIL * (model.get("speed") as number), ROOM)], clock, new Visibility(), new Selection());
   listen("_frame", () => {
     film.take(model.get("_frame") as DataView);
     clock.setTime(film.run.times.at(-1) ?? 0);

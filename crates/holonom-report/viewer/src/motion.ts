@@ -42,7 +42,8 @@ export class Motion {
   /** How far back the trails of this run go, s. */
   readonly trail: number;
 
-  constructor(readonly run: Run, trail?: number) {
+  /** `room`: how far it may go beyond the places of its rows, over its size. */
+  constructor(readonly run: Run, trail?: number, readonly room = 0) {
     this.trail = trail ?? (this.end - (run.times[0] ?? 0)) / 8;
     this.axes = [...run.scene.axes].map((axis) => "xyz".indexOf(axis));
     if (!this.planar) return;

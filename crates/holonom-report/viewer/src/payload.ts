@@ -169,7 +169,7 @@ function decodeAll<T>(coded: Record<string, string>, view: (bytes: ArrayBuffer) 
 }
 
 /** Numbers are little-endian, like every machine that runs a browser. */
-function bytesOf(base64: string): ArrayBuffer {
+export function bytesOf(base64: string): ArrayBuffer {
   const text = atob(base64);
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);

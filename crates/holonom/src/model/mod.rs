@@ -181,7 +181,7 @@ pub use reader::Reader;
 pub use schema::schema;
 pub use settings::{Output, OutputKeys, ProjectionKeys, Settings, SimulationKeys};
 pub use start::{EQUILIBRIUM, Start};
-pub use swings::Swing;
+pub use swings::{Sway, Swing};
 pub use tables::Curve;
 pub use value::{Table, Value, item_path, key_path};
 pub use written::StartChange;

@@ -57,7 +57,7 @@ impl RecordedBody {
     }
 
     /// Orientation and angular velocity in space.
-    pub(super) fn turned(&self, x: &[f64], v: &[f64]) -> (UnitQuaternion<f64>, Vector3<f64>) {
+    pub(crate) fn turned(&self, x: &[f64], v: &[f64]) -> (UnitQuaternion<f64>, Vector3<f64>) {
         let world: SmallVec<[Vector3<f64>; 3]> = self.directions.iter().map(|(_, terms)| place_of(terms, x, 3).into()).collect();
         let rates: SmallVec<[Vector3<f64>; 3]> = self.directions.iter().map(|(_, terms)| rate_of(terms, v, 3).into()).collect();
         let local: SmallVec<[Vector3<f64>; 3]> = self.directions.iter().map(|&(local, _)| local.into()).collect();

@@ -10,9 +10,10 @@ export class RunChoice {
   readonly node: HTMLElement;
   private readonly select = element("select", { "aria-label": "Run shown in the picture" });
 
-  constructor(labels: string[], private readonly visibility: Visibility) {
+  /** `all`: what all of them are called together. */
+  constructor(labels: string[], private readonly visibility: Visibility, all: string) {
     labels.forEach((label, run) => this.select.append(element("option", { value: String(run) }, label)));
-    this.select.append(element("option", { value: "" }, "all runs of the legend"));
+    this.select.append(element("option", { value: "" }, all));
     this.select.value = labels.length > LEGIBLE ? "0" : "";
     this.node = element("label", { class: "choice" }, "shown", this.select);
     this.node.hidden = labels.length < 2;

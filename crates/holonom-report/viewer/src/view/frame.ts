@@ -13,8 +13,6 @@ const SAMPLES = 400;
 const BODY_SAMPLES = 12_000;
 /** A run that blew up must not shrink the mechanism to a dot: beyond this many starting sizes, the outermost rows are left out. */
 const FAR = 30;
-/** Room around a single row, over its size. */
-const ROOM = 0.4;
 /** Kinds of joints whose place in the world is drawn. */
 const HOLDS_PLACE = new Set(["revolute", "spherical", "universal", "fixed", "generic", "constant-velocity", "prismatic", "cylindrical", "screw"]);
 
@@ -24,8 +22,7 @@ export function boundingBox(motions: Motion[]): Box3 {
   const places = motions.flatMap(allPlaces);
   let box = boxOf([...fixed, ...places]);
   if (diagonal(box) > FAR * Math.max(diagonal(start), 1e-9)) box = boxOf([...fixed, ...innermost(places, 0.9)]);
-  // A single row does not say where it will go.
-  if (motions.every((motion) => motion.run.times.length === 1)) box.expandByScalar(ROOM * diagonal(box));
+  box.expandByScalar(Math.max(0, ...motions.map((motion) => motion.room)) * diagonal(box));
   return withSize(box);
 }
 

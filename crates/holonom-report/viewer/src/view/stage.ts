@@ -26,9 +26,22 @@ import { listenToPointer } from "./pick";
 const WITHOUT_WEBGL = "The picture in 3D needs WebGL, which this browser does not offer here. The plots below do not.";
 
 /** From the world, counted from `Run.origin`, to the window, px; nothing without a picture. */
-type OnScreen = (place: Vec3) => [number, number] | undefined;
+export type OnScreen = (place: Vec3) => [number, number] | undefined;
 
-export function buildStage(container: HTMLElement, motions: Motion[], clock: Clock, visibility: Visibility, selection: Selection): OnScreen {
+/** What all runs are called together, and what the arrow keys do. */
+interface Words {
+  all: string;
+  arrows: string;
+}
+
+export function buildStage(
+  container: HTMLElement,
+  motions: Motion[],
+  clock: Clock,
+  visibility: Visibility,
+  selection: Selection,
+  words: Words = { all: "all runs of the legend", arrows: "step" },
+): OnScreen {
   const canvas = element("canvas", { "aria-label": "The mechanism in 3D" });
   const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
   if (!gl) {
@@ -49,7 +62,7 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
   const groups = mechanisms.map((mechanism) => mechanism.group);
   const highlight = new Highlight(groups);
   scene.add(camera, grid.object, ...groups, arrows.group);
-  container.append(hint(grid.cell));
+  container.append(hint(grid.cell, words));
   addLight(scene, camera);
 
   const controls = new OrbitControls(camera, canvas);
@@ -103,7 +116,7 @@ export function buildStage(container: HTMLElement, motions: Motion[], clock: Clo
   new ResizeObserver(resize).observe(container);
   onThemeChange(paint);
   clock.onTime(show);
-  const choice = new RunChoice(motions.map((motion) => motion.run.label), visibility);
+  const choice = new RunChoice(motions.map((motion) => motion.run.label), visibility, words.all);
   const choose = (): void => {
     let alone = true;
     mechanisms.forEach((mechanism, run) => {
@@ -176,8 +189,8 @@ function pictureButton(draw: () => HTMLCanvasElement): HTMLElement {
   return button;
 }
 
-function hint(cell: number): HTMLElement {
-  const keys = element("span", { class: "keys" }, ", right button to move, click to select · space bar plays, arrow keys step");
+function hint(cell: number, { arrows }: Words): HTMLElement {
+  const keys = element("span", { class: "keys" }, `, right button to move, click to select · space bar plays, arrow keys ${arrows}`);
   return element("p", { class: "hint" }, `grid ${Number(cell.toPrecision(2))} m · drag to turn, scroll to zoom`, keys);
 }
 
