@@ -9,10 +9,24 @@ use crate::failure::Failure;
 const NEAR: usize = 3;
 const SHOWN: usize = 25;
 
+/// The column of the size of a force or a moment, where that is asked for in words.
+fn size(name: &str) -> Option<String> {
+    let (owner, what) = name.rsplit_once('.')?;
+    let letter = match what {
+        "force" | "reaction" | "magnitude" => "f",
+        "moment" | "torque" => "t",
+        _ => return None,
+    };
+    Some(format!("{owner}.{letter}"))
+}
+
 /// Refuses a column that a recording does not have.
 pub fn unknown(name: &str, recording: &Recording) -> Failure {
     let all = || recording.columns().iter().map(|column| column.heading.name.as_str());
-    let near: Vec<String> = nearest_few(name, all(), NEAR).into_iter().map(|near| format!("`{near}`")).collect();
+    let near = match size(name).filter(|size| recording.place(size).is_some()) {
+        Some(size) => vec![format!("`{size}`, its size")],
+        None => nearest_few(name, all(), NEAR).into_iter().map(|near| format!("`{near}`")).collect(),
+    };
     let cure = match near.split_last() {
         Some((last, [])) => format!("did you mean {last}?"),
         Some((last, others)) => format!("did you mean {} or {last}?", others.join(", ")),

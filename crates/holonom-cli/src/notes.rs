@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use holonom::analysis::{self, Modes, Rank, Undetermined};
+use holonom::analysis::{self, Modes, Rank, Undetermined, is_at_rest};
 use holonom::formulation::Multipliers;
 use holonom::model::{Model, StartChange};
 use holonom::record::{Channels, RecordedJoint, Recording};
@@ -291,7 +291,18 @@ pub fn of_start(model: &Model, simulation: &mut Simulation, rank: &Rank) -> Vec<
     let mut notes = corrections(model, simulation);
     notes.extend(locked(model, rank).or_else(|| rivals(simulation, rank)));
     notes.extend(struck(model, simulation, rank));
+    notes.extend(unbalanced(model, rank));
     notes
+}
+
+/// That a run of the start alone shows forces of what begins to move from rest.
+fn unbalanced(model: &Model, rank: &Rank) -> Option<String> {
+    let begins_at_rest = model.system.start_velocity().iter().all(|v| *v == 0.0) && !model.system.is_driven();
+    let may_move = model.settings.end == Some(0.0) && begins_at_rest && rank.size(&model.system).dof > 0;
+    (may_move && !is_at_rest(&model.system)).then(|| {
+        "forces do not balance at the start: those that are shown are of a mechanism that begins to move (equilibrium = true in [start] finds where it rests)"
+            .into()
+    })
 }
 
 /// That drives which move at once strike what was put to rest.
@@ -344,9 +355,10 @@ pub fn corrections(model: &Model, simulation: &Simulation) -> Vec<String> {
     notes
 }
 
-/// That constraints leave nothing that could move, and nothing that moves is imposed.
+/// That constraints leave nothing that could move, and nothing that moves is imposed, where more than the start is asked for.
 pub fn locked(model: &Model, rank: &Rank) -> Option<String> {
-    (rank.size(&model.system).dof == 0 && !model.system.is_driven()).then(|| {
+    let is_to_move = model.settings.end != Some(0.0);
+    (is_to_move && rank.size(&model.system).dof == 0 && !model.system.is_driven()).then(|| {
         "the mechanism is locked: its constraints leave 0 degrees of freedom and nothing drives it, so that it stays where it is (take away a constraint, \
          or drive it in place of one)"
             .into()

@@ -225,7 +225,7 @@ fn the_machines_of_the_chapter_answer_what_it_says() {
         }
         count += 1;
     }
-    assert_eq!(count, 7);
+    assert_eq!(count, 8);
 }
 
 /// The gallery page shows and names every model of the gallery.

@@ -155,7 +155,7 @@ fn measures_are_those_of_the_run_alone() {
     let words = "--vary parameters.spin=6,7 --end 0.2 --quiet --out";
     prints(&folder, &format!("sweep crank.toml {words} usual"), 0);
     assert!(sweep(&folder, "crank.toml", "pull,peak,mean-square,way,double", &format!("{words} asked")).status.success());
-    assert!(sweep(&folder, "crank.toml", "max(pull),rms(slider.vx),min(way)", &format!("{words} functions")).status.success());
+    assert!(sweep(&folder, "crank.toml", "max(pull),rms(slider.vx),min(way),B.f", &format!("{words} functions")).status.success());
     let is = |out: &str, name: &str, value: f64| {
         let found = numbers(&folder, out, name)[0];
         assert!((found - value).abs() <= 1e-11 * value.abs(), "{out}: {name}: {found} and {value}");
@@ -166,6 +166,7 @@ fn measures_are_those_of_the_run_alone() {
         is("usual", name, last);
         is("asked", name, last);
     }
+    is("functions", "B.f", *alone("pull").last().unwrap());
     is("functions", "max(pull)", *alone("peak").last().unwrap());
     is("functions", "rms(slider.vx)", *alone("mean-square").last().unwrap());
     assert_eq!(numbers(&folder, "functions", "min(way)"), [0.0, 0.0]);
@@ -291,6 +292,9 @@ fn columns_that_there_are_not_are_refused_before_anything_runs() {
     let output = sweep(&folder, "example:slider-crank", "max(B.fx)", "--vary parameters.spin=1,2 --set output.reactions=false");
     let message = text(&output.stderr);
     assert!(message.contains("do not record `B.fx`") && message.contains("output.reactions=true"), "{message}");
+    let output = sweep(&folder, "example:slider-crank", "max(B.force)", "--vary parameters.spin=1,2");
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("there is no column `B.force`") && message.contains("did you mean `B.f`, its size?"), "{message}");
     assert!(!folder.path().join("results").exists());
 }
 

@@ -6,6 +6,7 @@ mod machines {
     pub mod excavator;
     pub mod gimbal;
     pub mod jet;
+    pub mod jib;
     pub mod scissor;
     pub mod wiper;
     pub mod wishbone;

@@ -35,6 +35,9 @@ pub struct Reaction {
 /// Rows of results where only an accuracy is given.
 const ROWS_BY_ACCURACY: f64 = 200.0;
 
+/// The step of a run that takes none, s.
+const NOT_TAKEN: f64 = 1e-3;
+
 impl Model {
     /// What the model says of the method, or what is left of that with a method of another name.
     pub fn choice(&self, name: Option<&str>) -> Choice {
@@ -42,12 +45,15 @@ impl Model {
         name.map_or_else(|| own.clone(), |name| own.named(name))
     }
 
-    /// Nominal step, s: with an accuracy and without a step, the interval of the results.
+    /// Nominal step, s: with an accuracy and without a step, the interval of the results; any where a run ends at its start.
     ///
     /// # Errors
     /// A model without either.
     pub fn step(&self) -> Result<f64, RunError> {
-        let shown = self.settings.choice.accuracy.and(self.settings.end).map(|end| end / ROWS_BY_ACCURACY);
+        let shown = match self.settings.end {
+            Some(0.0) => Some(NOT_TAKEN),
+            end => self.settings.choice.accuracy.and(end).map(|end| end / ROWS_BY_ACCURACY),
+        };
         self.settings.step.or(shown).ok_or(RunError::Missing { key: "step" })
     }
 

@@ -272,6 +272,10 @@ pub fn describe(loaded: &Loaded, summary: &Value) -> String {
         ),
         ("momentum", format!("linear drift {}, angular drift {}", number("momentum", "linear_drift"), number("momentum", "angular_drift"))),
     ]);
+    if summary["end"] == 0.0 {
+        // Of the start alone there is nothing that a method could have made.
+        items.retain(|(key, _)| !["steps", "drift", "balance", "momentum"].contains(key));
+    }
     // A run that stopped at its start has no time of a step.
     if summary["steps"].as_u64() != Some(0) {
         items.push(("time", format!("{} µs a step, {} times real time", time("us_per_step"), time("realtime_factor"))));

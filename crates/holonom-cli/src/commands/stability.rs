@@ -35,6 +35,9 @@ struct Bounds {
 impl Bounds {
     fn of(loaded: &Loaded) -> Result<Self, Failure> {
         let [first, end] = loaded.model.times().map_err(load::run_failure)?;
+        if end == 0.0 {
+            return Err(Failure::usage("a run that ends at 0 s takes no step", "give --end 10"));
+        }
         Ok(Self { end, first, limit: LARGEST_SHARE * end })
     }
 }

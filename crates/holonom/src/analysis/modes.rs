@@ -199,6 +199,13 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
     Ok(modes)
 }
 
+/// Whether a system is at rest at its start, and forces balance there.
+pub fn is_at_rest(system: &System) -> bool {
+    let stands = system.start_velocity()[..system.coordinates()].iter().all(|v| *v == 0.0);
+    let balances = || Places::new(system.clone()).is_ok_and(|mut places| places.rest(system.start_position().to_vec()).is_ok());
+    stands && balances()
+}
+
 /// An exponent as steps of two lengths have it.
 struct Found {
     s: [f64; 2],

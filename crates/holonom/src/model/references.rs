@@ -266,7 +266,9 @@ impl Assembly<'_> {
             let cure = format!("`{base}` is repeated, from `{}` to `{}`", first.name, last.unwrap_or(first).name);
             return Err(entry.refuse(spot, format!("there is no point `{full}`"), cure));
         }
+        let owner = self.bodies.iter().find(|body| body.points.iter().any(|(place, _)| *place == full));
         let cure = match nearest(&full, self.points.iter().map(|point| point.name.as_str()).chain([GROUND])) {
+            _ if let Some(owner) = owner => format!("a place of a body is named with the body: write `{}.{full}`", owner.name),
             Some(near) => format!("did you mean `{near}`?"),
             None => match split_place(base) {
                 Some((body, place)) => format!("name {place} in [body.{body}.points]; such places have no index"),

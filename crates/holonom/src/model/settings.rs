@@ -16,7 +16,7 @@ use crate::system::Place;
 #[derive(Clone, Debug, Default, PartialEq, Keys)]
 #[table("[simulation]")]
 pub struct SimulationKeys {
-    /// time at which the simulation ends
+    /// time at which the simulation ends; 0 for the start alone, with its forces
     #[key(unit = "s", default = "asked of the command")]
     pub end: Option<Number>,
     /// time step; with an accuracy, the interval of the results
@@ -162,9 +162,11 @@ impl SimulationKeys {
         let whole =
             |key, number: &Option<Number>| entry.optional(key, number, |number, entry, key| number.whole(entry, key, 1)).unwrap_or(None);
         let small = |number: Option<u32>| number.map(|number| number.min(u8::MAX.into()) as u8);
-        let (end, step) = (positive("end", &self.end), positive("step", &self.step));
+        let end = entry.optional("end", &self.end, Number::not_negative).unwrap_or(None);
+        let step = positive("step", &self.step);
         if let (Some(end), Some(step)) = (end, step)
             && step > end
+            && end > 0.0
         {
             entry.note("step", format!("the step of {} s is longer than the run of {} s", short(step), short(end)));
         }

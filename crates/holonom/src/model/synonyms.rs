@@ -8,7 +8,7 @@ const SYNONYMS: &[(&str, &[&str])] = &[
     (GROUND, &["world", "base", "fixed", "inertial", "inertial-frame", "earth", "origin", "environment"]),
     // Tables of the model.
     ("point", &["node", "particle", "marker", "mass-point"]),
-    ("body", &["link", "rigid-body", "bodies", "part", "segment"]),
+    ("body", &["link", "rigid-body", "bodies", "part", "segment", "on"]),
     ("bar", &["rod", "truss"]),
     ("beam", &["flexible", "flexible-beam", "boom"]),
     ("drive", &["motor", "actuator", "motion", "driver"]),

@@ -134,7 +134,20 @@ impl Channels {
         if constraints == Constraints::Rows {
             headings.extend(self.multiplier_headings(system));
         }
+        headings.extend(self.sizes(constraints).iter().map(|components| size_heading(components)));
         headings
+    }
+
+    /// Columns that are components of one force or moment, the size of which has a column, too.
+    pub(super) fn sizes(&self, constraints: Constraints) -> Vec<Vec<String>> {
+        let axes = &self.axes;
+        let of_forces = self.forces.iter().flat_map(|force| force.acts(axes));
+        let told = Some(self.told()).filter(|_| constraints != Constraints::Nothing);
+        let of_joints = told.iter().flat_map(|told| {
+            let joints = told.joints.iter().flat_map(|joint| joint.acts(axes));
+            joints.chain(told.transmissions.iter().map(|transmission| transmission.acts(axes)))
+        });
+        of_forces.chain(of_joints).filter(|components| components.len() > 1).collect()
     }
 
     /// The columns of motion.
@@ -367,6 +380,17 @@ impl Channels {
             row.extend_from_slice(&force[node.index() * dim..(node.index() + 1) * dim]);
         }
     }
+}
+
+/// The column of a size is called as those of its components, without what they differ in.
+fn size_heading(components: &[String]) -> Heading {
+    let [first, second] = [&components[0], &components[1]];
+    let same = first.bytes().zip(second.bytes()).take_while(|(a, b)| a == b).count();
+    let name = first[..same].trim_end_matches('_');
+    // Of a force, and of the shear of a beam.
+    let is_force = name.ends_with(".f") || name.ends_with(".shear");
+    let (unit, what) = if is_force { ("N", "force") } else { ("N·m", "moment") };
+    Heading::new(name, unit, format!("size of the {what}"))
 }
 
 /// A component of a force (0 to 2) and a moment (3 to 5).

@@ -39,6 +39,14 @@ impl RecordedJoint {
         Self::components(axes.len()).iter().map(|&k| (k, ending(k))).collect()
     }
 
+    /// The columns of its force and of its moment.
+    pub fn acts(&self, axes: &str) -> [Vec<String>; 2] {
+        let columns = Self::columns(axes);
+        [false, true].map(|is_moment| {
+            columns.iter().filter(|(k, _)| (*k > 2) == is_moment).map(|(_, ending)| format!("{}.{ending}", self.name)).collect()
+        })
+    }
+
     pub(super) fn headings(&self, axes: &str) -> impl Iterator<Item = Heading> {
         let (name, letters) = (self.name.clone(), axes.to_string());
         Self::columns(axes).into_iter().map(move |(k, ending)| {

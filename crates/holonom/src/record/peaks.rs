@@ -84,13 +84,7 @@ impl Peaks {
     pub fn of(channels: &Channels, recording: &Recording, system: &System) -> Self {
         let Some(times) = recording.column("t") else { return Self::default() };
         let peak = |name: &str, columns: &[String]| peak(name, columns, times, recording);
-        let joint = |joint: &RecordedJoint| {
-            let columns = RecordedJoint::columns(&channels.axes);
-            let of = |is_moment: bool| -> Vec<String> {
-                columns.iter().filter(|(k, _)| (*k > 2) == is_moment).map(|(_, ending)| format!("{}.{ending}", joint.name)).collect()
-            };
-            [peak(&joint.name, &of(false)), peak(&joint.name, &of(true))]
-        };
+        let joint = |joint: &RecordedJoint| joint.acts(&channels.axes).map(|columns| peak(&joint.name, &columns));
         let told = channels.told();
         let drives = told.efforts.iter().filter_map(|effort| peak(&effort.name, &[format!("{}.effort", effort.name)]));
         let of_force = |k: usize, name: &str, columns: &[String]| {
@@ -125,10 +119,7 @@ impl Peaks {
         }
         forces.extend(beams.into_values());
         let couplings = told.couplings.iter().filter_map(|coupling| peak(&coupling.name, &[format!("{}.effort", coupling.name)]));
-        let pushes = told.transmissions.iter().filter_map(|transmission| {
-            let components: Vec<String> = channels.axes.chars().map(|axis| format!("{}.f{axis}", transmission.name)).collect();
-            peak(&transmission.name, &components)
-        });
+        let pushes = told.transmissions.iter().filter_map(|transmission| peak(&transmission.name, &transmission.acts(&channels.axes)));
         let rods = told.rods.iter().filter_map(|rod| peak(&rod.name, &[format!("{}.force", rod.name)]));
         let joints: Vec<Peak> = told.joints.iter().flat_map(joint).flatten().chain(couplings).chain(pushes).chain(rods).collect();
         let [span, reach] = span(&channels.axes, recording);

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use nalgebra::{Quaternion, UnitQuaternion};
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 use super::between::{Between, Bounds, Largest};
 use super::measure::{Measures, RunningValue};
@@ -84,6 +85,8 @@ pub struct Recorder<'a> {
     /// Where the columns of accelerations and those of coordinates of joints are.
     accelerations: Range<usize>,
     coordinates: Range<usize>,
+    /// Of each size the columns of its components.
+    sizes: Vec<SmallVec<[usize; 3]>>,
     row: Vec<f64>,
     recording: Recording,
 }
@@ -110,6 +113,8 @@ impl<'a> Recorder<'a> {
             divisions => divisions,
         };
         let recording = Recording::new(headings);
+        let place = |name: &String| recording.place(name).expect("components are recorded");
+        let sizes = channels.sizes(constraints).iter().map(|components| components.iter().map(place).collect()).collect();
         Self {
             row: Vec::with_capacity(recording.columns().len()),
             orientations: vec![UnitQuaternion::identity(); channels.bodies.len()],
@@ -126,6 +131,7 @@ impl<'a> Recorder<'a> {
             between,
             accelerations,
             coordinates,
+            sizes,
             recording,
         }
     }
@@ -244,6 +250,9 @@ impl<'a> Recorder<'a> {
         }
         if self.constraints == Constraints::Rows {
             self.channels.multipliers(simulation, &mut self.row);
+        }
+        for components in &self.sizes {
+            self.row.push(components.iter().map(|&k| self.row[k] * self.row[k]).sum::<f64>().sqrt());
         }
         self.measures.append(&mut self.row);
     }

@@ -64,6 +64,11 @@ pub(super) struct Push {
 }
 
 impl RecordedTransmission {
+    /// The columns of its force.
+    pub(super) fn acts(&self, axes: &str) -> Vec<String> {
+        axes.chars().map(|axis| format!("{}.f{axis}", self.name)).collect()
+    }
+
     /// What each of its joints bears of it beside its own rows: force (N) on the joint's second body, and moment (N·m) about its place.
     pub(super) fn borne(&self, push: &Push) -> impl Iterator<Item = (usize, Wrench)> {
         let of = |k: usize| (self.joints[k], push.borne[k].map(|part| (self.sides[k] * part).into()));
