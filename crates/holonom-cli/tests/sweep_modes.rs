@@ -136,6 +136,19 @@ fn a_column_buckles() {
     assert!(found.said.contains("2 of 7 runs have this note, as run 6"), "{}", found.said);
 }
 
+/// Two masses on end, on rods of different lengths: both grow, by √(g/l), and neither is hidden by what falls off.
+#[test]
+fn all_that_grows_is_counted() {
+    let folder = folder();
+    let model = "plane = \"xz\"\n[parameters]\nl = 1\n[point.a]\nmass = 1\nposition = [0, 1]\n[point.b]\nmass = 3\nposition = [5, \"l\"]\n\
+                 [constraint.left]\ntype = \"distance\"\nbetween = [\"ground\", \"a\"]\n\
+                 [constraint.right]\ntype = \"distance\"\nbetween = [[5, 0], \"b\"]\n";
+    let found = sweep(&folder, model, "--vary parameters.l=0.1,0.25,4 --columns growth(1),growth(2),growth(3)", 0);
+    found.assert("growth(1)", [0.1, 0.25, 1.0].map(|l| (G / l).sqrt()));
+    found.assert("growth(2)", [1.0, 1.0, 4.0].map(|l| (G / l).sqrt()));
+    found.assert("growth(3)", [f64::NAN; 3]);
+}
+
 /// Beside columns of a run, and without one where none asks for it.
 #[test]
 fn runs_are_made_where_columns_ask_for_them() {

@@ -107,15 +107,17 @@ impl Mode {
 }
 
 impl Modes {
-    /// The number of a mode: of the freedom that it is the motion of, counted from 1. Those that do not vibrate come first, and have two exponents each, which
-    /// may be zero, so that the numbers of the others stay when two of these become a vibration.
+    /// The number of a mode, counted from 1. Those that do not vibrate come first, and have two exponents each, which may be zero: the first has the largest
+    /// and the smallest, the second the next ones, so that the larger ones are in order, and numbers of others stay when two of these become a vibration.
     pub fn number(&self, mode: usize) -> usize {
         let still = self.still();
-        match &self.modes[mode] {
-            found if found.vibrates() => (still + self.free).div_ceil(2) + mode - still + 1,
-            found if found.growth > 0.0 => mode / 2 + 1,
-            _ => (mode + self.free) / 2 + 1,
-        }
+        let exponents = still + self.free;
+        let place = match &self.modes[mode] {
+            found if found.vibrates() => return exponents.div_ceil(2) + mode - still + 1,
+            found if found.growth > 0.0 => mode,
+            _ => mode + self.free,
+        };
+        place.min(exponents - 1 - place) + 1
     }
 
     /// The mode with a number that vibrates.
@@ -126,13 +128,13 @@ impl Modes {
 
     /// How fast the motion with a number grows, 1/s; of two exponents the larger one.
     pub fn growth(&self, number: usize) -> Option<f64> {
-        let (exponent, still) = (2 * number.checked_sub(1)?, self.still());
+        let (place, still) = (number.checked_sub(1)?, self.still());
         let growing = self.modes[..still].iter().filter(|mode| mode.growth > 0.0).count();
-        match exponent {
-            _ if exponent < growing => Some(self.modes[exponent].growth),
-            _ if exponent < growing + self.free => Some(0.0),
-            _ if exponent < still + self.free => Some(self.modes[exponent - self.free].growth),
-            _ => self.vibration(number).map(|mode| mode.growth),
+        match place {
+            _ if place >= (still + self.free).div_ceil(2) => self.vibration(number).map(|mode| mode.growth),
+            _ if place < growing => Some(self.modes[place].growth),
+            _ if place < growing + self.free => Some(0.0),
+            _ => Some(self.modes[place - self.free].growth),
         }
     }
 
