@@ -23,7 +23,11 @@ pub(super) fn drive(assembly: &mut Assembly<'_>, entry: &Entry<'_>, joint: &str,
     }
     let start = profile.at(0.0)[0];
     if start.abs() > LARGEST_START * if is_angle { 1.0 } else { assembly.size().unwrap_or(1.0) } {
-        let cure = "coordinates of joints count from the start: subtract the value at t = 0, and give a joint that begins elsewhere its place in [start]";
+        let cure = if profile.at(0.0) == profile.at(1.0) {
+            "a profile says where the joint is over time: a speed is written \"SPEED*t\""
+        } else {
+            "coordinates of joints count from the start: subtract the value at t = 0, and give a joint that begins elsewhere its place in [start]"
+        };
         return Err(entry.refuse("profile", format!("the profile is {start} at t = 0, and the joint is at 0"), cure));
     }
     let driven = format!("{}.{}", coordinate.joint, coordinate.name);

@@ -65,7 +65,8 @@ impl Element for Distance {
             (Some(profile), None) => {
                 let (given, start) = (profile.at(0.0)[0], norm(difference(a, b)));
                 if given <= 0.0 {
-                    return Err(entry.refuse("profile", format!("the distance is {given} at t = 0"), "it must be above 0"));
+                    let cure = "it must be above 0; by how much it differs from that of the start is a `stroke`";
+                    return Err(entry.refuse("profile", format!("the distance is {given} at t = 0"), cure));
                 }
                 let contradiction = || format!("the distance is {given} m at t = 0, but `{}` and `{}` are {start} m apart", a.name, b.name);
                 // Where joints are put elsewhere the ends may be as far apart as that there.

@@ -268,6 +268,9 @@ impl Parser<'_> {
             Some(near) if near.contains('-') => format!("did you mean '{near}'? A name with a hyphen stands in single quotes here"),
             Some(near) => format!("did you mean `{near}`?"),
             None if !beside.is_empty() => format!("known are: {}", beside.join(", ")),
+            None if name == "t" => {
+                "this number stays as it is over time: what changes is a formula, as that of a force of type effort, or of a drive".into()
+            }
             None if name.contains('.') => suggest(name, of_mechanism.iter().map(String::as_str)),
             None => {
                 let known = suggest(name, known).replace("known are", "use what is known here");
