@@ -85,6 +85,9 @@ fn wrapped(line: &str, room: usize) -> Vec<&str> {
     parts
 }
 
+/// Figures of a number that is too large for as many places behind the point as others have.
+const LARGE_DIGITS: usize = 9;
+
 /// A number short enough for a table.
 pub fn short(value: f64) -> String {
     match value.abs() {
@@ -93,6 +96,7 @@ pub fn short(value: f64) -> String {
             let text = format!("{value:.6}");
             text.trim_end_matches('0').trim_end_matches('.').to_string()
         }
+        size if size >= 1e5 => significant(value, LARGE_DIGITS),
         _ => format!("{value:.2e}"),
     }
 }
@@ -169,6 +173,14 @@ mod tests {
         assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
         let told = table_within(80, &["run", "a"], &[vec!["箱の列".into(), "1".into()], vec!["boxes".into(), "2".into()]]);
         assert!(told.ends_with("箱の列  1\nboxes   2"), "a character of East Asia is two columns wide: {told}");
+    }
+
+    #[test]
+    fn large_numbers_differ_where_small_ones_do() {
+        let cases = [(-57_501.068_266_4, "-57501.068266"), (-118_236.500_21, "-118236.5"), (3.456_789_012_34e10, "3.45678901e10")];
+        for (value, text) in cases.into_iter().chain([(1e7, "1e7"), (1.234e-9, "1.23e-9"), (f64::INFINITY, "inf"), (f64::NAN, "NaN")]) {
+            assert_eq!(short(value), text);
+        }
     }
 
     #[test]
