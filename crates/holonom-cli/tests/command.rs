@@ -259,6 +259,21 @@ fn runs_name_the_forces_that_are_not_unique() {
     ["1e-9", "1e-6", "1e3", "1e6"].iter().for_each(|u| assert_eq!(open(u), metres, "in units of {u} m"));
 }
 
+/// A moment in kg·mm² is, and a piston whose pin is at its centre but for rounding is not.
+#[test]
+fn a_moment_that_is_far_too_large_is_named() {
+    let folder = folder();
+    let model = "plane = \"xy\"\n[body.piston]\nmass = 1\ninertia = 1e-4\nposition = [0.3, 0]\n\
+                 [joint.pin]\ntype = \"revolute\"\nbetween = [\"ground\", \"piston\"]\nat = [\"0.1 + 0.2\", 0]\n";
+    let said = |model: String| {
+        fs::write(folder.path().join("m.toml"), model).unwrap();
+        on_one_line(&prints(&folder, "check m.toml", 0))
+    };
+    assert!(!said(model.into()).contains("gyration"));
+    let mixed = said(model.replace("1e-4", "100").replace("0.1 + 0.2", "0.31"));
+    assert!(mixed.contains("the radius of gyration of `piston` is 10 m, while its joints are within 0.01 m of its centre"), "{mixed}");
+}
+
 #[test]
 fn only_the_mass_matrix_never_adds_energy() {
     let folder = folder();

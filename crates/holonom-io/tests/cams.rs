@@ -127,7 +127,8 @@ fn a_geneva_wheel_turns_by_quarters() {
 /// A start that turns the shaft moves what follows it, and a table by splines serves as a formula does.
 #[test]
 fn a_start_elsewhere_moves_the_follower() {
-    let points: Vec<String> = (0..=36).map(|k| format!("[\"{k}*pi/18\", \"0.4*(1 - cos({}*pi/18))\"]", k % 36)).collect();
+    // The last point is the first again, but for rounding.
+    let points: Vec<String> = (0..=36).map(|k| format!("[\"{k}*pi/18\", \"0.8*sin({k}*pi/36)^2\"]")).collect();
     let table = format!("[table.lobe]\npoints = [{}]\ninterpolation = \"cubic\"\noutside = \"periodic\"\n", points.join(", "));
     let start = "[start]\nfirst.angle = 1.2\n";
     for (lift, table, within) in [("0.4*(1 - cos(q))", "", 1e-12), ("lobe(q)", table.as_str(), 1e-5)] {

@@ -194,13 +194,18 @@ impl Held {
 /// Radius of gyration over the distance of what a body holds, beyond which units are probably mixed up.
 const PROBABLE: f64 = 30.0;
 
+/// Share of the radius of gyration within which what a body holds is at its centre, but for rounding.
+const AT_CENTRE: f64 = 1e-6;
+
 /// What was noted while the model was read, and bodies whose inertia does not go with their size.
 fn notes(model: &Model) -> Vec<String> {
     let mut notes = model.notes.clone();
     for (body, drawn) in model.bodies.iter().zip(&model.scene.bodies) {
         let reach = drawn.places.iter().map(|place| place.iter().map(|c| c * c).sum::<f64>().sqrt()).fold(0.0, f64::max);
-        let gyration = (0.5 * body.inertia.trace() / body.mass).sqrt();
-        if reach > 0.0 && !(reach / PROBABLE..=reach * PROBABLE).contains(&gyration) {
+        // In the plane the moment about the normal, in space half the sum of all three.
+        let share = if model.system.dimension() == 2 { 1.0 } else { 0.5 };
+        let gyration = (share * body.inertia.trace() / body.mass).sqrt();
+        if reach > AT_CENTRE * gyration && !(reach / PROBABLE..=reach * PROBABLE).contains(&gyration) {
             notes.push(format!(
                 "the radius of gyration of `{}` is {} m, while its joints are within {} m of its centre: check mass, inertia and units",
                 body.name,

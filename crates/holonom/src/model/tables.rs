@@ -38,6 +38,9 @@ pub struct Curve {
 const INTERPOLATIONS: &[&str] = &["linear", "cubic", "monotone"];
 const BEYOND: &[&str] = &["hold", "line", "refuse", "periodic"];
 
+/// Share of the range of a periodic table's values by which its last may differ from its first, by rounding.
+const ROUNDED: f64 = 1e-12;
+
 impl Curve {
     /// What the keys come to.
     pub(super) fn curve(&self, entry: &Entry<'_>) -> Read<expression::Curve> {
@@ -47,7 +50,7 @@ impl Curve {
             entry.optional("interpolation", &self.interpolation, |word, entry, key| entry.choice(key, word, INTERPOLATIONS));
         let outside = entry.optional("outside", &self.outside, |word, entry, key| entry.choice(key, word, BEYOND));
         let points = self.numbers(entry);
-        let (interpolation, outside, (key, knots, values)) = (interpolation?, outside?, points?);
+        let (interpolation, outside, (key, knots, mut values)) = (interpolation?, outside?, points?);
         let spot = |k| Spot { key, item: (key == "points").then_some(k) };
         if knots.len() < 2 {
             let message = format!("a table has at least two points, and this has {}", knots.len());
@@ -64,12 +67,16 @@ impl Curve {
             _ => Beyond::Hold,
         };
         let last = knots.len() - 1;
-        if beyond == Beyond::Periodic && (values[last] != values[0] || last < 2) {
+        let range = values.iter().fold(0.0, |range: f64, value| range.max((value - values[0]).abs()));
+        if beyond == Beyond::Periodic && ((values[last] - values[0]).abs() > ROUNDED * range || last < 2) {
             let message = match last {
                 1 => "a periodic table has at least three points, the last of them the first again".into(),
                 _ => format!("a periodic table ends with the value it begins with, and this goes from {} to {}", values[0], values[last]),
             };
             return Err(entry.refuse("outside", message, "add the first value again, one period later"));
+        }
+        if beyond == Beyond::Periodic {
+            values[last] = values[0];
         }
         let curve = match interpolation {
             Some("cubic") => expression::Curve::cubic(knots, values, beyond),
