@@ -69,7 +69,7 @@ use super::fields::{Described, Site};
 use super::key::Kind;
 
 /// What to use in place of a joint that a planar model does not have.
-pub(super) const OTHERS_IN_PLANE: &str = "use one of those in the plane";
+pub(super) const OTHERS_IN_PLANE: &str = "use one of those in the plane: revolute, prismatic, fixed, point-on-line, point-on-curve, orientation, distance, or a rack-and-pinion for a wheel that rolls along a line";
 
 /// A joint between two bodies, beside its keys.
 pub trait Joint: Described + Sides + Debug + Send + Sync + 'static {
