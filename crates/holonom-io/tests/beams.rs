@@ -132,6 +132,26 @@ fn it_buckles_at_eulers_load() {
     assert!((critical - 1.0).abs() < 2e-3, "{critical}");
 }
 
+/// A cantilever that is pulled along itself by T E I/L² vibrates as the equation E I w⁗ − N w″ + ρ A ẅ = 0 has it: almost as a string, also where an element
+/// alone bears many times 12 E I/ℓ² and the ends of elements hardly hold the way between them.
+#[test]
+fn a_beam_under_tension_is_a_string() {
+    for (tension, roots) in [(1e3, [51.354_393_2, 155.478_811_0])] {
+        for planar in [false, true] {
+            for (elements, bound) in [(4, 2.5e-2), (8, 8e-3), (16, 2.5e-3)] {
+                let force = format!("[\"{tension}*E*I/4\", {}]", if planar { "0" } else { "0, 0" });
+                let more = format!("[force.pull]\ntype = \"force\"\nbody = \"b[N]\"\nforce = {force}\n[start]\nequilibrium = true\n");
+                let found = modes(&steel(elements, planar, true, &more).system).unwrap_or_else(|error| panic!("{elements}: {error}"));
+                for (k, root) in roots.iter().enumerate() {
+                    let mode = if planar { k } else { 2 * k };
+                    let ratio = TAU * found.modes[mode].frequency / unit_of_frequency() / root;
+                    assert!((ratio - 1.0).abs() < bound, "{tension}, {elements} elements, {k}: {ratio}");
+                }
+            }
+        }
+    }
+}
+
 /// A free beam that is thrown keeps energy and momenta, with both conserving methods, whatever its step; order 2 beside `radau`.
 #[test]
 fn a_thrown_beam_keeps_energy_and_momenta() {

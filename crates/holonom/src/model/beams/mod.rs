@@ -81,6 +81,8 @@ pub(super) struct Evaluated {
     axes: Vec<Vec3>,
     /// Along the axes, then about them, N/m and N·m/rad.
     stiffness: Vec<f64>,
+    /// Shares of bending in how soft it is across, along y and z; in the plane along y.
+    bending: Vec<f64>,
     /// s
     damping: f64,
     /// Whether it is too thin to be seen with its section.
@@ -149,10 +151,10 @@ impl Beam {
                 ),
             });
         }
-        let stiffness = stiffness(&section, dim, length, modulus, 0.5 * modulus / (1.0 + poisson));
+        let (stiffness, bending) = stiffness(&section, dim, length, modulus, 0.5 * modulus / (1.0 + poisson));
         let line_density = density * section.area;
         let is_thin = section.outline.size() < THIN * norm(whole);
-        Ok(Evaluated { name: entry.name.to_string(), first, elements, length, line_density, axes, stiffness, damping, is_thin })
+        Ok(Evaluated { name: entry.name.to_string(), first, elements, length, line_density, axes, stiffness, bending, damping, is_thin })
     }
 }
 
@@ -188,18 +190,21 @@ const UPRIGHT: f64 = 0.999;
 const ALONG: f64 = 1e-6;
 
 /// Along the axes, then about them. The shear stiffness has the deflection of the bending that one rotation of an element does not have, L³/12 E I,
-/// so that forces and moments at its ends deform it as they deform a beam (MacNeal 1978).
-fn stiffness(section: &Numbers, dim: usize, length: f64, modulus: f64, shear_modulus: f64) -> Vec<f64> {
+/// so that forces and moments at its ends deform it as they deform a beam (MacNeal 1978); behind the stiffness stands what share of the deflection that is.
+fn stiffness(section: &Numbers, dim: usize, length: f64, modulus: f64, shear_modulus: f64) -> (Vec<f64>, Vec<f64>) {
     let [about_y, about_z] = section.second.map(|second| modulus * second);
-    let shear =
-        |k: usize, bending: f64| 1.0 / (length / (section.shear[k] * shear_modulus * section.area) + length.powi(3) / (12.0 * bending));
+    let shear = |k: usize, bending: f64| {
+        let of_bending = length.powi(3) / (12.0 * bending);
+        let softness = length / (section.shear[k] * shear_modulus * section.area) + of_bending;
+        (1.0 / softness, of_bending / softness)
+    };
     let axial = modulus * section.area / length;
-    match dim {
-        2 => vec![axial, shear(0, about_z), about_z / length],
-        _ => {
-            vec![axial, shear(0, about_z), shear(1, about_y), shear_modulus * section.torsion / length, about_y / length, about_z / length]
-        }
+    let (along_y, of_y) = shear(0, about_z);
+    if dim == 2 {
+        return (vec![axial, along_y, about_z / length], vec![of_y]);
     }
+    let (along_z, of_z) = shear(1, about_y);
+    (vec![axial, along_y, along_z, shear_modulus * section.torsion / length, about_y / length, about_z / length], vec![of_y, of_z])
 }
 
 /// An element of a beam: the bodies at its ends, and its deformations.
@@ -289,14 +294,12 @@ impl Evaluated {
         let builder = &mut assembly.builder;
         let cosines: Vec<_> = a.iter().zip(&b).take(if dim == 2 { 1 } else { 3 }).map(|(a, b)| builder.dot(a, b)).collect();
         let strains: Vec<_> = mean.iter().map(|axis| builder.dot(&way, axis)).collect();
-        let mut coordinates = Vec::new();
-        for (k, &strain) in strains.iter().enumerate() {
-            let part = match k {
-                0 => Part::Smooth { of: vec![strain, cosines[0]], function: Arc::new(Strain) },
-                _ => Part::Invariant(strain),
-            };
-            coordinates.push(builder.sum(&[(part, self.length)]));
-        }
+        // ∫ w′²/2 of what bends to and fro, and what shear and that have in common (methods §22).
+        let across = self.bending.iter().map(|share| share * (2.0 - 0.8 * share)).collect();
+        let of = [&[strains[0], cosines[0]], &strains[1..]].concat();
+        let along = Part::Smooth { of, function: Arc::new(Strain { across }) };
+        let parts = std::iter::once(along).chain(strains[1..].iter().map(|&strain| Part::Invariant(strain)));
+        let mut coordinates: Vec<_> = parts.map(|part| builder.sum(&[(part, self.length)])).collect();
         for k in if dim == 2 { 2..3 } else { 0..3 } {
             let sine = match dim {
                 2 => builder.cross([0.0; 3], &a[0], &b[0]),

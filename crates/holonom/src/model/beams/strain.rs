@@ -74,22 +74,41 @@ fn cosine(t: &[f64]) -> (f64, f64) {
     }
 }
 
-/// The strain along the beam, of (v, t): v is the way between the ends along the mean of their axes over the length, and t the cosine between these
-/// axes. An arc of the length of the beam has none.
-pub struct Strain;
+/// The strain along the beam, of (v₁, t, v₂, …): v_k is the way between the ends along the mean of their axes over the length, and t the cosine between
+/// the axes along the beam. An arc of the length of the beam has none, nor has one that bends to and fro: that is longer than its way along the beam by
+/// the square of its way across.
+pub struct Strain {
+    /// What the squares of the ways across count beside that of the way along the beam.
+    pub across: Vec<f64>,
+}
+
+/// What happens where the way between the ends does not go along their axes any more.
+const BACK: &str = "the ends of an element turn by a quarter of a turn against the way from one to the other; take more elements";
 
 impl Smooth for Strain {
     fn derivatives(&self, value: &[f64]) -> Derivatives {
         let [v, t] = [value[0], value[1]];
         let [u, slope, bend] = over_sine(t);
-        let mut out = Derivatives { value: v * u - 1.0, ..Derivatives::default() };
-        (out.gradient[0], out.gradient[1]) = (u, v * slope);
-        (out.hessian[0][1], out.hessian[1][0], out.hessian[1][1]) = (slope, slope, v * bend);
+        // Half the square of the length over that at the start: ½ (u v₁)² + ½ Σ c_k v_k².
+        let mut half = Derivatives { value: 0.5 * (u * v).powi(2), ..Derivatives::default() };
+        (half.gradient[0], half.gradient[1]) = (u * u * v, u * v * slope * v);
+        (half.hessian[0][0], half.hessian[1][1]) = (u * u, v * v * (slope * slope + u * bend));
+        (half.hessian[0][1], half.hessian[1][0]) = (2.0 * u * v * slope, 2.0 * u * v * slope);
+        for (k, (way, c)) in value[2..].iter().zip(&self.across).enumerate() {
+            half.value += 0.5 * c * way * way;
+            (half.gradient[2 + k], half.hessian[2 + k][2 + k]) = (c * way, *c);
+        }
+        let length = (2.0 * half.value).sqrt();
+        let mut out = Derivatives { value: length - 1.0, gradient: half.gradient.map(|g| g / length), ..Derivatives::default() };
+        for (i, line) in out.hessian.iter_mut().enumerate() {
+            line.iter_mut().enumerate().for_each(|(j, h)| *h = (half.hessian[i][j] - out.gradient[i] * out.gradient[j]) / length);
+        }
         out
     }
 
     fn corner(&self, _from: &[f64], to: &[f64]) -> Option<&'static str> {
-        (to[1] < LARGEST).then_some(HALF_A_TURN)
+        let is_back = (to[0] <= 0.0).then_some(BACK);
+        (to[1] < LARGEST).then_some(HALF_A_TURN).or(is_back)
     }
 }
 
@@ -106,18 +125,19 @@ mod tests {
             assert!((Rotation.derivatives(&[sine, cosine]).value - angle).abs() < 4e-15 * (1.0 + angle));
             // An arc of unit length and this angle.
             let chord = if angle > 0.0 { (0.5 * angle).sin() / (0.5 * angle) } else { 1.0 };
-            let strain = Strain.derivatives(&[chord * (0.5 * angle).cos(), cosine]).value;
+            let strain = Strain { across: vec![1.2] }.derivatives(&[chord * (0.5 * angle).cos(), cosine, 0.0]).value;
             assert!(strain.abs() < 4e-15 * (1.0 + angle), "{angle}: {strain}");
         }
+        let strain = &Strain { across: vec![1.2, 0.7] };
         let functions: [(&dyn Smooth, &[f64]); 7] = [
             (&Rotation, &[0.3, 0.9, 0.8, 0.95]),
             (&Rotation, &[0.8, 0.6]),
-            (&Strain, &[0.9, 0.97]),
+            (strain, &[0.9, 0.97, 0.2, -0.3]),
             // Where axes are longer or shorter than they should be.
             (&Rotation, &[0.8, 1.4, 1.2, 1.1]),
-            (&Strain, &[0.9, 1.3]),
-            (&Strain, &[0.9, 1.05]),
-            (&Strain, &[0.9, -1.2]),
+            (strain, &[0.9, 1.3, 0.1, 0.2]),
+            (strain, &[0.9, 1.05, 0.0, 0.1]),
+            (strain, &[0.9, -1.2, 0.3, 0.2]),
         ];
         for (function, at) in functions {
             let exact = function.derivatives(at);
