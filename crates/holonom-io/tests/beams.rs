@@ -77,6 +77,30 @@ fn one_element_has_the_stiffness_of_a_beam() {
     }
 }
 
+/// Whatever the bending, the forces in the middle of each element are those that its end bears, along the axes there: half way between those of its ends in the
+/// plane, and of the load's size in space.
+#[test]
+fn forces_in_elements_balance_the_load() {
+    for planar in [false, true] {
+        let force = if planar { "[\"2*E*I/4\", \"-8*E*I/4\"]" } else { "[\"2*E*I/4\", \"3*E*I/4\", \"-8*E*I/4\"]" };
+        let more = format!("[force.tip]\ntype = \"force\"\nbody = \"b[N]\"\nforce = {force}\n[start]\nequilibrium = true\n");
+        let (_, recording) = run_every(&steel(4, planar, true, &more), "conserving-ggl", 1e-3, 1e-3, 1);
+        let at = |name: String| recording.column(&name).unwrap_or_else(|| panic!("no {name}"))[0];
+        let unit = 2e11 * 1e-12 / 12.0 / 4.0;
+        for k in 1..=4 {
+            let names: &[&str] = if planar { &["normal", "shear"] } else { &["normal", "shear_y", "shear_z"] };
+            let found: Vec<f64> = names.iter().map(|name| at(format!("b[{k}].{name}")) / unit).collect();
+            let size = found.iter().map(|force| force * force).sum::<f64>();
+            assert!((size - if planar { 68.0 } else { 77.0 }).abs() < 1e-5, "{k}: {found:?}");
+            if planar {
+                let (sine, cosine) = (0.5 * (at(format!("b[{}].angle", k - 1)) + at(format!("b[{k}].angle")))).sin_cos();
+                let along = [2.0 * cosine - 8.0 * sine, -2.0 * sine - 8.0 * cosine];
+                assert!(found.iter().zip(along).all(|(found, along)| (found - along).abs() < 1e-6), "{k}: {found:?} {along:?}");
+            }
+        }
+    }
+}
+
 /// A moment 2 π E I/L at the free end bends a cantilever to a full circle, of three elements as of eight.
 #[test]
 fn a_moment_rolls_it_up() {

@@ -36,7 +36,8 @@ pub enum Shows {
     },
     /// What its laws exert along some coordinates.
     Along(Vec<Along>),
-    /// What its laws take along some coordinates: what is on the far side of a cut through an element exerts on the near side.
+    /// What is on the far side of a cut through the middle of an element exerts on the near side: its laws along displacements along the mean axes of
+    /// both ends, then along the rotation vector. The first displacement depends on a cosine behind it, then on the others.
     Section(Vec<Along>),
     /// What a bushing exerts along and about the axes of its first body, which are those of the model at the start.
     Bushing {
@@ -269,8 +270,14 @@ impl RecordedForce {
                     let of_loads = loads.iter().map(|load| at.along(load, along.coordinate.into()));
                     0.0 + efforts.sum::<f64>() + of_loads.sum::<f64>()
                 }));
-                if let Shows::Bushing { axes, .. } = &self.shows {
-                    moments(axes, &at.system.in_world(at.look.x), &mut row[first + dim..]);
+                match &self.shows {
+                    Shows::Bushing { axes, .. } => moments(axes, &at.system.in_world(at.look.x), &mut row[first + dim..]),
+                    Shows::Section(_) => {
+                        let slopes = |along: &Along| &at.look.at.functions.local[along.coordinate.0 as usize].gradient;
+                        let turn: SmallVec<[f64; 3]> = coordinates[dim..].iter().map(|along| at.value(along.coordinate.into())).collect();
+                        in_the_middle([0, 1].map(|k| slopes(&coordinates[k])), &turn, &mut row[first..first + dim]);
+                    }
+                    _ => (),
                 }
             }
             Shows::Load { is_moment, exerts } => {
@@ -310,6 +317,24 @@ fn moments([first, second]: &[Vec<Vec<Term>>; 2], x: &[f64], efforts: &mut [f64]
             }
         }
     }
+}
+
+/// Makes forces along the axes in the middle of an element, half way of the rotation vector between those of its ends, from efforts along its
+/// displacements. These are along m_k = ½ (a_k + b_k): the axes there, but that what goes across the rotation is shorter by the cosine of half of it. The
+/// first displacement changes by `slopes` with the way along m_1, a cosine, and the ways along the others, and these by `across` with their own.
+fn in_the_middle([slopes, across]: [&[f64; MAX_ARGUMENTS]; 2], turn: &[f64], efforts: &mut [f64]) {
+    let along = efforts[0] / across[0];
+    efforts[0] = slopes[0] * along;
+    efforts[1..].iter_mut().zip(&slopes[2..]).for_each(|(effort, slope)| *effort += slope * along);
+    let angle = turn.iter().map(|turn| turn * turn).sum::<f64>().sqrt();
+    let cosine = (0.5 * angle).cos();
+    // In the plane the rotation goes across all.
+    let of_axis = if turn.len() < 3 || angle == 0.0 { 0.0 } else { (1.0 - cosine) / (angle * angle) * dot(turn, efforts) };
+    efforts.iter_mut().enumerate().for_each(|(k, effort)| *effort = cosine * *effort + of_axis * turn.get(k).unwrap_or(&0.0));
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// A length and its rate, from half its square and the rate of that, where a distance counts as `shortest` at least (m).

@@ -338,11 +338,10 @@ fn shown(coordinates: &[FunctionId]) -> Vec<Along> {
         ],
     };
     let forces = coordinates.len().div_ceil(2);
-    let along = names.iter().zip(coordinates).enumerate().map(|(k, ([suffix, words], &coordinate))| Along {
-        coordinate,
-        value: None,
-        effort: [suffix.to_string(), format!("{words}, in the middle of the element, on the part before it")],
-        is_angle: k >= forces,
+    let along = names.iter().zip(coordinates).enumerate().map(|(k, ([suffix, words], &coordinate))| {
+        let is_angle = k >= forces;
+        let place = if is_angle { "as a mean over the element" } else { "in the middle of the element" };
+        Along { coordinate, value: None, effort: [suffix.to_string(), format!("{words}, {place}, on the part before it")], is_angle }
     });
     along.collect()
 }
