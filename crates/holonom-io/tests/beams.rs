@@ -227,7 +227,7 @@ fn a_start_takes_beams_along() {
     with("true").unwrap_or_else(|error| panic!("{error}"));
 }
 
-/// An element that is twisted on beyond half a turn stops the run: its rotation is not known any more.
+/// An element that is twisted on beyond half a turn stops the run: its rotation is not known any more. Nor do forces balance there.
 #[test]
 fn half_a_turn_of_an_element_is_the_most() {
     let model = model(
@@ -241,4 +241,15 @@ fn half_a_turn_of_an_element_is_the_most() {
         let Status::Stopped { at, reason } = simulation.run(5.0, &mut |_: &Simulation| Verdict::GoOn) else { panic!("{of}: it went on") };
         assert!(at > 2.9 && at < PI && reason.contains("half a turn") && reason.contains("b[1]"), "{of}, {at} s: {reason}");
     }
+    let twisted = |moment: &str| {
+        common::source(&format!(
+            "gravity = [0, 0, 0]\n[beam.b]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nelements = 1\nsection = {{ circle = 0.01 }}\nmodulus = 2e9\ndensity = 1000\n\
+             [joint.clamp]\ntype = \"fixed\"\nbetween = [\"ground\", \"b[0]\"]\nat = \"b[0]\"\n\
+             [force.m]\ntype = \"torque\"\nbody = \"b[1]\"\ntorque = [\"{moment}*2e9/2.6*pi/2*0.01^4\", 0, 0]\n[start]\nequilibrium = true\n"
+        ))
+        .model()
+    };
+    twisted("2.9").unwrap_or_else(|error| panic!("{error}"));
+    let refused = twisted("4").err().expect("no place to rest");
+    assert!(refused.contains("`b[1]`") && refused.contains("half a turn"), "{refused}");
 }

@@ -155,8 +155,7 @@ impl Failure {
                 "the method goes back in time in parts of its step, and `{}` is too strong a damper for that (shorter steps help, or conserving-ggl and radau, which only go ahead)",
                 system.laws[law].name
             ),
-            Self::Corner { of: Cornered::Row(row), what } => format!("at `{}` {what}", system.row_names()[row]),
-            Self::Corner { of: Cornered::Law(law), what } => format!("at `{}` {what}", system.laws[law].name),
+            Self::Corner { of, what } => format!("at `{}` {what}", system.cornered(of)),
             Self::Turned { gauge, by } => {
                 format!("`{}` turns by {by:.2} rad in a step, too far for turns to be counted: give a shorter step", system.gauges()[gauge])
             }

@@ -35,6 +35,10 @@ pub(super) fn settle(assembly: &mut Assembly<'_>, targets: &[Target]) -> Result<
     match outcome {
         Ok(()) => Ok(moved.map(|moved| format!("the run begins where all forces balance; that has moved {moved}"))),
         Err(Restless::Moves) => Err(lost(format!("the mechanism does not come to rest where forces balance: it goes on and on{went}"))),
+        Err(Restless::Corner(of, what)) => {
+            let name = places.system().cornered(of);
+            Err(lost(format!("the mechanism does not come to rest where forces balance: at `{name}` {what}{went}")))
+        }
         Err(Restless::Stuck) => Err(lost(format!("the way to where forces balance ends before the mechanism is there{went}"))),
     }
 }

@@ -8,7 +8,7 @@ use super::start::{Asked, Start, StartError, correct_velocities};
 use crate::energy;
 use crate::formulation::{Failure, Prediction, RowsAt, Sampling, Stage, Workspace, solve};
 use crate::linalg::largest;
-use crate::system::{System, scatter};
+use crate::system::{Cornered, System, scatter};
 
 /// Share of its size that all forces would move the mechanism by in the first step, were nothing in their way.
 pub(super) const FIRST: f64 = 0.01;
@@ -56,6 +56,8 @@ pub(crate) enum Restless {
     Moves,
     /// Steps however short, or however many, do not lead there.
     Stuck,
+    /// A row or a law has a corner on the way, and what happens there, in words.
+    Corner(Cornered, &'static str),
 }
 
 impl Places {
@@ -91,7 +93,7 @@ impl Places {
     /// A small move along which the mechanism may leave where it has come to, and how many times it may then be off to have come back. `None` where it
     /// comes back from all, or where it is not at rest and on no ridge, near which long steps lead nowhere.
     fn way_down(&mut self, outcome: Result<(), Restless>) -> Option<(Vec<f64>, f64)> {
-        if outcome == Err(Restless::Moves) {
+        if matches!(outcome, Err(Restless::Moves | Restless::Corner(..))) {
             return None;
         }
         let x = self.work.end.x.clone();
@@ -149,9 +151,15 @@ impl Places {
         let least = SHORTEST * h;
         let rolls = self.system.is_nonholonomic();
         let (mut gone, mut before) = (0.0, f64::INFINITY);
+        let mut stuck = Restless::Stuck;
         for _ in 0..MOST {
             let longest = LONGEST * (size + gone);
-            let way = self.step(h);
+            let stepped = self.step(h);
+            let corner = stepped.and_then(|_| self.system.corner([&self.work.start.at, &self.work.end.at]));
+            let way = stepped.filter(|_| corner.is_none());
+            if way.is_none() {
+                stuck = corner.map_or(Restless::Stuck, |(of, what)| Restless::Corner(of, what));
+            }
             let is_at_rest = way.is_some_and(|way| self.is_at_rest(h, way, before));
             match way {
                 Some(way) if way <= longest && (is_at_rest || !rolls || self.roll()) => {
@@ -175,10 +183,10 @@ impl Places {
                     self.put(&x).map_err(|_| Restless::Stuck)?;
                     self.begin_at_end();
                 }
-                _ => return Err(Restless::Stuck),
+                _ => return Err(stuck),
             }
         }
-        Err(Restless::Stuck)
+        Err(stuck)
     }
 
     /// Whether the last step, of length h, went hardly any way, as the one before had gone `before`, or one of rounding.

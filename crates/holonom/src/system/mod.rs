@@ -251,6 +251,14 @@ impl System {
         row.or_else(|| laws.find_map(|(k, law)| Some((Cornered::Law(k), law.arguments.iter().find_map(across)?))))
     }
 
+    /// The name of what has a corner.
+    pub(crate) fn cornered(&self, of: Cornered) -> &str {
+        match of {
+            Cornered::Row(row) => &self.row_names()[row],
+            Cornered::Law(law) => &self.laws[law].name,
+        }
+    }
+
     /// Whether there is nothing but masses, weight and rows that are quadratic.
     pub fn has_only_quadratic_rows(&self) -> bool {
         self.laws.is_empty() && self.loads.is_empty() && self.custom.is_empty() && self.function_rows.is_empty()
