@@ -31,13 +31,16 @@ impl Newton {
 
     /// The same with hardly any δ for rows that are independent by their geometry.
     pub fn factor_inertia_of_independent(&mut self, system: &System, t: f64, work: &Workspace) -> bool {
-        let least = independent(system.coordinates());
-        self.proximal_of_others(
-            independence(system, &work.end.x, &work.end.at.functions.angle, t).into_iter().map(|share| share > least),
-            &work.scales,
-        );
+        self.proximal_by_independence(system, t, work);
         self.assemble_inertia(work);
         self.factor(&work.scales).is_ok()
+    }
+
+    /// Hardly any δ for rows that are independent by their geometry.
+    pub(super) fn proximal_by_independence(&mut self, system: &System, t: f64, work: &Workspace) {
+        let least = independent(system.coordinates());
+        let shares = independence(system, &work.end.x, &work.end.at.functions.angle, t);
+        self.proximal_of_others(shares.into_iter().map(|share| share > least), &work.scales);
     }
 
     fn assemble_inertia(&mut self, work: &Workspace) {

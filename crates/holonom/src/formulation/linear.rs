@@ -7,35 +7,39 @@ use super::workspace::Workspace;
 use crate::linalg::largest;
 use crate::system::{System, scatter};
 
-/// Most solutions until δ no longer matters, and the share of the first that is none.
+/// Most solutions until δ no longer matters, the share of the first that is none, and that which may be left.
 const PASSES: usize = 100;
 const NOTHING: f64 = 1e-15;
+const LITTLE: f64 = 1e-9;
 
 impl Newton {
     /// Factors the tangent of a stage where a workspace has evaluated it, with the multipliers there.
     pub fn factor_there(&mut self, system: &System, stage: &Stage, work: &mut Workspace) -> Result<(), Failure> {
-        self.proximal(1.0, None, &work.scales);
+        // In a long step forces hold nodes far more than their masses do, and rows add little beside a larger δ.
+        self.proximal_by_independence(system, stage.time(), work);
         work.tangent(system, stage, 1.0, &mut self.kkt);
         self.factor(&work.scales)
     }
 
-    /// The increment of the coordinates (n) with the factors at hand for a right side of them (n), along which no row changes.
-    pub fn solve_along_rows(&mut self, right: &[f64]) -> Vec<f64> {
+    /// The increment of the coordinates (n) with the factors at hand for a right side of them (n), along which no row changes. `None` where δ does not
+    /// stop to matter.
+    pub fn solve_along_rows(&mut self, right: &[f64]) -> Option<Vec<f64>> {
         let n = right.len();
         self.unknowns[..n].copy_from_slice(right);
         self.unknowns[n..].fill(0.0);
-        let mut sum = vec![0.0; n];
+        let (mut sum, mut left) = (vec![0.0; n], f64::INFINITY);
         for _ in 0..PASSES {
             self.kkt.solve(&mut self.unknowns);
             let (increments, multipliers) = self.unknowns.split_at_mut(n);
             sum.iter_mut().zip(&*increments).for_each(|(sum, increment)| *sum += increment);
-            if largest(increments) <= NOTHING * largest(&sum) {
+            left = largest(increments) / largest(&sum).max(f64::MIN_POSITIVE);
+            if left <= NOTHING {
                 break;
             }
             increments.fill(0.0);
             multipliers.iter_mut().zip(&self.delta).for_each(|(multiplier, delta)| *multiplier *= -delta);
         }
-        sum
+        (left <= LITTLE).then_some(sum)
     }
 }
 

@@ -161,7 +161,7 @@ impl Places {
             // As large as nodes are heavy: what light ones do is then no rounding of the others.
             let weight = |k: usize| self.system.mass.diagonal(k / self.system.dim).sqrt();
             let momentum: Vec<f64> = (0..n).map(|k| weight(k) * scattered(motion * n + k)).collect();
-            let mut q = self.newton.solve_along_rows(&momentum);
+            let mut q = self.newton.solve_along_rows(&momentum).ok_or(NoRest::Singular)?;
             let mut left = 0.0;
             // What rounding leaves of the others after once is gone after twice.
             for _ in 0..2 {
@@ -242,7 +242,7 @@ impl Places {
             let resisted = self.work.resistance(&self.system, stage.time(), &v);
             let of_position: Vec<f64> = momentum.iter().zip(&resisted).map(|(momentum, force)| momentum + h * force).collect();
             for (column, right) in [(j, &of_position), (f + j, momentum)] {
-                let q = self.newton.solve_along_rows(right);
+                let q = self.newton.solve_along_rows(right).ok_or(NoRest::Singular)?;
                 for (i, momentum) in motions.momenta.iter().enumerate() {
                     let share = dot(&q, momentum);
                     out[i * 2 * f + column] = share;
