@@ -70,6 +70,20 @@ fn tells_numbers_as_json() {
     assert!(heave["wheel.z"][0].as_f64().unwrap() < 0.2 && heave["wheel.x"][0].as_f64().unwrap() < 1e-9, "{heave}");
 }
 
+/// The screen has the slow ones of many, the page and the file all.
+#[test]
+fn the_fast_ones_of_many_are_counted() {
+    let folder = folder();
+    let model = "plane = \"xz\"\ngravity = [0, 0]\n[body.b]\nrepeat = \"i = 1 to 43\"\nmass = 1\ninertia = \"1/(1 + i)\"\nposition = [\"i\", 0]\n\
+                 [joint.j]\nrepeat = \"i = 1 to 43\"\ntype = \"revolute\"\nbetween = [\"ground\", \"b[i]\"]\nat = [\"i\", 0]\n\
+                 [force.k]\nrepeat = \"i = 1 to 43\"\ntype = \"torsion\"\njoint = \"j[i]\"\nstiffness = 1\n";
+    fs::write(folder.path().join("m.toml"), model).unwrap();
+    let told = prints(&folder, "modes m.toml", 0);
+    assert!(told.contains("\n40 ") && !told.contains("\n41 ") && told.contains("\n\n3 more are faster\n"), "{told}");
+    let page = fs::read_to_string(folder.path().join("results/m-modes/report.html")).unwrap();
+    assert!(page.contains("<th scope=\"row\">43</th>"));
+}
+
 #[test]
 fn says_what_is_missing() {
     let (folder, _) = chapter();

@@ -15,6 +15,9 @@ use crate::notes::driven;
 use crate::options::ModesArguments;
 use crate::table::{short, table};
 
+/// Modes that the screen has; the page and the file have all.
+const SHOWN: usize = 40;
+
 /// Most of what moves that is named of each mode, and its least share of what moves most.
 const NAMED: usize = 4;
 const LEAST: f64 = 0.05;
@@ -101,13 +104,15 @@ impl Vibrations {
 
     /// As the command prints them.
     pub fn describe(&self) -> String {
-        let rows: Vec<Vec<String>> = self.rows().into_iter().map(Vec::from).collect();
+        let all = self.rows();
+        let rows: Vec<Vec<String>> = all.iter().take(SHOWN).map(|row| row.to_vec()).collect();
         let shown = match rows.is_empty() {
             true => NOTHING.to_string(),
             false => table(&["mode", "Hz", "damping", "1/e in s", "what moves, over what moves most"], &rows),
         };
+        let more = (all.len() > SHOWN).then(|| format!("{} more are faster", all.len() - SHOWN));
         let heading = format!("{}: small vibrations about the start", self.loaded.name);
-        [heading, shown].into_iter().chain(self.notes()).collect::<Vec<_>>().join("\n\n")
+        [heading, shown].into_iter().chain(more).chain(self.notes()).collect::<Vec<_>>().join("\n\n")
     }
 
     /// Writes the page on which the mechanism swings in them.
