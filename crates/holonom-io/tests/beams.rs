@@ -225,6 +225,22 @@ fn a_start_takes_beams_along() {
     let refused = with("false").err().expect("it cannot move");
     assert!(refused.contains("if beams stay as they are written") && refused.contains("equilibrium = true"), "{refused}");
     with("true").unwrap_or_else(|error| panic!("{error}"));
+
+    // One that hangs bent goes along as it is bent.
+    let hangs = arm.replace("0.01 }", "0.002 }").replace("axis = [0, 1, 0]", "axis = [0, 0, 1]").replace("angle = \"30*deg\"\n", "");
+    let (_, recording) =
+        run_every(&model(&hangs.replace("[start.pin]", "[start]\nequilibrium = true\n[start.pin]")), "conserving-ggl", 1e-3, 1e-3, 1);
+    let at = |name: &str| recording.column(name).unwrap_or_else(|| panic!("no {name}"))[0];
+    assert!(at("arm[8].z") < -0.01 && (at("arm[8].wz") - 2.0).abs() < 1e-9 && (at("arm[8].vy") - 2.0 * at("arm[8].x")).abs() < 1e-9);
+
+    // Of a loop that lets no rigid bars move only what is struck does.
+    let mut loops = common::source(&std::fs::read_to_string("../../examples/flexible-four-bar.toml").unwrap());
+    let joint = "{ type = \"angle\", joint = \"D\", profile = 0 }";
+    for (key, value) in [("drive.motor", joint), ("start.A.angle_rate", "1"), ("parameters.tilt", "0.1")] {
+        loops.set(key, value).unwrap_or_else(|error| panic!("{error}"));
+    }
+    let struck = loops.model().unwrap_or_else(|error| panic!("{error}"));
+    assert!(struck.notes.iter().any(|note| note.contains("are struck")), "{:?}", struck.notes);
 }
 
 /// An element that is twisted on beyond half a turn stops the run: its rotation is not known any more. Nor do forces balance there.

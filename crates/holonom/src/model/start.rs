@@ -182,6 +182,10 @@ pub(super) fn one_of(joint: &str) -> Option<String> {
     Some(format!("for `{joint}` alone write [start.{base}] with repeat = \"{}\", and a longer range for several", ranges.join(", ")))
 }
 
+/// That beams bend where the run begins.
+const STRUCK: &str = "beams cannot go along at these rates without being deformed, and are struck as by a hammer where the joints are: near these they \
+                      move at once, and elsewhere hardly (a drive brings a joint to its speed smoothly)";
+
 /// Puts the mechanism where the run begins, at equilibrium or not, and sets it off. Notes what that moves.
 ///
 /// # Errors
@@ -203,12 +207,19 @@ pub(super) fn begin(assembly: &mut Assembly<'_>, equilibrium: bool) -> Result<()
         placed => placed?,
     };
     let settled = if equilibrium { rest::settle(assembly, &targets)? } else { None };
-    leaves_free |= set_off(&mut assembly.builder, &targets, &elastic).or_else(|_| set_off(&mut assembly.builder, &targets, &[]))?;
+    let mut struck = None;
+    leaves_free |= match set_off(&mut assembly.builder, &targets, &elastic) {
+        Err(_) if !elastic.is_empty() => {
+            struck = Some(STRUCK.to_string());
+            set_off(&mut assembly.builder, &targets, &[])?
+        }
+        set_off => set_off?,
+    };
     assembly.elastic = elastic;
     // Where forces balance, what has moved there is all that is told.
     let followed = before.filter(|_| leaves_free).and_then(|before| adrift::followed(assembly, &targets, &before));
     let adrift = (!equilibrium && targets.iter().any(Target::is_placed)).then(|| adrift::moved(assembly)).flatten();
-    for (path, message) in [("start.equilibrium", settled), ("start", followed), ("start", adrift)] {
+    for (path, message) in [("start.equilibrium", settled), ("start", struck), ("start", followed), ("start", adrift)] {
         message.into_iter().for_each(|message| assembly.sink.note(path, || message));
     }
     Ok(())
@@ -250,15 +261,18 @@ pub(super) fn leading(builder: &SystemBuilder, rates: &[(&Target, f64)]) -> Syst
     let mut led = builder.clone();
     let first = led.rows();
     rates.iter().for_each(|(target, _)| _ = target.add_row(&mut led));
-    // What the new rows are at zero targets are the coordinates as they are counted there.
-    let here = led.clone().build();
+    let mut rates = rates.iter().map(|(_, rate)| *rate);
+    hold(&mut led, first, |value| Arc::new(Rising([value, rates.next().unwrap_or_default()])));
+    led
+}
+
+/// Has the rows from the `first` on, whose targets are zero, begin where what they hold is.
+pub(super) fn hold(builder: &mut SystemBuilder, first: usize, mut target: impl FnMut(f64) -> Arc<dyn Signal>) {
+    let here = builder.clone().build();
     let (mut at, mut values) = (here.evaluation(), vec![0.0; here.constraints()]);
     here.evaluate_again(here.start_position(), 0.0, &mut at);
     here.constraint_values(&at, 0.0, &mut values);
-    for (k, (_, rate)) in rates.iter().enumerate() {
-        led.retarget(first + k, Arc::new(Rising([values[first + k], *rate])));
-    }
-    led
+    (first..builder.rows()).for_each(|row| builder.retarget(row, target(values[row])));
 }
 
 /// Gives the nodes the velocities at which coordinates have their rates and all constraints are met, with as little as possible of a change

@@ -26,6 +26,7 @@ use super::geometry::{self, Vec3, dot, norm, scale, unit};
 use super::key::Shape;
 use super::repeat;
 use super::spread::{Moving, spread};
+use super::start::hold;
 use crate::record::{Along, LineKind, Shows};
 use crate::system::{Constant, FunctionId, Part, SystemBuilder, Term};
 
@@ -213,13 +214,13 @@ pub struct Elastic {
     coordinates: Vec<FunctionId>,
 }
 
-/// The same mechanism with elements that are not deformed from how they are written: beams go along as they are where joints lead a mechanism to its
-/// start.
+/// The same mechanism with elements that stay deformed as they are: beams go along so where joints lead a mechanism to its start, and set it off there.
 pub(super) fn stiffened(builder: &SystemBuilder, elastic: &[Elastic]) -> SystemBuilder {
-    let mut stiff = builder.clone();
+    let (mut stiff, first) = (builder.clone(), builder.rows());
     for &coordinate in elastic.iter().flat_map(|element| &element.coordinates) {
         stiff.row("beam", coordinate, Arc::new(Constant(0.0)));
     }
+    hold(&mut stiff, first, |value| Arc::new(Constant(value)));
     stiff
 }
 
