@@ -349,6 +349,7 @@ pub fn modes_failure(error: NoModes) -> Failure {
         NoModes::Unbalanced => {
             "write equilibrium = true in [start], or --set start.equilibrium=true; a joint that [start] puts somewhere is let go there"
         }
+        NoModes::Forks => "a run from a place beside it shows how it moves",
         NoModes::Massless => "give every free point some mass",
         NoModes::Large(_) => "take a model of a part of it",
     };

@@ -146,6 +146,13 @@ fn check_says_what_a_model_is_made_of() {
     fs::write(folder.path().join("straight.toml"), model).unwrap();
     assert!(json(&folder, "check straight.toml --json")["near_singular"].is_array());
     assert!(prints(&folder, "check straight.toml", 0).contains("singular   yes"));
+    // In a line, where the third follows from the others, and not beside it.
+    fs::write(folder.path().join("line.toml"), model.replace("0.003", "0")).unwrap();
+    let line = json(&folder, "check line.toml --json");
+    assert_eq!((&line["redundant"], &line["singular"], &found["singular"]), (&1.into(), &true.into(), &false.into()));
+    assert!(prints(&folder, "check line.toml", 0).contains("singular   yes: redundant rows are so at this position alone"));
+    let message = fails(&folder, "modes line.toml", 2);
+    assert!(on_one_line(&message).contains("singular position") && message.contains("cure: a run from a place beside it"), "{message}");
 }
 
 #[test]

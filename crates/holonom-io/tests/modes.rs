@@ -232,6 +232,36 @@ fn what_is_not_found_is_not_free() {
     assert_eq!((found.free, found.unsure > 0), (0, true), "{found:?}");
 }
 
+/// A table of 3 kg on three parallel rods of 1 kg and 1 m, one of which is redundant, swings as one of them does: ω² (1 + 3) = (1.5 + 3) g. Where all hang
+/// in a line rods may go on to either side, linear equations say nothing, and there is no number; in any unit, and however light a rod is.
+#[test]
+fn a_position_where_ways_fork_has_no_modes() {
+    let hanging = |[dx, dz]: [f64; 2], u: f64, light: f64| {
+        let rods = (0..3).map(|k| {
+            let [x, z] = [k as f64 * dx * u, k as f64 * dz * u];
+            let mass = if k == 0 { light } else { 1.0 };
+            format!(
+                "[point.p{k}]\nposition = [{x:e}, {z:e}]\nfixed = true\n[body.r{k}]\nmass = {mass:e}\nshape = {{ rod = {u:e} }}\n\
+                 position = [{x:e}, {:e}]\norientation = {{ angle_deg = -90 }}\n[joint.h{k}]\ntype = \"revolute\"\n\
+                 between = [\"ground\", \"r{k}\"]\nat = [{x:e}, {z:e}]\n\
+                 [joint.t{k}]\ntype = \"revolute\"\nbetween = [\"r{k}\", \"table\"]\nat = [{x:e}, {:e}]\n",
+                z - 0.5 * u,
+                z - u
+            )
+        });
+        let table = format!("[body.table]\nmass = 3\ninertia = {:e}\nposition = [{:e}, {:e}]\n", u * u, dx * u, (dz - 1.0) * u);
+        format!("plane = \"xz\"\ngravity = [0, {:e}]\n{table}{}", -G * u, rods.collect::<String>())
+    };
+    for u in [1e-3, 1.0, 1e3] {
+        for light in [1e-6, 1.0] {
+            let omega = ((1.0 + 0.5 * light + 3.0) * G / (2.0 / 3.0 + light / 3.0 + 3.0)).sqrt();
+            assert_exponents(&hanging([1.0, 0.0], u, light), &[[0.0, omega]]);
+            assert_exponents(&hanging([0.8, 0.3], u, light), &[[0.0, omega]]);
+            assert_eq!(modes(&model(&hanging([0.0, -0.4], u, light)).system), Err(NoModes::Forks), "in units of {u} m, {light} kg");
+        }
+    }
+}
+
 /// What is free is counted, and what moves or is not at rest is refused.
 #[test]
 fn modes_are_about_rest() {

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use holonom::analysis::{Rank, projection_form, rank_of, undetermined};
+use holonom::analysis::{Rank, forks, projection_form, rank_of, undetermined};
 use holonom::model::{Model, StartChange, Value};
 use holonom::projection::Solve;
 use holonom::simulation::{Conflict, Method, ModelSize, PENALTY, Simulation};
@@ -78,7 +78,7 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
         "model": own, "method": name, "coordinates": size.coordinates, "constraints": size.constraints,
         "rank": size.rank, "redundant": size.redundant, "dof": size.dof, "redundant_rows": found.redundant,
         "rows_in_redundancies": held.involved, "reactions_not_unique": held.not_unique, "notes": held.notes,
-        "conflict": held.conflict.as_ref().map(|conflict| &conflict.row), "near_singular": near, "moved": start.moved, "start_changes": changed,
+        "conflict": held.conflict.as_ref().map(|conflict| &conflict.row), "near_singular": near, "singular": held.forks, "moved": start.moved, "start_changes": changed,
         "residual": { "position": audit.phi, "velocity": audit.phi_dot, "acceleration": audit.phi_ddot },
         "energy": { "kinetic": audit.kinetic, "potential": audit.potential + audit.lift },
     });
@@ -99,6 +99,7 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
         (false, false) => format!("not unique: {}; all others are", listed(&held.not_unique)),
     };
     let singular = match (near, &found.weakest) {
+        _ if held.forks => "yes: redundant rows are so at this position alone, where it can go on in several ways, or cannot go where the freedom counts it".into(),
         (Some((row, independence)), _) => format!("yes: `{row}` adds only {} of itself to the others", short(*independence)),
         (None, Some((row, independence))) => format!("no: the weakest row is `{row}` with {}", short(*independence)),
         (None, None) => "no constraints".to_string(),
@@ -166,6 +167,8 @@ struct Held {
     involved: Vec<String>,
     /// Components of forces and moments of joints that redundancies leave undetermined.
     not_unique: Vec<String>,
+    /// Whether what follows from others does so at this position alone.
+    forks: bool,
     /// A row that asks for what the others do not allow.
     conflict: Option<Conflict>,
     /// What looks like a slip.
@@ -185,9 +188,10 @@ impl Held {
             involved = free.rows().into_iter().map(|row| model.system.row_names()[row].clone()).collect();
             not_unique = open_columns(&free, &model.channels, model);
         }
+        let forks = !rank.redundant.is_empty() && forks(&model.system) == Some(true);
         let mut notes = notes(model);
         notes.extend(rivals(&mut simulation, &rank).filter(|_| conflict.is_none()));
-        Ok(Self { rank, size, involved, not_unique, conflict, notes })
+        Ok(Self { rank, size, involved, not_unique, forks, conflict, notes })
     }
 }
 

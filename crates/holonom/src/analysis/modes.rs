@@ -46,6 +46,11 @@ pub enum NoModes {
     /// Forces that do not balance at the start.
     #[error("forces do not balance at the start, and modes are small vibrations about a state at rest")]
     Unbalanced,
+    /// A singular position.
+    #[error(
+        "the mechanism is at a singular position, from which it can go on in several ways or cannot go where its rows seem to let it, and motions there are no small vibrations"
+    )]
+    Forks,
     /// Freedoms without mass.
     #[error("something that is free to move has no mass, so that its motion has no frequency")]
     Massless,
@@ -159,6 +164,9 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
         return Err(NoModes::Large(freedom));
     }
     let motions = places.motions()?;
+    if places.forks(&motions) {
+        return Err(NoModes::Forks);
+    }
     let speed = places.velocities()?.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
     let driven = freedom > 0 && speed > STILL * places.length() * rest.speed;
     let none = Modes { free: 2 * freedom, length: places.length(), driven, ..Modes::default() };
@@ -206,6 +214,18 @@ pub fn is_at_rest(system: &System) -> bool {
     let stands = system.start_velocity()[..system.coordinates()].iter().all(|v| *v == 0.0);
     let balances = || Places::new(system.clone()).is_ok_and(|mut places| places.rest(system.start_position().to_vec()).is_ok());
     stands && balances()
+}
+
+/// Whether rows that follow from others at the start say something of their own beside it: at a singular position a mechanism can go on in several ways, or
+/// cannot go where its rows seem to let it. `None` where that cannot be told, or of too many freedoms for a dense analysis.
+pub fn forks(system: &System) -> Option<bool> {
+    let mut places = Places::new(system.clone()).ok()?;
+    places.put(system.start_position()).ok()?;
+    if places.freedom() > MOST_FREEDOMS {
+        return None;
+    }
+    let motions = places.motions().ok()?;
+    Some(places.forks(&motions))
 }
 
 /// An exponent as steps of two lengths have it.

@@ -80,7 +80,7 @@ fn bar(row: usize, system: &System, newton: &mut Newton, work: &Workspace) -> Op
 }
 
 /// What is left of `asked` (r) when all rows are asked for it at once, to first order, with the matrix of the inertia as it was last factored.
-fn unmet(system: &System, newton: &mut Newton, work: &Workspace, asked: &[f64]) -> Vec<f64> {
+pub(super) fn unmet(system: &System, newton: &mut Newton, work: &Workspace, asked: &[f64]) -> Vec<f64> {
     let n = system.coordinates();
     let mut left = asked.to_vec();
     for _ in 0..PASSES {

@@ -1,5 +1,6 @@
 //! The equations of motion of a mechanism that is at rest, linearised there and reduced to its freedoms.
 
+use super::conflict::unmet;
 use super::golden::GOLDEN;
 use super::places::Places;
 use super::rest::{FIRST, PUSH};
@@ -28,6 +29,10 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
 /// Share of a motion's size that is left of it when it follows from those before.
 const FOLLOWS: f64 = 1e-6;
+
+/// Share of what a motion would bend rows by, were all of the mechanism as fast as its fastest node, that is left at a singular position. Elsewhere hardly
+/// any rounding is.
+const FORKS: f64 = 1e-8;
 
 /// The golden ratio in 64 bits.
 const MIXING: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -181,6 +186,23 @@ impl Places {
             found.basis.push(q);
         }
         Ok(found)
+    }
+
+    /// Whether a motion that all rows allow is none as soon as it goes on: there is no acceleration with which all rows would go along. So it is at singular
+    /// positions, as where bars lie in a line, and there alone, whatever rows follow from others. The motions are those at the place.
+    pub fn forks(&mut self, motions: &Motions) -> bool {
+        let Self { system, newton, work, .. } = self;
+        let mut bent = vec![0.0; system.constraints()];
+        motions.basis.iter().any(|motion| {
+            let mut v = motion.clone();
+            v.resize(work.end.x.len(), 0.0);
+            system.constraint_curvatures(&work.end.at, &work.end.x, &v, 0.0, &mut work.turned.half, &mut bent);
+            // Drives stand still.
+            bent.iter_mut().zip(&system.rows).for_each(|(bent, row)| *bent += row.target(0.0)[2]);
+            let whole = largest(&v).powi(2) / work.scales.length;
+            let left = unmet(system, newton, work, &bent);
+            left.iter().zip(&work.scales.gradient).any(|(left, gradient)| left.abs() > FORKS * gradient * whole)
+        })
     }
 
     /// A small move along which forces drive a mechanism at rest on, where it was put last, if there is one.
