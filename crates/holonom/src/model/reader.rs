@@ -10,6 +10,9 @@ use super::fields::{Field, Keys};
 use super::key::Key;
 use super::value::{Table, Value, key_path};
 
+/// Keys of a model that are no tables: behind the head of a table a file gives them to that.
+const OF_MODEL: [&str; 4] = ["schema", "title", "plane", "gravity"];
+
 /// A table while it is read, and where its faults go.
 #[derive(Clone, Copy)]
 pub struct Reader<'a> {
@@ -65,7 +68,8 @@ impl<'a> Reader<'a> {
                 // What is not shown need not be put into words.
                 self.sink.report(|| unreachable!("a full sink makes no fault"));
             } else if !known.clone().any(|known| known.name == key) {
-                let cure = cure(key).unwrap_or_else(|| suggest(key, known.clone().map(|known| known.name)));
+                let of_model = || OF_MODEL.contains(&key).then(|| "it is a key of the model: write it above the first table".to_string());
+                let cure = cure(key).or_else(of_model).unwrap_or_else(|| suggest(key, known.clone().map(|known| known.name)));
                 let fault =
                     || Fault { on_key: true, ..Fault::new(key_path(self.path, key), key, format!("{what} has no key `{key}`"), cure) };
                 self.sink.report(fault);
