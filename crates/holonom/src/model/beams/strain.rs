@@ -149,7 +149,9 @@ mod tests {
                 };
                 let h = 1e-6;
                 let (up, down) = (moved(h), moved(-h));
-                assert!(((up.value - down.value) / (2.0 * h) - exact.gradient[i]).abs() < 1e-8 * (1.0 + exact.gradient[i].abs()));
+                // Large values leave rounding of their differences.
+                let size = 1.0 + exact.value.abs() + exact.gradient[i].abs();
+                assert!(((up.value - down.value) / (2.0 * h) - exact.gradient[i]).abs() < 1e-8 * size);
                 for j in 0..at.len() {
                     let slope = (up.gradient[j] - down.gradient[j]) / (2.0 * h);
                     assert!(
