@@ -1,6 +1,5 @@
 //! Potentials of several quantities, written once over any number type.
 
-use super::derive::difference;
 use super::{Differentiated, Law, Reach, Response, Smooth, SmoothFunction};
 
 /// A smooth function as a potential V(π), J. Its discrete gradient keeps energy and, as its arguments are invariants,
@@ -20,7 +19,7 @@ impl<F: SmoothFunction> Law for Differentiated<F> {
     }
 
     fn between(&self, reach: Reach<'_>, out: &mut Response) {
-        let derivatives = difference(self, reach.from, reach.to);
+        let derivatives = Smooth::between(self, reach.from, reach.to);
         (out.force, out.by_value) = (derivatives.gradient, derivatives.hessian);
     }
 }
