@@ -134,3 +134,25 @@ fn wheels_show_their_forces_and_measures_their_end() {
     assert!((peaks.joints[0].value - 98.1).abs() < 1e-9, "{:?}", peaks.joints);
     assert!((peaks.measures[0].last - 1.0).abs() < 1e-4, "{:?}", peaks.measures);
 }
+
+/// Of a beam each quantity has its own steps, also where some of its elements bear nothing: one that hangs over is not twisted.
+#[test]
+fn peaks_of_beams_are_of_all_steps() {
+    let model = model(
+        "[beam.b]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nelements = 3\nsection = { circle = 0.01 }\nmodulus = 2e11\ndensity = 7800\n\
+         [joint.c]\ntype = \"fixed\"\nbetween = [\"ground\", \"b[0]\"]\nat = \"b[0]\"\n",
+    );
+    let found = |every: u64| {
+        let mut simulation = Simulation::new(model.system.clone(), Method::resolve(&Choice::default()).unwrap(), 1e-3).unwrap();
+        let mut recorder = Recorder::new(&model.channels, &model.system, every, Constraints::Nothing);
+        assert_eq!(simulation.run(0.1, &mut recorder), Status::Completed);
+        let peaks = Peaks::of(&model.channels, &recorder.finish(), &model.system).forces;
+        peaks.into_iter().map(|peak| (peak.name, peak.value.abs())).collect::<Vec<_>>()
+    };
+    let (few, all) = (found(50), found(1));
+    assert!(!few.iter().any(|(name, _)| name.contains("torque")), "{few:?}");
+    assert_eq!(few.len(), all.len());
+    for ((name, value), (other, largest)) in few.iter().zip(&all) {
+        assert!(name == other && (value / largest - 1.0).abs() < 1e-6, "{few:?} {all:?}");
+    }
+}

@@ -106,11 +106,12 @@ impl Peaks {
                     None => forces.extend(of_force(k, &force.name, &columns)),
                     Some(beam) => {
                         let key = (beam, quantity(&columns[0][force.name.len() + 1..]).to_string());
-                        let Some(peak) = of_force(k, &format!("{}.{}", force.name, key.1), &columns) else { continue };
-                        // Of all elements of a beam the one in which it is largest.
-                        let known = beams.entry(key).or_insert_with(|| peak.clone());
-                        if peak.value.abs() > (1.0 + ROUND_OFF) * known.value.abs() {
-                            *known = peak;
+                        if let Some(peak) = of_force(k, &format!("{}.{}", force.name, key.1), &columns) {
+                            // Of all elements of a beam the one in which it is largest.
+                            let known = beams.entry(key).or_insert_with(|| peak.clone());
+                            if peak.value.abs() > (1.0 + ROUND_OFF) * known.value.abs() {
+                                *known = peak;
+                            }
                         }
                     }
                 }
