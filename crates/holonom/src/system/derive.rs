@@ -29,7 +29,7 @@ pub struct Derivatives {
 
 impl Derivatives {
     /// Of a function of this one number: `value` is its value, `slope` its derivative by the number, and `turn` how that changes with each argument.
-    pub(crate) fn chained(&self, value: f64, slope: f64, turn: impl Fn(usize) -> f64) -> Self {
+    pub(super) fn chained(&self, value: f64, slope: f64, turn: impl Fn(usize) -> f64) -> Self {
         let mut out = Self { value, gradient: self.gradient.map(|g| slope * g), hessian: self.hessian.map(|line| line.map(|h| slope * h)) };
         for (line, g) in out.hessian.iter_mut().zip(self.gradient) {
             line.iter_mut().enumerate().for_each(|(k, h)| *h += g * turn(k));
@@ -122,12 +122,6 @@ pub trait Smooth: Send + Sync {
     /// Value and derivatives.
     fn derivatives(&self, value: &[f64]) -> Derivatives;
 
-    /// Its discrete derivative D between two positions, with g(to) − g(from) = D·(to − from) and D the gradient where they are one. Functions for which it
-    /// is known in a form that leaves less rounding have their own.
-    fn between(&self, from: &[f64], to: &[f64]) -> Derivatives {
-        difference(from, to, |value| self.derivatives(value))
-    }
-
     /// [`SmoothFunction::corner`]
     fn corner(&self, from: &[f64], to: &[f64]) -> Option<&'static str>;
 }
@@ -167,8 +161,8 @@ pub(crate) const NO_CHANGE: f64 = 1e-6;
 
 /// The discrete derivative of a smooth function: D = g'(π̄) + (Δg − g'(π̄)·Δπ)/‖Δπ‖² Δπ, and what it changes by with the
 /// second position.
-pub(crate) fn difference(from: &[f64], to: &[f64], derivatives: impl Fn(&[f64]) -> Derivatives) -> Derivatives {
-    quotient(from, to, 0.0, |_, value| derivatives(value))
+pub(super) fn difference(smooth: &dyn Smooth, from: &[f64], to: &[f64]) -> Derivatives {
+    quotient(from, to, 0.0, |_, value| smooth.derivatives(value))
 }
 
 /// The discrete derivative Δf/Δq of a function of one number, and what it changes by with the second place. Where the quotient would be

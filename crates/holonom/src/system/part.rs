@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::angle::{angle_at, angle_between};
-use super::derive::{Place, chord, quotient};
+use super::derive::{Place, chord, difference, quotient};
 use super::{Derivatives, Followed, InvariantId, MAX_ARGUMENTS, Pfaffian, Signal, Smooth};
 
 /// A summand of a function.
@@ -142,7 +142,7 @@ impl Part {
             }
             Self::Smooth { of, function } => {
                 let [from, to] = pi.map(|pi| pick(of, pi));
-                function.between(&from[..of.len()], &to[..of.len()])
+                difference(function.as_ref(), &from[..of.len()], &to[..of.len()])
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Potentials of several quantities, written once over any number type.
 
+use super::derive::difference;
 use super::{Differentiated, Law, Reach, Response, Smooth, SmoothFunction};
 
 /// A smooth function as a potential V(π), J. Its discrete gradient keeps energy and, as its arguments are invariants,
@@ -19,7 +20,7 @@ impl<F: SmoothFunction> Law for Differentiated<F> {
     }
 
     fn between(&self, reach: Reach<'_>, out: &mut Response) {
-        let derivatives = Smooth::between(self, reach.from, reach.to);
+        let derivatives = difference(self, reach.from, reach.to);
         (out.force, out.by_value) = (derivatives.gradient, derivatives.hessian);
     }
 }
