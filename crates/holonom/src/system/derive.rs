@@ -124,6 +124,11 @@ pub trait Smooth: Send + Sync {
 
     /// [`SmoothFunction::corner`]
     fn corner(&self, from: &[f64], to: &[f64]) -> Option<&'static str>;
+
+    /// [`FollowedFunction::least_change`]
+    fn least_change(&self) -> f64 {
+        0.0
+    }
 }
 
 impl<F: SmoothFunction> Smooth for Differentiated<F> {
@@ -162,7 +167,7 @@ pub(crate) const NO_CHANGE: f64 = 1e-6;
 /// The discrete derivative of a smooth function: D = g'(π̄) + (Δg − g'(π̄)·Δπ)/‖Δπ‖² Δπ, and what it changes by with the
 /// second position.
 pub(super) fn difference(smooth: &dyn Smooth, from: &[f64], to: &[f64]) -> Derivatives {
-    quotient(from, to, 0.0, |_, value| smooth.derivatives(value))
+    quotient(from, to, smooth.least_change(), |_, value| smooth.derivatives(value))
 }
 
 /// The discrete derivative Δf/Δq of a function of one number, and what it changes by with the second place. Where the quotient would be

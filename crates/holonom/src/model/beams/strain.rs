@@ -39,6 +39,10 @@ fn over_sine(c: f64) -> [f64; 3] {
     [sums[0], -0.5 * sums[1], 0.25 * sums[2]]
 }
 
+/// Change of the arguments in all up to which Simpson's rule is exact to round-off up to [`LARGEST`]; elements are stiff, and their forces as exact as
+/// the slopes.
+const LEAST_CHANGE: f64 = 1e-4;
+
 /// Terms of the sum, which leave round-off at [`NEAR`].
 const TERMS: u32 = 16;
 
@@ -59,6 +63,10 @@ impl Smooth for Rotation {
             (1..value.len()).for_each(|j| out.hessian[i][j] = share * share * r * bend);
         }
         out
+    }
+
+    fn least_change(&self) -> f64 {
+        LEAST_CHANGE
     }
 
     fn corner(&self, _from: &[f64], to: &[f64]) -> Option<&'static str> {
@@ -104,6 +112,10 @@ impl Smooth for Strain {
             line.iter_mut().enumerate().for_each(|(j, h)| *h = (half.hessian[i][j] - out.gradient[i] * out.gradient[j]) / length);
         }
         out
+    }
+
+    fn least_change(&self) -> f64 {
+        LEAST_CHANGE
     }
 
     fn corner(&self, _from: &[f64], to: &[f64]) -> Option<&'static str> {
