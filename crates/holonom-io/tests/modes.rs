@@ -262,6 +262,40 @@ fn a_position_where_ways_fork_has_no_modes() {
     }
 }
 
+/// A robot of 60 kg on two wheels, whose rows are redundant beside their weight: it goes along by x, leans by θ with (M s² + C s + K)(x, θ) = 0, and turns on
+/// the spot, braked by its hubs. A controller that holds it up lets it go on faster and faster, by e in nine seconds.
+#[test]
+fn rolling_wheels_that_share_a_load() {
+    let (r, h, brake) = (0.2_f64, 0.7, 0.3);
+    for [kp, kd] in [[0.0, 0.0], [150.0, 25.0]] {
+        let mut text = "[body.base]\nmass = 60\ninertia = [5, 6, 2]\nposition = [0, 0, 0.9]\npoints = { top = [0, 0, 1] }\n".to_string();
+        for (k, y) in [0.3, -0.3].iter().enumerate() {
+            text += &format!(
+                "[body.w{k}]\nmass = 4\ninertia = [0.05, 0.08, 0.05]\nposition = [0, {y}, {r}]\n\
+                 [joint.hub{k}]\ntype = \"revolute\"\nbetween = [\"base\", \"w{k}\"]\nat = \"w{k}\"\naxis = [0, 1, 0]\n\
+                 [joint.road{k}]\ntype = \"rolling\"\nbetween = [\"ground\", \"w{k}\"]\nat = \"w{k}\"\naxis = [0, 1, 0]\nnormal = [0, 0, 1]\nradius = {r}\n\
+                 [force.motor{k}]\ntype = \"effort\"\njoint = \"hub{k}\"\n\
+                 effort = \"{kp}*(base.top.x - base.x) + {kd}*(base.top.vx - base.vx) - {brake}*q_rate\"\n"
+            );
+        }
+        let modes = found(&text);
+        assert_eq!((modes.modes.len(), modes.free, modes.unsure), (4, 2, 0), "{modes:?}");
+        let turned = 2.0 + 2.0 * (0.05 + 4.0 * 0.09) + 2.0 * 0.08 * (0.3 / r).powi(2);
+        let turning = -2.0 * brake * (0.3 / r).powi(2) / turned;
+        let determinant = |s: f64| {
+            let of_x =
+                [(68.0 + 2.0 * 0.08 / (r * r)) * s * s + 2.0 * brake / (r * r) * s, 60.0 * h * s * s - 2.0 / r * (kp + (kd + brake) * s)];
+            let of_lean =
+                [60.0 * h * s * s - 2.0 * brake / r * s, (6.0 + 60.0 * h * h) * s * s + 2.0 * (kd + brake) * s + 2.0 * kp - 60.0 * G * h];
+            of_x[0] * of_lean[1] - of_x[1] * of_lean[0]
+        };
+        let falls: Vec<f64> = modes.modes.iter().map(|mode| mode.growth).filter(|s| (s / turning - 1.0).abs() > 1e-9).collect();
+        let is_root = |s: &&f64| determinant(*s * (1.0 - 1e-9)) * determinant(*s * (1.0 + 1e-9)) < 0.0;
+        assert_eq!((falls.len(), falls.iter().filter(is_root).count()), (3, 3), "{falls:?} beside {turning}");
+        assert!(kp == 0.0 || (falls[0] - 0.109_241_81).abs() < 1e-8, "{falls:?}");
+    }
+}
+
 /// What is free is counted, and what moves or is not at rest is refused.
 #[test]
 fn modes_are_about_rest() {

@@ -85,6 +85,9 @@ const AWAY: f64 = 0.83;
 const OTHER: f64 = 1.37;
 const AGREE: f64 = 1e-4;
 
+/// The shortest step that shows the slowest motion, over the longest.
+const SHORTER: f64 = 2e-4;
+
 /// An s over the slowest that may be zero, and the share that a step leaves of what is too fast for it.
 const SLOWER: f64 = 0.5;
 const FAST: f64 = 1e-9;
@@ -176,8 +179,16 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
     let mut seen = |h: f64| look_twice(&mut places, &rest, &motions, h);
     // A long step shows the slowest motion, and one that is about as long as a motion takes shows that well. What rounding makes of a zero is slower than
     // a long step.
-    let long = rest.long_step();
-    let speeds: Vec<(f64, bool)> = seen(long)?.into_iter().map(|found| (found.s[0].hypot(found.s[1]), found.is_sure)).collect();
+    let mut long = rest.long_step();
+    let least = SHORTER * long;
+    let slow = loop {
+        match seen(long) {
+            // Forces of redundant rows may be too much for what a long step can be told from.
+            Err(NoModes::Singular) if long > least => long *= 0.1,
+            outcome => break outcome?,
+        }
+    };
+    let speeds: Vec<(f64, bool)> = slow.into_iter().map(|found| (found.s[0].hypot(found.s[1]), found.is_sure)).collect();
     let told = speeds.iter().filter(|(speed, is_sure)| *is_sure || speed * long >= 1.0);
     let slowest = told.fold(f64::INFINITY, |least, (speed, _)| speed.min(least));
     if slowest == f64::INFINITY {
