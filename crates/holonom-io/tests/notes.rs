@@ -235,3 +235,14 @@ fn gravity_across_the_plane_is_noted() {
         assert_eq!(notes(&format!("plane = \"xz\"\n{right}")), [""; 0], "{right}");
     }
 }
+
+/// A radius in millimetres.
+#[test]
+fn sections_larger_than_their_beam_are_noted() {
+    let notes = |radius: f64| {
+        model(&format!("[beam.b]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nsection = {{ circle = {radius} }}\nmodulus = 2e11\ndensity = 7800\n"))
+            .notes
+    };
+    assert_eq!(notes(0.4), [""; 0]);
+    assert_eq!(notes(3.0), ["beam.b.section: the section is 6 m across, and the beam 1 m long: check units"]);
+}

@@ -139,6 +139,10 @@ fn shape(mode: &ModeShape) -> Shape {
             .collect()
     };
     let [number, hertz, _, time, _] = &mode.row;
-    let label = if hertz == "-" { format!("mode {number}: 1/e in {time} s") } else { format!("mode {number}: {hertz} Hz") };
+    let label = match (hertz.as_str(), time.as_str()) {
+        ("-", grows) if grows.starts_with("grows") => format!("mode {number}: {grows} s"),
+        ("-", falls) => format!("mode {number}: falls to 1/e in {falls} s"),
+        _ => format!("mode {number}: {hertz} Hz"),
+    };
     Shape { label, points: coded(points), bodies: coded(bodies) }
 }

@@ -34,7 +34,7 @@ fn swings(seen: &Value, name: &str, up: usize) {
     assert_eq!(seen["faults"], Value::Array(Vec::new()), "{seen:#}");
     assert_eq!((&seen["keys"], &seen["rows"]), (&json!(["Pause", "Play"]), &json!([0, 1, 2, 0])), "{seen:#}");
     assert!(seen["playing"].as_f64().unwrap() > 0.0, "{seen:#}");
-    assert_eq!(seen["labels"], json!(["mode 1: 1.5 Hz", "mode 2: 2.5 Hz", "mode 3: 1/e in 0.25 s", "mode 1: 1.5 Hz"]), "{seen:#}");
+    assert_eq!(seen["labels"], json!(["mode 1: 1.5 Hz", "mode 2: 2.5 Hz", "mode 3: grows in 0.25 s", "mode 1: 1.5 Hz"]), "{seen:#}");
     assert_eq!(seen["scrolled"], json!([0, true]), "{seen:#}");
     let place = |of: &Value| -> Vec<f64> { of[name].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect() };
     let rest = place(&seen["rest"]);
@@ -72,7 +72,7 @@ fn open(sample: &Sample, first: &str, window: [u32; 2]) -> Value {
     let modes = [
         mode(["1", "1.5", "0", "stays", "up"], &[(first, up, 7e-40)], &[]),
         mode(["2", "2.5", "0.1", "2", "round"], &[(other, 0, 3e50)], &[(other, up, 3e50)]),
-        mode(["3", "-", "-", "0.25", "turns"], &[(first, scene.axes.len(), 1.0)], &[]),
+        mode(["3", "-", "-", "grows in 0.25", "turns"], &[(first, scene.axes.len(), 1.0)], &[]),
     ];
     let notes = ["2 more exponents are zero".to_string()];
     let provenance = &Value::Null;

@@ -270,8 +270,11 @@ pub fn describe(loaded: &Loaded, summary: &Value) -> String {
                 number("violation", "acceleration")
             ),
         ),
-        ("momentum", format!("linear drift {}, angular drift {}", number("momentum", "linear_drift"), number("momentum", "angular_drift"))),
     ]);
+    // What nothing keeps has no drift.
+    let drifts = ["linear", "angular"].map(|of| (of, format!("{of}_drift"))).into_iter().filter(|(_, key)| summary["momentum"][key] != 0.0);
+    let drifts: Vec<String> = drifts.map(|(of, key)| format!("{of} drift {}", number("momentum", &key))).collect();
+    items.extend((!drifts.is_empty()).then(|| ("momentum", drifts.join(", "))));
     if summary["end"] == 0.0 {
         // Of the start alone there is nothing that a method could have made.
         items.retain(|(key, _)| !["steps", "drift", "balance", "momentum"].contains(key));

@@ -15,8 +15,8 @@ pub use section::Section;
 use strain::{Rotation, Strain};
 
 use super::assembly::Assembly;
-use super::bodies::RigidBody;
 use super::bodies::nodes::Member;
+use super::bodies::{RigidBody, short};
 use super::ends::{End, subtract};
 use super::entry::Entry;
 use super::fault::Read;
@@ -154,7 +154,11 @@ impl Beam {
         }
         let (stiffness, bending) = stiffness(&section, dim, length, modulus, 0.5 * modulus / (1.0 + poisson));
         let line_density = density * section.area;
-        let is_thin = section.outline.size() < THIN * norm(whole);
+        let (across, along) = (section.outline.size(), norm(whole));
+        if across > along {
+            entry.note("section", format!("the section is {} m across, and the beam {} m long: check units", short(across), short(along)));
+        }
+        let is_thin = across < THIN * along;
         Ok(Evaluated { name: entry.name.to_string(), first, elements, length, line_density, axes, stiffness, bending, damping, is_thin })
     }
 }
@@ -169,6 +173,9 @@ fn axes(entry: &Entry<'_>, dim: usize, along: Vec3, up: Option<Vec3>) -> Read<Ve
     }
     let is_upright = dot(along, unit(2)).abs() > UPRIGHT;
     let wanted = up.unwrap_or(if is_upright { unit(0) } else { unit(2) });
+    if norm(wanted) == 0.0 {
+        return Err(entry.refuse("up", "a direction of zero length is none", "give a direction across the beam"));
+    }
     let across = geometry::rest(&[along], wanted);
     if norm(across) <= ALONG * norm(wanted) {
         return Err(entry.refuse(
