@@ -312,3 +312,27 @@ fn events_are_told_by_their_names() {
     let beside = prints(&folder, "compare swing.toml --variant simulation.step=0.02 --no-report", 0);
     assert!(beside.contains("ended at 9.9 s by the event `over`"), "{beside}");
 }
+
+/// A run that ends at its start needs no step, and says where it is not at rest.
+#[test]
+fn the_start_alone_has_forces() {
+    let folder = folder();
+    let model = "plane = \"xz\"\n[point.bob]\nmass = 2\nposition = [3, 4]\n[constraint.rod]\ntype = \"distance\"\nbetween = [\"ground\", \"bob\"]\n";
+    fs::write(folder.path().join("bob.toml"), model).unwrap();
+    let run = |words: &str| json(&folder, &format!("run bob.toml --end 0 --no-report --json {words}"));
+    let notes = |summary: &serde_json::Value| summary["notes"].to_string();
+    // It falls, and the rod bears the share of its weight along it.
+    let falls = run("--out falls");
+    assert_eq!((&falls["steps"], &falls["status"]), (&0.into(), &"completed".into()));
+    assert!((falls["peaks"]["joints"][0]["value"].as_f64().unwrap() + 0.8 * 2.0 * 9.81).abs() < 1e-12, "{falls:#}");
+    assert!(notes(&falls).contains("forces do not balance at the start"), "{falls:#}");
+    let hangs = run("--out hangs --set start.equilibrium=true");
+    assert!((hangs["peaks"]["joints"][0]["value"].as_f64().unwrap() - 2.0 * 9.81).abs() < 1e-12, "{hangs:#}");
+    assert!(!notes(&hangs).contains("balance at the start"), "{hangs:#}");
+    let thrown = run("--out thrown --set point.bob.velocity=[4,-3]");
+    assert!(!notes(&thrown).contains("balance at the start"), "{thrown:#}");
+    let told = fails(&folder, "stability bob.toml --end 0", 2);
+    assert!(told.contains("takes no step") && told.contains("--end"), "{told}");
+    let told = fails(&folder, "sweep bob.toml --end 0 --vary point.bob.mass=1,2 --columns bob.magnitude", 2);
+    assert!(told.contains("there is no column `bob.magnitude`"), "{told}");
+}

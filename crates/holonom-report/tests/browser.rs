@@ -7,7 +7,7 @@
 mod chromium;
 mod sample;
 
-use chromium::{WINDOW, checks_in, dump_dom};
+use chromium::{TOOLS, WINDOW, checks_in, dump_dom};
 use holonom::record::{SceneWheels, WheelsKind};
 use holonom_report::{Report, Run};
 use sample::Sample;
@@ -386,6 +386,6 @@ fn open_at(name: &str, samples: &[Sample], columns: &[String], window: [u32; 2])
     let (body, tail) = page.rsplit_once("</body>").unwrap();
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("page.html");
-    fs::write(&file, format!("{body}<script>{CHECKS}</script></body>{tail}")).unwrap();
+    fs::write(&file, format!("{body}<script>{TOOLS}{CHECKS}</script></body>{tail}")).unwrap();
     checks_in(&dump_dom(&file, folder.path(), window))
 }

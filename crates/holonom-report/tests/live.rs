@@ -6,7 +6,7 @@
 mod chromium;
 mod sample;
 
-use chromium::{WINDOW, checks_in, dump_dom};
+use chromium::{TOOLS, WINDOW, checks_in, dump_dom};
 use holonom_report::{Frames, LIVE};
 use serde_json::{Value, json};
 use std::fs;
@@ -26,7 +26,7 @@ fn a_widget_shows_frames_and_sends_inputs() {
     let page = folder.path().join("page.html");
     let encoded = format!("data:text/javascript;base64,{}", data_encoding::BASE64.encode(script.as_bytes()));
     let kernel = KERNEL.replace("GIVEN", &given.to_string().replace("</", "<\\/")).replace("SCRIPT", &encoded);
-    fs::write(&page, format!("<!DOCTYPE html><meta charset=utf-8><body><div id=cell></div><script type=module>{kernel}</script></body>"))
+    fs::write(&page, format!("<!DOCTYPE html><meta charset=utf-8><body><div id=cell></div><script>{TOOLS}</script><script type=module>{kernel}</script></body>"))
         .unwrap();
     let seen = checks_in(&dump_dom(&page, folder.path(), WINDOW));
     assert_eq!(seen["faults"], Value::Array(Vec::new()), "{seen:#}");

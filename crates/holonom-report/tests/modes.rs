@@ -6,7 +6,7 @@
 mod chromium;
 mod sample;
 
-use chromium::{WINDOW, checks_in, dump_dom};
+use chromium::{TOOLS, WINDOW, checks_in, dump_dom};
 use holonom::model::Sway;
 use holonom_report::{ModeShape, ModesReport};
 use sample::Sample;
@@ -83,7 +83,7 @@ fn open(sample: &Sample, first: &str, window: [u32; 2]) -> Value {
     let (body, tail) = page.rsplit_once("</body>").unwrap();
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("page.html");
-    fs::write(&file, format!("{body}<script>{CHECKS}</script></body>{tail}")).unwrap();
+    fs::write(&file, format!("{body}<script>{TOOLS}{CHECKS}</script></body>{tail}")).unwrap();
     checks_in(&dump_dom(&file, folder.path(), window))
 }
 

@@ -29,7 +29,7 @@ pub fn modes_of(arguments: &ModesArguments) -> Result<ExitCode, Failure> {
     let loaded = load::load(&arguments.model.model, load::overrides(&arguments.model.set))?;
     let vibrations = Vibrations::of(loaded)?;
     let mut value = vibrations.value();
-    value["provenance"] = json!(vibrations.loaded.origin());
+    value["provenance"] = vibrations.origin.clone();
     let folder = Folder::claim(&arguments.to, &format!("{}-modes", vibrations.loaded.name), |path| holds(path, &value))?;
     folder.write("modes.json", |out| holonom_io::write_json(&value, out))?;
     if !arguments.no_report {
@@ -46,6 +46,8 @@ pub fn modes_of(arguments: &ModesArguments) -> Result<ExitCode, Failure> {
 /// The small vibrations about the start of a model: its modes, each with what moves in it and the phase of that, rad.
 pub struct Vibrations {
     loaded: Loaded,
+    /// Where they come from.
+    origin: Value,
     found: Modes,
     swings: Vec<Vec<(Swing, f64)>>,
 }
@@ -58,12 +60,12 @@ impl Vibrations {
     pub fn of(loaded: Loaded) -> Result<Self, Failure> {
         let found = modes(&loaded.model.system).map_err(load::modes_failure)?;
         let swings = found.modes.iter().map(|mode| swings(&loaded.model, mode, found.length)).collect();
-        Ok(Self { loaded, found, swings })
+        Ok(Self { origin: json!(loaded.origin()), loaded, found, swings })
     }
 
     /// As `--json` prints them, but for where they come from.
     pub fn value(&self) -> Value {
-        let Self { loaded, found, swings } = self;
+        let Self { loaded, found, swings, .. } = self;
         let of_mode = |k: usize| {
             let (mode, swings) = (&found.modes[k], &swings[k]);
             let moves: serde_json::Map<String, Value> =
@@ -123,7 +125,7 @@ impl Vibrations {
         let modes: Vec<ModeShape> = shapes.map(|(row, mode)| ModeShape { row, real: part(mode, 0), imaginary: part(mode, 1) }).collect();
         let nothing = modes.is_empty().then(|| NOTHING.to_string());
         let notes: Vec<String> = nothing.into_iter().chain(self.notes()).collect();
-        let (title, model_text, provenance) = (self.loaded.title(), source.text(), &json!(self.loaded.origin()));
+        let (title, model_text, provenance) = (self.loaded.title(), source.text(), &self.origin);
         ModesReport { title, model_text, provenance, scene: &model.scene, modes: &modes, notes: &notes }.write(out)
     }
 }

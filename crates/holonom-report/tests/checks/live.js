@@ -38,25 +38,13 @@ const fromKernel = (name, value) => {
   values[name] = value;
   for (const act of listeners.get(`change:${name}`) ?? []) act();
 };
-const frames = async (many) => {
-  for (let i = 0; i < many; i++) await new Promise((done) => requestAnimationFrame(done));
-};
-
 try {
   const cell = document.querySelector("#cell");
-  const leave = widget.render({ model, el: cell });
+  const end = widget.render({ model, el: cell });
   const root = cell.shadowRoot;
   const look = async () => {
     await frames(3);
-    const gl = root.querySelector("canvas").getContext("webgl2");
-    const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
-    gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-    let [different, hash] = [0, 0];
-    for (let i = 0; i < pixels.length; i += 4) {
-      if (pixels[i] !== pixels[0] || pixels[i + 1] !== pixels[1] || pixels[i + 2] !== pixels[2]) different++;
-      hash = (31 * hash + 7 * pixels[i] + 3 * pixels[i + 1] + pixels[i + 2]) | 0;
-    }
-    seen.pictures.push({ different, hash });
+    seen.pictures.push(pictureOf(root.querySelector("canvas")));
     seen.times.push(root.querySelector("output.now").textContent);
   };
   await look();
@@ -83,13 +71,9 @@ try {
   seen.ended = root.querySelector(".ended").textContent;
   seen.outside = getComputedStyle(document.body).backgroundColor;
   const before = count();
-  leave();
+  end();
   seen.listeners = [before, count()];
 } catch (error) {
   seen.faults.push(String(error.stack ?? error));
 }
-const result = document.createElement("script");
-result.type = "application/json";
-result.id = "checks";
-result.textContent = JSON.stringify(seen);
-document.body.append(result);
+leave(seen);

@@ -1,16 +1,8 @@
 // Goes behind everything: looks at the modes as a reader would, and leaves what it saw in #checks.
 const seen = { faults, rows: [], pictures: [], labels: [], keys: [] };
-const frames = async (many) => {
-  for (let i = 0; i < many; i++) await new Promise((done) => requestAnimationFrame(done));
-};
 const picture = async () => {
   await frames(3);
-  const gl = document.querySelector("canvas").getContext("webgl2");
-  const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
-  gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
-  let hash = 0;
-  for (let i = 0; i < pixels.length; i += 4) hash = (31 * hash + 7 * pixels[i] + 3 * pixels[i + 1] + pixels[i + 2]) | 0;
-  return hash;
+  return pictureOf(document.querySelector("canvas")).hash;
 };
 const press = (key) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }));
 const amplitude = (value) => {
@@ -53,9 +45,5 @@ const all = [...document.querySelectorAll(".modes tbody tr")];
   } catch (error) {
     seen.faults.push(String(error.stack ?? error));
   }
-  const result = document.createElement("script");
-  result.type = "application/json";
-  result.id = "checks";
-  result.textContent = JSON.stringify(seen);
-  document.body.append(result);
+  leave(seen);
 })();

@@ -4,6 +4,9 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
+/// What checks in pages have in common; stands in front of them.
+pub const TOOLS: &str = include_str!("../checks/tools.js");
+
 /// What the checks in a page have left in #checks.
 pub fn checks_in(dom: &str) -> Value {
     let found = dom.split_once(r#"id="checks">"#).and_then(|(_, rest)| rest.split_once("</script>"));

@@ -157,7 +157,7 @@ impl Modes {
 /// # Errors
 /// When it is not at rest, or too large.
 pub fn modes(system: &System) -> Result<Modes, NoModes> {
-    if system.start_velocity()[..system.coordinates()].iter().any(|v| *v != 0.0) {
+    if !stands(system) {
         return Err(NoModes::Moving);
     }
     let mut places = Places::new(system.clone())?;
@@ -222,9 +222,11 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
 
 /// Whether a system is at rest at its start, and forces balance there.
 pub fn is_at_rest(system: &System) -> bool {
-    let stands = system.start_velocity()[..system.coordinates()].iter().all(|v| *v == 0.0);
-    let balances = || Places::new(system.clone()).is_ok_and(|mut places| places.rest(system.start_position().to_vec()).is_ok());
-    stands && balances()
+    stands(system) && Places::new(system.clone()).is_ok_and(|mut places| places.rest(system.start_position().to_vec()).is_ok())
+}
+
+fn stands(system: &System) -> bool {
+    system.start_velocity()[..system.coordinates()].iter().all(|v| *v == 0.0)
 }
 
 /// Whether rows that follow from others at the start say something of their own beside it: at a singular position a mechanism can go on in several ways, or

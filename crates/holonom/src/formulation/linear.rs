@@ -21,8 +21,8 @@ impl Newton {
         self.factor(&work.scales)
     }
 
-    /// The increment of the coordinates (n) with the factors at hand for a right side of them (n), along which no row changes. `None` where δ does not
-    /// stop to matter.
+    /// The increment of the coordinates (n) with the factors at hand for a right side of them (n), along which no row changes. `None` where the
+    /// solutions that leave nothing of δ do not converge.
     pub fn solve_along_rows(&mut self, right: &[f64]) -> Option<Vec<f64>> {
         let n = right.len();
         self.unknowns[..n].copy_from_slice(right);
