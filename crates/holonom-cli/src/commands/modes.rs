@@ -73,7 +73,7 @@ impl Vibrations {
             json!({ "number": found.number(k), "frequency": mode.frequency, "growth": mode.growth, "damping": mode.damping(), "moves": moves })
         };
         let all: Vec<Value> = (0..swings.len()).map(of_mode).collect();
-        json!({ "model": loaded.name, "modes": all, "zero": found.free, "within": found.within, "unsure": found.unsure, "driven": found.driven })
+        json!({ "model": loaded.name, "modes": all, "zero": found.free, "within": found.within, "faster": found.faster, "unsure": found.unsure, "driven": found.driven })
     }
 
     /// The table of the modes.
@@ -96,6 +96,10 @@ impl Vibrations {
             let (are, motions) = if found.free == 1 { ("exponent is", "a motion") } else { ("exponents are", "motions") };
             let within = if found.within > 0.0 { format!(" to within {:.0e} 1/s", found.within) } else { String::new() };
             notes.push(format!("{} more {are} zero{within}: of {motions} that nothing drives back", found.free));
+        }
+        if found.faster > 0 {
+            let told = found.modes.len();
+            notes.push(format!("these are the slowest {told}: {} more exponents are faster, and were not looked for", found.faster));
         }
         if found.unsure > 0 {
             notes.push(format!("{} more cannot be told from rounding beside the others", found.unsure));

@@ -1,11 +1,13 @@
 //! What is asked of a model rather than simulated: rank and redundancy, what a projection does to the energy, small
 //! vibrations, the largest stable step.
 
+mod exponents;
 mod jacobian;
 mod modes;
 mod projection;
 mod rank;
 mod reactions;
+mod slowest;
 mod stability;
 
 pub use jacobian::constraint_jacobian;

@@ -2,8 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use crate::linalg::{Eigenpair, eigenpairs};
-use crate::simulation::{Motions, NoRest, Places, Rest, StartError};
+use super::exponents::{self, SLOWER, look_twice};
+use super::slowest;
+use crate::simulation::{NoRest, Places, StartError};
 use crate::system::System;
 
 /// A motion e^(s t) of the linearised equations.
@@ -26,6 +27,8 @@ pub struct Modes {
     pub free: usize,
     /// Within which of zero rounding has them, 1/s.
     pub within: f64,
+    /// How many are faster than these, and are not looked for.
+    pub faster: usize,
     /// How many rounding leaves open, beside those that are much faster or much slower.
     pub unsure: usize,
     /// Size of the mechanism, m, by which ways are compared with turns.
@@ -57,8 +60,8 @@ pub enum NoModes {
     /// Forces of the rows at rest, or eigenvalues, that are not found.
     #[error("the forces that hold the mechanism at rest, or its motions about that, cannot be found")]
     Singular,
-    /// Too many freedoms for a dense analysis.
-    #[error("the mechanism has {0} degrees of freedom, and modes are found of up to {MOST_FREEDOMS}")]
+    /// Many freedoms, and no motion that is slower than the others.
+    #[error("of {0} degrees of freedom the slowest motions are looked for, and none can be told: more are free than are looked at, or all are as fast")]
     Large(usize),
 }
 
@@ -72,8 +75,11 @@ impl From<NoRest> for NoModes {
     }
 }
 
-/// Most freedoms for which this dense analysis is made.
-pub const MOST_FREEDOMS: usize = 300;
+/// Most freedoms of which all motions are found, and not the slowest alone.
+pub const MOST_FREEDOMS: usize = 150;
+
+/// Motions without order that are looked at at a singular position: each would show it.
+const SOME: usize = 30;
 
 /// By how much windows of speeds differ in which motions are found together, how many there are, and the step over the time of the middle of one: no
 /// step should be as long as what grows takes.
@@ -81,25 +87,11 @@ const WIDTH: f64 = 1e3;
 const WINDOWS: i32 = 4;
 const AWAY: f64 = 0.83;
 
-/// The other step that motions are looked at with, and by what share of an s both may differ.
-const OTHER: f64 = 1.37;
-const AGREE: f64 = 1e-4;
-
 /// The shortest step that shows the slowest motion, over the longest.
 const SHORTER: f64 = 2e-4;
 
-/// An s over the slowest that may be zero, and the share that a step leaves of what is too fast for it.
-const SLOWER: f64 = 0.5;
-const FAST: f64 = 1e-9;
-
 /// A speed over that of the mechanism's size in its fastest motion that is none.
 const STILL: f64 = 1e-12;
-
-/// By how many times what both steps differ by a real part is round-off.
-const UNSURE: f64 = 10.0;
-
-/// Share of an s that its real part may be by round-off.
-const ROUNDED: f64 = 1e-10;
 
 impl Mode {
     /// The share of the critical damping, −1 … 1.
@@ -146,6 +138,10 @@ impl Modes {
         }
     }
 
+    pub(super) fn sort(&mut self) {
+        self.modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency).then(b.growth.total_cmp(&a.growth)));
+    }
+
     /// Exponents of modes that do not vibrate, but for those that are zero.
     fn still(&self) -> usize {
         self.modes.iter().take_while(|mode| !mode.vibrates()).count()
@@ -163,10 +159,7 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
     let mut places = Places::new(system.clone())?;
     let rest = places.rest(system.start_position().to_vec())?;
     let freedom = places.freedom();
-    if freedom > MOST_FREEDOMS {
-        return Err(NoModes::Large(freedom));
-    }
-    let motions = places.motions()?;
+    let motions = places.motions(if freedom > MOST_FREEDOMS { SOME } else { freedom })?;
     if places.forks(&motions) {
         return Err(NoModes::Forks);
     }
@@ -175,6 +168,9 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
     let none = Modes { free: 2 * freedom, length: places.length(), driven, ..Modes::default() };
     if rest.speed == 0.0 || freedom == 0 {
         return Ok(none);
+    }
+    if freedom > MOST_FREEDOMS {
+        return slowest::slowest(system, &mut places, &rest, &motions, none);
     }
     let mut seen = |h: f64| look_twice(&mut places, &rest, &motions, h);
     // A long step shows the slowest motion, and one that is about as long as a motion takes shows that well. What rounding makes of a zero is slower than
@@ -188,18 +184,15 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
             outcome => break outcome?,
         }
     };
-    let speeds: Vec<(f64, bool)> = slow.into_iter().map(|found| (found.s[0].hypot(found.s[1]), found.is_sure)).collect();
-    let told = speeds.iter().filter(|(speed, is_sure)| *is_sure || speed * long >= 1.0);
-    let slowest = told.fold(f64::INFINITY, |least, (speed, _)| speed.min(least));
-    if slowest == f64::INFINITY {
-        return Ok(Modes { within: speeds.iter().fold(0.0, |most, (speed, _)| speed.max(most)), ..none });
-    }
+    let Some(slowest) = exponents::slowest(&slow, long) else {
+        return Ok(Modes { within: slow.iter().fold(0.0, |most, found| found.speed().max(most)), ..none });
+    };
     let mut modes = Modes { free: 0, ..none };
     let mut left = 2 * freedom;
     for window in 0..WINDOWS {
         let middle = slowest * WIDTH.powi(window);
         for found in seen(AWAY / middle)? {
-            let share = found.s[0].hypot(found.s[1]) / middle;
+            let share = found.speed() / middle;
             let is_here = share < WIDTH.sqrt() && (window == 0 || share >= 1.0 / WIDTH.sqrt());
             if window == 0 && !found.is_sure && share < SLOWER {
                 (modes.free, left) = (modes.free + 1, left.saturating_sub(1));
@@ -216,7 +209,7 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
         }
     }
     modes.unsure = left;
-    modes.modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency).then(b.growth.total_cmp(&a.growth)));
+    modes.sort();
     Ok(modes)
 }
 
@@ -230,59 +223,10 @@ fn stands(system: &System) -> bool {
 }
 
 /// Whether rows that follow from others at the start say something of their own beside it: at a singular position a mechanism can go on in several ways, or
-/// cannot go where its rows seem to let it. `None` where that cannot be told, or of too many freedoms for a dense analysis.
+/// cannot go where its rows seem to let it. `None` where that cannot be told.
 pub fn forks(system: &System) -> Option<bool> {
     let mut places = Places::new(system.clone()).ok()?;
     places.put(system.start_position()).ok()?;
-    if places.freedom() > MOST_FREEDOMS {
-        return None;
-    }
-    let motions = places.motions().ok()?;
+    let motions = places.motions(SOME).ok()?;
     Some(places.forks(&motions))
-}
-
-/// An exponent as steps of two lengths have it.
-struct Found {
-    s: [f64; 2],
-    shares: Vec<[f64; 2]>,
-    /// Whether both agree, and by what their real parts differ.
-    is_sure: bool,
-    apart: f64,
-}
-
-/// The exponents that a step of length h shows, and whether one of another length, a little beside, agrees: what rounding makes of a zero is another
-/// number there.
-fn look_twice(places: &mut Places, rest: &Rest, motions: &Motions, h: f64) -> Result<Vec<Found>, NoModes> {
-    let mut look = |h: f64, spot: usize| -> Result<Vec<Eigenpair>, NoModes> {
-        let pairs = eigenpairs(2 * motions.basis.len(), &places.propagator(motions, &rest.spots[spot], h)?).ok_or(NoModes::Singular)?;
-        Ok(pairs.into_iter().filter_map(|(theta, shares)| Some((exponent(theta, h)?, shares))).collect())
-    };
-    let (first, second) = (look(h, 0)?, look(OTHER * h, 1)?);
-    let found = first.into_iter().map(|(s, shares)| {
-        let apart = |other: &[f64; 2]| (s[0] - other[0]).hypot(s[1] - other[1]);
-        let nearest = second.iter().map(|(other, _)| other).min_by(|a, b| apart(a).total_cmp(&apart(b)));
-        // What is zero in both is not sure.
-        let is_sure = nearest.is_some_and(|other| apart(other) < AGREE * s[0].hypot(s[1]));
-        Found { s, shares, is_sure, apart: nearest.map_or(f64::INFINITY, |other| (s[0] - other[0]).abs()) }
-    });
-    Ok(found.collect())
-}
-
-impl Mode {
-    fn new(system: &System, motions: &[Vec<f64>], found: &Found) -> Self {
-        let [re, im] = found.s;
-        let mut shape = vec![[0.0; 2]; system.nodes() * system.dimension()];
-        for (motion, [re, im]) in motions.iter().zip(&found.shares) {
-            shape.iter_mut().zip(motion).for_each(|(shape, q)| *shape = [shape[0] + re * q, shape[1] + im * q]);
-        }
-        let rounding = (ROUNDED * re.hypot(im)).max(UNSURE * found.apart);
-        let growth = if re.abs() <= rounding { 0.0 } else { re };
-        Self { growth, frequency: im / TAU, shape }
-    }
-}
-
-/// s of the share θ = 1/(1 − h s) that a step of implicit Euler leaves; `None` where hardly anything is left.
-fn exponent([re, im]: [f64; 2], h: f64) -> Option<[f64; 2]> {
-    let square = re * re + im * im;
-    (square > FAST * FAST).then(|| [(1.0 - re / square) / h, im / square / h])
 }

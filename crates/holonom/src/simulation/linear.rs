@@ -2,12 +2,13 @@
 
 use super::conflict::unmet;
 use super::golden::GOLDEN;
+use super::motions::{FOLLOWS, Motions, Slow, dot};
 use super::places::Places;
 use super::rest::{FIRST, PUSH};
 use crate::energy;
 use crate::formulation::Workspace;
 use crate::linalg::{eigenpairs, largest};
-use crate::system::Look;
+use crate::system::{Look, System};
 
 /// Lengths of the step that forces at rest are found by, over that which is tried first.
 const TRIES: [f64; 5] = [1.0, 0.1, 10.0, 0.01, 100.0];
@@ -18,8 +19,16 @@ const BALANCED: f64 = 1e-6;
 /// A long step over the time of the fastest motion.
 const LONG: f64 = 1e4;
 
-/// By what share of a move forces drive it on in a long step that is no rounding.
+/// By what share of a move forces drive it on in a long step that is no rounding, and what share of it that leaves.
 const DRIVEN: f64 = 1e-5;
+const LEAST: f64 = 1e-10;
+
+/// Freedoms of which all motions are looked at for one that falls. Of more, motions that show one: as many without order, and as many as come of steps so
+/// long in the time of the fastest, one of which is about as long as a fall takes.
+const MOST_FREEDOMS: usize = 200;
+const SOME: usize = 10;
+const FEW: usize = 60;
+const LENGTHS: [f64; 8] = [1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8];
 
 /// How far the places are beside it and each other, over the mechanism's size; how many times that the way back to rest may be; and by how much rounding
 /// may have them off.
@@ -27,15 +36,9 @@ const BESIDE: f64 = 1e-13;
 const BACK: f64 = 10.0;
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
-/// Share of a motion's size that is left of it when it follows from those before.
-const FOLLOWS: f64 = 1e-6;
-
 /// Share of what a motion would bend rows by, were all of the mechanism as fast as its fastest node, that is left at a singular position. Elsewhere hardly
 /// any rounding is.
 const FORKS: f64 = 1e-8;
-
-/// The golden ratio in 64 bits.
-const MIXING: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// Why motions about a state are not those of small vibrations.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,7 +69,11 @@ impl Rest {
 
     /// A longer one where dampers are stronger than other forces: what these drive on is slow then.
     fn longer_step(&self) -> f64 {
-        LONG / self.driven.max(self.speed / LONG)
+        LONG / self.undamped()
+    }
+
+    fn undamped(&self) -> f64 {
+        self.driven.max(self.speed / LONG)
     }
 }
 
@@ -74,12 +81,6 @@ impl Rest {
 pub(crate) struct Spot {
     x: Vec<f64>,
     lambda: Vec<f64>,
-}
-
-/// Independent motions q (n each) that the rows allow, with qᵀ M q = 1 each and 0 of two, and M q of each.
-pub(crate) struct Motions {
-    pub basis: Vec<Vec<f64>>,
-    momenta: Vec<Vec<f64>>,
 }
 
 impl Places {
@@ -155,39 +156,6 @@ impl Places {
         Ok((Spot { x, lambda: self.work.lambda.clone() }, way / (h * h * whole)))
     }
 
-    /// The motions that the mechanism is free for, where it was put last.
-    pub fn motions(&mut self) -> Result<Motions, NoRest> {
-        let (n, freedom) = (self.system.coordinates(), self.freedom());
-        let mut found = Motions { basis: Vec::new(), momenta: Vec::new() };
-        if !self.newton.factor_inertia(&self.work) {
-            return Err(NoRest::Singular);
-        }
-        for motion in 0..freedom {
-            // As large as nodes are heavy: what light ones do is then no rounding of the others.
-            let weight = |k: usize| self.system.mass.diagonal(k / self.system.dim).sqrt();
-            let momentum: Vec<f64> = (0..n).map(|k| weight(k) * scattered(motion * n + k)).collect();
-            let mut q = self.newton.solve_along_rows(&momentum).ok_or(NoRest::Singular)?;
-            let mut left = 0.0;
-            // What rounding leaves of the others after once is gone after twice.
-            for _ in 0..2 {
-                let whole = dot(&q, &self.momentum(&q));
-                for (other, momentum) in found.basis.iter().zip(&found.momenta) {
-                    let share = dot(&q, momentum);
-                    q.iter_mut().zip(other).for_each(|(q, other)| *q -= share * other);
-                }
-                let own = dot(&q, &self.momentum(&q));
-                if own.is_nan() || own <= FOLLOWS * FOLLOWS * whole {
-                    return Err(NoRest::Massless);
-                }
-                left = own.sqrt();
-            }
-            q.iter_mut().for_each(|q| *q /= left);
-            found.momenta.push(self.momentum(&q));
-            found.basis.push(q);
-        }
-        Ok(found)
-    }
-
     /// Whether a motion that all rows allow is none as soon as it goes on: there is no acceleration with which all rows would go along. So it is at singular
     /// positions, as where bars lie in a line, and there alone, whatever rows follow from others. The motions are those at the place.
     pub fn forks(&mut self, motions: &Motions) -> bool {
@@ -211,16 +179,37 @@ impl Places {
     /// When its motions cannot be told.
     pub fn falls(&mut self) -> Result<Option<Vec<f64>>, NoRest> {
         let rest = self.rest(self.work.end.x.clone())?;
-        let motions = self.motions()?;
-        let freedom = motions.basis.len();
+        let freedom = self.freedom();
         if rest.speed == 0.0 || freedom == 0 {
             return Ok(None);
         }
+        if freedom <= MOST_FREEDOMS {
+            let motions = self.motions(freedom)?;
+            return self.falls_in(&motions, &rest, rest.longer_step());
+        }
+        let (starts, mut seen) = (self.motions(SOME)?, Err(NoRest::Singular));
+        for length in LENGTHS {
+            let (mut slow, h) = (Slow::default(), length / rest.undamped());
+            let found = self.slow_motions(&mut slow, &starts, FEW, &rest.spots[0], h).and_then(|()| self.falls_in(&slow.motions, &rest, h));
+            match found {
+                Ok(Some(_)) => return found,
+                Ok(None) => seen = found,
+                // A step that cannot be solved shows nothing.
+                Err(_) => {}
+            }
+        }
+        seen
+    }
+
+    /// The same, of moves that are sums of these motions, with a step of length h.
+    fn falls_in(&mut self, motions: &Motions, rest: &Rest, h: f64) -> Result<Option<Vec<f64>>, NoRest> {
+        let freedom = motions.basis.len();
         // A long step leaves a share of each move, (I + h C + h² K)⁻¹ (I + h C): less than all of it, but of what forces drive on.
-        let whole = self.propagator(&motions, &rest.spots[0], rest.longer_step())?;
+        let whole = self.propagator(motions, &rest.spots[0], h)?;
         let of_position: Vec<f64> = whole.chunks_exact(2 * freedom).take(freedom).flat_map(|line| &line[..freedom]).copied().collect();
         let pairs = eigenpairs(freedom, &of_position).ok_or(NoRest::Singular)?;
-        let driven = pairs.into_iter().map(|([share, _], shares)| (1.0 - 1.0 / share, shares));
+        let left = pairs.into_iter().filter(|([share, _], _)| share.abs() > LEAST);
+        let driven = left.map(|([share, _], shares)| (1.0 - 1.0 / share, shares));
         let falling = driven.filter(|(on, _)| *on > DRIVEN).max_by(|(a, _), (b, _)| a.total_cmp(b));
         let Some((_, shares)) = falling else { return Ok(None) };
         let mut push = vec![0.0; self.work.end.x.len()];
@@ -241,32 +230,20 @@ impl Places {
         if linear.abs() > FOLLOWS * whole { linear.signum() } else { angular.signum() }
     }
 
-    /// M q of the free coordinates.
-    fn momentum(&self, q: &[f64]) -> Vec<f64> {
-        let mut all = q.to_vec();
-        all.resize(self.work.end.x.len(), 0.0);
-        let mut out = vec![0.0; q.len()];
-        self.system.mass.times(self.system.dim, &all, &mut out);
-        out
-    }
-
     /// What a step of implicit Euler of length h makes of the shares of the motions in positions, and in velocities times h (2f × 2f, row-major).
     pub fn propagator(&mut self, motions: &Motions, spot: &Spot, h: f64) -> Result<Vec<f64>, NoRest> {
         let f = motions.basis.len();
-        self.work.start.x.copy_from_slice(&spot.x);
-        let stage = self.start_step(h);
-        self.work.lambda.copy_from_slice(&spot.lambda);
-        self.newton.factor_there(&self.system, &stage, &mut self.work).map_err(|_| NoRest::Singular)?;
+        self.factor_step(spot, h)?;
         let mut out = vec![0.0; 4 * f * f];
+        let mut way = |right: &[f64]| self.newton.solve_along_rows(right).ok_or(NoRest::Singular);
         for (j, (motion, momentum)) in motions.basis.iter().zip(&motions.momenta).enumerate() {
-            let mut v = motion.clone();
-            v.resize(self.work.end.x.len(), 0.0);
-            let resisted = self.work.resistance(&self.system, stage.time(), &v);
-            let of_position: Vec<f64> = momentum.iter().zip(&resisted).map(|(momentum, force)| momentum + h * force).collect();
-            for (column, right) in [(j, &of_position), (f + j, momentum)] {
-                let q = self.newton.solve_along_rows(right).ok_or(NoRest::Singular)?;
+            let pushed = self.work.pushed_on(&self.system, motion, momentum, h);
+            let of_velocity = way(momentum)?;
+            // Without dampers both are the same.
+            let of_position = if pushed == *momentum { of_velocity.clone() } else { way(&pushed)? };
+            for (column, q) in [(j, &of_position), (f + j, &of_velocity)] {
                 for (i, momentum) in motions.momenta.iter().enumerate() {
-                    let share = dot(&q, momentum);
+                    let share = dot(q, momentum);
                     out[i * 2 * f + column] = share;
                     // The velocity is the way over the step.
                     out[(f + i) * 2 * f + column] = share - f64::from(u8::from(i == column));
@@ -275,14 +252,22 @@ impl Places {
         }
         Ok(out)
     }
+
+    /// Factors the matrix of a step of implicit Euler of length h from rest.
+    pub(super) fn factor_step(&mut self, spot: &Spot, h: f64) -> Result<(), NoRest> {
+        self.work.start.x.copy_from_slice(&spot.x);
+        let stage = self.start_step(h);
+        self.work.lambda.copy_from_slice(&spot.lambda);
+        self.newton.factor_there(&self.system, &stage, &mut self.work).map_err(|_| NoRest::Singular)
+    }
 }
 
-/// Numbers between −½ and ½ without order. Fractional parts of squares have one: such vectors may follow from each other.
-fn scattered(k: usize) -> f64 {
-    let mixed = (0..3).fold(k as u64 + 1, |bits, _| (bits ^ (bits >> 32)).wrapping_mul(MIXING));
-    mixed as f64 / u64::MAX as f64 - 0.5
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+impl Workspace {
+    /// What a step of length h starts from, (M + h C) q, where M q is known and no velocity.
+    pub(super) fn pushed_on(&mut self, system: &System, q: &[f64], momentum: &[f64], h: f64) -> Vec<f64> {
+        let mut v = q.to_vec();
+        v.resize(self.end.x.len(), 0.0);
+        let resisted = self.resistance(system, 0.0, &v);
+        momentum.iter().zip(&resisted).map(|(momentum, force)| momentum + h * force).collect()
+    }
 }

@@ -17,6 +17,7 @@ mod landing;
 mod linear;
 mod locate;
 mod method;
+mod motions;
 mod no_value;
 mod passage;
 mod periods;
@@ -40,10 +41,11 @@ pub use conflict::Conflict;
 pub use events::Happening;
 pub(crate) use follow::{along, follow};
 pub(crate) use golden::GOLDEN;
-pub(crate) use linear::{Motions, NoRest, Rest};
+pub(crate) use linear::{NoRest, Rest, Spot};
 pub use method::{
     Choice, LEVELS, LOOP_TOLERANCE, MAX_ITERATIONS, Method, NAMED, Named, OMEGA, PENALTY, ProjectionChoice, TOLERANCE, XI, combinations,
 };
+pub(crate) use motions::{Motions, Slow};
 pub(crate) use periods::uncountable;
 pub(crate) use places::Places;
 pub use promise::Promise;

@@ -45,9 +45,8 @@ pub(super) const PUSH: f64 = 1e-4;
 const NEAR: f64 = 0.1;
 const BACK: f64 = 10.0;
 
-/// Ridges that a mechanism may come to on its way, and the most freedoms of one that is looked at from all sides.
+/// Ridges that a mechanism may come to on its way.
 const RIDGES: usize = 20;
-const MOST_FREEDOMS: usize = 200;
 
 /// Why a mechanism does not come to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +96,7 @@ impl Places {
             return None;
         }
         let x = self.work.end.x.clone();
-        let falls = (self.freedom() <= MOST_FREEDOMS).then(|| self.falls().ok()).flatten();
+        let falls = self.falls().ok();
         self.put(&x).ok()?;
         self.begin_at_end();
         match falls {

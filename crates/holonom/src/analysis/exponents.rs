@@ -1,0 +1,87 @@
+//! Exponents of motions e^(s t) as steps of implicit Euler show them (methods §21).
+
+use std::f64::consts::TAU;
+
+use super::modes::{Mode, NoModes};
+use crate::linalg::{Eigenpair, eigenpairs};
+use crate::simulation::{Motions, Places, Rest, Spot};
+use crate::system::System;
+
+/// The other step that motions are looked at with, and by what share of an s both may differ.
+const OTHER: f64 = 1.37;
+const AGREE: f64 = 1e-4;
+
+/// An s over the slowest that may be zero, and the share that a step leaves of what is too fast for it.
+pub(super) const SLOWER: f64 = 0.5;
+const FAST: f64 = 1e-9;
+
+/// By how many times what both steps differ by a real part is round-off.
+const UNSURE: f64 = 10.0;
+
+/// Share of an s that its real part may be by round-off.
+const ROUNDED: f64 = 1e-10;
+
+/// An exponent as steps of two lengths have it.
+pub(super) struct Found {
+    pub s: [f64; 2],
+    pub shares: Vec<[f64; 2]>,
+    /// Whether both agree, and by what their real parts differ.
+    pub is_sure: bool,
+    apart: f64,
+}
+
+impl Found {
+    pub fn speed(&self) -> f64 {
+        self.s[0].hypot(self.s[1])
+    }
+}
+
+/// The exponents that a step of length h shows, with their shares of the motions.
+pub(super) fn look(places: &mut Places, spot: &Spot, motions: &Motions, h: f64) -> Result<Vec<Eigenpair>, NoModes> {
+    let pairs = eigenpairs(2 * motions.basis.len(), &places.propagator(motions, spot, h)?).ok_or(NoModes::Singular)?;
+    Ok(pairs.into_iter().filter_map(|(theta, shares)| Some((exponent(theta, h)?, shares))).collect())
+}
+
+/// The same, and whether a step of another length, a little beside, agrees.
+pub(super) fn look_twice(places: &mut Places, rest: &Rest, motions: &Motions, h: f64) -> Result<Vec<Found>, NoModes> {
+    let first = look(places, &rest.spots[0], motions, h)?;
+    look_again(places, rest, motions, h, first)
+}
+
+/// Whether a step of another length, a little beside, agrees with what one of length h shows: what rounding makes of a zero is another number there.
+pub(super) fn look_again(places: &mut Places, rest: &Rest, motions: &Motions, h: f64, first: Vec<Eigenpair>) -> Result<Vec<Found>, NoModes> {
+    let second = look(places, &rest.spots[1], motions, OTHER * h)?;
+    let found = first.into_iter().map(|(s, shares)| {
+        let apart = |other: &[f64; 2]| (s[0] - other[0]).hypot(s[1] - other[1]);
+        let nearest = second.iter().map(|(other, _)| other).min_by(|a, b| apart(a).total_cmp(&apart(b)));
+        // What is zero in both is not sure.
+        let is_sure = nearest.is_some_and(|other| apart(other) < AGREE * s[0].hypot(s[1]));
+        Found { s, shares, is_sure, apart: nearest.map_or(f64::INFINITY, |other| (s[0] - other[0]).abs()) }
+    });
+    Ok(found.collect())
+}
+
+/// The speed of the slowest motion that a step of length h tells from what rounding makes of a zero, 1/s.
+pub(super) fn slowest(found: &[Found], h: f64) -> Option<f64> {
+    let told = found.iter().filter(|found| found.is_sure || found.speed() * h >= 1.0);
+    told.map(Found::speed).min_by(f64::total_cmp)
+}
+
+impl Mode {
+    pub(super) fn new(system: &System, motions: &[Vec<f64>], found: &Found) -> Self {
+        let [re, im] = found.s;
+        let mut shape = vec![[0.0; 2]; system.nodes() * system.dimension()];
+        for (motion, [re, im]) in motions.iter().zip(&found.shares) {
+            shape.iter_mut().zip(motion).for_each(|(shape, q)| *shape = [shape[0] + re * q, shape[1] + im * q]);
+        }
+        let rounding = (ROUNDED * re.hypot(im)).max(UNSURE * found.apart);
+        let growth = if re.abs() <= rounding { 0.0 } else { re };
+        Self { growth, frequency: im / TAU, shape }
+    }
+}
+
+/// s of the share θ = 1/(1 − h s) that a step of implicit Euler leaves; `None` where hardly anything is left.
+fn exponent([re, im]: [f64; 2], h: f64) -> Option<[f64; 2]> {
+    let square = re * re + im * im;
+    (square > FAST * FAST).then(|| [(1.0 - re / square) / h, im / square / h])
+}
