@@ -20,7 +20,10 @@ fn masses(damping: f64, is_tied: bool) -> Modes {
         let before = if k > 0 { format!("m{}", k - 1) } else { "[-1, 0, 0]".into() };
         if k > 0 || is_tied {
             let before = if k > 0 { format!("\"{before}\"") } else { before };
-            text += &format!("[force.s{k}]\ntype = \"spring\"\nbetween = [{before}, \"m{k}\"]\nstiffness = 100\ndamping = {}\n", 100.0 * damping);
+            text += &format!(
+                "[force.s{k}]\ntype = \"spring\"\nbetween = [{before}, \"m{k}\"]\nstiffness = 100\ndamping = {}\n",
+                100.0 * damping
+            );
         }
     }
     modes(&model(&text).system).unwrap()

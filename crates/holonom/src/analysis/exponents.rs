@@ -49,7 +49,13 @@ pub(super) fn look_twice(places: &mut Places, rest: &Rest, motions: &Motions, h:
 }
 
 /// Whether a step of another length, a little beside, agrees with what one of length h shows: what rounding makes of a zero is another number there.
-pub(super) fn look_again(places: &mut Places, rest: &Rest, motions: &Motions, h: f64, first: Vec<Eigenpair>) -> Result<Vec<Found>, NoModes> {
+pub(super) fn look_again(
+    places: &mut Places,
+    rest: &Rest,
+    motions: &Motions,
+    h: f64,
+    first: Vec<Eigenpair>,
+) -> Result<Vec<Found>, NoModes> {
     let second = look(places, &rest.spots[1], motions, OTHER * h)?;
     let found = first.into_iter().map(|(s, shares)| {
         let apart = |other: &[f64; 2]| (s[0] - other[0]).hypot(s[1] - other[1]);

@@ -61,7 +61,9 @@ pub enum NoModes {
     #[error("the forces that hold the mechanism at rest, or its motions about that, cannot be found")]
     Singular,
     /// Many freedoms, and no motion that is slower than the others.
-    #[error("of {0} degrees of freedom the slowest motions are looked for, and none can be told: more are free than are looked at, or all are as fast")]
+    #[error(
+        "of {0} degrees of freedom the slowest motions are looked for, and none can be told: more are free than are looked at, or all are as fast"
+    )]
     Large(usize),
 }
 

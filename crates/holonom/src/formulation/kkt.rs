@@ -4,28 +4,16 @@
 //! Blocks of the first kind are node × node, and mostly multiples of the unit matrix: their factors are summed first
 //! (one number a pair of nodes) and then written to the matrix.
 
-use std::ops::Deref;
+use std::ops::{Deref, Range};
 use std::sync::Arc;
 
 use super::augmented::Augmented;
 use super::failure::{Failure, Unknown};
-use super::pattern::{Block, Coupling, NONE, OuterTerm, Pattern};
+use super::law_groups::{GroupSum, LawFactors, LawTangents};
+use super::pattern::{Block, Coupling, NONE, Pattern};
 use super::scales::Scales;
 use crate::linalg::{Singular, Solver};
-use crate::system::{Mass, Response, System, cross, skew};
-
-/// Factors of the four parts of a law's tangent: by f itself, by values, by rates, and by the motion of rates.
-#[derive(Clone, Copy, Debug)]
-pub struct LawFactors {
-    /// Of f, which second derivatives of the invariants are multiplied by.
-    pub force: f64,
-    /// Of ∂f/∂π.
-    pub value: f64,
-    /// Of ∂f/∂π̇, as velocities change with positions.
-    pub rate: f64,
-    /// Of ∂f/∂π̇, as gradients turn with the motion.
-    pub motion: f64,
-}
+use crate::system::{Mass, System, cross, skew};
 
 /// The planned matrix.
 pub struct Kkt {
@@ -39,6 +27,7 @@ pub struct Kkt {
     full_sum: Vec<[f64; 3]>,
     /// The rows that enter the part of the coordinates, too.
     augmented: Vec<Augmented>,
+    group_sum: GroupSum,
 }
 
 impl Deref for Kkt {
@@ -84,6 +73,7 @@ impl Kkt {
             full_sum: vec![[0.0; 3]; full_mass.len()],
             full_mass,
             augmented,
+            group_sum: GroupSum::default(),
             pattern,
         }
     }
@@ -98,6 +88,7 @@ impl Kkt {
             full_mass: self.full_mass.clone(),
             full_sum: self.full_sum.clone(),
             augmented: self.augmented.clone(),
+            group_sum: GroupSum::default(),
         }
     }
 
@@ -135,46 +126,45 @@ impl Kkt {
         }
     }
 
-    /// Adds the tangent of a law: f_i H_i, and ∇π_i (∂f_i/∂π_j ∇π_j + ∂f_i/∂π̇_j ∇π̇_j)ᵀ, each with its factor. The left
-    /// gradients are those of the force, the right ones those of the values it depends on; `motion` has the slots of
-    /// H v, through which π̇ depends on positions.
-    #[expect(clippy::too_many_arguments)] // a law's tangent has these parts
-    pub fn add_law(
-        &mut self,
-        block: Block,
-        law: usize,
-        response: &Response,
-        factors: LawFactors,
-        left: &[f64],
-        right: &[f64],
-        motion: &[f64],
-    ) {
-        for (hessian, force) in self.pattern.law_hessian[law].iter().zip(&response.force) {
-            let weight = factors.force * force;
-            for &(pair, c) in &hessian.isotropic {
-                self.pair_sum[pair as usize] += weight * c;
-            }
-            for turn in &hessian.skew {
-                turn.add(weight, &mut self.full_sum);
+    /// Adds the tangents of laws: f_i H_i, and ∇π_i (∂f_i/∂π_j ∇π_j + ∂f_i/∂π̇_j ∇π̇_j)ᵀ, each with its factor, or nothing of those without factors.
+    pub fn add_laws(&mut self, block: Block, laws: Range<usize>, tangents: &LawTangents, factors: impl Fn(usize) -> Option<LawFactors>) {
+        for (law, factors) in laws.clone().filter_map(|law| Some((law, factors(law)?))) {
+            for (hessian, force) in self.pattern.law_hessian[law].iter().zip(&tangents.responses[law].force) {
+                let weight = factors.force * force;
+                for &(pair, c) in &hessian.isotropic {
+                    self.pair_sum[pair as usize] += weight * c;
+                }
+                for turn in &hessian.skew {
+                    turn.add(weight, &mut self.full_sum);
+                }
             }
         }
         match self.dim {
-            2 => self.add_outer_in::<2>(block, law, response, factors, [left, right, motion]),
-            _ => self.add_outer_in::<3>(block, law, response, factors, [left, right, motion]),
+            2 => self.add_outer_in::<2>(block, laws, tangents, factors),
+            _ => self.add_outer_in::<3>(block, laws, tangents, factors),
         }
     }
 
-    fn add_outer_in<const D: usize>(&mut self, block: Block, law: usize, response: &Response, factors: LawFactors, slots: [&[f64]; 3]) {
-        let [left, right, motion] = slots.map(|slots| slots.as_chunks::<D>().0);
-        let Self { solver, pattern, .. } = self;
+    fn add_outer_in<const D: usize>(
+        &mut self,
+        block: Block,
+        laws: Range<usize>,
+        tangents: &LawTangents,
+        factors: impl Fn(usize) -> Option<LawFactors>,
+    ) {
+        let Self { solver, pattern, group_sum, .. } = self;
         let values = solver.values_mut();
-        for &OuterTerm { slot: [s, t], argument: [i, j], pair } in &pattern.law_outer[law] {
-            let (i, j, s, t) = (i as usize, j as usize, s as usize, t as usize);
-            let stiffness = factors.value * response.by_value[i][j] + factors.rate * response.by_rate[i][j];
-            let turning = factors.motion * response.by_rate[i][j];
-            let by: [f64; D] = std::array::from_fn(|d| stiffness * right[t][d] + turning * motion[t][d]);
-            for (positions, left) in pattern.full_block::<D>(block, pair).iter().zip(left[s]) {
-                positions.iter().zip(by).for_each(|(&position, by)| values[position as usize] += left * by);
+        for group in pattern.law_groups.iter().filter(|group| laws.contains(&group.first)) {
+            if !group_sum.add_up::<D>(group, tangents, &factors) {
+                continue;
+            }
+            let width = group.nodes * D;
+            for (pairs, lines) in group.pairs.chunks_exact(group.nodes).zip(group_sum.matrix.chunks_exact(D * width)) {
+                for (b, &pair) in pairs.iter().enumerate() {
+                    for (positions, line) in pattern.full_block::<D>(block, pair).iter().zip(lines.chunks_exact(width)) {
+                        positions.iter().zip(&line[b * D..]).for_each(|(&position, sum)| values[position as usize] += sum);
+                    }
+                }
             }
         }
     }

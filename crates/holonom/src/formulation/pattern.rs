@@ -3,8 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::law_groups::LawGroup;
 use crate::linalg::Plan;
-use crate::system::{MAX_ARGUMENTS, Slots};
+use crate::system::Slots;
 
 /// The number of no pair.
 pub(super) const NONE: u32 = u32::MAX;
@@ -12,13 +13,6 @@ pub(super) const NONE: u32 = u32::MAX;
 /// A block of the matrix: the field of its rows and the field of its columns.
 #[derive(Clone, Copy, Debug)]
 pub struct Block(pub usize, pub usize);
-
-/// One term of the tangent of a law: ∇π_i (∂f_i/∂·) ∇π_jᵀ for a pair of slots.
-pub(super) struct OuterTerm {
-    pub slot: [u32; 2],
-    pub argument: [u8; 2],
-    pub pair: u32,
-}
 
 /// A skew block of second derivatives, w ↦ w × e: which of the pairs with full blocks, and e (in the plane its normal's part).
 #[derive(Clone, Copy)]
@@ -77,7 +71,7 @@ pub struct Pattern {
     pub(super) row_isotropic: Vec<(u32, u32, f64)>,
     pub(super) row_skew: Vec<(u32, Turn)>,
     pub(super) law_hessian: Vec<Vec<Hessian>>,
-    pub(super) law_outer: Vec<Vec<OuterTerm>>,
+    pub(super) law_groups: Vec<LawGroup>,
     pub(super) load_pairs: Vec<Vec<u32>>,
     pub(super) custom_pairs: Vec<Vec<u32>>,
     /// For columns and for rows, for each block: number of a slot's component and its place in the matrix.
@@ -126,6 +120,3 @@ impl Pattern {
         &self.full.as_chunks().0[first..first + D]
     }
 }
-
-// Six arguments fit the byte that numbers them.
-const _: () = assert!(MAX_ARGUMENTS < 256);

@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use super::augmented::Augmented;
 use super::hubs::early_rows;
-use super::pattern::{Coupling, Hessian, NONE, OuterTerm, Pattern, Turn};
+use super::law_groups::group_laws;
+use super::pattern::{Coupling, Hessian, NONE, Pattern, Turn};
 use crate::linalg::{Places, Plan, Plans, fill_reducing_order};
 use crate::system::{HessianBlock, InvariantId, NodeId, Quantity, Row, System};
 
@@ -125,14 +126,9 @@ impl Pattern {
             row_skew.extend(hessian.skew.iter().map(|&turn| (k, turn)));
         }
         let law_hessian = laws.iter().map(|law| law.iter().map(|&id| hessian(id)).collect()).collect();
-        let law_outer = laws.iter().map(|law| {
-            let slots = law_slots(law);
-            let terms = slots.iter().flat_map(|&(s, i)| slots.iter().map(move |&(t, j)| (s, i, t, j)));
-            let term =
-                |(s, i, t, j)| OuterTerm { slot: [s, t], argument: [i, j], pair: pairs.at(slot_nodes[s as usize], slot_nodes[t as usize]) };
-            terms.map(term).collect()
-        });
-        let law_outer = law_outer.collect();
+        let of_laws = laws.iter().map(|law| law_slots(law).into_iter().map(|(slot, argument)| (slot_nodes[slot as usize], slot, argument)));
+        // Rows are added apart from forces.
+        let law_groups = group_laws(of_laws.map(Iterator::collect), system.laws.len(), |a, b| pairs.at(a, b));
         let group_pairs = |nodes: &[NodeId]| -> Vec<u32> {
             let all = nodes.iter().flat_map(|a| nodes.iter().map(move |b| (a.0, b.0)));
             all.map(|(a, b)| if is_free(a) && is_free(b) { pairs.at(a, b) } else { NONE }).collect()
@@ -155,7 +151,7 @@ impl Pattern {
             row_isotropic,
             row_skew,
             law_hessian,
-            law_outer,
+            law_groups,
             load_pairs,
             custom_pairs,
             row_entries: Vec::new(),

@@ -1,6 +1,7 @@
 //! The terms of a stage: rows, laws, loads and inertia, their residual and their tangent.
 
-use super::kkt::{Kkt, LawFactors};
+use super::kkt::Kkt;
+use super::law_groups::{LawFactors, LawTangents};
 use super::level::Level;
 use super::pattern::Block;
 use super::stage::{RowsAt, Sampling, Stage};
@@ -219,17 +220,23 @@ impl Workspace {
     pub fn add_laws(&self, system: &System, stage: &Stage, block: Block, kkt: &mut Kkt) {
         let between = stage.sampling == Sampling::Between;
         let share = stage.inertia * stage.share();
-        for (law, entry) in system.laws.iter().enumerate() {
-            let dissipates = !between && !entry.law.conservative();
-            let factors = LawFactors {
+        let factors = |law: usize| {
+            let dissipates = !between && !system.laws[law].law.conservative();
+            Some(LawFactors {
                 force: share,
                 value: if between { stage.inertia } else { share },
                 rate: if dissipates { stage.inertia * stage.rate } else { 0.0 },
                 motion: if dissipates { share } else { 0.0 },
-            };
-            let right = if between { &self.end.at.gradient } else { &self.sampled.at.gradient };
-            kkt.add_law(block, law, &self.forces.responses[law], factors, &self.sampled.at.gradient, right, &self.forces.motion);
-        }
+            })
+        };
+        kkt.add_laws(block, 0..system.laws.len(), &self.law_tangents(between), factors);
+    }
+
+    /// What the tangents of laws are made of at a sampled state, or between the ends of a step.
+    fn law_tangents(&self, between: bool) -> LawTangents<'_> {
+        let Self { sampled, end, forces, .. } = self;
+        let right = if between { &end.at.gradient } else { &sampled.at.gradient };
+        LawTangents { responses: &forces.responses, left: &sampled.at.gradient, right, motion: &forces.motion }
     }
 
     /// Adds Σ λ_k times the change of the derivatives of the rows that are functions of invariants, times ϖ.
@@ -245,10 +252,8 @@ impl Workspace {
                 *out = line.map(|h| lambda * h);
             }
         }
-        let right = if between { &self.end.at.gradient } else { &self.sampled.at.gradient };
-        for k in system.laws.len()..self.forces.responses.len() {
-            kkt.add_law(block, k, &self.forces.responses[k], factors, &self.sampled.at.gradient, right, &self.forces.motion);
-        }
+        let rows = system.laws.len()..self.forces.responses.len();
+        kkt.add_laws(block, rows, &self.law_tangents(between), |_| Some(factors));
     }
 
     /// Adds the tangents of all loads, times ϖ.
@@ -278,11 +283,10 @@ impl Workspace {
 
     /// Adds what forces change by with velocity, times `factor`.
     pub fn add_damping(&mut self, system: &System, t: f64, block: Block, factor: f64, kkt: &mut Kkt) {
-        for (law, _) in system.laws.iter().enumerate().filter(|(_, entry)| !entry.law.conservative()) {
-            let factors = LawFactors { force: 0.0, value: 0.0, rate: factor, motion: 0.0 };
-            let gradient = &self.sampled.at.gradient;
-            kkt.add_law(block, law, &self.forces.responses[law], factors, gradient, gradient, &self.forces.motion);
-        }
+        let factors = LawFactors { force: 0.0, value: 0.0, rate: factor, motion: 0.0 };
+        kkt.add_laws(block, 0..system.laws.len(), &self.law_tangents(false), |law| {
+            (!system.laws[law].law.conservative()).then_some(factors)
+        });
         for (k, load) in system.loads.iter().enumerate() {
             let [_, by_velocity] = self.load_tangents(system, load, t, None, 1.0);
             kkt.add_load(block, k, by_velocity, -factor);
