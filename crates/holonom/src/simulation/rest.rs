@@ -68,6 +68,14 @@ impl Places {
     pub fn settle(&mut self) -> Result<(), Restless> {
         let x = self.system.start_position().to_vec();
         self.put(&x).map_err(|_| Restless::Stuck)?;
+        self.go_down()?;
+        // What rounding alone has moved stays as it was: nothing but far smaller numbers would be left of the forces, and no directions.
+        let is_there = apart(&x, &self.work.end.x) <= ROUNDED * self.work.scales.length;
+        if is_there { self.put(&x).map_err(|_| Restless::Stuck) } else { Ok(()) }
+    }
+
+    /// Goes on from one place of rest to the next as long as it would not come back there.
+    fn go_down(&mut self) -> Result<(), Restless> {
         let mut outcome = self.come_to_rest();
         for _ in 0..RIDGES {
             let rest = self.work.end.x.clone();
@@ -79,8 +87,7 @@ impl Places {
                 if before.is_err() && outcome.is_err() {
                     return outcome;
                 }
-                let apart = rest.iter().zip(&self.work.end.x).fold(0.0, |apart: f64, (x, other)| apart.max((x - other).abs()));
-                before.is_ok() && outcome.is_ok() && apart <= back * PUSH * self.work.scales.length
+                before.is_ok() && outcome.is_ok() && apart(&rest, &self.work.end.x) <= back * PUSH * self.work.scales.length
             };
             if comes_back {
                 return self.put(&rest).map_err(|_| Restless::Stuck).and(before);
@@ -260,6 +267,11 @@ impl Places {
         let rounding = ROUNDED * (energy::size(system, work, &work.end.x) + work.scales.length * pulls.sum::<f64>());
         (potential(work) - before - done <= rounding).then(|| largest(&work.d))
     }
+}
+
+/// How far two places are from each other at most.
+fn apart(x: &[f64], other: &[f64]) -> f64 {
+    x.iter().zip(other).fold(0.0, |apart: f64, (x, other)| apart.max((x - other).abs()))
 }
 
 /// The forces on all nodes, as they were sampled last, that have no potential and may supply energy, N.
