@@ -60,6 +60,41 @@ fn far_from_the_origin_nothing_is_lost() {
     }
 }
 
+/// A satellite that is tied to what it carries in four places, along and across no axis: its centre is a sum of these with factors that are
+/// nothing but for rounding, and what is left out of them is not left out of the way from the origin.
+#[test]
+fn centres_far_away_are_where_they_are_written() {
+    let turned = |[x, y, z]: [f64; 3]| [(2.0 * x - y + 2.0 * z) / 3.0, (2.0 * x + 2.0 * y - z) / 3.0, (2.0 * y + 2.0 * z - x) / 3.0];
+    let satellite = |far: f64| {
+        let way = |x: [f64; 3]| format!("{:?}", turned(x));
+        let place = |x: [f64; 3]| format!("{:?}", [0, 1, 2].map(|c| turned(x)[c] + [3.0, -4.0, 2.0][c] * far));
+        let mut text = "gravity = [0, 0, 0]\n".to_string();
+        let bodies =
+            [("hub", 50.0, [0.0; 3]), ("wheel", 4.0, [0.0, 0.0, 0.4]), ("panel", 6.0, [1.2, 0.0, 0.0]), ("arm", 3.0, [0.0, 1.0, 0.0])];
+        for (name, mass, at) in bodies {
+            text += &format!("[body.{name}]\nmass = {mass}\ninertia = [{0}, {0}, {0}]\nposition = {1}\n", 0.1 * mass, place(at));
+        }
+        let hinges = [("spin", "wheel", [0.0, 0.0, 0.4], [0.0, 0.0, 1.0]), ("fold", "panel", [0.5, 0.0, 0.0], [0.0, 1.0, 0.0])];
+        for (name, body, at, axis) in hinges {
+            text += &format!("[joint.{name}]\ntype = \"revolute\"\nbetween = [\"hub\", \"{body}\"]\nat = {}\n", place(at));
+            text += &format!("axis = {}\n[start.{name}]\nangle_rate = 3\n", way(axis));
+        }
+        text += &format!("[joint.ball]\ntype = \"spherical\"\nbetween = [\"hub\", \"arm\"]\nat = {}\n", place([0.0, 0.5, 0.0]));
+        let ends = [[0.3, 0.3, 0.3], [0.1, 1.1, 0.1]].map(place).join(", ");
+        text += &format!("[joint.tie]\ntype = \"distance\"\nbetween = [\"hub\", \"arm\"]\nat = [{ends}]\n");
+        text += &format!("[point.tip]\nmass = 5\nposition = {}\n", place([-2.0, -0.3, 0.2]));
+        text + "[force.tether]\ntype = \"rope\"\nbetween = [\"hub\", \"tip\"]\nlength = 2\nstiffness = 900\n"
+    };
+    let near = coordinates(&model(&satellite(0.0)), "conserving-ggl", 0.01, 0.5);
+    for far in [1e4, 1e6] {
+        let away = coordinates(&model(&satellite(far)), "conserving-ggl", 0.01, 0.5);
+        for ((name, near), (_, away)) in near.iter().zip(&away) {
+            let bound = 100.0 * far * f64::EPSILON;
+            assert!((near - away).abs() <= bound, "{name}: {away} at {far} m, {near} here");
+        }
+    }
+}
+
 /// The potential counts from the world's origin, at the start and at the end.
 #[test]
 fn energies_far_away_are_those_of_the_world() {

@@ -130,9 +130,22 @@ impl Frame {
             let clean = |value: f64| if value.abs() <= nothing { 0.0 } else { value };
             Term { place: basis.place, factor: clean(factor), turn: clean(turn) }
         });
+        let mut terms = terms.collect::<SmallVec<[Term; 4]>>();
+        keep_sum(one, basis, &mut terms);
+        terms.retain(|term| term.factor != 0.0 || term.turn != 0.0);
         // A body has many of these sums: each takes the room of its terms.
-        terms.filter(|term| term.factor != 0.0 || term.turn != 0.0).collect::<SmallVec<[Term; 4]>>().into_vec()
+        terms.into_vec()
     }
+}
+
+/// Has the factors of points sum up to one, or to nothing for a direction, as places far away would be that much times their distance off.
+fn keep_sum(one: f64, basis: &[Basis], terms: &mut [Term]) {
+    let of_points = || basis.iter().enumerate().filter(|(_, node)| node.is_point).map(|(k, _)| k);
+    let [factor, turn] = of_points().fold([one, 0.0], |[f, g], k| [f - terms[k].factor, g - terms[k].turn]);
+    let size = |k: &usize| terms[*k].factor.hypot(terms[*k].turn);
+    let largest = of_points().max_by(|a, b| size(a).total_cmp(&size(b))).expect("a body has a point");
+    terms[largest].factor += factor;
+    terms[largest].turn += turn;
 }
 
 /// A point of a bar (`one` is 1) at the way `x` from its first end, or a direction (0): (1 − z) a + z b or z (b − a) with z = x/(b − a), complex.
