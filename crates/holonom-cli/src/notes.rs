@@ -322,6 +322,14 @@ fn struck(model: &Model, simulation: &Simulation, rank: &Rank) -> Option<String>
     })
 }
 
+/// That modes are the slowest of a mechanism with many freedoms.
+pub fn slowest(modes: &Modes) -> Option<String> {
+    (modes.faster > 0).then(|| {
+        let (told, faster) = (modes.modes.len(), modes.faster);
+        format!("these are the slowest {told} modes: {faster} more exponents are faster and were not looked for, so that one that grows may be among them")
+    })
+}
+
 /// That modes leave out what drives do.
 pub fn driven(modes: &Modes) -> Option<&'static str> {
     modes.driven.then_some(

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use crate::failure::Failure;
 use crate::folder::{Folder, holds};
 use crate::load::{self, Loaded};
-use crate::notes::driven;
+use crate::notes::{driven, slowest};
 use crate::options::ModesArguments;
 use crate::table::{short, table};
 
@@ -97,10 +97,7 @@ impl Vibrations {
             let within = if found.within > 0.0 { format!(" to within {:.0e} 1/s", found.within) } else { String::new() };
             notes.push(format!("{} more {are} zero{within}: of {motions} that nothing drives back", found.free));
         }
-        if found.faster > 0 {
-            let told = found.modes.len();
-            notes.push(format!("these are the slowest {told}: {} more exponents are faster, and were not looked for", found.faster));
-        }
+        notes.extend(slowest(found));
         if found.unsure > 0 {
             notes.push(format!("{} more cannot be told from rounding beside the others", found.unsure));
         }
