@@ -326,7 +326,7 @@ fn struck(model: &Model, simulation: &Simulation, rank: &Rank) -> Option<String>
 pub fn slowest(modes: &Modes) -> Option<String> {
     (modes.faster > 0).then(|| {
         let (told, faster) = (modes.modes.len(), modes.faster);
-        format!("these are the slowest {told} modes: {faster} more exponents are faster and were not looked for, so that one that grows may be among them")
+        format!("these are the slowest {told} modes: {faster} more exponents are as fast or faster and were not looked for, so that one that grows may be among them")
     })
 }
 

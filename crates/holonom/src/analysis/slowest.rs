@@ -80,7 +80,8 @@ impl Search<'_> {
             let mut speeds: Vec<f64> = exponents.iter().map(|([re, im], _)| re.hypot(*im)).collect();
             speeds.sort_by(f64::total_cmp);
             let same = before.iter().zip(&speeds).take_while(is_same).count();
-            if has == had || has >= MOST || same >= ENOUGH {
+            let zero = speeds.partition_point(|speed| *speed < least);
+            if has == had || has >= MOST || same >= zero + ENOUGH {
                 break (same, exponents);
             }
             (before, more) = (speeds, (GROWTH * has as f64) as usize);

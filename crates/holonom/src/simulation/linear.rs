@@ -159,6 +159,10 @@ impl Places {
     /// Whether a motion that all rows allow is none as soon as it goes on: there is no acceleration with which all rows would go along. So it is at singular
     /// positions, as where bars lie in a line, and there alone, whatever rows follow from others. The motions are those at the place.
     pub fn forks(&mut self, motions: &Motions) -> bool {
+        // Independent rows have accelerations for whatever bends them.
+        if self.redundant_rows() == 0 {
+            return false;
+        }
         let Self { system, newton, work, .. } = self;
         let mut bent = vec![0.0; system.constraints()];
         motions.basis.iter().any(|motion| {

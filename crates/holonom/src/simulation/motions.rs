@@ -44,38 +44,49 @@ impl Places {
         Ok(found)
     }
 
-    /// Adds motions to a space of slow ones until it has so many, with steps of length h from rest. They come of one of the starts, motions without order, and of
-    /// what the steps make of that; of motions that are as fast as each other the first start has one, and the next ones have the others.
+    /// Adds motions to a space of slow ones until it has so many, with steps of length h from rest. They come of one of the starts, motions without order, and
+    /// of what the steps make of that; of motions that are as fast as each other the first start has one, and the next ones have the others.
     pub fn slow_motions(&mut self, slow: &mut Slow, starts: &Motions, most: usize, spot: &Spot, h: f64) -> Result<(), NoRest> {
         self.factor_step(spot, h)?;
-        let mut last: Option<usize> = None;
+        let mut last = None;
         while slow.motions.basis.len() < most {
-            let state = match last {
-                Some(state) => {
-                    let [q, hv] = slow.states[state].each_ref().map(|shares| slow.motions.sum(shares));
-                    let [momentum, more] = [&q, &hv].map(|motion| self.momentum(motion));
-                    let mut right = self.work.pushed_on(&self.system, &q, &momentum, h);
-                    right.iter_mut().zip(&more).for_each(|(right, more)| *right += more);
-                    let q = self.newton.solve_along_rows(&right).ok_or(NoRest::Singular)?;
-                    let shares = slow.motions.take(self, q, HARDLY).0;
-                    let before = slow.states[state][0].iter().chain(std::iter::repeat(&0.0));
-                    let rates = shares.iter().zip(before).map(|(share, before)| share - before).collect();
-                    [shares, rates]
-                }
-                None => {
-                    let Some(start) = starts.basis.get(slow.starts) else { return Ok(()) };
-                    slow.starts += 1;
-                    let (shares, is_new) = slow.motions.take(self, start.clone(), FOLLOWS);
-                    if !is_new {
-                        continue;
-                    }
-                    let rates = vec![0.0; shares.len()];
-                    [shares, rates]
-                }
+            let next = match last {
+                Some(state) => Some(self.stepped(slow, state, h)?),
+                None => self.begun(slow, starts)?,
             };
+            let Some(state) = next else { break };
             last = slow.add(state);
         }
         Ok(())
+    }
+
+    /// A state at rest without order: the next of the starts or, where there are no more, what a step makes of momenta. `None` where nothing is left that is
+    /// nearly as slow as the motions found.
+    fn begun(&mut self, slow: &mut Slow, starts: &Motions) -> Result<Option<[Vec<f64>; 2]>, NoRest> {
+        loop {
+            let start = starts.basis.get(slow.starts).cloned();
+            let is_last = start.is_none();
+            let q = start.or_else(|| self.newton.solve_along_rows(&self.scattered(slow.starts))).ok_or(NoRest::Singular)?;
+            slow.starts += 1;
+            let (shares, is_new) = slow.motions.take(self, q, FOLLOWS);
+            if is_new || is_last {
+                let rates = vec![0.0; shares.len()];
+                return Ok(is_new.then_some([shares, rates]));
+            }
+        }
+    }
+
+    /// What a step of length h, whose matrix is factored, makes of a state.
+    fn stepped(&mut self, slow: &mut Slow, state: usize, h: f64) -> Result<[Vec<f64>; 2], NoRest> {
+        let [q, hv] = slow.states[state].each_ref().map(|shares| slow.motions.sum(shares));
+        let [momentum, more] = [&q, &hv].map(|motion| self.momentum(motion));
+        let mut right = self.work.pushed_on(&self.system, &q, &momentum, h);
+        right.iter_mut().zip(&more).for_each(|(right, more)| *right += more);
+        let q = self.newton.solve_along_rows(&right).ok_or(NoRest::Singular)?;
+        let shares = slow.motions.take(self, q, HARDLY).0;
+        let before = slow.states[state][0].iter().chain(std::iter::repeat(&0.0));
+        let rates = shares.iter().zip(before).map(|(share, before)| share - before).collect();
+        Ok([shares, rates])
     }
 
     /// M q of the free coordinates.
