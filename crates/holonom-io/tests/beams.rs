@@ -33,7 +33,8 @@ fn settled(model: &Model, elements: u32, axes: &[char]) -> Vec<f64> {
 }
 
 /// A cantilever with a force across its free end: P L² = 1 E I and 10 E I bend it by these shares of its length, and draw its end in by those
-/// (Mattiasson 1981, elliptic integrals). The error falls with the fourth power of the length of the elements.
+/// (Mattiasson 1981, elliptic integrals). The error falls with the fourth power of the length of the elements, and even one or two do not stretch where they
+/// are turned far and bend to and fro.
 #[test]
 fn a_cantilever_is_the_elastica() {
     for (load, down, inward) in [(1.0, 0.30172, 0.05643), (10.0, 0.81061, 0.55500)] {
@@ -48,7 +49,12 @@ fn a_cantilever_is_the_elastica() {
             // The table has five digits.
             assert!((exact[0] - down).abs() < 1e-5 && (exact[1] - inward).abs() < 1e-5, "{load}: {exact:?}");
             let errors = [coarse, middle, fine].map(|of| (of[0] - exact[0]).abs());
-            assert!(errors[0] < 5e-3 && errors[0] > 11.0 * errors[1] && errors[1] > 11.0 * errors[2], "{load}: {errors:?}");
+            assert!(errors[0] < 1e-4 && errors[0] > 7.0 * errors[1] && errors[1] > 11.0 * errors[2], "{load}: {errors:?}");
+            for (elements, bound) in [(1, 1.2e-2), (2, 1e-3)] {
+                // In space a single one turns over on its way.
+                let is_off = |(found, exact): (f64, f64)| (found - exact).abs() > bound;
+                assert!(!planar && elements == 1 || !of(elements).into_iter().zip(exact).any(is_off), "{load}, {elements} elements");
+            }
         }
     }
 }

@@ -37,8 +37,14 @@ pub enum Shows {
     /// What its laws exert along some coordinates.
     Along(Vec<Along>),
     /// What is on the far side of a cut through the middle of an element exerts on the near side: its laws along displacements along the mean axes of
-    /// both ends, then along the rotation vector. The first displacement depends on a cosine behind it, then on the others.
-    Section(Vec<Along>),
+    /// both ends, then along the rotation vector. The displacements depend on the ways along these axes over the length, the first on all of them, the others
+    /// on those across, before they depend on turns.
+    Section {
+        /// Displacements, then rotations.
+        coordinates: Vec<Along>,
+        /// Of the element at the start, m.
+        length: f64,
+    },
     /// What a bushing exerts along and about the axes of its first body, which are those of the model at the start.
     Bushing {
         /// Displacements, then sines of rotations.
@@ -172,7 +178,7 @@ impl RecordedForce {
                     headings.push(drum.effort_heading(&of));
                 }
             }
-            Shows::Along(coordinates) | Shows::Section(coordinates) | Shows::Bushing { coordinates, .. } => {
+            Shows::Along(coordinates) | Shows::Section { coordinates, .. } | Shows::Bushing { coordinates, .. } => {
                 // A bushing shows the sines of its angles.
                 let of_angle = if matches!(self.shows, Shows::Bushing { .. }) { "1" } else { Units::of(true).value };
                 let unit = |along: &Along| if along.is_angle { of_angle } else { Units::of(false).value };
@@ -202,7 +208,7 @@ impl RecordedForce {
             Shows::Power => Vec::new(),
             Shows::Tension { .. } => vec![vec![column("force")]],
             Shows::Along(coordinates) => coordinates.iter().map(|along| vec![column(&along.effort[0])]).collect(),
-            Shows::Section(coordinates) => {
+            Shows::Section { coordinates, .. } => {
                 // Components along y and z are those of one.
                 let of_one = coordinates.chunk_by(|a, b| quantity(&a.effort[0]) == quantity(&b.effort[0]));
                 of_one.map(|of_one| of_one.iter().map(|along| column(&along.effort[0])).collect()).collect()
@@ -223,7 +229,7 @@ impl RecordedForce {
 
     /// The beam that it is an element of, if it is one.
     pub(super) fn beam(&self) -> Option<&str> {
-        matches!(self.shows, Shows::Section(_)).then(|| self.name.rfind('[').map_or(&*self.name, |at| &self.name[..at]))
+        matches!(self.shows, Shows::Section { .. }).then(|| self.name.rfind('[').map_or(&*self.name, |at| &self.name[..at]))
     }
 
     /// The columns of the sines of a bushing's rotations; none of other forces.
@@ -259,8 +265,8 @@ impl RecordedForce {
                     }
                 }
             }
-            Shows::Along(coordinates) | Shows::Section(coordinates) | Shows::Bushing { coordinates, .. } => {
-                let sign = if matches!(self.shows, Shows::Section(_)) { 1.0 } else { -1.0 };
+            Shows::Along(coordinates) | Shows::Section { coordinates, .. } | Shows::Bushing { coordinates, .. } => {
+                let sign = if matches!(self.shows, Shows::Section { .. }) { 1.0 } else { -1.0 };
                 let shown = coordinates.iter().filter(|along| along.value.is_some());
                 row.extend(shown.map(|along| at.value(along.coordinate.into())));
                 let first = row.len();
@@ -272,10 +278,11 @@ impl RecordedForce {
                 }));
                 match &self.shows {
                     Shows::Bushing { axes, .. } => moments(axes, &at.system.in_world(at.look.x), &mut row[first + dim..]),
-                    Shows::Section(_) => {
+                    Shows::Section { length, .. } => {
                         let slopes = |along: &Along| &at.look.at.functions.local[along.coordinate.0 as usize].gradient;
                         let turn: SmallVec<[f64; 3]> = coordinates[dim..].iter().map(|along| at.value(along.coordinate.into())).collect();
-                        in_the_middle([0, 1].map(|k| slopes(&coordinates[k])), &turn, &mut row[first..first + dim]);
+                        let slopes: SmallVec<[_; 3]> = coordinates[..dim].iter().map(slopes).collect();
+                        in_the_middle(&slopes, *length, &turn, &mut row[first..first + dim]);
                     }
                     _ => (),
                 }
@@ -320,12 +327,12 @@ fn moments([first, second]: &[Vec<Vec<Term>>; 2], x: &[f64], efforts: &mut [f64]
 }
 
 /// Makes forces along the axes in the middle of an element, half way of the rotation vector between those of its ends, from efforts along its
-/// displacements. These are along m_k = ½ (a_k + b_k): the axes there, but that what goes across the rotation is shorter by the cosine of half of it. The
-/// first displacement changes by `slopes` with the way along m_1, a cosine, and the ways along the others, and these by `across` with their own.
-fn in_the_middle([slopes, across]: [&[f64; MAX_ARGUMENTS]; 2], turn: &[f64], efforts: &mut [f64]) {
-    let along = efforts[0] / across[0];
-    efforts[0] = slopes[0] * along;
-    efforts[1..].iter_mut().zip(&slopes[2..]).for_each(|(effort, slope)| *effort += slope * along);
+/// displacements. Ways along m_k = ½ (a_k + b_k), over the `length`, change these by their `slopes`, those across all of them; and m_k are the axes there,
+/// but that what goes across the rotation is shorter by the cosine of half of it.
+fn in_the_middle(slopes: &[&[f64; MAX_ARGUMENTS]], length: f64, turn: &[f64], efforts: &mut [f64]) {
+    let along: SmallVec<[f64; 3]> = efforts.iter().map(|effort| effort / length).collect();
+    let of_others = |k: usize| (1..along.len()).map(|j| slopes[j][k - 1] * along[j]).sum::<f64>();
+    efforts.iter_mut().enumerate().for_each(|(k, effort)| *effort = slopes[0][k] * along[0] + if k > 0 { of_others(k) } else { 0.0 });
     let angle = turn.iter().map(|turn| turn * turn).sum::<f64>().sqrt();
     let cosine = (0.5 * angle).cos();
     // In the plane the rotation goes across all.

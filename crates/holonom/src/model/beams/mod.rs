@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use section::Numbers;
 pub use section::Section;
-use strain::{Rotation, Strain};
+use strain::{Across, Rotation, Strain};
 
 use super::assembly::Assembly;
 use super::bodies::nodes::Member;
@@ -28,7 +28,7 @@ use super::repeat;
 use super::spread::{Moving, spread};
 use super::start::hold;
 use crate::record::{Along, LineKind, Shows};
-use crate::system::{Constant, FunctionId, Part, SystemBuilder, Term};
+use crate::system::{Constant, FunctionId, InvariantId, Part, SystemBuilder, Term};
 
 /// A straight elastic beam.
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -287,7 +287,7 @@ impl Evaluated {
                         assembly.builder.law(&*name, &[q], Arc::new(Resisting(Viscous(self.damping * stiffness))));
                     }
                 }
-                assembly.show(Shows::Section(shown(&coordinates)));
+                assembly.show(Shows::Section { coordinates: shown(&coordinates), length: self.length });
             });
             assembly.elastic.push(Elastic { bodies, coordinates });
         }
@@ -302,22 +302,24 @@ impl Evaluated {
         let builder = &mut assembly.builder;
         let cosines: Vec<_> = a.iter().zip(&b).take(if dim == 2 { 1 } else { 3 }).map(|(a, b)| builder.dot(a, b)).collect();
         let strains: Vec<_> = mean.iter().map(|axis| builder.dot(&way, axis)).collect();
+        let sine = |k: usize| match dim {
+            2 => builder.cross([0.0; 3], &a[0], &b[0]),
+            // ½ (a_j·b_i − a_i·b_j), as axes of a body have unit length.
+            _ => builder.dot(&mean[(k + 2) % 3], &subtract(&b[(k + 1) % 3], &a[(k + 1) % 3])),
+        };
+        let sines: Vec<_> = if dim == 2 { 2..3 } else { 0..3 }.map(sine).collect();
+        // What an element does across depends on the turns about the axes across.
+        let of = [&strains[..], &cosines[..1], &sines[sines.len() + 1 - dim..]].concat();
         // ∫ w′²/2 of what bends to and fro, and what shear and that have in common (methods §22).
-        let across = self.bending.iter().map(|share| share * (2.0 - 0.8 * share)).collect();
-        let of = [&[strains[0], cosines[0]], &strains[1..]].concat();
-        let along = Part::Smooth { of, function: Arc::new(Strain { across }) };
-        let parts = std::iter::once(along).chain(strains[1..].iter().map(|&strain| Part::Invariant(strain)));
-        let mut coordinates: Vec<_> = parts.map(|part| builder.sum(&[(part, self.length)])).collect();
-        for k in if dim == 2 { 2..3 } else { 0..3 } {
-            let sine = match dim {
-                2 => builder.cross([0.0; 3], &a[0], &b[0]),
-                // ½ (a_j·b_i − a_i·b_j), as axes of a body have unit length.
-                _ => builder.dot(&mean[(k + 2) % 3], &subtract(&b[(k + 1) % 3], &a[(k + 1) % 3])),
-            };
+        let of_across = self.bending.iter().map(|share| share * (2.0 - 0.8 * share)).collect();
+        let along = Part::Smooth { of: of.clone(), function: Arc::new(Strain { across: of_across }) };
+        let across = (0..dim - 1).map(|axis| Part::Smooth { of: of[1..].to_vec(), function: Arc::new(Across { axis }) });
+        let rotation = |&sine: &InvariantId| {
             let of = std::iter::once(sine).chain(cosines.iter().copied()).collect();
-            coordinates.push(builder.sum(&[(Part::Smooth { of, function: Arc::new(Rotation) }, 1.0)]));
-        }
-        coordinates
+            (Part::Smooth { of, function: Arc::new(Rotation) }, 1.0)
+        };
+        let ways = std::iter::once(along).chain(across).map(|part| (part, self.length));
+        ways.chain(sines.iter().map(rotation)).map(|part| builder.sum(&[part])).collect()
     }
 }
 
