@@ -195,9 +195,9 @@ pub(super) fn begin(assembly: &mut Assembly<'_>, equilibrium: bool) -> Result<()
     let lengths = std::mem::take(&mut assembly.lengths);
     let before = (!targets.is_empty() && !equilibrium).then(|| adrift::measured(&assembly.builder).1);
     let elastic = std::mem::take(&mut assembly.elastic);
-    let mut leaves_free = match place(&mut assembly.builder, &targets, &lengths, &mut assembly.efforts, &elastic) {
+    let mut leaves_free = match place(&mut assembly.builder, &targets, &lengths, &mut assembly.efforts, Some(&elastic)) {
         // Beams that cannot go along as they are come to rest bent.
-        Err(_) if equilibrium && !elastic.is_empty() => place(&mut assembly.builder, &targets, &lengths, &mut assembly.efforts, &[])?,
+        Err(_) if equilibrium && !elastic.is_empty() => place(&mut assembly.builder, &targets, &lengths, &mut assembly.efforts, None)?,
         Err((message, _)) if !elastic.is_empty() => {
             return Err((
                 format!("{message}, if beams stay as they are written"),
@@ -225,7 +225,7 @@ pub(super) fn begin(assembly: &mut Assembly<'_>, equilibrium: bool) -> Result<()
     Ok(())
 }
 
-/// Puts the mechanism where its coordinates are given. Says whether these leave anything free.
+/// Puts the mechanism where its coordinates are given, with beams as they are, or bent where forces balance. Says whether these leave anything free.
 ///
 /// # Errors
 /// Why that cannot be, and the cure.
@@ -234,7 +234,7 @@ fn place(
     targets: &[Target],
     lengths: &[DrivenLength],
     efforts: &mut [Effort],
-    elastic: &[Elastic],
+    elastic: Option<&[Elastic]>,
 ) -> Result<bool, (String, &'static str)> {
     if !targets.iter().any(Target::is_placed) {
         return Ok(false);

@@ -16,7 +16,8 @@ const LEAST_SHARE: f64 = 1e-4;
 /// Parts of the way that are tried.
 const MOST_TRIES: usize = 1000;
 
-/// Moves all nodes on a way along which every constraint is met, with as little as possible of all else, in the metric of the mass. Says whether the
+/// Moves all nodes on a way along which every constraint is met, with as little as possible of all else, in the metric of the mass, and beams stay as they are.
+/// Without these, it comes to rest after each part of the way: elements next to what leads would bear all of it, and turn inside out. Says whether the
 /// coordinates leave anything free.
 ///
 /// # Errors
@@ -25,7 +26,7 @@ pub(super) fn assemble(
     builder: &mut SystemBuilder,
     targets: &[Target],
     released: &[usize],
-    elastic: &[Elastic],
+    elastic: Option<&[Elastic]>,
 ) -> Result<bool, (String, &'static str)> {
     if builder.is_moving() {
         let message = "a velocity is written for the pose in the file, and the mechanism is moved from there".to_string();
@@ -35,7 +36,8 @@ pub(super) fn assemble(
         ));
     }
     let is_driven = builder.clone().build().is_driven();
-    let mut led = Way::new(&stiffened(builder, elastic), targets, released, is_driven).ok_or_else(|| stuck(0.0, is_driven))?;
+    let mut led =
+        Way::new(&stiffened(builder, elastic.unwrap_or_default()), targets, released, is_driven).ok_or_else(|| stuck(0.0, is_driven))?;
     let rolls = led.places.system().is_nonholonomic();
     let mut here = led.places.system().start_position().to_vec();
     // How far all nodes went, over the share, and how fast they go on: at a dead centre no velocity leads there.
@@ -56,7 +58,8 @@ pub(super) fn assemble(
             Some(rate) if is_free => led.step(&here, rate, [share, next]),
             _ => Some(along(&here, next - share, rate_here.as_ref().unwrap_or(&way))),
         };
-        match ahead.and_then(|ahead| led.at(&ahead, next)) {
+        let there = ahead.and_then(|ahead| led.at(&ahead, next));
+        match if elastic.is_some() { there } else { there.and_then(|_| led.settle()) } {
             Some(there) => {
                 way = there.iter().zip(&here).map(|(there, here)| (there - here) / (next - share)).collect();
                 here = there;
@@ -135,6 +138,12 @@ impl Way {
         if self.is_driven {
             self.places.velocities().ok()?;
         }
+        Some(self.places.keep().to_vec())
+    }
+
+    /// Where the mechanism comes to rest near the place that it was put at last. `None` where that is nowhere.
+    fn settle(&mut self) -> Option<Vec<f64>> {
+        self.places.settle().ok()?;
         Some(self.places.keep().to_vec())
     }
 
