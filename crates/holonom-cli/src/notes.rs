@@ -200,6 +200,15 @@ pub fn hasty(simulation: &Simulation) -> Option<String> {
     })
 }
 
+/// That the forces that hold the constraints jump from one step to the next.
+fn restless(simulation: &Simulation) -> Option<String> {
+    simulation.is_restless().then(|| {
+        "the forces by which the method holds the constraints jump by about as much as they are from one step to the next: steps are too long for it, or for a \
+         vibration, and places and forces of joints may be far off (a shorter step; conserving-ggl and radau take longer ones than most)"
+            .into()
+    })
+}
+
 /// Share of the mechanism's size from which on it is said that positions are off their constraints.
 const STRAYED: f64 = 1e-3;
 
@@ -265,8 +274,9 @@ pub fn turned_bushings(model: &Model, recording: &Recording) -> Option<String> {
 
 /// What is not sure of the results of a run, as far as the simulation itself knows at its end; whether something is free to move is for the rank to say.
 pub fn doubts(simulation: &Simulation, is_free: bool, completed: bool) -> impl Iterator<Item = String> {
-    let of_energy = lost_energy(simulation, is_free).into_iter().chain(unsure_work(simulation)).filter(move |_| completed);
-    of_energy
+    let of_whole = lost_energy(simulation, is_free).into_iter().chain(unsure_work(simulation)).chain(restless(simulation));
+    of_whole
+        .filter(move |_| completed)
         .chain(strayed(simulation))
         .chain(slipped(simulation))
         .chain(in_parts(simulation))

@@ -406,3 +406,29 @@ fn vibrations_that_steps_do_not_see_are_told() {
     assert!(swept.contains("1 of 2 runs has this note, as run 1 in the column `notes`: much of the kinetic energy"), "{swept}");
     assert!(!is_told(&bob(1.0001, ""), "") && !is_told(&bob(1.01, "damping = 1e3\n"), ""));
 }
+
+/// Forces that jump from step to step are told, where the energy shows nothing of it: RATTLE passes its limit of 2/ω on a taut row of light points. Other
+/// methods and steps below the limit are not told of, nor the trapezoidal rule of index 3, which finds the right places by multipliers that go to and fro.
+#[test]
+fn forces_that_jump_from_step_to_step_are_told() {
+    let folder = folder();
+    let points = [(1, 3e-6), (2, 3e-6), (3, 1.0)]
+        .map(|(k, mass)| format!("[point.P{k}]\nmass = {mass}\nposition = [0, -{k}]\nvelocity = [{}, 0]\n", 1.5 * f64::from(k)));
+    let rows = [("ground", 1), ("P1", 2), ("P2", 3)]
+        .map(|(from, to)| format!("[constraint.r{to}]\ntype = \"distance\"\nbetween = [\"{from}\", \"P{to}\"]\n"));
+    let row = format!("plane = \"xy\"\ngravity = [0, -9.81]\n{}{}[simulation]\nend = 0.4\n", points.concat(), rows.concat());
+    fs::write(folder.path().join("row.toml"), row).unwrap();
+    let is_told = |words: &str| {
+        let said = on_one_line(&text(&holonom(&folder, &format!("run {words} --no-report --force --out a")).stderr));
+        assert!(!said.contains("the method has"), "{said}");
+        said.contains(
+            "note: the forces by which the method holds the constraints jump by about as much as they are from one step to the next: ",
+        )
+    };
+    for step in ["1.75e-3", "8.75e-4", "6e-4"] {
+        assert!(is_told(&format!("row.toml --method lagrange-3/rattle --step {step}")), "{step}");
+        assert!(!is_told(&format!("row.toml --step {step}")), "{step}");
+    }
+    assert!(!is_told("row.toml --method lagrange-3/rattle --step 4e-4"));
+    assert!(!is_told("example:robot-arm --method trapezoidal") && !is_told("example:robot-arm --method lagrange-3/rattle"));
+}

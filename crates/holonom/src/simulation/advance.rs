@@ -213,6 +213,7 @@ impl Simulation {
             self.judge.turns(system, step, &self.gauges, &self.next_gauges)?;
         }
         self.judge.take(step, of_places);
+        audit.look_at_multipliers(step, &self.state.lambda, work);
         Ok(())
     }
 

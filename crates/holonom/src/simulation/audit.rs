@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::doubts::{Haste, Stray, Strays, UnsureWork};
+use super::doubts::{Haste, Stray, Strays, Unrest, UnsureWork};
 use super::{EnergySummary, MomentumSummary, ViolationSummary, WorkSummary};
 use super::{Method, Promise, State};
 use crate::energy;
@@ -68,6 +68,7 @@ pub struct Audit {
     penalty: Option<f64>,
     unsure: UnsureWork,
     haste: Haste,
+    unrest: Unrest,
 }
 
 /// What was booked at the start of a nominal step.
@@ -141,6 +142,7 @@ impl Audit {
             penalty,
             unsure: UnsureWork::default(),
             haste: Haste::default(),
+            unrest: Unrest::default(),
         };
         work.rate_violation(system, state.t);
         audit.phi_dot = norm(&work.rows);
@@ -309,6 +311,25 @@ impl Audit {
     /// The mean kinetic energy, J, where much of it is in vibrations that steps are long for.
     pub(super) fn of_vibrations(&self) -> Option<f64> {
         self.haste.of_vibrations()
+    }
+
+    /// Looks at how multipliers, which were `before`, have changed in a step of length `h` (s).
+    pub(super) fn look_at_multipliers(&mut self, h: f64, before: &[f64], work: &Workspace) {
+        if work.estimate.allowed > 0.0 {
+            return;
+        }
+        let [mut change, mut size] = [0.0; 2];
+        for ((before, after), reach) in before.iter().zip(&work.lambda).zip(&work.scales.reach) {
+            let square = |number: f64| (number * reach).powi(2);
+            change += 0.25 * square(after - before);
+            size += 0.5 * (square(*before) + square(*after));
+        }
+        self.unrest.look(h, change, size);
+    }
+
+    /// The mean pull of multipliers, as an acceleration over the size of the mechanism, 1/s², where they jump from step to step.
+    pub(super) fn of_unrest(&self) -> Option<f64> {
+        self.unrest.mean()
     }
 
     /// ‖Φ̈‖ of the accelerations the integrator found, where it takes its forces.

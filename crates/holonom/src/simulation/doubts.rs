@@ -76,6 +76,38 @@ impl Haste {
     }
 }
 
+/// Share of the impulses of joints from steps in which their forces jump, from which on these are much of what joints bear.
+const JUMPY: f64 = 0.25;
+
+/// What multipliers do from step to step: sums over all steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Unrest {
+    /// Steps in which they change by about as much as they are.
+    jumps: u64,
+    /// Impulses of these and of all steps, m/s over the size of the mechanism, and the time of all, s.
+    jumping: f64,
+    all: f64,
+    time: f64,
+}
+
+impl Unrest {
+    /// Looks at a step of length `h` (s): the squares of half the change of what multipliers pull at and the mean of those at its ends, 1/s⁴.
+    pub fn look(&mut self, h: f64, change: f64, size: f64) {
+        let impulse = h * size.sqrt();
+        if change > FAST * size {
+            self.jumps += 1;
+            self.jumping += impulse;
+        }
+        self.all += impulse;
+        self.time += h;
+    }
+
+    /// The mean pull, 1/s², where much of it is in steps in which it jumps.
+    pub fn mean(&self) -> Option<f64> {
+        (self.jumps >= FEWEST && self.jumping > JUMPY * self.all).then(|| self.all / self.time)
+    }
+}
+
 /// A row and how far positions are off it, m, or velocities, m/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Stray {

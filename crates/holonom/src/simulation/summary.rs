@@ -158,6 +158,9 @@ const SMALL: f64 = 0.1;
 /// Share of energies that is round-off of a run.
 const ROUNDED: f64 = 1e-9;
 
+/// What rounding leaves of positions, over the size of the mechanism, as multipliers show it: these change by it over the square of the step.
+const NOISE: f64 = 256.0 * f64::EPSILON;
+
 impl Simulation {
     /// Size of the mechanism at its start, m: what circles are small beside.
     pub fn length(&self) -> f64 {
@@ -225,6 +228,17 @@ impl Simulation {
     /// stands about still.
     pub fn is_hasty(&self) -> bool {
         self.method.order() <= 2 && self.audit.of_vibrations().is_some_and(|kinetic| kinetic > self.nothing())
+    }
+
+    /// Whether multipliers change from one of equal steps to the next by about as much as they are, and not by what rounded positions make of them: the step
+    /// is above the method's limit, or above that of a vibration. Not where they always go to and fro, in which case the energy and velocities tell.
+    pub fn is_restless(&self) -> bool {
+        let length = self.work.scales.length;
+        !self.method.is_unstable
+            && self.audit.of_unrest().is_some_and(|pull| {
+                let pull = pull - NOISE / self.step.powi(2);
+                pull > 0.0 && self.judge.motion(1.0) * pull * length * length > self.nothing()
+            })
     }
 
     /// Energy that is nothing beside what the mechanism has, J: where it stands about still, and round-off.
