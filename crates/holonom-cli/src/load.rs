@@ -369,7 +369,7 @@ pub fn start_failure(error: StartError) -> Failure {
         StartError::Step { .. } => "give a step above 0",
         StartError::Velocity { .. } => {
             "move what is named there, or take away or loosen one of the constraints; rows that only repeat others must do so to the last digit: write \
-             places and axes with all digits"
+             places and axes with all digits, near the origin"
         }
         _ => "move what is named there, or take away or loosen one of the constraints",
     };

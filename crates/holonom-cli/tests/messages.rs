@@ -337,6 +337,34 @@ fn why_no_step_is_short_enough_is_told() {
     says(&four_bar(0.0), &["completed"], 0);
 }
 
+/// Rows that repeat others and stand so far from the origin that their places cannot be written finely enough: more digits are no cure.
+#[test]
+fn places_far_from_the_origin_are_told_where_redundant_rows_differ() {
+    let slide = "gravity = [0, 0, -9.81]
+        [body.b]
+        mass = 1
+        inertia = [0.2, 0.14, 0.17]
+        position = [-17956.85504057395, -4705.651636636542, 220.04654371915373]
+        [joint.slide]
+        type = \"prismatic\"
+        between = [\"b\", \"ground\"]
+        at = [-17955.935783558412, -4705.978037393023, 219.71195589361412]
+        axis = [0.3501681352891473, -0.06028221919279561, -0.6325735149879536]
+        [joint.link]
+        type = \"revolute-spherical\"
+        between = [\"ground\", \"b\"]
+        at = [[-17955.755111169245, -4705.270435391107, 219.0767145677857], [-17955.324069992217, -4704.316624584432, 219.61741769080916]]
+        axis = [-0.6817862900721666, 0.5688578174667064, -0.45996547498333695]
+        [simulation]
+        end = 0.02
+        step = 0.004\n";
+    says(
+        slide,
+        &["1.8e4 m from the origin places cannot be written more finely than to 4e-12 m", "(put the mechanism near the origin and write"],
+        3,
+    );
+}
+
 /// A slider of 2 kg that runs at 1.5 m/s into a stop of 1e6 N/m is in contact for π √(m/k) = 4.44 ms, in any units.
 fn impact(step: f64, second: f64, rest: &str) -> String {
     format!(

@@ -3,9 +3,13 @@
 use super::Simulation;
 use super::pilot::is_rough;
 use crate::formulation::{Failure, Independence, Level, SMOOTH, Workspace};
+use crate::linalg::largest;
 
 /// A row that is missed by less than this share of the mechanism's size is not to blame for a step that fails.
 const BLAMED: f64 = 1e-10;
+
+/// Distance from the origin, over the mechanism's size, from which on it is said that places are rounded there.
+const FAR: f64 = 1e3;
 
 /// A row that adds less to the others, squared and over its own size, is near to one that follows from them.
 const NEAR_SINGULAR: f64 = 1e-5;
@@ -130,10 +134,22 @@ impl Simulation {
                          nor with conserving-ggl; otherwise "
                     }
                 };
+                // Places far from the origin are rounded as they are written, by more than rows that repeat others may differ.
+                let far = largest(&self.system.origin);
+                let (why, cure) = match far > FAR * self.length() {
+                    false => (String::new(), "write the places with all digits"),
+                    true => (
+                        format!(
+                            ", and {far:.1e} m from the origin places cannot be written more finely than to {:.0e} m",
+                            far * f64::EPSILON
+                        ),
+                        "put the mechanism near the origin and write the places with all digits",
+                    ),
+                };
                 format!(
                     "; {redundant} of the equations of the constraints follow from the others (redundant): {of_rates}either they differ from these in the last \
                      digits that are written, as those of two hinges whose axes are a little off or of three distances along a line, so that nothing meets them \
-                     all, or the position is singular (write the places with all digits, take away what is redundant, or put a bushing or a spring in its place)"
+                     all{why}, or the position is singular ({cure}, take away what is redundant, or put a bushing or a spring in its place)"
                 )
             }
         }
