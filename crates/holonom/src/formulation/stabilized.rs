@@ -149,7 +149,7 @@ impl Stabilized {
         let half = 0.5 * stage.step;
         self.w.iter_mut().zip(&self.u).zip(&work.start.v).for_each(|((w, u), v)| *w = u + half * v);
         let to_end = Direction { nodes: &self.u, time: half };
-        system.turn(&work.end.at, &work.end.x, to_end, stage.end(), &mut work.turned.half, &mut self.turned_u);
+        system.turn_rows(&work.end.at, &work.end.x, to_end, stage.end(), &mut work.turned.half, &mut self.turned_u);
         // The Hessians of invariants are constant; the slots of functions come later.
         let turned = self.turned_u.iter().zip(&self.turned_start);
         self.turned_w.iter_mut().zip(turned).for_each(|(w, (u, start))| *w = u + half * start);
@@ -179,9 +179,11 @@ impl Stabilized {
             let (a, b) = (&from.functions.local[k], &to.functions.local[k]);
             std::array::from_fn(|i| 0.5 * (a.gradient[i] + b.gradient[i]))
         };
-        system.turn_functions(&work.sampled.at, &mut self.velocity_gradient, |k, _| mean(k).map(|factor| [factor, 0.0]));
+        system.turn_functions(system.functions_of_rows(), &work.sampled.at, &mut self.velocity_gradient, |k, _| {
+            mean(k).map(|factor| [factor, 0.0])
+        });
         let (v0, u) = (&work.start.v, &self.u);
-        system.turn_functions(&work.sampled.at, &mut self.turned_w, |k, base| {
+        system.turn_functions(system.functions_of_rows(), &work.sampled.at, &mut self.turned_w, |k, base| {
             let (start, end) = (system.rates(base, from, v0), system.rates(base, to, u));
             let rates: [f64; MAX_ARGUMENTS] = std::array::from_fn(|j| end[j] + 0.5 * step * start[j]);
             let (a, b) = (&from.functions.local[k], &to.functions.local[k]);

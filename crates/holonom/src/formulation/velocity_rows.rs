@@ -42,7 +42,7 @@ impl Workspace {
         match stage.sampling {
             Sampling::Between => {
                 let change = |id: InvariantId| end.at.value[id.0 as usize] - start.at.value[id.0 as usize];
-                system.turn_functions(&end.at, &mut turned.v, |k, base| {
+                system.turn_functions(0..system.functions.len(), &end.at, &mut turned.v, |k, base| {
                     let rise: [f64; MAX_ARGUMENTS] = std::array::from_fn(|i| base.get(i).map_or(0.0, |&id| change(id)));
                     let (mean, there) = (&sampled.at.functions.local[k], &end.at.functions.local[k]);
                     std::array::from_fn(|i| [0.0, mean.gradient[i] + 0.5 * there.bend(i, &rise)])

@@ -123,8 +123,8 @@ impl System {
         let first = self.invariants.len();
         out.value[first..].iter_mut().zip(&out.functions.local).for_each(|(value, local)| *value = local.value);
         let (invariants, functions) = out.gradient.split_at_mut(self.invariants.slots() * self.dim);
-        let local = &out.functions.local;
-        self.functions.compose(self.dim, |k, _| local[k].gradient.map(|factor| [factor, 0.0]), invariants, invariants, functions);
+        let (local, all) = (&out.functions.local, 0..self.functions.len());
+        self.functions.compose(self.dim, all, |k, _| local[k].gradient.map(|factor| [factor, 0.0]), invariants, invariants, functions);
     }
 
     /// The gradients between two positions whose evaluations are `from` and `to`, such that gradient · Δx (+ ∂Φ/∂t Δt)
@@ -221,8 +221,27 @@ impl System {
     /// H v of all rows' and laws' slots (D a slot), their second derivatives times a direction, at the evaluation `at`
     /// of `x`. `half` has room for one number an invariant.
     pub(crate) fn turn(&self, at: &Evaluation, x: &[f64], along: Direction<'_>, t: f64, half: &mut [f64], turned: &mut [f64]) {
+        self.turn_of(0..self.functions.len(), at, x, along, t, half, turned);
+    }
+
+    /// The same without the slots of functions that are no rows, which keep what they hold.
+    pub(crate) fn turn_rows(&self, at: &Evaluation, x: &[f64], along: Direction<'_>, t: f64, half: &mut [f64], turned: &mut [f64]) {
+        self.turn_of(self.functions_of_rows(), at, x, along, t, half, turned);
+    }
+
+    #[expect(clippy::too_many_arguments)] // those of `turn`, and of what
+    fn turn_of(
+        &self,
+        of: impl Iterator<Item = usize>,
+        at: &Evaluation,
+        x: &[f64],
+        along: Direction<'_>,
+        t: f64,
+        half: &mut [f64],
+        turned: &mut [f64],
+    ) {
         self.invariants.curvature(along.nodes, half, turned);
-        self.turn_functions(at, turned, |k, base| {
+        self.turn_functions(of, at, turned, |k, base| {
             let rates = self.rates(base, at, along.nodes);
             let local = &at.functions.local[k];
             std::array::from_fn(|i| [local.gradient[i], local.bend(i, &rates)])
@@ -265,17 +284,26 @@ impl System {
         }
     }
 
-    /// Fills the slots of the functions with `factor` times what the slots of their invariants hold, plus `bend` times
+    /// The functions that are rows.
+    pub(crate) fn functions_of_rows(&self) -> impl Iterator<Item = usize> + '_ {
+        self.function_rows.iter().filter_map(|&row| match self.rows[row as usize].quantity {
+            Quantity::Function(id) => Some(id.0 as usize),
+            Quantity::Invariant(_) => None,
+        })
+    }
+
+    /// Fills the slots of some functions with `factor` times what the slots of their invariants hold, plus `bend` times
     /// the gradients there; `parts` gives both for each argument of a function.
     pub(crate) fn turn_functions(
         &self,
+        of: impl Iterator<Item = usize>,
         at: &Evaluation,
         turned: &mut [f64],
         parts: impl Fn(usize, &[InvariantId]) -> [[f64; 2]; MAX_ARGUMENTS],
     ) {
         if !self.functions.is_empty() {
             let (inner, own) = turned.split_at_mut(self.invariants.slots() * self.dim);
-            self.functions.compose(self.dim, parts, inner, &at.gradient, own);
+            self.functions.compose(self.dim, of, parts, inner, &at.gradient, own);
         }
     }
 

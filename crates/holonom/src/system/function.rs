@@ -187,25 +187,40 @@ impl Functions {
         }
     }
 
-    /// Fills the functions' slots (D a slot): for each argument `factor` times what the slots of the invariant hold in
+    /// Fills the slots of some functions (D a slot): for each argument `factor` times what the slots of the invariant hold in
     /// `inner`, plus `bend` times its gradient.
     pub fn compose(
         &self,
         dim: usize,
+        of: impl Iterator<Item = usize>,
         parts: impl Fn(usize, &[InvariantId]) -> [[f64; 2]; MAX_ARGUMENTS],
         inner: &[f64],
         gradient: &[f64],
         out: &mut [f64],
     ) {
-        for (k, function) in self.items.iter().enumerate() {
-            let parts = parts(k, &function.base);
-            for s in function.slot..function.slot + function.slots {
-                let (source, argument) = self.source[s];
-                let [factor, bend] = parts[argument as usize];
-                let from = source as usize * dim;
-                for c in 0..dim {
-                    out[s * dim + c] = factor * inner[from + c] + bend * gradient[from + c];
-                }
+        match dim {
+            2 => self.compose_in::<2>(of, parts, inner, gradient, out),
+            _ => self.compose_in::<3>(of, parts, inner, gradient, out),
+        }
+    }
+
+    fn compose_in<const D: usize>(
+        &self,
+        of: impl Iterator<Item = usize>,
+        parts: impl Fn(usize, &[InvariantId]) -> [[f64; 2]; MAX_ARGUMENTS],
+        inner: &[f64],
+        gradient: &[f64],
+        out: &mut [f64],
+    ) {
+        let [inner, gradient] = [inner, gradient].map(|slots| slots.as_chunks::<D>().0);
+        let out = out.as_chunks_mut::<D>().0;
+        for k in of {
+            let function = &self.items[k];
+            let (parts, slots) = (parts(k, &function.base), function.slot..function.slot + function.slots);
+            for (out, &(source, argument)) in out[slots.clone()].iter_mut().zip(&self.source[slots]) {
+                let ([factor, bend], source) = (parts[argument as usize], source as usize);
+                let (inner, gradient) = (&inner[source], &gradient[source]);
+                *out = std::array::from_fn(|c| factor * inner[c] + bend * gradient[c]);
             }
         }
     }
