@@ -28,7 +28,7 @@ const LEAST: f64 = 1e-10;
 const MOST_FREEDOMS: usize = 200;
 const SOME: usize = 10;
 const FEW: usize = 60;
-const LENGTHS: [f64; 8] = [1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8];
+const LENGTHS: [f64; 10] = [0.1, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8];
 
 /// How far the places are beside it and each other, over the mechanism's size; how many times that the way back to rest may be; and by how much rounding
 /// may have them off.
