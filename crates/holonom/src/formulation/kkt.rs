@@ -73,7 +73,7 @@ impl Kkt {
             full_sum: vec![[0.0; 3]; full_mass.len()],
             full_mass,
             augmented,
-            group_sum: GroupSum::default(),
+            group_sum: GroupSum::new(&pattern.law_groups, pattern.dim),
             pattern,
         }
     }
@@ -88,7 +88,7 @@ impl Kkt {
             full_mass: self.full_mass.clone(),
             full_sum: self.full_sum.clone(),
             augmented: self.augmented.clone(),
-            group_sum: GroupSum::default(),
+            group_sum: GroupSum::new(&self.pattern.law_groups, self.dim),
         }
     }
 

@@ -69,7 +69,6 @@ pub(super) fn group_laws(laws: impl Iterator<Item = Vec<(u32, u32, u8)>>, apart:
 }
 
 /// The sum of the tangents of the laws of a group, over the components of its nodes.
-#[derive(Default)]
 pub(super) struct GroupSum {
     /// Row-major.
     pub matrix: Vec<f64>,
@@ -78,6 +77,12 @@ pub(super) struct GroupSum {
 }
 
 impl GroupSum {
+    /// With the room for each of these groups.
+    pub fn new(groups: &[LawGroup], dim: usize) -> Self {
+        let width = dim * groups.iter().map(|group| group.nodes).max().unwrap_or(0);
+        Self { matrix: Vec::with_capacity(width * width), line: Vec::with_capacity(width) }
+    }
+
     /// Adds up ∇π_i (∂f_i/∂π_j ∇π_j + ∂f_i/∂π̇_j ∇π̇_j)ᵀ of the laws that have factors; whether there is any.
     pub fn add_up<const D: usize>(
         &mut self,
