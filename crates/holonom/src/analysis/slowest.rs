@@ -50,11 +50,13 @@ pub(super) fn slowest(system: &System, places: &mut Places, rest: &Rest, starts:
             (modes.free, modes.within) = (slower.len(), slower.last().map_or(0.0, Found::speed));
         }
         let (here, faster) = others.split_at(others.partition_point(|found| found.speed() * h < FAR));
-        let sure = here.iter().take_while(|found| found.is_sure).inspect(|_| told += 1);
-        modes.modes.extend(sure.filter(|found| found.s[1] >= 0.0).map(|found| Mode::new(system, &motions.basis, found)));
+        let sure = here.iter().take_while(|found| found.is_sure).count();
+        told += sure;
+        let of_pairs = here[..sure].iter().filter(|found| found.s[1] >= 0.0);
+        modes.modes.extend(of_pairs.map(|found| Mode::new(system, &motions.basis, found)));
         // Where others are much faster, a step of their own shows them.
         match faster.first() {
-            Some(next) if told < ENOUGH => (h, least) = (LENGTH / next.speed(), BELOW * next.speed()),
+            Some(next) if told < ENOUGH && sure == here.len() => (h, least) = (LENGTH / next.speed(), BELOW * next.speed()),
             _ => break,
         }
     }
