@@ -67,12 +67,6 @@ pub(super) fn look_again(
     Ok(found.collect())
 }
 
-/// The speed of the slowest motion that a step of length h tells from what rounding makes of a zero, 1/s.
-pub(super) fn slowest(found: &[Found], h: f64) -> Option<f64> {
-    let told = found.iter().filter(|found| found.is_sure || found.speed() * h >= 1.0);
-    told.map(Found::speed).min_by(f64::total_cmp)
-}
-
 impl Mode {
     pub(super) fn new(system: &System, motions: &[Vec<f64>], found: &Found) -> Self {
         let [re, im] = found.s;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::exponents::{self, SLOWER, look_twice};
+use super::exponents::{Found, SLOWER, look_twice};
 use super::slowest;
 use crate::simulation::{NoRest, Places, StartError};
 use crate::system::System;
@@ -153,7 +153,7 @@ impl Modes {
 /// Finds the modes about the start of a system, which is at rest there. Drives stand still at the time 0.
 ///
 /// # Errors
-/// When it is not at rest, or too large.
+/// When it is not at rest, or nothing can be told of its motions.
 pub fn modes(system: &System) -> Result<Modes, NoModes> {
     if !stands(system) {
         return Err(NoModes::Moving);
@@ -186,7 +186,7 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
             outcome => break outcome?,
         }
     };
-    let Some(slowest) = exponents::slowest(&slow, long) else {
+    let Some(slowest) = slowest_speed(&slow, long) else {
         return Ok(Modes { within: slow.iter().fold(0.0, |most, found| found.speed().max(most)), ..none });
     };
     let mut modes = Modes { free: 0, ..none };
@@ -213,6 +213,12 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
     modes.unsure = left;
     modes.sort();
     Ok(modes)
+}
+
+/// The speed of the slowest motion that a step of length h tells from what rounding makes of a zero, 1/s.
+fn slowest_speed(found: &[Found], h: f64) -> Option<f64> {
+    let told = found.iter().filter(|found| found.is_sure || found.speed() * h >= 1.0);
+    told.map(Found::speed).min_by(f64::total_cmp)
 }
 
 /// Whether a system is at rest at its start, and forces balance there.

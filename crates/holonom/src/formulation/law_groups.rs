@@ -92,12 +92,15 @@ impl GroupSum {
     ) -> bool {
         let Self { matrix, line } = self;
         let [left, right, motion] = [tangents.left, tangents.right, tangents.motion].map(|slots| slots.as_chunks::<D>().0);
+        let laws = (group.first..).zip(&group.laws).filter(|(_, slots)| !slots.is_empty());
+        let mut laws = laws.filter_map(|(law, slots)| Some((&tangents.responses[law], slots, factors(law)?))).peekable();
+        if laws.peek().is_none() {
+            return false;
+        }
         let width = group.nodes * D;
         matrix.clear();
         matrix.resize(width * width, 0.0);
-        let mut is_any = false;
-        for (law, slots) in (group.first..).zip(&group.laws) {
-            let (response, Some(factors)) = (&tangents.responses[law], factors(law)) else { continue };
+        for (response, slots, factors) in laws {
             for of_argument in slots.chunk_by(|a, b| a.argument == b.argument) {
                 let i = of_argument[0].argument as usize;
                 line.clear();
@@ -115,9 +118,8 @@ impl GroupSum {
                         sums.iter_mut().zip(&*line).for_each(|(sum, by)| *sum += left * by);
                     }
                 }
-                is_any = true;
             }
         }
-        is_any
+        true
     }
 }
