@@ -233,6 +233,30 @@ fn slow_and_short_falls_are_falls() {
     assert!((height.abs() - (2e-7_f64 + 1e-14).sqrt()).abs() < 1e-9, "{height}");
 }
 
+/// What is so light that rounding of all others hides its weight falls as well, from upright and from beside that.
+#[test]
+fn light_parts_fall() {
+    for (mass, length, holder, slope) in
+        [(1e-6, 0.02, 19, "90*deg"), (1e-9, 3e-3, 3, "90*deg"), (1e-14, 0.2, 19, "90*deg"), (1e-14, 0.2, 19, "89*deg")]
+    {
+        let hanging = |k: i32| {
+            let holder = if k == 0 { "ground".to_string() } else { format!("r{}", k - 1) };
+            let below = format!("position = [0, {}]\norientation = {{ angle = \"-90*deg\" }}", -0.5 - f64::from(k));
+            rod(k as usize, &holder)
+                .replace(&format!("position = [{k}.5, 0]"), &below)
+                .replace(&format!("at = [{k}, 0]"), &format!("at = [0, -{k}]"))
+        };
+        let chain: Vec<String> = (0..20).map(hanging).collect();
+        let hinge = -f64::from(holder + 1);
+        let light = format!(
+            "[body.light]\nmass = {mass}\nshape = {{ rod = {length} }}\nposition = [\"0.5*{length}*cos({slope})\", \"{hinge} + 0.5*{length}*sin({slope})\"]\n\
+             orientation = {{ angle = \"{slope}\" }}\n[joint.pin]\ntype = \"revolute\"\nbetween = [\"r{holder}\", \"light\"]\nat = [0, {hinge}]\n"
+        );
+        let height = at_start(&planar(&[chain.concat(), light]), "light.z");
+        assert!((height - hinge + 0.5 * length).abs() < 1e-12, "{height} with {mass} kg at {holder}, {slope}");
+    }
+}
+
 /// A joint that is put somewhere stays there while all others come to rest, and is let go in the run.
 #[test]
 fn what_is_given_is_held() {

@@ -4,7 +4,7 @@ use super::conflict::unmet;
 use super::golden::GOLDEN;
 use super::motions::{FOLLOWS, Motions, Slow, dot};
 use super::places::Places;
-use super::rest::{FIRST, PUSH};
+use super::rest::{FIRST, Fall, PUSH};
 use crate::energy;
 use crate::formulation::Workspace;
 use crate::linalg::{eigenpairs, largest};
@@ -177,11 +177,11 @@ impl Places {
         })
     }
 
-    /// A small move along which forces drive a mechanism at rest on, where it was put last, if there is one.
+    /// How a mechanism at rest, where it was put last, falls, if forces drive it on along some small move.
     ///
     /// # Errors
     /// When its motions cannot be told.
-    pub fn falls(&mut self) -> Result<Option<Vec<f64>>, NoRest> {
+    pub fn falls(&mut self) -> Result<Option<Fall>, NoRest> {
         let rest = self.rest(self.work.end.x.clone())?;
         let freedom = self.freedom();
         if rest.speed == 0.0 || freedom == 0 {
@@ -206,7 +206,7 @@ impl Places {
     }
 
     /// The same, of moves that are sums of these motions, with a step of length h.
-    fn falls_in(&mut self, motions: &Motions, rest: &Rest, h: f64) -> Result<Option<Vec<f64>>, NoRest> {
+    fn falls_in(&mut self, motions: &Motions, rest: &Rest, h: f64) -> Result<Option<Fall>, NoRest> {
         let freedom = motions.basis.len();
         // A long step leaves a share of each move, (I + h C + h² K)⁻¹ (I + h C): less than all of it, but of what forces drive on.
         let whole = self.propagator(motions, &rest.spots[0], h)?;
@@ -215,14 +215,14 @@ impl Places {
         let left = pairs.into_iter().filter(|([share, _], _)| share.abs() > LEAST);
         let driven = left.map(|([share, _], shares)| (1.0 - 1.0 / share, shares));
         let falling = driven.filter(|(on, _)| *on > DRIVEN).max_by(|(a, _), (b, _)| a.total_cmp(b));
-        let Some((_, shares)) = falling else { return Ok(None) };
+        let Some((on, shares)) = falling else { return Ok(None) };
         let mut push = vec![0.0; self.work.end.x.len()];
         for (motion, [share, _]) in motions.basis.iter().zip(shares) {
             push.iter_mut().zip(motion).for_each(|(push, q)| *push += share * q);
         }
         let by = PUSH * self.work.scales.length / largest(&push) * self.side(&push);
         push.iter_mut().for_each(|push| *push *= by);
-        Ok(Some(push))
+        Ok(Some(Fall::new(push, on, h)))
     }
 
     /// 1 or −1, so that a motion (full) times that has momenta to the same side whatever nodes it is told of.

@@ -45,6 +45,11 @@ pub(super) const PUSH: f64 = 1e-4;
 const NEAR: f64 = 0.1;
 const BACK: f64 = 10.0;
 
+/// By how much forces drive a mechanism on in a step of a fall that is about as long as the fall takes, over what it is off by then: what is longer ends
+/// beyond the ridge. And by which share of it a step takes it on that becomes longer.
+const OWN: f64 = 0.5;
+const SLOW: f64 = 0.4;
+
 /// Ridges that a mechanism may come to on its way.
 const RIDGES: usize = 20;
 
@@ -76,29 +81,33 @@ impl Places {
 
     /// Goes on from one place of rest to the next as long as it would not come back there.
     fn go_down(&mut self) -> Result<(), Restless> {
-        let mut outcome = self.come_to_rest();
+        let mut outcome = self.come_to_rest(None);
         for _ in 0..RIDGES {
             let rest = self.work.end.x.clone();
-            let Some((push, back)) = self.way_down(outcome) else { return outcome };
+            let Some((push, fall)) = self.way_down(outcome) else { return outcome };
             let ahead: Vec<f64> = rest.iter().zip(&push).map(|(x, push)| x + push).collect();
             let before = outcome;
+            let mut falling = fall.map(Falling::new);
+            let back = if fall.is_some() { NEAR } else { BACK };
             let comes_back = self.put(&ahead).is_err() || {
-                outcome = self.come_to_rest();
+                outcome = self.come_to_rest(falling.as_mut());
                 if before.is_err() && outcome.is_err() {
                     return outcome;
                 }
                 before.is_ok() && outcome.is_ok() && apart(&rest, &self.work.end.x) <= back * PUSH * self.work.scales.length
             };
             if comes_back {
+                // What falls is so light that rounding of all others hides which way is down.
+                let before = if falling.is_some_and(|falling| falling.is_seen) { Err(Restless::Stuck) } else { before };
                 return self.put(&rest).map_err(|_| Restless::Stuck).and(before);
             }
         }
         Err(Restless::Moves)
     }
 
-    /// A small move along which the mechanism may leave where it has come to, and how many times it may then be off to have come back. `None` where it
-    /// comes back from all, or where it is not at rest and on no ridge, near which long steps lead nowhere.
-    fn way_down(&mut self, outcome: Result<(), Restless>) -> Option<(Vec<f64>, f64)> {
+    /// A small move along which the mechanism may leave where it has come to, with the time that a fall takes, s, where it is known to be one. `None` where
+    /// it comes back from all, or where it is not at rest and on no ridge, near which long steps lead nowhere.
+    fn way_down(&mut self, outcome: Result<(), Restless>) -> Option<(Vec<f64>, Option<f64>)> {
         if matches!(outcome, Err(Restless::Moves | Restless::Corner(..))) {
             return None;
         }
@@ -107,8 +116,8 @@ impl Places {
         self.put(&x).ok()?;
         self.begin_at_end();
         match falls {
-            Some(falls) => Some((falls?, NEAR)),
-            None if outcome.is_ok() => Some((self.pushed().ok()?, BACK)),
+            Some(falls) => falls.map(|Fall { push, time }| (push, Some(time))),
+            None if outcome.is_ok() => Some((self.pushed().ok()?, None)),
             None => None,
         }
     }
@@ -141,8 +150,8 @@ impl Places {
         ahead.is_some_and(|ahead| self.put(&ahead).is_ok())
     }
 
-    /// Takes steps until hardly any of one is left, or rounding alone.
-    fn come_to_rest(&mut self) -> Result<(), Restless> {
+    /// Takes steps until hardly any of one is left, or rounding alone; the first ones as long as a fall takes, if it falls, until that is over.
+    fn come_to_rest(&mut self, mut falling: Option<&mut Falling>) -> Result<(), Restless> {
         self.begin_at_end();
         // Which rows are redundant is known from here.
         if !self.newton.factor_inertia(&self.work) {
@@ -155,6 +164,9 @@ impl Places {
             return if whole == 0.0 { Ok(()) } else { Err(Restless::Stuck) };
         }
         let least = SHORTEST * h;
+        if let Some(falling) = &falling {
+            h = falling.step;
+        }
         let rolls = self.system.is_nonholonomic();
         let (mut gone, mut before) = (0.0, f64::INFINITY);
         let mut stuck = Restless::Stuck;
@@ -178,10 +190,15 @@ impl Places {
                         return Err(Restless::Moves);
                     }
                     // Ways are as the squares of steps as long as nothing is in the way.
-                    let growth = if way <= QUICK * before { 1.0 } else { GROWTH.min((longest / way).sqrt()) };
+                    let growth = match falling.as_mut().and_then(|falling| falling.growth(way, PUSH * size + gone)) {
+                        Some(growth) => growth,
+                        None if way <= QUICK * before => 1.0,
+                        None => GROWTH.min((longest / way).sqrt()),
+                    };
                     (h, before) = (growth * h, way);
                 }
                 way if h > least => {
+                    falling = None;
                     let shrinkage = way.map_or(SHRINKAGE, |way| SHRINKAGE.max(0.5 * (longest / way).sqrt()).min(0.5));
                     (h, before) = (shrinkage * h, f64::INFINITY);
                     // What a long step leaves of the rows would be uphill for short ones.
@@ -197,25 +214,36 @@ impl Places {
 
     /// Whether the last step, of length h, went hardly any way, as the one before had gone `before`, or one of rounding.
     fn is_at_rest(&mut self, h: f64, way: f64, before: f64) -> bool {
-        let size = self.work.scales.length;
+        let left = self.left(h);
+        let Self { system, work, .. } = self;
+        let size = work.scales.length;
         // How far all forces would move the mechanism in such a step: what they move farthest may be light, and the largest of them elsewhere.
-        let reach = h * h * self.work.pushed_at_most(&self.system);
-        let strongest = h * h * largest(self.work.pushes(&self.system));
-        let [farthest, left] = self.left(h);
-        let is_small = |way: f64, lengths: f64, share: f64| way <= share * lengths && left <= share * strongest;
-        if way <= QUICK * before { is_small(way, size.min(reach), AT_REST) } else { is_small(farthest, size + reach, ROUNDED) }
+        let reach = h * h * work.pushed_at_most(system);
+        let farthest = work.farthest(system, &left);
+        let pushes = work.pushes(system);
+        let is_small = |way: f64, lengths: f64, share: f64| way <= share * lengths && largest(&left) <= share * h * h * largest(pushes);
+        if way <= QUICK * before {
+            return is_small(way, size.min(reach), AT_REST);
+        }
+        // What is light may be on its way where hardly any force moves it: it is not if it goes along with what is heavy, or by rounding of its own forces.
+        let by_rounding = |node: usize| {
+            let coordinates = node * system.dim..(node + 1) * system.dim;
+            let mass: f64 = system.mass.row(node).map(|(_, block)| block.m.abs() + block.s.abs()).sum();
+            largest(&left[coordinates.clone()]) <= ROUNDED * (mass * (size + reach) + h * h * largest(&pushes[coordinates]))
+        };
+        is_small(farthest, size + reach, ROUNDED) && (way <= SOLVED * size || (0..system.free).all(by_rounding))
     }
 
-    /// What the last step, of length h, left of the forces, M d + h C d: how far that moves what it moves farthest, m, and the largest of it, kg·m.
-    fn left(&mut self, h: f64) -> [f64; 2] {
+    /// What the last step, of length h, left of the forces on the free nodes, M d + h C d, kg·m.
+    fn left(&mut self, h: f64) -> Vec<f64> {
         let Self { system, work, .. } = self;
-        let n = system.coordinates();
         let mut way = work.d.clone();
         way.resize(work.end.x.len(), 0.0);
         let mut left = way.clone();
         system.mass.times(system.dim, &way, &mut left);
         left.iter_mut().zip(work.resistance(system, 0.0, &way)).for_each(|(left, resisted)| *left += h * resisted);
-        [work.farthest(system, &left[..n]), largest(&left[..n])]
+        left.truncate(system.coordinates());
+        left
     }
 
     /// Has the next step begin where the last one ended, at rest.
@@ -266,6 +294,46 @@ impl Places {
         let pulls = work.lambda.iter().zip(&work.scales.gradient).map(|(lambda, gradient)| lambda.abs() * gradient);
         let rounding = ROUNDED * (energy::size(system, work, &work.end.x) + work.scales.length * pulls.sum::<f64>());
         (potential(work) - before - done <= rounding).then(|| largest(&work.d))
+    }
+}
+
+/// A mechanism on a ridge falls.
+pub(crate) struct Fall {
+    /// A small move (full) along which it falls.
+    pub push: Vec<f64>,
+    /// The length of a step in which forces drive it on by half of what it is off by then, or by less, s.
+    pub time: f64,
+}
+
+impl Fall {
+    /// A fall whose forces drive it on in a step of length h by so many times what it is off by then.
+    pub fn new(push: Vec<f64>, on: f64, h: f64) -> Self {
+        Self { push, time: (OWN / on).sqrt() * h }
+    }
+}
+
+/// Steps from beside a ridge, as long as each takes a mechanism farther than the one before.
+struct Falling {
+    step: f64,
+    before: f64,
+    /// Whether one did.
+    is_seen: bool,
+    is_over: bool,
+}
+
+impl Falling {
+    fn new(step: f64) -> Self {
+        Self { step, before: f64::INFINITY, is_seen: false, is_over: false }
+    }
+
+    /// By how much the next step is longer than one that went so far, to where it is off by that. `None` when the fall is over.
+    fn growth(&mut self, way: f64, off: f64) -> Option<f64> {
+        let is_first = self.before.is_infinite();
+        self.is_over |= !is_first && way <= self.before;
+        self.is_seen |= !is_first && !self.is_over;
+        self.before = way;
+        let growth = if way < SLOW * off { std::f64::consts::SQRT_2 } else { 1.0 };
+        (!self.is_over).then_some(growth)
     }
 }
 
