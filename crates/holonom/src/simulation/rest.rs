@@ -316,24 +316,25 @@ impl Fall {
 struct Falling {
     step: f64,
     before: f64,
-    /// Whether one did.
+    /// By how much the last step was longer than the one before.
+    growth: f64,
+    /// Whether one did that was no longer.
     is_seen: bool,
     is_over: bool,
 }
 
 impl Falling {
     fn new(step: f64) -> Self {
-        Self { step, before: f64::INFINITY, is_seen: false, is_over: false }
+        Self { step, before: 0.0, growth: f64::INFINITY, is_seen: false, is_over: false }
     }
 
     /// By how much the next step is longer than one that went so far, to where it is off by that. `None` when the fall is over.
     fn growth(&mut self, way: f64, off: f64) -> Option<f64> {
-        let is_first = self.before.is_infinite();
-        self.is_over |= !is_first && way <= self.before;
-        self.is_seen |= !is_first && !self.is_over;
+        self.is_over |= way <= self.before;
+        self.is_seen |= !self.is_over && self.growth == 1.0;
         self.before = way;
-        let growth = if way < SLOW * off { std::f64::consts::SQRT_2 } else { 1.0 };
-        (!self.is_over).then_some(growth)
+        self.growth = if way < SLOW * off { std::f64::consts::SQRT_2 } else { 1.0 };
+        (!self.is_over).then_some(self.growth)
     }
 }
 
