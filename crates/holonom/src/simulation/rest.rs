@@ -88,13 +88,16 @@ impl Places {
             let ahead: Vec<f64> = rest.iter().zip(&push).map(|(x, push)| x + push).collect();
             let before = outcome;
             let mut falling = fall.map(Falling::new);
-            let back = if fall.is_some() { NEAR } else { BACK };
+            let size = self.work.scales.length;
             let comes_back = self.put(&ahead).is_err() || {
                 outcome = self.come_to_rest(falling.as_mut());
                 if before.is_err() && outcome.is_err() {
                     return outcome;
                 }
-                before.is_ok() && outcome.is_ok() && apart(&rest, &self.work.end.x) <= back * PUSH * self.work.scales.length
+                let is_near = |place: &[f64], times: f64| apart(place, &self.work.end.x) <= times * PUSH * size;
+                // What is free stays where it was pushed to.
+                let stays = if fall.is_some() { is_near(&rest, NEAR) || is_near(&ahead, NEAR) } else { is_near(&rest, BACK) };
+                before.is_ok() && outcome.is_ok() && stays
             };
             if comes_back {
                 // What falls is so light that rounding of all others hides which way is down.
