@@ -17,13 +17,16 @@ pub(super) fn write(recording: &Recording, out: &mut dyn Write) -> io::Result<()
 /// Writes the rows from `first` on, as they follow those before in a file; the header, too, where there are none before.
 pub fn append_csv(recording: &Recording, first: usize, out: &mut dyn Write) -> io::Result<()> {
     if first == 0 {
-        let names: Vec<&str> = recording.columns().iter().map(|column| column.heading.name.as_str()).collect();
-        out.write_all(csv_line(&names).as_bytes())?;
+        // There may be millions of names: they are not put together in memory.
+        let names = recording.columns().iter().map(|column| &column.heading.name);
+        let mut header = csv::Writer::from_writer(&mut *out);
+        header.write_record(names)?;
+        header.flush()?;
     }
     // Numbers are never quoted.
     let (mut line, mut number) = (Vec::new(), zmij::Buffer::new());
     let width = recording.columns().len();
-    let mut cells = vec![0.0; ROWS_AT_ONCE * width];
+    let mut cells = vec![0.0; ROWS_AT_ONCE.min(recording.rows() - first) * width];
     for from in (first..recording.rows()).step_by(ROWS_AT_ONCE) {
         let rows = ROWS_AT_ONCE.min(recording.rows() - from);
         for (k, column) in recording.columns().iter().enumerate() {
