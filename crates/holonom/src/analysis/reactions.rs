@@ -44,7 +44,7 @@ pub fn undetermined<'s>(system: &'s System, x: &[f64], t: f64) -> Option<Undeter
     let mut scaled = Vec::with_capacity(rows * n);
     let mut sizes = Vec::with_capacity(rows);
     let mut at = system.evaluation();
-    for (line, natural) in constraint_jacobian(system, x, t).iter().zip(natural_sizes(system, &at)) {
+    for (line, natural) in constraint_jacobian(system, x, t).iter().zip(natural_sizes(system).0) {
         let size = line.iter().map(|g| g * g).sum::<f64>().sqrt();
         // A gradient that has vanished is round-off, which points anywhere.
         let [factor, size] = if size > VANISHED * natural { [1.0 / size, size] } else { [0.0, 1.0] };

@@ -90,9 +90,7 @@ impl<K: BorrowMut<Kkt>> Independence<K> {
     /// In the room of a matrix of the system with one field, whose values and factors are lost.
     pub fn within(system: &System, own: K) -> Self {
         let rows = system.slots.rows.len();
-        let mut at = system.evaluation();
-        system.evaluate_again(&system.start_position, 0.0, &mut at);
-        let natural = natural_sizes(system, &at);
+        let (natural, at) = natural_sizes(system);
         let kkt: &Kkt = own.borrow();
         let others = Vec::with_capacity(FEW * kkt.free * kkt.dim);
         let least = independent(kkt.free * kkt.dim);
@@ -298,18 +296,20 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// By how much the gradient of each row (r) changes when all nodes move by the size of the mechanism, here and there: the
-/// largest of its nodes. From a thousandth of such a move beside an evaluation at the start.
-pub fn natural_sizes(system: &System, at: &Evaluation) -> Vec<f64> {
+/// largest of its nodes. From a thousandth of such a move beside an evaluation at the start, which is handed back, too.
+pub fn natural_sizes(system: &System) -> (Vec<f64>, Evaluation) {
     let (share, dim) = (1e-3, system.dim);
     let reach = share * extent(system);
     let start = system.start_position.iter().enumerate();
     let moved: Vec<f64> = start.map(|(k, x)| x + reach * (12.9898 * (k as f64 + 1.0)).sin()).collect();
-    let (mut here, mut there) = (at.clone(), at.clone());
+    let mut here = system.evaluation();
     system.evaluate_again(&system.start_position, 0.0, &mut here);
+    let mut there = here.clone();
     system.evaluate_again(&moved, 0.0, &mut there);
     let change =
         |slot: usize| (0..dim).map(|c| (there.gradient[slot * dim + c] - here.gradient[slot * dim + c]).powi(2)).sum::<f64>().sqrt();
-    system.slots.rows.iter().map(|slots| slots.clone().map(change).fold(0.0, f64::max) / share).collect()
+    let natural = system.slots.rows.iter().map(|slots| slots.clone().map(change).fold(0.0, f64::max) / share).collect();
+    (natural, here)
 }
 
 /// Diagonal of the box around the origin and all nodes at the start, or the size that is known of the mechanism where that is

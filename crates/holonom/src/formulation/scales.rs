@@ -109,9 +109,7 @@ impl Scales {
 
     fn measure_rows(&mut self, system: &System, is_light: impl Fn(usize) -> bool) {
         let dim = system.dim;
-        let mut at = system.evaluation();
-        system.evaluate_again(&system.start_position, 0.0, &mut at);
-        let natural = natural_sizes(system, &at);
+        let (natural, at) = natural_sizes(system);
         let mut longest = vec![0.0_f64; self.softness.len()];
         for slot in system.slots.by_row.iter().filter(|slot| (slot.node as usize) < system.free) {
             let (row, node) = (slot.row as usize, slot.node as usize);
