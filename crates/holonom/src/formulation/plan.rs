@@ -20,8 +20,9 @@ pub(super) struct Pairs {
 }
 
 impl Pairs {
+    /// Adds a pair; the same the other way round is added, too.
     fn add(&mut self, a: u32, b: u32, full: bool) {
-        self.found.extend([(a, b, full), (b, a, full)]);
+        self.found.push((a, b, full));
     }
 
     /// Puts them in order, each once, for `nodes` free nodes.
