@@ -72,12 +72,10 @@ impl Observer for Watched<'_, '_> {
         {
             keeper.begin_anew();
         }
-        if (self.end - 1.5 * self.step..self.end).contains(&simulation.state().t) {
-            // An event before the end may end the run within a step.
-            let point = Point::of(simulation, &self.recorder, &self.corrections);
-            if point.run.goes_on_unbroken() {
-                self.before_end = Some(point);
-            }
+        // An event before the end may end the run within a step, and what is at the end itself needs no other place to go on from.
+        if simulation.goes_on_unbroken() && simulation.state().t >= self.end - 1.5 * self.step {
+            let is_before = simulation.state().t < self.end;
+            self.before_end = is_before.then(|| Point::of(simulation, &self.recorder, &self.corrections));
         }
         if self.is_shown && Instant::now() >= self.next_shown {
             self.show(simulation);

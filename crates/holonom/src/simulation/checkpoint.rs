@@ -26,7 +26,7 @@ impl Checkpoint {
     /// Whether a run that goes on from here is as one that did not end here: not from within a nominal step, as after a last one that the
     /// end of the run has cut short, and not where an event has ended the run.
     pub fn goes_on_unbroken(&self) -> bool {
-        self.run.as_ref().is_some_and(|run| self.state.t == run.grid.at(run.grid.passed) && !run.has_ended)
+        self.run.as_ref().is_some_and(|run| run.grid.is_on(self.state.t) && !run.has_ended)
     }
 }
 
@@ -122,9 +122,14 @@ impl Grid {
         self.first + count as f64 * self.step
     }
 
+    /// Whether a time is that of the last nominal step.
+    fn is_on(&self, t: f64) -> bool {
+        t == self.at(self.passed)
+    }
+
     /// The next nominal time after `t` in a run to `end`; a run that is not on the grid begins another.
     pub(super) fn next(&mut self, t: f64, end: f64) -> f64 {
-        if t != self.at(self.passed) {
+        if !self.is_on(t) {
             *self = Self::new(t, self.step);
         }
         let count = ((end - self.first) / self.step - SHORTEST).ceil().max(0.0) as u64;
@@ -134,7 +139,7 @@ impl Grid {
 
     /// The nominal time after `t`.
     pub(super) fn following(&self, t: f64) -> f64 {
-        if t == self.at(self.passed) { self.at(self.passed + 1) } else { t + self.step }
+        if self.is_on(t) { self.at(self.passed + 1) } else { t + self.step }
     }
 
     /// Takes the last nominal time back, which was not reached.
@@ -150,6 +155,11 @@ impl Moment {
 }
 
 impl Simulation {
+    /// Whether its checkpoint [goes on](Checkpoint::goes_on_unbroken) as a run that does not end here.
+    pub fn goes_on_unbroken(&self) -> bool {
+        self.grid.is_on(self.state.t) && !self.has_ended
+    }
+
     /// All that the run goes on from.
     pub fn checkpoint(&self) -> Checkpoint {
         let run = Run {
