@@ -67,7 +67,7 @@ value = "max(abs(bob.ax))"
         assert!((last(&recording, name) - value).abs() < 2e-6, "{name}: {} and not {value}", last(&recording, name));
     }
     assert_eq!(recording.find("away").unwrap().heading.unit, "m");
-    assert_eq!(recording.find("twice").unwrap().heading.meaning, "2*pull");
+    assert_eq!(&*recording.find("twice").unwrap().heading.meaning, "2*pull");
     let peaks = Peaks::of(&model.channels, &recording, &model.system);
     let away = peaks.measures.iter().find(|measure| measure.name == "away").unwrap();
     assert!((away.max - 13.0_f64.sqrt()).abs() < 1e-12 && away.max_at < 1e-9 && (away.min - 3.0).abs() < 1e-6, "{away:?}");

@@ -185,7 +185,7 @@ impl Recorded {
         let changes = PyDict::new(py);
         self.changes.iter().try_for_each(|(key, value)| changes.set_item(key, value::write(py, value)?))?;
         let columns = self.finished.recording.columns();
-        let heading = |Heading { name, unit, meaning }: &Heading| (name.clone(), unit.to_string(), meaning.clone());
+        let heading = |Heading { name, unit, meaning }: &Heading| (name.clone(), unit.to_string(), meaning.to_string());
         let headings = columns.iter().map(|column| heading(&column.heading)).collect();
         let values = columns.iter().map(|column| PyArray1::from_slice(py, &column.values)).collect();
         Ok((self.draft.parts(py), changes, self.finished.method.clone(), headings, values, self.summary()))
@@ -198,7 +198,7 @@ impl Recorded {
         let (draft, changes) = (Draft::of_parts(py, draft)?, read_changes(py, &changes)?);
         let trouble = Trouble::default();
         let loaded = draft.load_with(py, &changes, &trouble)?;
-        let headings = headings.into_iter().map(|(name, unit, meaning)| Heading { name, unit: unit.into(), meaning });
+        let headings = headings.into_iter().map(|(name, unit, meaning)| Heading { name, unit: unit.into(), meaning: meaning.into() });
         let values = values.iter().map(|column| column.to_vec()).collect::<Result<_, _>>()?;
         let recording = Recording::of_columns(headings, values).ok_or_else(|| refuse(py, "", BROKEN, ""))?;
         let summary: serde_json::Value = serde_json::from_str(&summary).map_err(|_| refuse(py, "", BROKEN, ""))?;

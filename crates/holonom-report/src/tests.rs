@@ -394,8 +394,7 @@ fn no_rows_and_no_runs_are_fine() {
 #[cfg(feature = "viewer")]
 #[test]
 fn measured_curves_go_straight_across_empty_cells() {
-    let heading =
-        |name: &str, unit: &'static str| holonom::record::Heading { name: name.into(), unit: unit.into(), meaning: String::new() };
+    let heading = |name: &str, unit: &'static str| holonom::record::Heading { name: name.into(), unit: unit.into(), meaning: "".into() };
     let mut recording = Recording::new([heading("t", "s"), heading("strut.force", "N")]);
     let rows = [(0.0, f64::NAN), (1.0, 2.0), (2.0, f64::NAN), (3.0, f64::NAN), (5.0, 10.0), (6.0, f64::NAN)];
     rows.iter().for_each(|(t, force)| recording.push(&[*t, *force]));

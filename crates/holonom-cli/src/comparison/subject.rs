@@ -66,7 +66,7 @@ impl Subject {
         };
         for (name, column) in columns {
             let [unit, meaning] = ["unit", "meaning"].map(|key| column[key].as_str().unwrap_or("").to_string());
-            known.entry(name.clone()).or_insert_with(|| Heading { name, unit: unit.into(), meaning });
+            known.entry(name.clone()).or_insert_with(|| Heading { name, unit: unit.into(), meaning: meaning.into() });
         }
     }
 

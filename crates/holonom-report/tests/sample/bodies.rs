@@ -246,7 +246,7 @@ pub fn driven() -> Sample {
         ("coupler.vz", "m/s", -0.5),
     ];
     let own = sample.recording.columns().iter().map(|column| column.heading.clone());
-    let others = forces.map(|(name, unit, _)| Heading { name: name.to_owned(), unit: unit.into(), meaning: "made up".to_owned() });
+    let others = forces.map(|(name, unit, _)| Heading { name: name.to_owned(), unit: unit.into(), meaning: "made up".into() });
     let mut recording = Recording::new(own.chain(others));
     for row in 0..sample.recording.rows() {
         let moved = sample.recording.columns().iter().map(|column| column.values[row]);

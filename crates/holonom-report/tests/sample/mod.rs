@@ -63,7 +63,7 @@ pub fn motor() -> Sample {
 pub fn motor_of(unit: f64) -> Sample {
     let mut sample = slider();
     let heading =
-        |name: &str, unit: &'static str, meaning: &str| Heading { name: name.to_owned(), unit: unit.into(), meaning: meaning.to_owned() };
+        |name: &str, unit: &'static str, meaning: &str| Heading { name: name.to_owned(), unit: unit.into(), meaning: meaning.into() };
     let own = sample.recording.columns().iter().map(|column| column.heading.clone());
     let others = [
         heading("crank.effort", "N·m", "moment that the drive exerts along its motion"),

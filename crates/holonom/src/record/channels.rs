@@ -7,7 +7,7 @@ use nalgebra::UnitQuaternion;
 
 use super::body::RecordedBody;
 use super::force::{self, RecordedForce};
-use super::heading::{Heading, Units};
+use super::heading::{Endings, Heading, Units};
 use super::joint::{RecordedJoint, Wrench};
 use super::measure::{RecordedInput, RecordedMeasure};
 use super::recorder::{COLUMNS, Constraints, MEANINGS};
@@ -120,22 +120,32 @@ impl Channels {
     /// All columns but those of measures: what every recording begins with, motion, accelerations, the coordinates of joints and their
     /// rates, what forces and drives do, inputs, then `constraints`.
     pub fn headings(&self, system: &System, constraints: Constraints) -> Vec<Heading> {
+        self.sections(system, constraints, &self.sizes(constraints)).into_iter().flatten().collect()
+    }
+
+    /// The same, apart: what every recording begins with, motion, accelerations, coordinates, forces and drives, inputs, constraints, and the sizes
+    /// of these components.
+    pub(super) fn sections(&self, system: &System, constraints: Constraints, sizes: &[Vec<String>]) -> [Vec<Heading>; 8] {
         let common = COLUMNS.iter().zip(MEANINGS).map(|(&name, (unit, meaning))| Heading::new(name, unit, meaning));
-        let mut headings: Vec<Heading> = common.chain(self.motion_headings()).collect();
+        let [mut accelerations, mut held] = [Vec::new(), Vec::new()];
         if constraints != Constraints::Nothing {
-            headings.extend(self.acceleration_headings());
-        }
-        headings.extend(self.coordinate_headings(system.gauges()));
-        headings.extend(self.force_headings());
-        headings.extend(self.inputs.iter().map(|input| Heading::new(&input.name, input.unit.clone(), &input.meaning)));
-        if constraints != Constraints::Nothing {
-            headings.extend(self.joint_headings());
+            (accelerations, held) = (self.acceleration_headings(), self.joint_headings());
         }
         if constraints == Constraints::Rows {
-            headings.extend(self.multiplier_headings(system));
+            held.extend(self.multiplier_headings(system));
         }
-        headings.extend(self.sizes(constraints).iter().map(|components| size_heading(components)));
-        headings
+        let inputs = self.inputs.iter().map(|input| Heading::new(&input.name, input.unit.clone(), &*input.meaning));
+        let of_sizes = [("N", "size of the force"), ("N·m", "size of the moment")].map(|(unit, meaning)| (unit, Arc::from(meaning)));
+        [
+            common.collect(),
+            self.motion_headings(),
+            accelerations,
+            self.coordinate_headings(system.gauges()).collect(),
+            self.force_headings(),
+            inputs.collect(),
+            held,
+            sizes.iter().map(|components| size_heading(components, &of_sizes)).collect(),
+        ]
     }
 
     /// Columns that are components of one force or moment, the size of which has a column, too.
@@ -151,37 +161,38 @@ impl Channels {
     }
 
     /// The columns of motion.
-    pub(super) fn motion_headings(&self) -> Vec<Heading> {
-        let mut headings = Vec::new();
-        for point in &self.points {
-            headings.extend(self.of_point(&point.name, "point"));
+    fn motion_headings(&self) -> Vec<Heading> {
+        let (of_points, mut of_bodies) = (self.moves("point"), self.moves("centre of mass"));
+        if self.axes.len() == 3 {
+            TURNED.into_iter().for_each(|(ending, unit, meaning)| of_bodies.add(ending, unit, meaning));
         }
-        for body in &self.bodies {
-            headings.extend(self.of_point(&body.name, "centre of mass"));
-            if self.axes.len() == 3 {
-                headings.extend(TURNED.map(|(suffix, unit, meaning)| Heading::new(format!("{}.{suffix}", body.name), unit, meaning)));
-            }
-        }
-        headings
+        let points = self.points.iter().flat_map(|point| of_points.of(&point.name));
+        points.chain(self.bodies.iter().flat_map(|body| of_bodies.of(&body.name))).collect()
+    }
+
+    /// Position and velocity of something.
+    fn moves(&self, what: &str) -> Endings {
+        let mut moves = Endings::default();
+        self.axes.chars().for_each(|axis| moves.add(axis, "m", format!("position of the {what}, {axis}")));
+        self.axes.chars().for_each(|axis| moves.add(format!("v{axis}"), "m/s", format!("velocity of the {what} along {axis}")));
+        moves
     }
 
     /// The columns of accelerations.
-    pub(super) fn acceleration_headings(&self) -> Vec<Heading> {
-        let linear = |name: &str, what: &str| {
-            let heading = |axis: char| Heading::new(format!("{name}.a{axis}"), "m/s²", format!("acceleration of the {what} along {axis}"));
-            self.axes.chars().map(heading).collect::<Vec<_>>()
-        };
-        let angular = |name: &str| match self.axes.len() {
-            2 => vec![Heading::new(format!("{name}.alpha"), "rad/s²", "angular acceleration")],
-            _ => {
-                let heading = |axis: char| {
-                    Heading::new(format!("{name}.alpha{axis}"), "rad/s²", format!("angular acceleration about {axis} of the world"))
-                };
-                self.axes.chars().map(heading).collect()
-            }
-        };
-        let points = self.points.iter().flat_map(|point| linear(&point.name, "point"));
-        points.chain(self.bodies.iter().flat_map(|body| [linear(&body.name, "centre of mass"), angular(&body.name)].concat())).collect()
+    fn acceleration_headings(&self) -> Vec<Heading> {
+        let [of_points, mut of_bodies] = ["point", "centre of mass"].map(|what| {
+            let mut linear = Endings::default();
+            self.axes.chars().for_each(|axis| linear.add(format!("a{axis}"), "m/s²", format!("acceleration of the {what} along {axis}")));
+            linear
+        });
+        match self.axes.len() {
+            2 => of_bodies.add("alpha", "rad/s²", "angular acceleration"),
+            _ => self.axes.chars().for_each(|axis| {
+                of_bodies.add(format!("alpha{axis}"), "rad/s²", format!("angular acceleration about {axis} of the world"));
+            }),
+        }
+        let points = self.points.iter().flat_map(|point| of_points.of(&point.name));
+        points.chain(self.bodies.iter().flat_map(|body| of_bodies.of(&body.name))).collect()
     }
 
     /// Appends the columns of accelerations, where the simulation finds forces.
@@ -197,30 +208,24 @@ impl Channels {
         }
     }
 
-    fn of_point(&self, name: &str, what: &str) -> Vec<Heading> {
-        let position = self.axes.chars().map(|axis| Heading::new(format!("{name}.{axis}"), "m", format!("position of the {what}, {axis}")));
-        let velocity =
-            self.axes.chars().map(|axis| Heading::new(format!("{name}.v{axis}"), "m/s", format!("velocity of the {what} along {axis}")));
-        position.chain(velocity).collect()
-    }
-
     /// The columns of the coordinates of joints, `names`, and their rates.
-    pub(super) fn coordinate_headings<'a>(&'a self, names: &'a [String]) -> impl Iterator<Item = Heading> + 'a {
+    fn coordinate_headings<'a>(&'a self, names: &'a [String]) -> impl Iterator<Item = Heading> + 'a {
         let bodies: HashSet<&str> = self.bodies.iter().filter(|_| self.axes.len() == 2).map(|body| body.name.as_str()).collect();
+        let kinds = ["displacement", "angle"].map(|what| {
+            let froms = ["pose that is written", "first axis of the model"].map(|from| format!("{what}, from the {from}").into());
+            (froms, Arc::<str>::from(format!("rate of the {what}")))
+        });
         names.iter().flat_map(move |name| {
             let is_angle = self.angles.contains(name);
-            let (units, what) = (Units::of(is_angle), if is_angle { "angle" } else { "displacement" });
+            let (units, (froms, rate)) = (Units::of(is_angle), &kinds[usize::from(is_angle)]);
             let is_of_body = name.strip_suffix(".angle").is_some_and(|owner| bodies.contains(owner));
-            let from = if is_of_body { "from the first axis of the model" } else { "from the pose that is written" };
-            [
-                Heading::new(name.clone(), units.value, format!("{what}, {from}")),
-                Heading::new(format!("{name}_rate"), units.rate, format!("rate of the {what}")),
-            ]
+            let from: &Arc<str> = &froms[usize::from(is_of_body)];
+            [Heading::new(name.clone(), units.value, Arc::clone(from)), Heading::new(format!("{name}_rate"), units.rate, Arc::clone(rate))]
         })
     }
 
     /// The columns of what forces and drives do.
-    pub(super) fn force_headings(&self) -> Vec<Heading> {
+    fn force_headings(&self) -> Vec<Heading> {
         let mut headings: Vec<Heading> = self.forces.iter().flat_map(|force| force.headings(&self.axes)).collect();
         headings.extend(self.told().efforts.iter().flat_map(|RecordedEffort { name, length, is_moment, .. }| {
             let (unit, what) = if *is_moment { ("N·m", "moment") } else { ("N", "force") };
@@ -257,7 +262,7 @@ impl Channels {
     }
 
     /// Force and moment of each joint on its second body, about its place there, what couplers exert, and tensions.
-    pub(super) fn joint_headings(&self) -> impl Iterator<Item = Heading> + '_ {
+    fn joint_headings(&self) -> Vec<Heading> {
         let couplings = self.told().couplings.iter().map(|RecordedCoupling { name, is_moment, .. }| {
             let (unit, what) = if *is_moment { ("N·m", "moment") } else { ("N", "force") };
             Heading::new(format!("{name}.effort"), unit, format!("{what} of the coupler along the coordinate"))
@@ -270,12 +275,13 @@ impl Channels {
                 move |axis| Heading::new(format!("{name}.f{axis}"), "N", format!("force on the first wheel, along {axis} of the world"));
             self.axes.chars().map(force)
         });
-        let joints = self.told().joints.iter().flat_map(|joint| joint.headings(&self.axes));
-        joints.chain(couplings).chain(pushes).chain(self.told().rods.iter().map(tension))
+        let of_joints = RecordedJoint::endings(&self.axes);
+        let joints = self.told().joints.iter().flat_map(|joint| of_joints.of(&joint.name));
+        joints.chain(couplings).chain(pushes).chain(self.told().rods.iter().map(tension)).collect()
     }
 
     /// The multiplier of each row of the system, and the force of the constraints on each point that is a free node.
-    pub(super) fn multiplier_headings(&self, system: &System) -> Vec<Heading> {
+    fn multiplier_headings(&self, system: &System) -> Vec<Heading> {
         let rows = self.apart.as_ref().map_or(system, |apart| apart.0.system()).row_names();
         let lambda = |row: &String| Heading::new(format!("{row}.lambda"), "1", "multiplier of the row");
         let mut headings: Vec<Heading> = rows.iter().map(lambda).collect();
@@ -383,14 +389,14 @@ impl Channels {
 }
 
 /// The column of a size is called as those of its components, without what they differ in.
-fn size_heading(components: &[String]) -> Heading {
+fn size_heading(components: &[String], [of_force, of_moment]: &[(&'static str, Arc<str>); 2]) -> Heading {
     let [first, second] = [&components[0], &components[1]];
     let same = first.bytes().zip(second.bytes()).take_while(|(a, b)| a == b).count();
     let name = first[..same].trim_end_matches('_');
     // Of a force, and of the shear of a beam.
     let is_force = name.ends_with(".f") || name.ends_with(".shear");
-    let (unit, what) = if is_force { ("N", "force") } else { ("N·m", "moment") };
-    Heading::new(name, unit, format!("size of the {what}"))
+    let (unit, meaning) = if is_force { of_force } else { of_moment };
+    Heading::new(name, *unit, Arc::clone(meaning))
 }
 
 /// A component of a force (0 to 2) and a moment (3 to 5).

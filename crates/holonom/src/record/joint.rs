@@ -1,6 +1,6 @@
 //! What a joint transmits.
 
-use super::heading::Heading;
+use super::heading::Endings;
 use crate::simulation::Simulation;
 use crate::system::{NodeId, Term, place_of};
 
@@ -47,15 +47,17 @@ impl RecordedJoint {
         })
     }
 
-    pub(super) fn headings(&self, axes: &str) -> impl Iterator<Item = Heading> {
-        let (name, letters) = (self.name.clone(), axes.to_string());
-        Self::columns(axes).into_iter().map(move |(k, ending)| {
-            let along = letters.chars().nth(k % 3).filter(|_| k < 3 || letters.len() == 3);
+    /// The columns of a joint.
+    pub(super) fn endings(axes: &str) -> Endings {
+        let mut endings = Endings::default();
+        for (k, ending) in Self::columns(axes) {
+            let along = axes.chars().nth(k % 3).filter(|_| k < 3 || axes.len() == 3);
             let along = along.map_or(String::new(), |axis| format!(", along {axis} of the world"));
             let (unit, what) =
                 if k < 3 { ("N", "force on the second body") } else { ("N·m", "moment on the second body about the joint") };
-            Heading::new(format!("{name}.{ending}"), unit, format!("{what}{along}"))
-        })
+            endings.add(ending, unit, format!("{what}{along}"));
+        }
+        endings
     }
 
     /// Where it is at the positions `x` of all nodes in the world, m.

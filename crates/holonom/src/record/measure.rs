@@ -145,12 +145,10 @@ enum Place {
 }
 
 impl Measures {
-    /// Of a recording with these columns before those of the measures.
-    pub fn new<'a>(measures: &'a [RecordedMeasure], columns: impl Iterator<Item = &'a str>) -> Self {
-        let own = measures.iter().map(|measure| measure.name.as_str());
-        let by_name: std::collections::HashMap<&str, usize> = columns.chain(own).enumerate().map(|(k, name)| (name, k)).collect();
+    /// Of a recording with columns at these places, among them those of the measures.
+    pub fn new(measures: &[RecordedMeasure], column: impl Fn(&str) -> Option<usize>) -> Self {
         let place = |read: &MeasureReads| match read {
-            MeasureReads::Column(name) => by_name.get(name.as_str()).copied().map(Place::Column),
+            MeasureReads::Column(name) => column(name).map(Place::Column),
             MeasureReads::Series(k) => Some(Place::Series(*k)),
         };
         Self {

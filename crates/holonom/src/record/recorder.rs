@@ -98,23 +98,26 @@ impl<'a> Recorder<'a> {
     }
 
     fn of(channels: Cow<'a, Channels>, system: &System, every: u64, constraints: Constraints) -> Self {
-        let mut headings = channels.headings(system, constraints);
-        let measures = Measures::new(&channels.measures, headings.iter().map(|heading| heading.name.as_str()));
-        let before = headings.len();
-        headings.extend(channels.measures.iter().map(|measure| Heading::new(&measure.name, measure.unit.clone(), &measure.meaning)));
-        let motion = COLUMNS.len() + channels.motion_headings().len();
-        let accelerations = motion..motion + if constraints == Constraints::Nothing { 0 } else { channels.acceleration_headings().len() };
-        let coordinates = accelerations.end..accelerations.end + 2 * system.gauges().len();
+        let of_sizes = channels.sizes(constraints);
+        let sections = channels.sections(system, constraints, &of_sizes);
+        // Where each section ends.
+        let mut end = 0;
+        let [_, motion, accelerated, moved, forced, inputs, ..] = sections.each_ref().map(|section| {
+            end += section.len();
+            end
+        });
+        let measured = channels.measures.iter().map(|measure| Heading::new(&measure.name, measure.unit.clone(), &*measure.meaning));
+        let recording = Recording::new(sections.into_iter().flatten().chain(measured));
+        let measures = Measures::new(&channels.measures, |name| recording.place(name));
+        let (accelerations, coordinates) = (motion..accelerated, accelerated..moved);
         let between = Between::new(&channels.forces, &channels.axes);
-        let inputs = coordinates.end + channels.force_headings().len();
-        let (drives, joints) = (coordinates.end + between.columns()..inputs, inputs + channels.inputs.len()..before);
+        let (drives, joints) = (moved + between.columns()..forced, inputs..end);
         let divisions = match measures.divisions(&[accelerations.clone(), drives, joints]) {
             Divisions::Unseen if between.is_needed() => Divisions::Ends,
             divisions => divisions,
         };
-        let recording = Recording::new(headings);
         let place = |name: &String| recording.place(name).expect("components are recorded");
-        let sizes = channels.sizes(constraints).iter().map(|components| components.iter().map(place).collect()).collect();
+        let sizes = of_sizes.iter().map(|components| components.iter().map(place).collect()).collect();
         Self {
             row: Vec::with_capacity(recording.columns().len()),
             orientations: vec![UnitQuaternion::identity(); channels.bodies.len()],
