@@ -1,5 +1,7 @@
 //! From what has been read to a model: its picture, what is recorded of it, and the system.
 
+use std::sync::Arc;
+
 use super::assembly::{self, Assembly};
 use super::bodies::frame::Frame;
 use super::unseen::OverTime;
@@ -82,7 +84,7 @@ pub(super) fn finish(
         points,
         bars,
         channels: Channels {
-            bodies: bodies.iter().map(|body| body.recorded.clone()).collect(),
+            bodies: bodies.iter().map(|body| Arc::clone(&body.recorded)).collect(),
             forces,
             efforts: recorded_efforts(efforts),
             couplings,

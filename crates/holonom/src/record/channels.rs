@@ -71,7 +71,7 @@ pub struct Channels {
     /// Position and velocity of points, then of named places of bodies.
     pub points: Vec<RecordedPoint>,
     /// Position and velocity of the centre of mass, in space also orientation and angular velocity.
-    pub bodies: Vec<RecordedBody>,
+    pub bodies: Vec<Arc<RecordedBody>>,
     /// Force and moment, where reactions are recorded.
     pub joints: Vec<RecordedJoint>,
     /// What forces do.
@@ -296,7 +296,7 @@ impl Channels {
     pub(super) fn follow(&self, simulation: &Simulation, last: &mut [UnitQuaternion<f64>]) {
         if self.axes.len() == 3 {
             let x = simulation.system().in_world(&simulation.state().x);
-            let turned = |body: &RecordedBody| body.turned(&x, simulation.velocities()).0;
+            let turned = |body: &Arc<RecordedBody>| body.turned(&x, simulation.velocities()).0;
             self.bodies.iter().zip(last).for_each(|(body, last)| *last = near(turned(body), last));
         }
     }

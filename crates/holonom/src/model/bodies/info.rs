@@ -1,5 +1,7 @@
 //! What is known of a body when a model is complete.
 
+use std::sync::Arc;
+
 use nalgebra::Matrix3;
 
 use super::RigidBody;
@@ -22,8 +24,8 @@ pub struct BodyInfo {
     pub velocity: [f64; 3],
     /// Angular velocity at the start as it was written, in the axes of the model, rad/s; in the plane its last number.
     pub angular_velocity: [f64; 3],
-    /// How it is recorded.
-    pub recorded: RecordedBody,
+    /// How it is recorded, as the channels have it.
+    pub recorded: Arc<RecordedBody>,
 }
 
 impl BodyInfo {
@@ -41,7 +43,7 @@ impl BodyInfo {
             inertia: body.inertia,
             velocity: body.velocity,
             angular_velocity: body.angular_velocity,
-            recorded,
+            recorded: recorded.into(),
         }
     }
 }
