@@ -378,3 +378,32 @@ fn pulses_of_changing_width_miss_none() {
         assert!((v - speed).abs() < 1e-9 && n == 200.0, "{method}, {accuracy:?}, {step} s: {v} m/s in place of {speed}, {n}");
     }
 }
+
+/// What one event sets makes others happen at once, and what these set makes one of them happen again: each of these counts. Where that never ends,
+/// the run does.
+#[test]
+fn what_jumps_twice_at_one_time_happens_twice() {
+    let kicked = |second: &str| {
+        format!(
+            "gravity = [0, 0, 0]\n[point.p]\nmass = 1\nposition = [0, 0, 0]\nvelocity = [1, 0, 0]\n[input.u]\n[input.left]\ndefault = 3\n[input.count]\n\
+             [event.down]\nwhen = \"u - 0.5\"\ndirection = \"falling\"\nset = {{ u = \"step(left - 0.5)\", count = \"count + 1\" }}\n\
+             [event.up]\nwhen = \"u - 0.5\"\ndirection = \"rising\"\nset = {{ u = 0, left = \"{second}\" }}\n\
+             [event.kick]\nwhen = \"p.x - 0.503\"\nset = {{ u = 1 }}\n"
+        )
+    };
+    let run = |method: &str, second: &str| {
+        let method = Method::resolve(&Choice::default().named(method)).unwrap();
+        let mut simulation = Simulation::new(model(&kicked(second)).system.clone(), method, 0.01).unwrap();
+        let status = simulation.run(1.0, &mut |_: &Simulation| Verdict::GoOn);
+        (simulation, status)
+    };
+    for method in ["conserving-ggl", "radau"] {
+        let (simulation, status) = run(method, "left - 1");
+        assert!(matches!(status, Status::Completed), "{status:?}");
+        assert_eq!(["u", "left", "count"].map(|name| simulation.input(name)), [Some(0.0), Some(0.0), Some(3.0)]);
+        let times: Vec<f64> = simulation.events().iter().map(|event| event.t).collect();
+        assert!(times.len() == 7 && times.iter().all(|t| (t - 0.503).abs() < 1e-12), "{:?}", simulation.events());
+        let (_, status) = run(method, "left");
+        assert!(matches!(&status, Status::Stopped { reason, .. } if reason.contains("happens again and again")), "{status:?}");
+    }
+}

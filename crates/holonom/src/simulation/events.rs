@@ -118,7 +118,7 @@ impl Simulation {
                 observer.at_division(self);
                 self.sample(&due, shortest)?;
             }
-            let jumped = self.jump(&mut from, &at_last)?;
+            let jumped = self.jump(&mut from, &mut at_last, shortest)?;
             let stops = jumped == Some(true);
             if samples || jumped.is_some() {
                 self.show_division(observer);
@@ -204,7 +204,7 @@ impl Simulation {
             if !due.is_empty() {
                 observer.at_division(self);
             }
-            let stops = self.happen(&happening, t, shortest, &mut from)?;
+            let stops = self.happen(&happening, t, shortest, true, &mut from, &mut at_last)?;
             self.show_division(observer);
             if stops {
                 self.join_parts(&first);
@@ -213,8 +213,17 @@ impl Simulation {
         }
     }
 
-    /// Lets events happen at a time, those with a period as samples that are due within so much of it, and says whether one ends the run.
-    fn happen(&mut self, events: &[usize], t: f64, within: f64, from: &mut [f64]) -> Result<bool, Failure> {
+    /// Lets events happen at a time, those with a period as samples that are due within so much of it, and says whether one ends the run. What they
+    /// wait for has come to zero, or has jumped through it.
+    fn happen(
+        &mut self,
+        events: &[usize],
+        t: f64,
+        within: f64,
+        at_zero: bool,
+        from: &mut [f64],
+        at_last: &mut [f64],
+    ) -> Result<bool, Failure> {
         let mut stops = false;
         let inputs = self.state.inputs.clone();
         for &k in events {
@@ -226,12 +235,14 @@ impl Simulation {
             let event = &self.system.events[k];
             stops |= event.stops;
             self.happenings.push(Happening { event: event.name.clone(), t, stopped: event.stops });
+            // What an event waits for may depend on what it sets: then it is not at zero any more. Where inputs are set velocities may be put on the
+            // rows, which changes indicators, too: what they were with the inputs from before is taken with these velocities.
+            let now = self.indicate()?;
+            let before = self.indicate_by(Look { inputs: &inputs, ..self.look() })?;
+            from[k] = if at_zero && now[k] == before[k] { 0.0 } else { self.indicate_about(now)?[k] };
+            // What the next ones set may take it back.
+            at_last[k] = f64::NAN;
         }
-        // What an event waits for may depend on what it sets: then it is not at zero any more. Where inputs are set velocities may be put on the rows,
-        // which changes indicators, too: what they were with the inputs from before is taken with these velocities.
-        let now = self.indicate()?;
-        let before = self.indicate_by(Look { inputs: &inputs, ..self.look() })?;
-        events.iter().for_each(|&k| from[k] = if now[k] == before[k] { 0.0 } else { now[k] });
         Ok(stops)
     }
 
@@ -262,27 +273,24 @@ impl Simulation {
         }
     }
 
-    /// Lets the events happen whose indicators jumped through zero when inputs were set, one after the other and each once, and says whether
+    /// Lets the events happen whose indicators jumped through zero when inputs were set, and those that jump by what these set, and says whether
     /// one ends the run; nothing where there were none. What is as it was at the last event has not jumped since, nor has
     /// what has come to zero and is past it.
-    fn jump(&mut self, from: &mut [f64], at_last: &[f64]) -> Result<Option<bool>, Failure> {
-        let (mut jumps, mut has_jumped) = (None, vec![false; from.len()]);
-        for _ in 0..=from.len() {
+    fn jump(&mut self, from: &mut [f64], at_last: &mut [f64], shortest: f64) -> Result<Option<bool>, Failure> {
+        let mut jumps = None;
+        while jumps != Some(true) {
             let exact = self.indicate()?;
             let mut now = self.indicate_about(exact.clone())?;
             let is_past = |k: usize| exact[k] == 0.0 && from[k].abs() == PAST;
             (0..now.len()).filter(|&k| exact[k] == at_last[k] || is_past(k)).for_each(|k| now[k] = from[k]);
-            let is_between = |k: usize| !has_jumped[k] && self.system.events[k].trigger.is_between(from[k], now[k]);
-            let jumped: Vec<usize> = (0..now.len()).filter(|&k| is_between(k)).collect();
-            jumped.iter().for_each(|&k| has_jumped[k] = true);
+            let jumped: Vec<usize> = (0..now.len()).filter(|&k| self.system.events[k].trigger.is_between(from[k], now[k])).collect();
             from.iter_mut().zip(now).filter(|(from, _)| **from != 0.0).for_each(|(from, now)| *from = now);
             if jumped.is_empty() {
                 break;
             }
-            jumps = Some(self.happen(&jumped, self.state.t, 0.0, from)?);
-            if jumps == Some(true) {
-                break;
-            }
+            at_last.copy_from_slice(&exact);
+            jumped.iter().try_for_each(|&k| self.require_no_chatter(k, self.state.t, shortest))?;
+            jumps = Some(self.happen(&jumped, self.state.t, 0.0, false, from, at_last)?);
         }
         Ok(jumps)
     }
