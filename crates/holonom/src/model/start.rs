@@ -303,7 +303,19 @@ fn set_off(builder: &mut SystemBuilder, targets: &[Target], elastic: &[Elastic])
             let name = |(Target { coordinate, .. }, _): &(&Target, f64)| format!("`{}.{}`", coordinate.joint, coordinate.name);
             let names = rated.iter().map(name).collect::<Vec<_>>().join(", ");
             let message = format!("no velocities at the start meet all constraints and the rates that are given of {names}");
-            Err((message, "take rates that the joints can have together, and that no constraint forbids"))
+            // Such as the axis of one of four parallel hinges that is a little off: the loop is stuck, and no other rate helps.
+            let redundant = Places::new(builder.clone().build())
+                .is_ok_and(|mut places| places.put(here.start_position()).is_ok() && places.redundant_rows() > 0);
+            Err((
+                message,
+                match redundant {
+                    true => {
+                        "take rates that the joints can have together, and that no constraint forbids; or, as some constraints follow from others, write \
+                         places and axes with all digits: a loop of hinges that are a little off does not move"
+                    }
+                    false => "take rates that the joints can have together, and that no constraint forbids",
+                },
+            ))
         }
     }
 }
