@@ -407,3 +407,19 @@ fn what_jumps_twice_at_one_time_happens_twice() {
         assert!(matches!(&status, Status::Stopped { reason, .. } if reason.contains("happens again and again")), "{status:?}");
     }
 }
+
+/// A threshold that is always half way to a place is passed without end before that: where steps by accuracy come to their end there, the event is named.
+#[test]
+fn an_event_that_happens_sooner_and_sooner_is_named() {
+    let text = "gravity = [0, 0, 0]\n[point.p]\nmass = 1\nposition = [0, 0, 0]\nvelocity = [1, 0, 0]\n[input.goal]\ndefault = 0.25\n[input.push]\n\
+                [event.nearer]\nwhen = \"p.x - goal\"\ndirection = \"rising\"\nset = { goal = \"0.5*p.x + 0.25\", push = \"-push\" }\n\
+                [force.f]\ntype = \"expression\"\npoint = \"p\"\nforce = [0, \"push\", 0]\n";
+    for (name, accuracy) in [("radau", 1e-8), ("dopri5", 1e-6)] {
+        let method = Method::resolve(&Choice { accuracy: Some(accuracy), ..Choice::default().named(name) }).unwrap();
+        let mut simulation = Simulation::new(model(text).system.clone(), method, 0.01).unwrap();
+        match simulation.run(1.0, &mut |_: &Simulation| Verdict::GoOn) {
+            Status::Stopped { at, reason } => assert!((at - 0.5).abs() < 1e-6 && reason.contains("`nearer` happens"), "{at} s: {reason}"),
+            status => panic!("{name}: {status:?}"),
+        }
+    }
+}

@@ -32,7 +32,7 @@ pub(super) const MOST_TRIES: usize = 100;
 const TIME_ROUNDED: f64 = 4.0 * f64::EPSILON;
 
 /// An event that has happened so often at one time goes on for ever.
-const CHATTER: usize = 16;
+pub(super) const CHATTER: usize = 16;
 
 impl Simulation {
     /// Events that happened so far, in their order.

@@ -1,6 +1,7 @@
 //! Why a run stopped, in words.
 
 use super::Simulation;
+use super::events::CHATTER;
 use super::pilot::is_rough;
 use crate::formulation::{Failure, Independence, Level, SMOOTH, Workspace};
 use crate::linalg::largest;
@@ -82,6 +83,11 @@ impl Simulation {
 
     /// Why no step is short enough for the accuracy, as far as that is known, and what to do.
     fn why_too_small(&mut self) -> String {
+        if let Some(event) = self.hurrying_event() {
+            return format!(
+                "; the event `{event}` happens sooner and sooner after it has happened, without end (give its conditions some distance)"
+            );
+        }
         let less = if self.method.integrator.name == "radau" { "ask for less" } else { "ask for less, or take radau" };
         if let Some(force) = self.reversing_force() {
             return format!(
@@ -100,6 +106,14 @@ impl Simulation {
                 .into(),
             false => format!(" ({less}){}", self.disagreement()),
         }
+    }
+
+    /// The last event, where it has happened again and again within a nominal step.
+    fn hurrying_event(&self) -> Option<&str> {
+        let last = &self.happenings.last()?.event;
+        let since = self.state.t - self.nominal_step();
+        let times = self.happenings.iter().rev().take_while(|event| event.t >= since).filter(|event| event.event == *last).count();
+        (times >= CHATTER).then_some(last)
     }
 
     /// Whether a row adds next to nothing to the others here, which adds more at the start or as the mechanism goes on.
