@@ -272,9 +272,23 @@ pub fn turned_bushings(model: &Model, recording: &Recording) -> Option<String> {
     ))
 }
 
+/// That redundant rows have held what is free to move and is not at rest without them.
+fn jammed(simulation: &Simulation, rank: &Rank) -> Option<String> {
+    let (system, x) = (simulation.system(), &simulation.state().x);
+    let size = x.iter().fold(0.0, |most: f64, x| x.abs().max(most));
+    let stands = || x.iter().zip(system.start_position()).all(|(x, start)| (x - start).abs() <= ROUNDED * size);
+    (simulation.steps() > 0 && !rank.redundant.is_empty() && !system.is_driven() && stands() && !is_at_rest(system)).then(|| {
+        "nothing has moved: constraints that follow from the others (redundant) hold what these leave free, as they differ from them in the last digits that are \
+         written, as those of hinges whose axes are a little off (write places and axes with all digits, or put a bushing in place of a joint)"
+            .into()
+    })
+}
+
 /// What is not sure of the results of a run, as far as the simulation itself knows at its end; whether something is free to move is for the rank to say.
-pub fn doubts(simulation: &Simulation, is_free: bool, completed: bool) -> impl Iterator<Item = String> {
+pub fn doubts(simulation: &Simulation, rank: &Rank, completed: bool) -> impl Iterator<Item = String> {
+    let is_free = rank.size(simulation.system()).dof > 0;
     let of_whole = lost_energy(simulation, is_free).into_iter().chain(unsure_work(simulation)).chain(restless(simulation));
+    let of_whole = of_whole.chain(if is_free { jammed(simulation, rank) } else { None });
     of_whole
         .filter(move |_| completed)
         .chain(strayed(simulation))

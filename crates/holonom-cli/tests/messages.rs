@@ -113,6 +113,29 @@ fn a_mechanism_that_cannot_move_is_noted() {
     }
 }
 
+/// A four-bar in space, one of whose hinges is a little off, has one degree of freedom by its rank, and rows that do not let it go there.
+#[test]
+fn a_mechanism_that_is_jammed_in_its_last_digits_is_noted() {
+    let bar = |name: &str, x: f64, y: f64| format!("[body.{name}]\nmass = 1\ninertia = [0.1, 0.1, 0.1]\nposition = [{x}, {y}, 0]\n");
+    let hinge = |name: &str, between: &str, at: &str, off: &str| {
+        format!("[joint.{name}]\ntype = \"revolute\"\nbetween = [{between}]\nat = [{at}, 0]\naxis = [{off}, 0, 1]\n")
+    };
+    let four_bar = |off: &str| {
+        let bars = bar("crank", 0.0, 0.5) + &bar("rod", 1.0, 1.2) + &bar("rocker", 2.0, 0.7);
+        let feet = hinge("a", "\"ground\", \"crank\"", "0, 0", "0") + &hinge("d", "\"ground\", \"rocker\"", "2, 0", "0");
+        let heads = hinge("b", "\"crank\", \"rod\"", "0, 1", "0") + &hinge("c", "\"rod\", \"rocker\"", "2, 1.4", off);
+        format!(
+            "{bars}{feet}{heads}[force.motor]\ntype = \"effort\"\njoint = \"a\"\neffort = 2\n[simulation]\nend = 0.1\nstep = 0.01\nmethod = \"radau\"\n"
+        )
+    };
+    let note = "note: nothing has moved: constraints that follow from the others (redundant) hold what these leave free";
+    says(&four_bar("1e-5"), &[note, "completed"], 0);
+    for sound in [four_bar("0"), four_bar("0").replace("effort = 2", "effort = 0")] {
+        let (said, code) = run(&sound);
+        assert!(code == Some(0) && !said.contains(note), "{said}");
+    }
+}
+
 #[test]
 fn friction_that_is_hardly_smoothed_is_named() {
     let block = |speed: &str| {

@@ -157,7 +157,7 @@ impl Runner<'_> {
         }
         let columns = watched.watch.values(&simulation);
         let figures = Some(figures(&simulation));
-        notes.extend(doubts(&simulation, rank.size(&model.system).dof > 0, status == Status::Completed).chain(hasty(&simulation)));
+        notes.extend(doubts(&simulation, &rank, status == Status::Completed).chain(hasty(&simulation)));
         Ok(Some(match status {
             Status::Completed => Outcome { ending: Ending::Completed, stopped_at: None, reason: String::new(), notes, figures, columns },
             Status::Stopped { at, reason } => Outcome { ending: Ending::Stopped, stopped_at: Some(at), reason, notes, figures, columns },
