@@ -1,10 +1,11 @@
 //! The equations of motion of a mechanism that is at rest, linearised there and reduced to its freedoms.
 
 use super::conflict::unmet;
+use super::fall::Fall;
 use super::golden::GOLDEN;
 use super::motions::{FOLLOWS, Motions, Slow, dot};
 use super::places::Places;
-use super::rest::{FIRST, Fall, PUSH};
+use super::rest::{FIRST, PUSH};
 use crate::energy;
 use crate::formulation::Workspace;
 use crate::linalg::{eigenpairs, largest};

@@ -11,6 +11,7 @@ mod control;
 mod crowd;
 mod doubts;
 mod events;
+mod fall;
 mod follow;
 mod golden;
 mod landing;

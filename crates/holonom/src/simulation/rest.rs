@@ -1,6 +1,7 @@
 //! Where a mechanism comes to rest (methods §20), by pseudo-transient continuation (Kelley and Keyes 1998): steps of implicit Euler, each from rest, at
 //! a time that stands still. Short ones go down the forces, and long ones are those of Newton's iteration for their balance.
 
+use super::fall::{Fall, Falling};
 use super::follow::follow;
 use super::golden::GOLDEN;
 use super::places::Places;
@@ -44,11 +45,6 @@ const SHORTEST: f64 = 1e-12;
 pub(super) const PUSH: f64 = 1e-4;
 const NEAR: f64 = 0.1;
 const BACK: f64 = 10.0;
-
-/// By how much forces drive a mechanism on in a step of a fall that is about as long as the fall takes, over what it is off by then: what is longer ends
-/// beyond the ridge. And by which share of it a step takes it on that becomes longer.
-const OWN: f64 = 0.5;
-const SLOW: f64 = 0.4;
 
 /// Ridges that a mechanism may come to on its way.
 const RIDGES: usize = 20;
@@ -297,47 +293,6 @@ impl Places {
         let pulls = work.lambda.iter().zip(&work.scales.gradient).map(|(lambda, gradient)| lambda.abs() * gradient);
         let rounding = ROUNDED * (energy::size(system, work, &work.end.x) + work.scales.length * pulls.sum::<f64>());
         (potential(work) - before - done <= rounding).then(|| largest(&work.d))
-    }
-}
-
-/// A mechanism on a ridge falls.
-pub(crate) struct Fall {
-    /// A small move (full) along which it falls.
-    pub push: Vec<f64>,
-    /// The length of a step in which forces drive it on by half of what it is off by then, or by less, s.
-    pub time: f64,
-}
-
-impl Fall {
-    /// A fall whose forces drive it on in a step of length h by so many times what it is off by then.
-    pub fn new(push: Vec<f64>, on: f64, h: f64) -> Self {
-        Self { push, time: (OWN / on).sqrt() * h }
-    }
-}
-
-/// Steps from beside a ridge, as long as each takes a mechanism farther than the one before.
-struct Falling {
-    step: f64,
-    before: f64,
-    /// By how much the last step was longer than the one before.
-    growth: f64,
-    /// Whether one did that was no longer.
-    is_seen: bool,
-    is_over: bool,
-}
-
-impl Falling {
-    fn new(step: f64) -> Self {
-        Self { step, before: 0.0, growth: f64::INFINITY, is_seen: false, is_over: false }
-    }
-
-    /// By how much the next step is longer than one that went so far, to where it is off by that. `None` when the fall is over.
-    fn growth(&mut self, way: f64, off: f64) -> Option<f64> {
-        self.is_over |= way <= self.before;
-        self.is_seen |= !self.is_over && self.growth == 1.0;
-        self.before = way;
-        self.growth = if way < SLOW * off { std::f64::consts::SQRT_2 } else { 1.0 };
-        (!self.is_over).then_some(self.growth)
     }
 }
 
