@@ -350,7 +350,8 @@ fn struck(model: &Model, simulation: &Simulation, rank: &Rank) -> Option<String>
 pub fn slowest(modes: &Modes) -> Option<String> {
     (modes.faster > 0).then(|| {
         let (told, faster) = (modes.modes.len(), modes.faster);
-        format!("these are the slowest {told} modes: {faster} more exponents are as fast or faster and were not looked for, so that one that grows may be among them")
+        let these = if told == 1 { "this is the slowest mode".to_string() } else { format!("these are the slowest {told} modes") };
+        format!("{these}: {faster} more exponents are as fast or faster and were not looked for, so that one that grows may be among them")
     })
 }
 
