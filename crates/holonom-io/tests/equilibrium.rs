@@ -2,7 +2,7 @@
 
 mod common;
 
-use std::f64::consts::FRAC_PI_6;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 
 use common::{freedom, model, run, source};
 use holonom::analysis::modes;
@@ -254,6 +254,38 @@ fn light_parts_fall() {
         );
         let height = at_start(&planar(&[chain.concat(), light]), "light.z");
         assert!((height - hinge + 0.5 * length).abs() < 1e-12, "{height} with {mass} kg at {holder}, {slope}");
+    }
+}
+
+/// Trees of hinged rods hang, whatever their masses over twelve decades and their lengths over three, from wherever they are written, as upright.
+#[test]
+fn trees_of_heavy_and_light_rods_hang() {
+    let mut number = 0.0;
+    let mut random = |least: f64, most: f64| {
+        number = (number + 0.618_033_988_749_895_f64).fract();
+        let shuffled = (1e4 * number * number).fract();
+        least + (most - least) * shuffled
+    };
+    for tree in 0..20 {
+        let (mut text, mut ends) = (String::new(), vec![("ground".to_string(), [0.0, 0.0])]);
+        for k in 0..7 {
+            let (holder, [x, z]) = ends[random(0.0, ends.len() as f64) as usize].clone();
+            let (mass, length) = (10_f64.powf(random(-10.0, 2.0)), 10_f64.powf(random(-2.5, 0.5)));
+            let angle = if random(0.0, 1.0) < 0.5 { FRAC_PI_2 } else { random(-3.0, 3.0) };
+            let [across, up] = [length * angle.cos(), length * angle.sin()];
+            text += &format!(
+                "[body.r{k}]\nmass = {mass}\nshape = {{ rod = {length} }}\nposition = [{}, {}]\norientation = {{ angle = {angle} }}\n\
+                 [joint.h{k}]\ntype = \"revolute\"\nbetween = [\"{holder}\", \"r{k}\"]\nat = [{x}, {z}]\n",
+                x + 0.5 * across,
+                z + 0.5 * up
+            );
+            ends.push((format!("r{k}"), [x + across, z + up]));
+        }
+        let recording = run(&model(&planar(&[text.clone()])), Choice::default(), 0.01, 0.01).1;
+        for k in 0..7 {
+            let angle = recording.column(&format!("r{k}.angle")).unwrap()[0];
+            assert!(angle.sin() < -1.0 + 1e-9, "tree {tree}: rod {k} stands at {angle} rad\n{text}");
+        }
     }
 }
 

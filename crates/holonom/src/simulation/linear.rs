@@ -17,8 +17,9 @@ const TRIES: [f64; 5] = [1.0, 0.1, 10.0, 0.01, 100.0];
 /// Share of the forces that may be left at rest.
 const BALANCED: f64 = 1e-6;
 
-/// A long step over the time of the fastest motion.
+/// A long step over the time of the fastest motion, and one that is short for it.
 const LONG: f64 = 1e4;
+const SHORT: f64 = 0.1;
 
 /// By what share of a move forces drive it on in a long step that is no rounding, and what share of it that leaves.
 const DRIVEN: f64 = 1e-5;
@@ -178,36 +179,44 @@ impl Places {
         })
     }
 
-    /// How a mechanism at rest, where it was put last, falls, if forces drive it on along some small move.
+    /// How a mechanism at rest, where it was put last, may fall: along moves that forces drive on, those first that they drive on most. Rounding may make
+    /// some of what is none.
     ///
     /// # Errors
     /// When its motions cannot be told.
-    pub fn falls(&mut self) -> Result<Option<Fall>, NoRest> {
+    pub fn falls(&mut self) -> Result<Vec<Fall>, NoRest> {
         let rest = self.rest(self.work.end.x.clone())?;
         let freedom = self.freedom();
         if rest.speed == 0.0 || freedom == 0 {
-            return Ok(None);
+            return Ok(Vec::new());
         }
+        let mut falls = Vec::new();
         if freedom <= MOST_FREEDOMS {
             let motions = self.motions(freedom)?;
-            return self.falls_in(&motions, &rest, rest.longer_step());
+            // What falls fast leaves nothing but rounding in a long step.
+            for h in [rest.longer_step(), SHORT / rest.undamped()] {
+                falls.extend(self.falls_in(&motions, &rest, h)?);
+            }
+            return Ok(falls);
         }
-        let (starts, mut seen) = (self.motions(SOME)?, Err(NoRest::Singular));
+        let (starts, mut is_seen) = (self.motions(SOME)?, false);
         for length in LENGTHS {
             let (mut slow, h) = (Slow::default(), length / rest.undamped());
             let found = self.slow_motions(&mut slow, &starts, FEW, &rest.spots[0], h).and_then(|()| self.falls_in(&slow.motions, &rest, h));
-            match found {
-                Ok(Some(_)) => return found,
-                Ok(None) => seen = found,
-                // A step that cannot be solved shows nothing.
-                Err(_) => {}
+            // A step that cannot be solved shows nothing.
+            if let Ok(found) = found {
+                is_seen = true;
+                falls.extend(found);
+            }
+            if !falls.is_empty() {
+                break;
             }
         }
-        seen
+        if is_seen { Ok(falls) } else { Err(NoRest::Singular) }
     }
 
     /// The same, of moves that are sums of these motions, with a step of length h.
-    fn falls_in(&mut self, motions: &Motions, rest: &Rest, h: f64) -> Result<Option<Fall>, NoRest> {
+    fn falls_in(&mut self, motions: &Motions, rest: &Rest, h: f64) -> Result<Vec<Fall>, NoRest> {
         let freedom = motions.basis.len();
         // A long step leaves a share of each move, (I + h C + h² K)⁻¹ (I + h C): less than all of it, but of what forces drive on.
         let whole = self.propagator(motions, &rest.spots[0], h)?;
@@ -215,15 +224,18 @@ impl Places {
         let pairs = eigenpairs(freedom, &of_position).ok_or(NoRest::Singular)?;
         let left = pairs.into_iter().filter(|([share, _], _)| share.abs() > LEAST);
         let driven = left.map(|([share, _], shares)| (1.0 - 1.0 / share, shares));
-        let falling = driven.filter(|(on, _)| *on > DRIVEN).max_by(|(a, _), (b, _)| a.total_cmp(b));
-        let Some((on, shares)) = falling else { return Ok(None) };
-        let mut push = vec![0.0; self.work.end.x.len()];
-        for (motion, [share, _]) in motions.basis.iter().zip(shares) {
-            push.iter_mut().zip(motion).for_each(|(push, q)| *push += share * q);
-        }
-        let by = PUSH * self.work.scales.length / largest(&push) * self.side(&push);
-        push.iter_mut().for_each(|push| *push *= by);
-        Ok(Some(Fall::new(push, on, h)))
+        let mut falling: Vec<_> = driven.filter(|(on, _)| *on > DRIVEN).collect();
+        falling.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+        let fall = |(on, shares): (f64, Vec<[f64; 2]>)| {
+            let mut push = vec![0.0; self.work.end.x.len()];
+            for (motion, [share, _]) in motions.basis.iter().zip(shares) {
+                push.iter_mut().zip(motion).for_each(|(push, q)| *push += share * q);
+            }
+            let by = PUSH * self.work.scales.length / largest(&push) * self.side(&push);
+            push.iter_mut().for_each(|push| *push *= by);
+            Fall::new(push, on, h)
+        };
+        Ok(falling.into_iter().map(fall).collect())
     }
 
     /// 1 or −1, so that a motion (full) times that has momenta to the same side whatever nodes it is told of.

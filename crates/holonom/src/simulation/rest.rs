@@ -80,44 +80,68 @@ impl Places {
         let mut outcome = self.come_to_rest(None);
         for _ in 0..RIDGES {
             let rest = self.work.end.x.clone();
-            let Some((push, fall)) = self.way_down(outcome) else { return outcome };
-            let ahead: Vec<f64> = rest.iter().zip(&push).map(|(x, push)| x + push).collect();
-            let before = outcome;
-            let mut falling = fall.map(Falling::new);
-            let size = self.work.scales.length;
-            let comes_back = self.put(&ahead).is_err() || {
-                outcome = self.come_to_rest(falling.as_mut());
-                if before.is_err() && outcome.is_err() {
-                    return outcome;
+            let mut left = None;
+            for (push, fall) in self.ways_down(outcome) {
+                left = self.leaves(&rest, &push, fall, outcome)?;
+                if left.is_some() {
+                    break;
                 }
-                let is_near = |place: &[f64], times: f64| apart(place, &self.work.end.x) <= times * PUSH * size;
-                // What is free stays where it was pushed to.
-                let stays = if fall.is_some() { is_near(&rest, NEAR) || is_near(&ahead, NEAR) } else { is_near(&rest, BACK) };
-                before.is_ok() && outcome.is_ok() && stays
-            };
-            if comes_back {
-                // What falls is so light that rounding of all others hides which way is down.
-                let before = if falling.is_some_and(|falling| falling.is_seen) { Err(Restless::Stuck) } else { before };
-                return self.put(&rest).map_err(|_| Restless::Stuck).and(before);
+            }
+            match left {
+                Some(next) => outcome = next,
+                None => return self.put(&rest).map_err(|_| Restless::Stuck).and(outcome),
             }
         }
         Err(Restless::Moves)
     }
 
-    /// A small move along which the mechanism may leave where it has come to, with the time that a fall takes, s, where it is known to be one. `None` where
-    /// it comes back from all, or where it is not at rest and on no ridge, near which long steps lead nowhere.
-    fn way_down(&mut self, outcome: Result<(), Restless>) -> Option<(Vec<f64>, Option<f64>)> {
+    /// Pushes the mechanism from where it has come to, with that outcome, and has it go on, in steps as long as its fall takes where that is known. With
+    /// what outcome it leaves; nothing where it comes back, or stays where it was pushed to.
+    ///
+    /// # Errors
+    /// When it falls and comes back all the same.
+    fn leaves(
+        &mut self,
+        rest: &[f64],
+        push: &[f64],
+        fall: Option<f64>,
+        before: Result<(), Restless>,
+    ) -> Result<Option<Result<(), Restless>>, Restless> {
+        let ahead: Vec<f64> = rest.iter().zip(push).map(|(x, push)| x + push).collect();
+        if self.put(&ahead).is_err() {
+            return Ok(None);
+        }
+        let mut falling = fall.map(Falling::new);
+        let outcome = self.come_to_rest(falling.as_mut());
+        if before.is_err() && outcome.is_err() {
+            return outcome.map(|()| None);
+        }
+        let near = |place: &[f64], times: f64| apart(place, &self.work.end.x) <= times * PUSH * self.work.scales.length;
+        // What is free stays where it was pushed to.
+        let stays = if fall.is_some() { near(rest, NEAR) || near(&ahead, NEAR) } else { near(rest, BACK) };
+        if before.is_err() || outcome.is_err() || !stays {
+            return Ok(Some(outcome));
+        }
+        // What falls is so light that rounding of all others hides which way is down.
+        if falling.is_some_and(|falling| falling.is_seen) { Err(Restless::Stuck) } else { Ok(None) }
+    }
+
+    /// Small moves along which the mechanism may leave where it has come to, each with the time that a fall takes, s, where it is known to be one. None
+    /// where it is not at rest and on no ridge, near which long steps lead nowhere.
+    fn ways_down(&mut self, outcome: Result<(), Restless>) -> Vec<(Vec<f64>, Option<f64>)> {
         if matches!(outcome, Err(Restless::Moves | Restless::Corner(..))) {
-            return None;
+            return Vec::new();
         }
         let x = self.work.end.x.clone();
-        let falls = self.falls().ok();
-        self.put(&x).ok()?;
+        let falls = self.falls();
+        if self.put(&x).is_err() {
+            return Vec::new();
+        }
         self.begin_at_end();
         match falls {
-            Some(falls) => falls.map(|Fall { push, time }| (push, Some(time))),
-            None if outcome.is_ok() => Some((self.pushed().ok()?, None)),
-            None => None,
+            Ok(falls) => falls.into_iter().map(|Fall { push, time }| (push, Some(time))).collect(),
+            Err(_) if outcome.is_ok() => self.pushed().map_or(Vec::new(), |push| vec![(push, None)]),
+            Err(_) => Vec::new(),
         }
     }
 
