@@ -275,9 +275,12 @@ pub fn turned_bushings(model: &Model, recording: &Recording) -> Option<String> {
 /// That redundant rows have held what is free to move and is not at rest without them.
 fn jammed(simulation: &Simulation, rank: &Rank) -> Option<String> {
     let (system, x) = (simulation.system(), &simulation.state().x);
-    let size = x.iter().fold(0.0, |most: f64, x| x.abs().max(most));
-    let stands = || x.iter().zip(system.start_position()).all(|(x, start)| (x - start).abs() <= ROUNDED * size);
-    (simulation.steps() > 0 && !rank.redundant.is_empty() && !system.is_driven() && stands() && !is_at_rest(system)).then(|| {
+    let is_held = rank.size(system).dof > 0 && !rank.redundant.is_empty() && !system.is_driven() && simulation.steps() > 0;
+    let stands = || {
+        let least = ROUNDED * farthest(x);
+        x.iter().zip(system.start_position()).all(|(x, start)| (x - start).abs() <= least)
+    };
+    (is_held && stands() && !is_at_rest(system)).then(|| {
         "nothing has moved: constraints that follow from the others (redundant) hold what these leave free, as they differ from them in the last digits that are \
          written, as those of hinges whose axes are a little off (write places and axes with all digits, or put a bushing in place of a joint)"
             .into()
@@ -288,8 +291,8 @@ fn jammed(simulation: &Simulation, rank: &Rank) -> Option<String> {
 pub fn doubts(simulation: &Simulation, rank: &Rank, completed: bool) -> impl Iterator<Item = String> {
     let is_free = rank.size(simulation.system()).dof > 0;
     let of_whole = lost_energy(simulation, is_free).into_iter().chain(unsure_work(simulation)).chain(restless(simulation));
-    let of_whole = of_whole.chain(if is_free { jammed(simulation, rank) } else { None });
     of_whole
+        .chain(jammed(simulation, rank))
         .filter(move |_| completed)
         .chain(strayed(simulation))
         .chain(slipped(simulation))
@@ -362,12 +365,16 @@ pub fn driven(modes: &Modes) -> Option<&'static str> {
     )
 }
 
+/// The largest coordinate of a place.
+fn farthest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |most: f64, x| x.abs().max(most))
+}
+
 /// What was put right before the start.
 pub fn corrections(model: &Model, simulation: &Simulation) -> Vec<String> {
     let mut notes = Vec::new();
     let start = simulation.start();
-    let size = simulation.state().x.iter().fold(0.0, |most: f64, x| x.abs().max(most));
-    if start.moved > ROUNDED * size {
+    if start.moved > ROUNDED * farthest(&simulation.state().x) {
         notes.push(format!("positions were moved by up to {:.2e} m onto their constraints", start.moved));
     }
     notes.extend(nowhere(start));

@@ -5,18 +5,18 @@
 const OWN: f64 = 0.5;
 const SLOW: f64 = 0.4;
 
-/// A mechanism on a ridge falls.
+/// How a mechanism may leave where it is at rest.
 pub(crate) struct Fall {
-    /// A small move (full) along which it falls.
+    /// A small move (full) along which it may fall.
     pub push: Vec<f64>,
-    /// The length of a step in which forces drive it on by half of what it is off by then, or by less, s.
-    pub time: f64,
+    /// The length of a step in which forces drive it on by half of what it is off by then, or by less, s. `None` where it is not known that they do.
+    pub time: Option<f64>,
 }
 
 impl Fall {
     /// A fall whose forces drive it on in a step of length h by so many times what it is off by then.
     pub fn new(push: Vec<f64>, on: f64, h: f64) -> Self {
-        Self { push, time: (OWN / on).sqrt() * h }
+        Self { push, time: Some((OWN / on).sqrt() * h) }
     }
 }
 

@@ -81,8 +81,8 @@ impl Places {
         for _ in 0..RIDGES {
             let rest = self.work.end.x.clone();
             let mut left = None;
-            for (push, fall) in self.ways_down(outcome) {
-                left = self.leaves(&rest, &push, fall, outcome)?;
+            for fall in self.ways_down(outcome) {
+                left = self.leaves(&rest, &fall, outcome)?;
                 if left.is_some() {
                     break;
                 }
@@ -100,25 +100,19 @@ impl Places {
     ///
     /// # Errors
     /// When it falls and comes back all the same.
-    fn leaves(
-        &mut self,
-        rest: &[f64],
-        push: &[f64],
-        fall: Option<f64>,
-        before: Result<(), Restless>,
-    ) -> Result<Option<Result<(), Restless>>, Restless> {
-        let ahead: Vec<f64> = rest.iter().zip(push).map(|(x, push)| x + push).collect();
+    fn leaves(&mut self, rest: &[f64], fall: &Fall, before: Result<(), Restless>) -> Result<Option<Result<(), Restless>>, Restless> {
+        let ahead: Vec<f64> = rest.iter().zip(&fall.push).map(|(x, push)| x + push).collect();
         if self.put(&ahead).is_err() {
             return Ok(None);
         }
-        let mut falling = fall.map(Falling::new);
+        let mut falling = fall.time.map(Falling::new);
         let outcome = self.come_to_rest(falling.as_mut());
         if before.is_err() && outcome.is_err() {
             return outcome.map(|()| None);
         }
         let near = |place: &[f64], times: f64| apart(place, &self.work.end.x) <= times * PUSH * self.work.scales.length;
         // What is free stays where it was pushed to.
-        let stays = if fall.is_some() { near(rest, NEAR) || near(&ahead, NEAR) } else { near(rest, BACK) };
+        let stays = if fall.time.is_some() { near(rest, NEAR) || near(&ahead, NEAR) } else { near(rest, BACK) };
         if before.is_err() || outcome.is_err() || !stays {
             return Ok(Some(outcome));
         }
@@ -126,9 +120,8 @@ impl Places {
         if falling.is_some_and(|falling| falling.is_seen) { Err(Restless::Stuck) } else { Ok(None) }
     }
 
-    /// Small moves along which the mechanism may leave where it has come to, each with the time that a fall takes, s, where it is known to be one. None
-    /// where it is not at rest and on no ridge, near which long steps lead nowhere.
-    fn ways_down(&mut self, outcome: Result<(), Restless>) -> Vec<(Vec<f64>, Option<f64>)> {
+    /// How the mechanism may leave where it has come to: not at all where it is not at rest and on no ridge, near which long steps lead nowhere.
+    fn ways_down(&mut self, outcome: Result<(), Restless>) -> Vec<Fall> {
         if matches!(outcome, Err(Restless::Moves | Restless::Corner(..))) {
             return Vec::new();
         }
@@ -139,8 +132,8 @@ impl Places {
         }
         self.begin_at_end();
         match falls {
-            Ok(falls) => falls.into_iter().map(|Fall { push, time }| (push, Some(time))).collect(),
-            Err(_) if outcome.is_ok() => self.pushed().map_or(Vec::new(), |push| vec![(push, None)]),
+            Ok(falls) => falls,
+            Err(_) if outcome.is_ok() => self.pushed().map_or(Vec::new(), |push| vec![Fall { push, time: None }]),
             Err(_) => Vec::new(),
         }
     }
