@@ -1,9 +1,13 @@
 //! Eigenvalues and inverses of small dense matrices, for analysis only.
 
+use super::largest;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::evd::{ComputeEigenvectors, EvdParams, evd_real, evd_scratch};
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Auto, Col, Mat, Par, Side, Spec};
+
+/// How far what is symmetric may be from it, over its largest number: what rounding leaves where it comes of sums.
+const ROUNDED: f64 = 1e-13;
 
 /// Eigenvalues of M⁻¹A for symmetric A and positive definite M, ascending. `None` when M is not positive definite.
 pub fn relative_eigenvalues(size: usize, a: &[f64], m: &[f64]) -> Option<Vec<f64>> {
@@ -28,6 +32,10 @@ pub type Eigenpair = ([f64; 2], Vec<[f64; 2]>);
 
 /// Those of a matrix (size × size, row-major). `None` where they are not found.
 pub fn eigenpairs(size: usize, values: &[f64]) -> Option<Vec<Eigenpair>> {
+    if is_symmetric(size, values) {
+        let eigen = matrix(size, values).self_adjoint_eigen(Side::Lower).ok()?;
+        return Some((0..size).map(|k| ([eigen.S()[k], 0.0], (0..size).map(|i| [eigen.U()[(i, k)], 0.0]).collect())).collect());
+    }
     // One shift pair at a time: the reordering with which faer looks for several (0.24.4) may go on without end where eigenvalues lie close.
     let mut params: EvdParams = Auto::<f64>::auto();
     params.schur.blocking_threshold = usize::MAX;
@@ -61,6 +69,12 @@ pub fn eigenpairs(size: usize, values: &[f64]) -> Option<Vec<Eigenpair>> {
         }
     }
     Some(pairs)
+}
+
+/// Whether a matrix is symmetric but for rounding, whose eigenpairs are found faster.
+fn is_symmetric(size: usize, values: &[f64]) -> bool {
+    let most = ROUNDED * largest(values);
+    (0..size).all(|i| (0..i).all(|j| (values[i * size + j] - values[j * size + i]).abs() <= most))
 }
 
 /// Orthonormal vectors that a symmetric positive semidefinite matrix (size × size, row-major) takes to at most `share` of

@@ -17,19 +17,19 @@ const TRIES: [f64; 5] = [1.0, 0.1, 10.0, 0.01, 100.0];
 /// Share of the forces that may be left at rest.
 const BALANCED: f64 = 1e-6;
 
-/// A long step over the time of the fastest motion, and one that is short for it.
+/// A long step over the time of the fastest motion.
 const LONG: f64 = 1e4;
-const SHORT: f64 = 0.1;
 
 /// By what share of a move forces drive it on in a long step that is no rounding, and what share of it that leaves.
 const DRIVEN: f64 = 1e-5;
 const LEAST: f64 = 1e-10;
 
-/// Freedoms of which all motions are looked at for one that falls. Of more, motions that show one: as many without order, and as many as come of steps so
-/// long in the time of the fastest, one of which is about as long as a fall takes.
+/// Freedoms of which all motions are looked at for one that falls. Of more, motions that show one: some without order, and as many as come of steps of them.
 const MOST_FREEDOMS: usize = 200;
 const SOME: usize = 10;
 const FEW: usize = 60;
+
+/// Lengths of these steps in the time of the fastest motion, one of which is about as long as a fall takes.
 const LENGTHS: [f64; 10] = [0.1, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8];
 
 /// How far the places are beside it and each other, over the mechanism's size; how many times that the way back to rest may be; and by how much rounding
@@ -69,11 +69,7 @@ impl Rest {
         LONG / self.speed
     }
 
-    /// A longer one where dampers are stronger than other forces: what these drive on is slow then.
-    fn longer_step(&self) -> f64 {
-        LONG / self.undamped()
-    }
-
+    /// How fast forces drive, or dampers brake where these are far stronger: what the others drive on is slow then.
     fn undamped(&self) -> f64 {
         self.driven.max(self.speed / LONG)
     }
@@ -190,29 +186,26 @@ impl Places {
         if rest.speed == 0.0 || freedom == 0 {
             return Ok(Vec::new());
         }
-        let mut falls = Vec::new();
-        if freedom <= MOST_FREEDOMS {
-            let motions = self.motions(freedom)?;
-            // What falls fast leaves nothing but rounding in a long step.
-            for h in [rest.longer_step(), SHORT / rest.undamped()] {
-                falls.extend(self.falls_in(&motions, &rest, h)?);
-            }
-            return Ok(falls);
-        }
-        let (starts, mut is_seen) = (self.motions(SOME)?, false);
+        let are_all = freedom <= MOST_FREEDOMS;
+        let starts = self.motions(if are_all { freedom } else { SOME })?;
+        let (mut falls, mut is_seen) = (Vec::new(), false);
         for length in LENGTHS {
-            let (mut slow, h) = (Slow::default(), length / rest.undamped());
-            let found = self.slow_motions(&mut slow, &starts, FEW, &rest.spots[0], h).and_then(|()| self.falls_in(&slow.motions, &rest, h));
+            let h = length / rest.undamped();
+            let found = if are_all { self.falls_in(&starts, &rest, h) } else { self.slow_falls(&starts, &rest, h) };
             // A step that cannot be solved shows nothing.
             if let Ok(found) = found {
                 is_seen = true;
                 falls.extend(found);
             }
-            if !falls.is_empty() {
-                break;
-            }
         }
         if is_seen { Ok(falls) } else { Err(NoRest::Singular) }
+    }
+
+    /// The same, of moves that are sums of slow motions, which steps of length h make of these.
+    fn slow_falls(&mut self, starts: &Motions, rest: &Rest, h: f64) -> Result<Vec<Fall>, NoRest> {
+        let mut slow = Slow::default();
+        self.slow_motions(&mut slow, starts, FEW, &rest.spots[0], h)?;
+        self.falls_in(&slow.motions, rest, h)
     }
 
     /// The same, of moves that are sums of these motions, with a step of length h.
@@ -222,8 +215,9 @@ impl Places {
         let whole = self.propagator(motions, &rest.spots[0], h)?;
         let of_position: Vec<f64> = whole.chunks_exact(2 * freedom).take(freedom).flat_map(|line| &line[..freedom]).copied().collect();
         let pairs = eigenpairs(freedom, &of_position).ok_or(NoRest::Singular)?;
-        let left = pairs.into_iter().filter(|([share, _], _)| share.abs() > LEAST);
-        let driven = left.map(|([share, _], shares)| (1.0 - 1.0 / share, shares));
+        // Where forces have no potential they drive a motion aside as well: what they do more of that with runs in circles.
+        let of_one = |([re, im], shares): ([f64; 2], _)| (1.0 - (re + im.abs()) / (re * re + im * im), shares);
+        let driven = pairs.into_iter().filter(|([re, im], _)| re.hypot(*im) > LEAST).map(of_one);
         let mut falling: Vec<_> = driven.filter(|(on, _)| *on > DRIVEN).collect();
         falling.sort_by(|(a, _), (b, _)| b.total_cmp(a));
         let fall = |(on, shares): (f64, Vec<[f64; 2]>)| {
