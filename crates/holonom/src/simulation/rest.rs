@@ -101,10 +101,9 @@ impl Places {
     /// # Errors
     /// When it falls and comes back all the same.
     fn leaves(&mut self, rest: &[f64], fall: &Fall, before: Result<(), Restless>) -> Result<Option<Result<(), Restless>>, Restless> {
-        let ahead: Vec<f64> = rest.iter().zip(&fall.push).map(|(x, push)| x + push).collect();
-        if self.put(&ahead).is_err() {
-            return Ok(None);
-        }
+        let ahead = |share: f64| rest.iter().zip(&fall.push).map(|(x, push)| x + share * push).collect::<Vec<f64>>();
+        // Light links that are stretched between what is heavy let go only a little aside.
+        let Some(ahead) = [1.0, 0.01].into_iter().map(ahead).find(|ahead| self.put(ahead).is_ok()) else { return Ok(None) };
         let mut falling = fall.time.map(Falling::new);
         let outcome = self.come_to_rest(falling.as_mut());
         if before.is_err() && outcome.is_err() {
