@@ -108,6 +108,24 @@ fn dampers_keep_order_two() {
     }
 }
 
+/// So they do of a weak damper that holds the mass which a damper far too strong for the step ties to another: what that does not brake it leaves alone.
+#[test]
+fn a_weak_damper_keeps_order_two_beside_a_strong_one() {
+    let text = format!(
+        "{}[point.n]\nmass = 1\nposition = [6, 0, 0]\nvelocity = [10, 0, 0]\n\
+         [force.strong]\ntype = \"spring\"\nbetween = [\"m\", \"n\"]\ndamping = 1e6\nstiffness = 1e4\n",
+        text(0.6, 20.0)
+    );
+    // Both move as one of 2 kg: ẍ + 0.3 ẋ + 10 x = 0.
+    let (decay, speed) = (0.15_f64, (10.0_f64 - 0.0225).sqrt());
+    let exact = 10.0 / speed * (-decay).exp() * speed.sin();
+    for method in ["conserving-ggl", "conserving"] {
+        let errors = [0.04, 0.02, 0.01].map(|h| (run(&text, method, h)[0] - exact).abs());
+        println!("{method:18} {errors:?}");
+        assert!(errors[0] < 0.02 && (0..2).all(|k| errors[k] / errors[k + 1] > 3.5), "{method}: {errors:?}");
+    }
+}
+
 /// Compositions go back in time in parts of their step, where a damper makes energy: steps that are too long for that are divided, so that a bushing
 /// only takes energy and the end is that of small steps; where no part is short enough, the run stops and says so.
 #[test]

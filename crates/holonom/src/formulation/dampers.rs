@@ -102,46 +102,43 @@ impl Newton {
         bound_by_nodes(system, &mut dampers, work);
         // A composition goes back in some of its steps. Nothing rings there, but dampers make energy.
         let share = if self.fit.share > 0.0 { self.fit.share } else { LIGHTER };
+        let bound = dampers.iter().map(|damping| damping.speed).fold(0.0, f64::max);
         if let Some(law) = dampers.iter().position(|damping| -h * share * damping.speed > BACK) {
             work.forces.damping = dampers;
             return Err(Failure::GoesBack { law });
         }
-        if dampers.iter().any(|damping| h * damping.speed > NOTICED) {
+        dampers.iter_mut().for_each(|damping| damping.late = 0.0);
+        if h * bound > NOTICED {
             // In real time every step does the same work.
             let may_find = count <= MOST && self.settings.iterations.is_none();
-            self.refine(system, h, may_find, &mut dampers, work);
-        }
-        for damping in &mut dampers {
-            let z = h * damping.speed;
-            damping.late = if z > 2.0 { 1.0 - 2.0 / z } else { 0.0 };
+            let share = self.share(system, h, bound, may_find, &dampers, work);
+            if h * share * bound > 2.0 {
+                be_late(system, h * share, &mut dampers, work);
+            }
         }
         work.forces.damping = dampers;
         Ok(())
     }
 
-    /// Replaces the bounds by what rows and other masses make of them, which is found once in a while.
-    fn refine(&mut self, system: &System, h: f64, may_find: bool, dampers: &mut [Damping], work: &mut Workspace) {
-        let largest = |dampers: &[Damping]| dampers.iter().map(|damping| damping.speed).fold(0.0, f64::max);
-        let bound = largest(dampers);
+    /// What rows and other masses make of the bound by nodes, over it: found once in a while.
+    fn share(&mut self, system: &System, h: f64, bound: f64, may_find: bool, dampers: &[Damping], work: &mut Workspace) -> f64 {
         if self.fit.steps_left > 0 && (self.fit.steps_left <= OFTEN || h * self.fit.share * bound < NEAR) {
             self.fit.steps_left -= 1;
-            dampers.iter_mut().for_each(|damping| damping.speed *= self.fit.share);
-        } else if may_find && self.find_with_rows(system, dampers, work) {
-            let found = largest(dampers);
-            self.fit = Fit { share: GROWTH * found / bound, steps_left: if GROWTH * h * found < NEAR { SELDOM } else { OFTEN } };
-        } else {
-            dampers.iter_mut().for_each(|damping| damping.speed *= LIGHTER);
+            return self.fit.share;
         }
+        let Some(found) = may_find.then(|| self.find_with_rows(system, dampers, work)).flatten() else { return LIGHTER };
+        self.fit = Fit { share: GROWTH * found / bound, steps_left: if GROWTH * h * found < NEAR { SELDOM } else { OFTEN } };
+        self.fit.share
     }
 
-    /// z over the step with what rows and other masses hold there: Σ √(c_k c_l) |g_k w_l| with [M Gᵀ; G 0][w; μ] = [gᵀ; 0].
-    fn find_with_rows(&mut self, system: &System, dampers: &mut [Damping], work: &mut Workspace) -> bool {
+    /// The largest z over the step with what rows and other masses hold there: Σ √(c_k c_l) |g_k w_l| with [M Gᵀ; G 0][w; μ] = [gᵀ; 0].
+    fn find_with_rows(&mut self, system: &System, dampers: &[Damping], work: &mut Workspace) -> Option<f64> {
         let n = system.coordinates();
         work.end.at.copy_from(&work.start.at);
         if !self.factor_inertia(work) {
-            return false;
+            return None;
         }
-        dampers.iter_mut().for_each(|damping| damping.speed = 0.0);
+        let mut largest = 0.0_f64;
         for k in 0..dampers.len() {
             for (i, c) in dampers[k].stiffness.into_iter().enumerate().filter(|(_, c)| *c > 0.0) {
                 self.unknowns.fill(0.0);
@@ -160,10 +157,13 @@ impl Newton {
                         sum += (c * d).sqrt() * product.abs();
                     }
                 }
-                dampers[k].speed = dampers[k].speed.max(sum);
+                if !sum.is_finite() {
+                    return None;
+                }
+                largest = largest.max(sum);
             }
         }
-        dampers.iter().all(|damping| damping.speed.is_finite())
+        Some(largest)
     }
 }
 
@@ -231,17 +231,53 @@ impl Braking {
     }
 }
 
+/// Has dampers take their rates as late as it takes for them not to ring together: with Σ (1 − θ) z ≤ 1 at each node, over the z of each alone in a step of `h`
+/// (s, over the share of the mass that they feel). Where as many equal ones would not ring a damper keeps the mean rate, and the others share what is left
+/// alike: so a weak one stays of order 2 beside one that is overdamped.
+fn be_late(system: &System, h: f64, dampers: &mut [Damping], work: &mut Workspace) {
+    let [mut counts, mut left] = [&mut work.full, &mut work.inertial].map(std::mem::take);
+    let (all, strong) = counts.split_at_mut(system.free);
+    let each = |k: usize, damping: &Damping, see: &mut dyn FnMut(usize, f64)| {
+        for (i, c) in damping.stiffness.into_iter().enumerate().filter(|(_, c)| *c > 0.0) {
+            each_pull(system, k, i, work, |node, pull| match h * c * pull * work.scales.agility[node] {
+                z if z > 0.0 => see(node, z),
+                _ => (),
+            });
+        }
+    };
+    let is_weak = |z: f64, count: f64| 0.5 * z * count <= 1.0;
+    all.fill(0.0);
+    strong.fill(0.0);
+    left.fill(1.0);
+    for (k, damping) in dampers.iter().enumerate() {
+        each(k, damping, &mut |node, _| all[node] += 1.0);
+    }
+    for (k, damping) in dampers.iter().enumerate() {
+        each(k, damping, &mut |node, z| match is_weak(z, all[node]) {
+            true => left[node] -= 0.5 * z,
+            false => strong[node] += 1.0,
+        });
+    }
+    for (k, damping) in dampers.iter_mut().enumerate() {
+        let mut early = 0.5_f64;
+        each(k, damping, &mut |node, z| {
+            if !is_weak(z, all[node]) {
+                early = early.min(left[node] / (strong[node] * z));
+            }
+        });
+        damping.late = 1.0 - 2.0 * early;
+    }
+    (work.full, work.inertial) = (counts, left);
+}
+
 /// Bounds z over the step by Σ c |g| Σ |g| over the mass of each node: by Gershgorin no eigenvalue of M⁻¹ Gᵀ c G is larger where M
 /// is diagonal.
 fn bound_by_nodes(system: &System, dampers: &mut [Damping], work: &mut Workspace) {
-    let size = |g: &[f64]| g.iter().map(|g| g * g).sum::<f64>().sqrt();
     let mut pull = std::mem::take(&mut work.full);
     pull.fill(0.0);
     for (k, damping) in dampers.iter().enumerate() {
         for (i, c) in damping.stiffness.into_iter().enumerate().filter(|(_, c)| *c > 0.0) {
-            let mut all = 0.0;
-            each_slot(system, k, i, work, |_, g| all += size(g));
-            each_slot(system, k, i, work, |node, g| pull[node] += c * size(g) * all);
+            each_pull(system, k, i, work, |node, of_slot| pull[node] += c * of_slot);
         }
     }
     for (k, damping) in dampers.iter_mut().enumerate() {
@@ -251,6 +287,14 @@ fn bound_by_nodes(system: &System, dampers: &mut [Damping], work: &mut Workspace
         }
     }
     work.full = pull;
+}
+
+/// Shows |g| Σ |g| of an argument of a law at the start of a step, slot by slot.
+fn each_pull(system: &System, law: usize, argument: usize, work: &Workspace, mut see: impl FnMut(usize, f64)) {
+    let size = |g: &[f64]| g.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let mut all = 0.0;
+    each_slot(system, law, argument, work, |_, g| all += size(g));
+    each_slot(system, law, argument, work, |node, g| see(node, size(g) * all));
 }
 
 /// Shows the gradient of an argument of a law at the start of a step, free node by free node.
