@@ -85,6 +85,31 @@ fn dampers_damp() {
     assert_eq!(found(&free).free, 1);
 }
 
+/// What falls off faster than others vibrate is numbered behind them, and numbers stay where a damper makes two exponents of a vibration, up and down.
+#[test]
+fn modes_keep_their_numbers_where_dampers_are_strong() {
+    let other = |text: &str| {
+        let renamed = text.split_once("[body.m]").unwrap().1.replace("0.3, 0, 0", "0.3, 1, 0");
+        format!(
+            "[body.n]{}",
+            renamed.replace("joint.r]", "joint.s]").replace("\"m\"", "\"n\"").replace("force.k]", "force.l]").replace("\"r\"", "\"s\"")
+        )
+    };
+    // ω = 5 and 50 rad/s, critical at 20 and at 200 N·s/m.
+    for (slow, fast) in [(4.0, 100.0), (4.0, 300.0), (60.0, 300.0), (60.0, 100.0)] {
+        let text = format!("{}{}", rail(slow), other(&rail(fast).replace("stiffness = 50", "stiffness = 5000")));
+        let found = found(&text);
+        let [first, second] = [(slow, 20.0), (fast, 200.0)].map(|(c, critical)| if c > critical { 2 } else { 1 });
+        let numbers: Vec<usize> = (0..found.modes.len()).map(|mode| found.number(mode)).collect();
+        assert_eq!(numbers, [vec![1; first], vec![2; second]].concat(), "{found:?}");
+        let growth = |c: f64, omega: f64| ((c / 4.0).powi(2) - omega * omega).max(0.0).sqrt() - c / 4.0;
+        for (number, exact) in [(1, growth(slow, 5.0)), (2, growth(fast, 50.0))] {
+            assert!((found.growth(number).unwrap() / exact - 1.0).abs() < 1e-9, "{found:?}");
+            assert_eq!(found.vibration(number).is_none(), [first, second][number - 1] == 2);
+        }
+    }
+}
+
 /// Fifty masses on springs between a wall and a free end: ω = 2 √(k/m) sin((2j − 1)π/(4N + 2)); the same in other units, and beside a spring that is
 /// 1e10 times as stiff.
 #[test]

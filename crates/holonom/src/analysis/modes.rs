@@ -21,8 +21,12 @@ pub struct Mode {
 /// What the linearised equations have.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Modes {
-    /// By frequency; those that do not vibrate first, and of these the ones that grow.
+    /// In the order of their numbers.
     pub modes: Vec<Mode>,
+    /// Of each the number.
+    pub(super) numbers: Vec<usize>,
+    /// Of each number the real part of s, of two the larger one.
+    pub(super) growths: Vec<f64>,
     /// How many s are zero: two of each freedom that nothing resists, one of those that are only damped.
     pub free: usize,
     /// Within which of zero rounding has them, 1/s.
@@ -109,44 +113,44 @@ impl Mode {
 }
 
 impl Modes {
-    /// The number of a mode, counted from 1. Those that do not vibrate come first, and have two exponents each, which may be zero: the first has the largest
-    /// and the smallest, the second the next ones, so that the larger ones are in order, and numbers of others stay when two of these become a vibration.
+    /// The number of a mode, counted from 1. What does not vibrate has two exponents under each number, which may be zero: the largest and the smallest of all,
+    /// the next ones, and so on. What grows comes first, by how fast; the others go by the natural frequency, |s| or √(s₁ s₂), so that they keep their numbers
+    /// where damping makes two exponents of a vibration.
     pub fn number(&self, mode: usize) -> usize {
-        let still = self.still();
-        let exponents = still + self.free;
-        let place = match &self.modes[mode] {
-            found if found.vibrates() => return exponents.div_ceil(2) + mode - still + 1,
-            found if found.growth > 0.0 => mode,
-            _ => mode + self.free,
-        };
-        place.min(exponents - 1 - place) + 1
+        self.numbers[mode]
     }
 
     /// The mode with a number that vibrates.
     pub fn vibration(&self, number: usize) -> Option<&Mode> {
-        let (still, before) = (self.still(), (self.still() + self.free).div_ceil(2));
-        self.modes.get(still + number.checked_sub(before + 1)?)
+        self.modes.iter().zip(&self.numbers).find(|(mode, own)| **own == number && mode.vibrates()).map(|(mode, _)| mode)
     }
 
     /// How fast the motion with a number grows, 1/s; of two exponents the larger one.
     pub fn growth(&self, number: usize) -> Option<f64> {
-        let (place, still) = (number.checked_sub(1)?, self.still());
-        let growing = self.modes[..still].iter().filter(|mode| mode.growth > 0.0).count();
-        match place {
-            _ if place >= (still + self.free).div_ceil(2) => self.vibration(number).map(|mode| mode.growth),
-            _ if place < growing => Some(self.modes[place].growth),
-            _ if place < growing + self.free => Some(0.0),
-            _ => Some(self.modes[place - self.free].growth),
+        self.growths.get(number.checked_sub(1)?).copied()
+    }
+
+    /// Numbers the modes, and puts them in that order.
+    pub(super) fn numbered(mut self) -> Self {
+        self.modes.sort_by(|a, b| b.growth.total_cmp(&a.growth));
+        let (swinging, still): (Vec<Mode>, Vec<Mode>) = self.modes.into_iter().partition(Mode::vibrates);
+        let mut still: Vec<Option<Mode>> = still.into_iter().map(Some).collect();
+        let growing = still.partition_point(|mode| mode.as_ref().is_some_and(|mode| mode.growth > 0.0));
+        still.splice(growing..growing, std::iter::repeat_with(|| None).take(self.free));
+        let rate = |mode: &Option<Mode>| mode.as_ref().map_or(0.0, |mode| mode.growth);
+        let mut all: Vec<(f64, f64, Vec<Mode>)> = Vec::new();
+        while !still.is_empty() {
+            let (first, last) = (still.remove(0), still.pop());
+            let growth = rate(&first);
+            let speed = if growth > 0.0 { -growth } else { (growth * last.as_ref().map_or(growth, rate)).sqrt() };
+            all.push((speed, growth, [first, last.flatten()].into_iter().flatten().collect()));
         }
-    }
-
-    pub(super) fn sort(&mut self) {
-        self.modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency).then(b.growth.total_cmp(&a.growth)));
-    }
-
-    /// Exponents of modes that do not vibrate, but for those that are zero.
-    fn still(&self) -> usize {
-        self.modes.iter().take_while(|mode| !mode.vibrates()).count()
+        all.extend(swinging.into_iter().map(|mode| (mode.growth.hypot(TAU * mode.frequency), mode.growth, vec![mode])));
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        self.growths = all.iter().map(|(_, growth, _)| *growth).collect();
+        self.numbers = (1..).zip(&all).flat_map(|(number, (_, _, modes))| vec![number; modes.len()]).collect();
+        self.modes = all.into_iter().flat_map(|(_, _, modes)| modes).collect();
+        self
     }
 }
 
@@ -169,7 +173,7 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
     let driven = freedom > 0 && speed > STILL * places.length() * rest.speed;
     let none = Modes { free: 2 * freedom, length: places.length(), driven, ..Modes::default() };
     if rest.speed == 0.0 || freedom == 0 {
-        return Ok(none);
+        return Ok(none.numbered());
     }
     if freedom > MOST_FREEDOMS {
         return slowest::slowest(system, &mut places, &rest, &motions, none);
@@ -187,7 +191,7 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
         }
     };
     let Some(slowest) = slowest_speed(&slow, long) else {
-        return Ok(Modes { within: slow.iter().fold(0.0, |most, found| found.speed().max(most)), ..none });
+        return Ok(Modes { within: slow.iter().fold(0.0, |most, found| found.speed().max(most)), ..none }.numbered());
     };
     let mut modes = Modes { free: 0, ..none };
     let mut left = 2 * freedom;
@@ -211,8 +215,7 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
         }
     }
     modes.unsure = left;
-    modes.sort();
-    Ok(modes)
+    Ok(modes.numbered())
 }
 
 /// The speed of the slowest motion that a step of length h tells from what rounding makes of a zero, 1/s.

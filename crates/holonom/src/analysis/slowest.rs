@@ -64,8 +64,7 @@ pub(super) fn slowest(system: &System, places: &mut Places, rest: &Rest, starts:
         return Err(NoModes::Large(freedom));
     }
     modes.faster = (2 * freedom).saturating_sub(modes.free + told);
-    modes.sort();
-    Ok(modes)
+    Ok(modes.numbered())
 }
 
 impl Search<'_> {
