@@ -139,10 +139,11 @@ impl Assembly<'_> {
         Some(entry.refuse(spot, format!("`{name}` is none of the bodies of a beam"), format!("name one of `{first}` to `{last}`")))
     }
 
-    /// Whether a text names a place or a direction of a body: `BODY.NAME`.
+    /// Whether a text names a place or a direction of a body, which may have a fault: `BODY.NAME`.
     pub fn is_place_of_body(&self, entry: &Entry<'_>, text: &str) -> bool {
         let body = split_place(text).and_then(|(body, _)| indexed(body, &entry.scope).ok());
-        body.is_some_and(|body| self.body_by_name(&body).is_some())
+        let is_faulty = |body: &str| self.faulty.contains(body.split('[').next().unwrap_or(body));
+        body.is_some_and(|body| self.body_by_name(&body).is_some() || is_faulty(&body))
     }
 
     /// A joint by name.
