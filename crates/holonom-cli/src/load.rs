@@ -347,7 +347,7 @@ pub fn modes_failure(error: NoModes) -> Failure {
         NoModes::Start(_) | NoModes::Singular => "`holonom check` says more of the start",
         NoModes::Moving => "remove the velocities",
         NoModes::Unbalanced => {
-            "write equilibrium = true in [start], or --set start.equilibrium=true; a joint that [start] puts somewhere is let go there"
+            "write equilibrium = true in [start], or --set start.equilibrium=true; where it is there, take the places of joints out beside it"
         }
         NoModes::Forks => "a run from a place beside it shows how it moves",
         NoModes::Massless => "give every free point some mass",
