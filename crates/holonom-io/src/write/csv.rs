@@ -9,6 +9,9 @@ use super::Table;
 /// Columns are in memory one after the other: of each so many rows come along with the first.
 const ROWS_AT_ONCE: usize = 8;
 
+/// Bytes that are written at once: to ask the system for a few lines each takes as long as to make them.
+const BYTES_AT_ONCE: usize = 1 << 18;
+
 /// Writes a header and one line a row. Numbers are the shortest that read back to the same bits.
 pub(super) fn write(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
     append_csv(recording, 0, out)
@@ -24,7 +27,7 @@ pub fn append_csv(recording: &Recording, first: usize, out: &mut dyn Write) -> i
         header.flush()?;
     }
     // Numbers are never quoted.
-    let (mut line, mut number) = (Vec::new(), zmij::Buffer::new());
+    let (mut text, mut number) = (Vec::new(), zmij::Buffer::new());
     let width = recording.columns().len();
     let mut cells = vec![0.0; ROWS_AT_ONCE.min(recording.rows() - first) * width];
     for from in (first..recording.rows()).step_by(ROWS_AT_ONCE) {
@@ -33,16 +36,19 @@ pub fn append_csv(recording: &Recording, first: usize, out: &mut dyn Write) -> i
             column.values[from..from + rows].iter().enumerate().for_each(|(row, value)| cells[row * width + k] = *value);
         }
         for cells in cells.chunks_exact(width).take(rows) {
-            line.clear();
             for cell in cells {
-                line.extend_from_slice(shortest(*cell, &mut number).as_bytes());
-                line.push(b',');
+                text.extend_from_slice(shortest(*cell, &mut number).as_bytes());
+                text.push(b',');
             }
-            line.pop();
-            line.push(b'\n');
-            out.write_all(&line)?;
+            text.pop();
+            text.push(b'\n');
+            if text.len() >= BYTES_AT_ONCE {
+                out.write_all(&text)?;
+                text.clear();
+            }
         }
     }
+    out.write_all(&text)?;
     out.flush()
 }
 
