@@ -19,8 +19,8 @@ const ROUNDED: f64 = 1e-12;
 const FEW_ROWS: usize = 200;
 
 /// Which of the forces that a run has recorded redundant rows leave undetermined.
-pub fn shared_forces(model: &Model, simulation: &Simulation) -> Option<String> {
-    simulation.reactions()?;
+pub fn shared_forces(model: &Model, simulation: &Simulation, recording: &Recording) -> Option<String> {
+    simulation.reactions().filter(|_| unforced_rows(model, recording).len() < recording.rows())?;
     let free = analysis::undetermined_of(simulation, FEW_ROWS).filter(|free| free.count() > 0)?;
     let open = open_columns(&free, model.channels.told(), model);
     let named = (!open.is_empty()).then(|| listed(&open))?;
@@ -75,7 +75,7 @@ pub fn unknown_measures(model: &Model, recording: &Recording) -> Vec<String> {
 /// Rows without forces of joints and drives, but for those in which other forces have no value, either, which is why.
 fn unforced_rows(model: &Model, recording: &Recording) -> Vec<usize> {
     let told = model.channels.told();
-    let of_joints = told.joints.first().map(|joint| format!("{}.f{}", joint.name, &model.axes[..1]));
+    let of_joints = told.joints.iter().find(|joint| joint.is_known).map(|joint| format!("{}.f{}", joint.name, &model.axes[..1]));
     let of_drives = told.efforts.first().map(|effort| format!("{}.effort", effort.name));
     let name = of_joints.or(of_drives).or(told.rods.first().map(|rod| format!("{}.force", rod.name)));
     let Some(column) = name.and_then(|name| recording.column(&name)) else { return Vec::new() };
@@ -85,17 +85,21 @@ fn unforced_rows(model: &Model, recording: &Recording) -> Vec<usize> {
     column.iter().enumerate().filter(|(row, force)| force.is_nan() && !lacks_force(*row)).map(|(row, _)| row).collect()
 }
 
-/// That rows have no forces of joints, as the position is singular there.
+/// That rows have no forces of joints, as the position is singular there, or none has, as rows that follow from others by how they are meant do not by how
+/// they are written.
 pub fn rows_without_forces(model: &Model, recording: &Recording) -> Option<String> {
     let unforced = unforced_rows(model, recording);
     let first = recording.column("t")?[*unforced.first()?];
+    if unforced.len() == recording.rows() {
+        let message = "no row has accelerations, or forces of joints and drives: constraints follow from others there but for little, at a singular position, or as \
+                       places and axes are written with too few digits";
+        return Some(message.into());
+    }
     let rows = if unforced.len() == 1 { "one row has".into() } else { format!("{} rows have", unforced.len()) };
-    (unforced.len() < recording.rows()).then(|| {
-        format!(
-            "{rows} no accelerations and no forces of joints and drives, first at {} s: at a singular position they do not follow from places and velocities",
-            short(first)
-        )
-    })
+    Some(format!(
+        "{rows} no accelerations and no forces of joints and drives, first at {} s: at a singular position they do not follow from places and velocities",
+        short(first)
+    ))
 }
 
 /// Share of the energy that could move from which on it is said that a method has made or lost it.

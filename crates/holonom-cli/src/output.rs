@@ -187,7 +187,8 @@ pub(crate) fn simulate_kept(
     // What spins is told by its name.
     let hasty = if turns.is_none() { hasty(&simulation) } else { None };
     let of_steps = doubts(&simulation, &rank, status == Status::Completed).chain(turned).chain(turns).chain(hasty);
-    let of_results: Vec<String> = unknown.into_iter().chain(without).chain(shared_forces(model, &simulation)).chain(of_steps).collect();
+    let of_results: Vec<String> =
+        unknown.into_iter().chain(without).chain(shared_forces(model, &simulation, watched.recorder.recording())).chain(of_steps).collect();
     if !quiet {
         of_results.iter().for_each(|text| say(text));
     }

@@ -377,6 +377,37 @@ fn a_row_at_a_dead_centre_has_no_forces_and_says_so() {
     }
 }
 
+/// The axis of one of four hinges is written 1e-7 off. Bodies share it, and move; rows of hinges by themselves hold the loop, and leave the forces open.
+#[test]
+fn a_loop_with_too_few_digits_starts_at_a_rate_and_has_no_forces() {
+    let folder = folder();
+    let body = |name: &str, position: &str| format!("[body.{name}]\nmass = 1\ninertia = [0.1, 0.1, 0.1]\nposition = {position}\n");
+    let hinge = |name: &str, between: &str, at: &str, axis: &str| {
+        format!("[joint.{name}]\ntype = \"revolute\"\nbetween = {between}\nat = {at}\naxis = {axis}\n")
+    };
+    let model = |axis: &str| {
+        [
+            body("crank", "[0, 0.5, 0]"),
+            body("rod", "[1, 1.2, 0]"),
+            body("rocker", "[2, 0.7, 0]"),
+            hinge("a", "[\"ground\", \"crank\"]", "[0, 0, 0]", "[0, 0, 1]"),
+            hinge("b", "[\"crank\", \"rod\"]", "[0, 1, 0]", "[0, 0, 1]"),
+            hinge("c", "[\"rod\", \"rocker\"]", "[2, 1.4, 0]", axis),
+            hinge("d", "[\"ground\", \"rocker\"]", "[2, 0, 0]", "[0, 0, 1]"),
+            "[start.a]\nangle_rate = 2\n".to_string(),
+        ]
+        .concat()
+    };
+    let none = "note: no row has accelerations, or forces of joints and drives";
+    for (axis, is_off) in [("[0, 0, 1]", false), ("[1e-7, 0, 1]", true)] {
+        fs::write(folder.path().join("loop.toml"), model(axis)).unwrap();
+        let run = holonom(&folder, "run loop.toml --step 0.01 --end 0.1 --no-report --force --out a");
+        let notes = on_one_line(&text(&run.stderr));
+        assert!(run.status.success(), "{notes}");
+        assert_eq!([notes.contains(none), notes.contains("share forces")], [is_off, !is_off], "{notes}");
+    }
+}
+
 /// A vibration of 1000 rad/s, in steps that pass much of its period, is another motion: that is told of methods of order 2, where it holds the kinetic energy and goes on. A
 /// stiff spring that hardly vibrates beside a swing, a damped one, and steps that see it are not told of.
 #[test]

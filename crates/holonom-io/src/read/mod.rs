@@ -161,8 +161,8 @@ impl Source {
     pub fn model_with_forces_and(&self, changes: &[(&str, Value)]) -> Result<Model, Faults> {
         let mut model = self.model_with(changes)?;
         if model.shares_nodes() && model.output.reactions != Some(false) {
-            let apart = [changes, &[("output.reactions", Value::Bool(true))]].concat();
-            if !model.tell_forces(self.model_with(&apart)?) {
+            let apart = self.changed(&[changes, &[("output.reactions", Value::Bool(true))]].concat())?;
+            if !model.tell_forces(&apart, &self.kinds, self.files_beside())? {
                 let message =
                     "the parts are so small beside their distances that rounding decides which places are the same: joints have no forces";
                 let cure = "write the model nearer to the origin, or leave the forces of joints out: reactions = false in [output]";
@@ -177,19 +177,24 @@ impl Source {
     /// # Errors
     /// Every fault of it.
     pub fn model_with(&self, changes: &[(&str, Value)]) -> Result<Model, Faults> {
+        self.compile(&self.changed(changes)?)
+    }
+
+    fn changed(&self, changes: &[(&str, Value)]) -> Result<Value, Faults> {
         let mut value = self.value.clone();
         for (key, change) in changes {
             put(&mut value, key, change.clone())
                 .map_err(|part| Faults(vec![Fault::new(*key, "", format!("`{part}` is not a table"), "name a key of the model file")]))?;
         }
-        self.compile(&value)
+        Ok(value)
     }
 
     fn compile(&self, value: &Value) -> Result<Model, Faults> {
-        match &self.files {
-            Some(files) => Model::from_value_with(value, &self.kinds, &**files),
-            None => Model::from_value_with(value, &self.kinds, &NoFiles),
-        }
+        Model::from_value_with(value, &self.kinds, self.files_beside())
+    }
+
+    fn files_beside(&self) -> &dyn Files {
+        self.files.as_ref().map_or(&NoFiles, |files| &**files)
     }
 
     /// The description, to be changed and compiled by hand.

@@ -2,10 +2,12 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::Model;
 use super::assembly::Assembly;
 use super::bodies::frame::Frame;
 use super::bodies::nodes::{Member, PlaceCode, code_of};
+use super::fault::Faults;
+use super::value::Value;
+use super::{Files, Kinds, Model};
 use crate::simulation::Apart;
 use crate::system::{Place, Term};
 
@@ -75,11 +77,28 @@ impl Model {
         self.joints.iter().any(|joint| joint.is_shared && !joint.geometry.is_of_bar())
     }
 
-    /// Takes the forces of all joints and drives from the same model with `reactions = true` in `[output]`, in which no bodies share nodes. Says
-    /// whether that could be done: another model has other nodes, and so has one in which rounding decides which places are the same.
-    #[must_use]
-    pub fn tell_forces(&mut self, apart: Self) -> bool {
-        let mut nodes = vec![Vec::new(); apart.system.free];
+    /// Takes the forces of all joints and drives from the same model, which is in `value` with `reactions = true` in `[output]`, so that no bodies share
+    /// nodes in it. It begins as this one. Says whether that could be done: another model has other nodes, and so has one in which rounding decides which
+    /// places are the same.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, with paths into the table.
+    pub fn tell_forces(&mut self, value: &Value, kinds: &Kinds, files: &dyn Files) -> Result<bool, Faults> {
+        let apart = Self::compile(value, kinds, files, Some(self))?;
+        let nodes = self.nodes_of(apart.points.iter().map(|point| point.place), &apart.frames, apart.system.free);
+        if let Some(nodes) = nodes {
+            let nodes_of = |frame: &Frame| frame.nodes().into_iter().map(|(node, _)| node).collect();
+            let bodies = apart.frames.iter().filter(|frame| matches!(frame, Frame::Body { .. })).map(nodes_of).collect();
+            self.channels.apart = Some((Apart::new(apart.system, nodes, bodies), apart.channels).into());
+            return Ok(true);
+        }
+        Ok(false)
+    }
+
+    /// The free nodes of the same model in which no bodies share nodes, with its points and frames, as sums of the nodes of this one. `None` where
+    /// some of them are nowhere here.
+    pub(super) fn nodes_of(&self, points: impl Iterator<Item = Place>, frames: &[Frame], free: usize) -> Option<Vec<Vec<Term>>> {
+        let mut nodes = vec![Vec::new(); free];
         let mut put = |place: &Place, terms: Vec<Term>| {
             if let Place::Node(node) = place
                 && let Some(own) = nodes.get_mut(node.index())
@@ -87,19 +106,13 @@ impl Model {
                 *own = terms;
             }
         };
-        for (own, other) in self.points.iter().zip(&apart.points) {
-            put(&other.place, vec![(own.place, 1.0).into()]);
+        for (own, other) in self.points.iter().zip(points) {
+            put(&other, vec![(own.place, 1.0).into()]);
         }
-        for (own, other) in self.frames.iter().zip(&apart.frames) {
+        for (own, other) in self.frames.iter().zip(frames) {
             let Frame::Body { basis, .. } = other else { continue };
             basis.iter().for_each(|node| put(&node.place, if node.is_point { own.point(node.at) } else { own.vector(node.at) }));
         }
-        let is_whole = nodes.iter().all(|terms| !terms.is_empty());
-        if is_whole {
-            let nodes_of = |frame: &Frame| frame.nodes().into_iter().map(|(node, _)| node).collect();
-            let bodies = apart.frames.iter().filter(|frame| matches!(frame, Frame::Body { .. })).map(nodes_of).collect();
-            self.channels.apart = Some((Apart::new(apart.system, nodes, bodies), apart.channels).into());
-        }
-        is_whole
+        Some(nodes).filter(|nodes| nodes.iter().all(|terms| !terms.is_empty()))
     }
 }

@@ -32,8 +32,15 @@ use super::{GRAVITY, Model, SCHEMA, finish, measure, parameters, points, spinles
 use crate::record::Constraints;
 use crate::system::{self, SystemBuilder};
 
-/// Compiles a description. What could not be read is known by name, so that nothing that refers to it is a second fault.
-pub(super) fn model(description: &Description, unread: &Unread, files: &dyn Files, sink: Sink) -> Result<Model, Faults> {
+/// Compiles a description. What could not be read is known by name, so that nothing that refers to it is a second fault. Where the same model is given
+/// in which bodies share nodes, it begins as that does.
+pub(super) fn model(
+    description: &Description,
+    unread: &Unread,
+    files: &dyn Files,
+    shared: Option<&Model>,
+    sink: Sink,
+) -> Result<Model, Faults> {
     let (parameters, degrees) = parameters::read(&description.parameters, &sink);
     let room = || Cell::new(repeat::MOST);
     let functions = &description.functions;
@@ -95,7 +102,11 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
         for program in sink.switches.take() {
             assembly.builder.switch(Arc::new(TimeProgram(program)));
         }
-        if let Err((message, cure)) = start::begin(&mut assembly, description.equilibrium) {
+        let begun = match shared {
+            None => start::begin(&mut assembly, description.equilibrium),
+            Some(shared) => start::begin_as(&mut assembly, shared),
+        };
+        if let Err((message, cure)) = begun {
             drop(assembly);
             let _: Refused = sink.report(|| Fault::new("start", "start", message, cure));
             return Err(sink.finish().expect_err("there is a fault"));
@@ -104,7 +115,7 @@ pub(super) fn model(description: &Description, unread: &Unread, files: &dyn File
         if !description.equilibrium {
             forces::note_pushing(&assembly);
         }
-        if let Some(fault) = spinless::refuse(&assembly) {
+        if let Some(fault) = if shared.is_none() { spinless::refuse(&assembly) } else { None } {
             drop(assembly);
             let _: Refused = sink.report(|| fault);
             return Err(sink.finish().expect_err("there is a fault"));

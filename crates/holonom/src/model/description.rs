@@ -175,7 +175,7 @@ impl Description {
         self.names().for_each(|(section, name)| {
             let _ = names.check(section, name);
         });
-        compile::model(self, &Unread::default(), files, sink)
+        compile::model(self, &Unread::default(), files, None, sink)
     }
 
     /// Reads a table as it stands in a file.

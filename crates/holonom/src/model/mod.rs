@@ -265,9 +265,13 @@ impl Model {
     /// # Errors
     /// Everything that is wrong with it, with paths into the table.
     pub fn from_value_with(value: &Value, kinds: &Kinds, files: &dyn Files) -> Result<Self, Faults> {
+        Self::compile(value, kinds, files, None)
+    }
+
+    fn compile(value: &Value, kinds: &Kinds, files: &dyn Files, shared: Option<&Self>) -> Result<Self, Faults> {
         let sink = Sink::default();
         match sections::read(value, kinds, &sink) {
-            Ok(sections::Partial { description, unread }) => compile::model(&description, &unread, files, sink),
+            Ok(sections::Partial { description, unread }) => compile::model(&description, &unread, files, shared, sink),
             Err(Refused) => Err(sink.finish().expect_err("what is refused has a fault")),
         }
     }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::Model;
 use super::adrift;
 use super::assembly::{Assembly, Effort};
 use super::beams::{Elastic, stiffened};
@@ -14,7 +15,7 @@ use super::lengths::{DrivenLength, extend, released, require_held};
 use super::rest;
 use super::way::{self, assemble};
 use crate::simulation::Places;
-use crate::system::{Constant, Shifted, Signal, SystemBuilder};
+use crate::system::{Constant, Shifted, Signal, SystemBuilder, place_of};
 
 /// The key of `[start]` itself.
 pub const EQUILIBRIUM: Key = Key::optional(
@@ -223,6 +224,30 @@ pub(super) fn begin(assembly: &mut Assembly<'_>, equilibrium: bool) -> Result<()
         message.into_iter().for_each(|message| assembly.sink.note(path, || message));
     }
     Ok(())
+}
+
+/// Puts the mechanism where the same one begins in which bodies share nodes, so that what is asked of the start holds here as it does there.
+///
+/// # Errors
+/// Driven distances that are others than those of their ends, and the cure.
+pub(super) fn begin_as(assembly: &mut Assembly<'_>, shared: &Model) -> Result<(), (String, &'static str)> {
+    let targets = std::mem::take(&mut assembly.starts);
+    let lengths = std::mem::take(&mut assembly.lengths);
+    let are_placed = targets.iter().any(Target::is_placed);
+    if !are_placed && !shared.at_equilibrium {
+        return Ok(());
+    }
+    let mut position = assembly.builder.position().to_vec();
+    let places = assembly.points.iter().map(|point| point.end.place().expect("a point is a node"));
+    let (x, dim) = (shared.system.in_world(shared.system.start_position()), assembly.dimension());
+    for (own, terms) in
+        position.chunks_exact_mut(dim).zip(shared.nodes_of(places, &assembly.frames, assembly.builder.free()).iter().flatten())
+    {
+        own.copy_from_slice(&place_of(terms, &x, dim)[..dim]);
+    }
+    // Turns of angles are counted where the mechanism moves.
+    assembly.builder.move_to(&position, [&[]; 2]);
+    if are_placed { extend(&mut assembly.builder, &lengths, &mut assembly.efforts) } else { Ok(()) }
 }
 
 /// Puts the mechanism where its coordinates are given, with beams as they are, or bent where forces balance. Says whether these leave anything free.

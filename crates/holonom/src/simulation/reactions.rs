@@ -78,6 +78,13 @@ fn counted(system: &System) -> BTreeMap<Counts<'_>, Vec<Range<usize>>> {
     found
 }
 
+/// Has angles of a system counted on from those of another one, of which both have places.
+fn count_on(counted: &[[Range<usize>; 2]], work: &mut Workspace, other: &[f64]) {
+    for [own, others] in counted {
+        work.start.at.functions.angle[own.clone()].copy_from_slice(&other[others.clone()]);
+    }
+}
+
 /// Where the forces of the constraints are found in another system than the one that moves.
 pub(super) struct Elsewhere {
     pub apart: Apart,
@@ -101,18 +108,20 @@ impl Elsewhere {
             Some(twists) => Matrix::Twists(Box::new(twists)),
             None => Matrix::Nodes(Box::new(Newton::new(&apart.system, &work.scales, method.settings))),
         };
+        let (mine, mut theirs) = (counted(&apart.system), counted(own));
+        let alike = mine.into_iter().filter_map(|(of, mine)| Some((mine, theirs.remove(&of)?)));
+        let alike = alike.filter(|(mine, theirs)| mine.len() == theirs.len());
+        let pairs = alike.flat_map(|(mine, theirs)| mine.into_iter().zip(theirs).map(|(mine, theirs)| [mine, theirs]));
+        let counted: Vec<_> = pairs.filter(|[mine, theirs]| mine.len() == theirs.len()).collect();
+        count_on(&counted, &mut work, &own.functions.values().angle);
         work.end.x.copy_from_slice(&work.start.x);
-        work.end.at.copy_from(&work.start.at);
+        apart.system.evaluate(&work.end.x, 0.0, &work.start.at, &mut work.end.at);
         let sure = match &mut matrix {
             Matrix::Twists(twists) => twists.sure(&apart.system, &work),
             Matrix::Nodes(newton) => newton.sure(&apart.system, &work),
         };
         work.leave_steps();
-        let (mine, mut theirs) = (counted(&apart.system), counted(own));
-        let alike = mine.into_iter().filter_map(|(of, mine)| Some((mine, theirs.remove(&of)?)));
-        let alike = alike.filter(|(mine, theirs)| mine.len() == theirs.len());
-        let pairs = alike.flat_map(|(mine, theirs)| mine.into_iter().zip(theirs).map(|(mine, theirs)| [mine, theirs]));
-        Self { counted: pairs.filter(|[mine, theirs]| mine.len() == theirs.len()).collect(), sure, work, matrix, apart }
+        Self { counted, sure, work, matrix, apart }
     }
 
     /// Puts its nodes where those of `own` are and finds the forces.
@@ -128,9 +137,7 @@ impl Elsewhere {
             }
         }
         system.place_known(state.t, &mut work.end.x, &mut work.end.v, &mut work.a);
-        for [mine, theirs] in counted {
-            work.start.at.functions.angle[mine.clone()].copy_from_slice(&angles.functions.angle[theirs.clone()]);
-        }
+        count_on(counted, work, &angles.functions.angle);
         work.inputs.copy_from_slice(&state.inputs);
         system.evaluate(&work.end.x, state.t, &work.start.at, &mut work.end.at);
         work.start.at.functions.angle.copy_from_slice(&work.end.at.functions.angle);

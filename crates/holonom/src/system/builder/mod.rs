@@ -296,6 +296,11 @@ impl SystemBuilder {
         self.mass.iter().any(|&(a, b, block)| a == b && block.m > 0.0 && terms.iter().any(|term| is(term, a)))
     }
 
+    /// Number of free nodes.
+    pub fn free(&self) -> usize {
+        self.free
+    }
+
     /// Number of rows so far, without custom ones.
     pub fn rows(&self) -> usize {
         self.rows.len()
