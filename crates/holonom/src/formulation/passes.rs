@@ -383,6 +383,18 @@ impl Workspace {
         self.accelerates(system, &self.forces.sum)
     }
 
+    /// How fast forces at the end but those of the rows, each by its size, would make the free node that they push most, and weights alone, m/s².
+    pub fn pushed_at_end(&mut self, system: &System, t: f64) -> [f64; 2] {
+        let rows = vec![0.0; self.lambda.len()];
+        let lambda = std::mem::replace(&mut self.lambda, rows);
+        std::mem::swap(&mut self.sampled, &mut self.end);
+        self.sum_applied_anew(system, t);
+        let pushed = self.pushed_at_most(system);
+        std::mem::swap(&mut self.sampled, &mut self.end);
+        self.lambda = lambda;
+        [pushed, self.farthest(system, &self.forces.weight[..system.coordinates()])]
+    }
+
     /// Leaves the rows at the end, without accelerations, in `phi`.
     fn weigh_end_at_rest(&mut self, system: &System, t: f64) {
         std::mem::swap(&mut self.sampled, &mut self.end);

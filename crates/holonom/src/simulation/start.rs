@@ -1,8 +1,8 @@
 //! The start: positions and velocities put on their constraints, accelerations and multipliers found.
 
-use super::Method;
 use super::conflict::{Conflict, why};
 use super::method::Choice;
+use super::{Method, Simulation};
 use crate::formulation::{Failure, Level, Multipliers, Newton, Workspace};
 use crate::linalg::largest;
 use crate::system::System;
@@ -285,6 +285,31 @@ pub(super) fn correct_velocities(
             let why = first.and_then(|row| Some(format!("; `{}` {}", system.row_names[row], why(row, system, newton, work)?)));
             Err(StartError::Velocity { rows, why: why.unwrap_or_default() })
         }
+    }
+}
+
+/// Share of what forces make of the node that they push most by which a mechanism that stands falls, and below which it is at rest; between them what is
+/// stiff may be off by little.
+const FALLS: f64 = 0.1;
+const RESTS: f64 = 1e-6;
+
+/// Times of what weights make that forces may make: what is more, or all there is without weights, may be round-off of what is stiff.
+const BESIDE_WEIGHT: f64 = 2.0;
+
+impl Simulation {
+    /// Whether forces balance at a start from rest, as far as the accelerations there tell.
+    pub fn balances(&mut self) -> Option<bool> {
+        let Self { system, work, state, start, .. } = self;
+        if start.leads_nowhere {
+            return None;
+        }
+        work.end.x.copy_from_slice(&state.x);
+        work.end.at.copy_from(&work.start.at);
+        let ([pushed, by_weight], fastest) = (work.pushed_at_end(system, state.t), largest(&state.a[..system.coordinates()]));
+        if fastest <= RESTS * pushed {
+            return Some(true);
+        }
+        Some(false).filter(|_| fastest > FALLS * pushed && pushed <= BESIDE_WEIGHT * by_weight)
     }
 }
 
