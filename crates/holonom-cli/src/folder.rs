@@ -163,7 +163,7 @@ impl Folder {
     }
 
     /// Writes one file in full before it takes the place of an older one.
-    pub fn write(&self, name: &str, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<(), Failure> {
+    pub fn write(&self, name: &str, write: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>) -> Result<(), Failure> {
         let (path, new) = (self.path.join(name), self.path.join(format!("{name}.new")));
         let file = File::create(&new).and_then(|file| {
             let mut out = BufWriter::new(file);

@@ -285,6 +285,10 @@ impl Folder {
         for writer in writers {
             self.write(&format!("{prefix}.{}", writer.extension), |out| (writer.write)(recording, out))?;
         }
+        // A run that was kept has all of them there.
+        if asked.is_none() && writers.is_empty() && self.path.join("columns.json").exists() {
+            return Ok(());
+        }
         self.write("columns.json", |out| holonom_io::write_json(&holonom_io::headings(recording.columns()), out))
     }
 }

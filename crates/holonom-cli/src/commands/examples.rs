@@ -1,5 +1,6 @@
 //! `holonom examples`.
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use crate::failure::Failure;

@@ -6,7 +6,7 @@ use holonom::record::{Column, Heading};
 use serde::{Serialize, Serializer};
 
 /// Writes a value over several lines, with a line break at the end.
-pub fn write_json(value: &impl Serialize, out: &mut dyn Write) -> io::Result<()> {
+pub fn write_json(value: &impl Serialize, out: &mut (impl Write + ?Sized)) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut *out, value)?;
     writeln!(out)
 }

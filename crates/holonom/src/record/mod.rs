@@ -13,6 +13,8 @@ mod scene;
 mod transmission;
 mod works;
 
+use std::hash::{DefaultHasher, Hash, Hasher};
+
 pub use between::{Bounds, Largest};
 pub use body::RecordedBody;
 pub use channels::{Channels, RecordedCoupling, RecordedEffort, RecordedPoint, RecordedRod};
@@ -33,8 +35,8 @@ pub use works::{Work, Works};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
     columns: Vec<Column>,
-    /// The columns by their names.
-    by_name: Vec<u32>,
+    /// The hash of the name of each column, and behind it where the column stands, in order: there may be millions of names.
+    by_name: Vec<[u32; 2]>,
     /// The largest values of forces between the rows, of each that [`Peaks`] has, where that was looked at.
     pub(crate) between: Vec<Largest>,
     /// How far each measure has gone, rows or not.
@@ -54,8 +56,8 @@ impl Recording {
     /// An empty table with the given columns.
     pub fn new(headings: impl IntoIterator<Item = impl Into<Heading>>) -> Self {
         let columns: Vec<Column> = headings.into_iter().map(|heading| Column { heading: heading.into(), values: Vec::new() }).collect();
-        let mut by_name: Vec<u32> = (0..columns.len() as u32).collect();
-        by_name.sort_by_key(|&k| &columns[k as usize].heading.name);
+        let mut by_name: Vec<[u32; 2]> = columns.iter().zip(0..).map(|(column, k)| [hash(&column.heading.name), k]).collect();
+        by_name.sort_unstable();
         Self { columns, by_name, between: Vec::new(), bounds: Vec::new() }
     }
 
@@ -100,12 +102,20 @@ impl Recording {
 
     /// Where the column of a name stands among all, counted from 0.
     pub fn place(&self, name: &str) -> Option<usize> {
-        let at = self.by_name.binary_search_by_key(&name, |&k| &self.columns[k as usize].heading.name).ok()?;
-        Some(self.by_name[at] as usize)
+        let hash = hash(name);
+        let first = self.by_name.partition_point(|[other, _]| *other < hash);
+        let alike = self.by_name[first..].iter().take_while(|[other, _]| *other == hash);
+        alike.map(|[_, k]| *k as usize).find(|&k| self.columns[k].heading.name == name)
     }
 
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, |c| c.values.len())
     }
+}
+
+fn hash(name: &str) -> u32 {
+    let mut hasher = DefaultHasher::new();
+    name.hash(&mut hasher);
+    hasher.finish() as u32
 }
