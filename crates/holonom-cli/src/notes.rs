@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use holonom::analysis::{self, Modes, Rank, Undetermined, is_at_rest};
+use holonom::analysis::{self, Modes, Rank, Undetermined, is_at_rest, way_ahead};
 use holonom::formulation::Multipliers;
 use holonom::model::{Model, StartChange};
 use holonom::record::{Channels, RecordedJoint, Recording};
@@ -14,6 +14,9 @@ use crate::table::short;
 
 /// Positions over the size of the mechanism that round-off moves at the start.
 const ROUNDED: f64 = 1e-12;
+
+/// Share of the way that forces would move a mechanism that is none.
+const HARDLY: f64 = 1e-3;
 
 /// Most rows for which a run says which forces are not unique: it takes a time that grows with their cube.
 const FEW_ROWS: usize = 200;
@@ -280,11 +283,9 @@ pub fn turned_bushings(model: &Model, recording: &Recording) -> Option<String> {
 fn jammed(simulation: &Simulation, rank: &Rank) -> Option<String> {
     let (system, x) = (simulation.system(), &simulation.state().x);
     let is_held = rank.size(system).dof > 0 && !rank.redundant.is_empty() && !system.is_driven() && simulation.steps() > 0;
-    let stands = || {
-        let least = ROUNDED * farthest(x);
-        x.iter().zip(system.start_position()).all(|(x, start)| (x - start).abs() <= least)
-    };
-    (is_held && stands() && !is_at_rest(system)).then(|| {
+    let moved = x.iter().zip(system.start_position()).fold(0.0, |moved: f64, (x, start)| moved.max((x - start).abs()));
+    let is_held = is_held && moved <= ROUNDED * farthest(x);
+    (is_held && way_ahead(system, simulation.state().t).is_some_and(|way| moved < HARDLY * way)).then(|| {
         "nothing has moved: constraints that follow from the others (redundant) hold what these leave free, as they differ from them in the last digits that are \
          written, as those of hinges whose axes are a little off (write places and axes with all digits, or put a bushing in place of a joint)"
             .into()

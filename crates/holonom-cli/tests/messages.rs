@@ -130,7 +130,9 @@ fn a_mechanism_that_is_jammed_in_its_last_digits_is_noted() {
     };
     let note = "note: nothing has moved: constraints that follow from the others (redundant) hold what these leave free";
     says(&four_bar("1e-5"), &[note, "completed"], 0);
-    for sound in [four_bar("0"), four_bar("0").replace("effort = 2", "effort = 0")] {
+    // What has no time to move, or no reason, is not held.
+    let brief = four_bar("0").replace("end = 0.1\nstep = 0.01", "end = 1e-6\nstep = 1e-7");
+    for sound in [four_bar("0"), four_bar("0").replace("effort = 2", "effort = 0"), brief] {
         let (said, code) = run(&sound);
         assert!(code == Some(0) && !said.contains(note), "{said}");
     }

@@ -11,7 +11,7 @@ mod slowest;
 mod stability;
 
 pub use jacobian::constraint_jacobian;
-pub use modes::{MOST_FREEDOMS, Mode, Modes, NoModes, forks, is_at_rest, modes};
+pub use modes::{MOST_FREEDOMS, Mode, Modes, NoModes, forks, is_at_rest, modes, way_ahead};
 pub use projection::{ProjectionForm, projection_form};
 pub use rank::{Rank, rank, rank_of};
 pub use reactions::{MOST_ROWS, Undetermined, undetermined, undetermined_of};

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::exponents::{Found, SLOWER, look_twice};
 use super::slowest;
+use crate::linalg::largest;
 use crate::simulation::{NoRest, Places, StartError};
 use crate::system::System;
 
@@ -227,6 +228,13 @@ fn slowest_speed(found: &[Found], h: f64) -> Option<f64> {
 /// Whether a system is at rest at its start, and forces balance there.
 pub fn is_at_rest(system: &System) -> bool {
     stands(system) && Places::new(system.clone()).is_ok_and(|mut places| places.rest(system.start_position().to_vec()).is_ok())
+}
+
+/// How far what moves most at the start of a system would go in a time (s), as fast and with the accelerations that it has there, m. `None` where that
+/// cannot be told.
+pub fn way_ahead(system: &System, time: f64) -> Option<f64> {
+    let pushed = Places::new(system.clone()).ok()?.set_off(system.start_position().to_vec())?;
+    Some(largest(&system.start_velocity()[..system.coordinates()]) * time + 0.5 * pushed * time * time)
 }
 
 fn stands(system: &System) -> bool {

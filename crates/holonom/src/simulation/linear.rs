@@ -117,6 +117,16 @@ impl Places {
         Ok(rest)
     }
 
+    /// How fast forces at a place make from rest what they move most there, m/s²: 0 where they balance. `None` where that cannot be told.
+    pub fn set_off(&mut self, x: Vec<f64>) -> Option<f64> {
+        self.put(&x).ok()?;
+        if !self.newton.factor_inertia(&self.work) {
+            return None;
+        }
+        let left = self.balance(x).ok()?.1;
+        Some(if left > BALANCED { left * self.pushed_at_most() } else { 0.0 })
+    }
+
     /// Where what is stiff has come to rest again beside places: what little it is stretched there may be more than what it bears. The second place is off by
     /// what rounding may be. `None` where that leads farther away, or to the other side of a kink that the mechanism is at.
     fn eased(&mut self, places: &[Vec<f64>; 2], rounding: &[f64], h: f64) -> Option<[Vec<f64>; 2]> {
