@@ -386,6 +386,7 @@ pub fn corrections(model: &Model, simulation: &Simulation) -> Vec<String> {
     }
     notes.extend(nowhere(start));
     let mut changes = model.start_changes(&simulation.state().x, simulation.velocities());
+    notes.extend(strikes(model, &changes));
     // That parts start moving for which no velocity was written is what a drive is for.
     changes.retain(|change| !change.was_at_rest);
     if !changes.is_empty() {
@@ -400,6 +401,18 @@ pub fn corrections(model: &Model, simulation: &Simulation) -> Vec<String> {
         ));
     }
     notes
+}
+
+/// That beams are deformed by the velocities of a start.
+pub fn strikes(model: &Model, changes: &[StartChange]) -> Option<String> {
+    let struck = model.strikes(changes);
+    (!struck.is_empty()).then(|| {
+        format!(
+            "the start strikes beams as by a hammer: nodes that joints and drives hold move at once, and others hardly: {} (let drives begin at rest, or write \
+             the velocities with which a beam goes along)",
+            changes_in_words(struck)
+        )
+    })
 }
 
 /// That constraints leave nothing that could move, and nothing that moves is imposed, where more than the start is asked for.
@@ -430,8 +443,8 @@ pub fn nowhere(start: &Start) -> Option<String> {
 }
 
 /// Bodies and points with the change of their velocities at the start.
-pub fn changes_in_words(changes: &[StartChange]) -> String {
-    let words = changes.iter().map(|change| {
+pub fn changes_in_words<'a>(changes: impl IntoIterator<Item = &'a StartChange>) -> String {
+    let words = changes.into_iter().map(|change| {
         let parts = [(change.velocity, "m/s"), (change.angular_velocity, "rad/s")].into_iter().filter(|(by, _)| *by > 0.0);
         let parts: Vec<String> = parts.map(|(by, unit)| format!("{} {unit}", short(by))).collect();
         format!("`{}` by {}", change.name, parts.join(" and "))

@@ -13,7 +13,7 @@ use crate::failure::Failure;
 use crate::found::Found;
 use crate::load::{self, Loaded};
 use crate::message::{listed, unused_parameters};
-use crate::notes::{changes_in_words, nowhere, open_columns, rivals};
+use crate::notes::{changes_in_words, nowhere, open_columns, rivals, strikes};
 use crate::options::CheckArguments;
 use crate::table::{freedom, list, short};
 
@@ -39,10 +39,11 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
     let projection = method.projection.clone();
     let name = method.name.clone();
     let step = loaded.step().unwrap_or(1e-3);
-    let unseen = loaded.model.times().map_or(Vec::new(), |[step, end]| loaded.model.unseen(&method, step, end));
+    let mut more = loaded.model.times().map_or(Vec::new(), |[step, end]| loaded.model.unseen(&method, step, end));
     let mut simulation = Simulation::new(system.clone(), method, step).map_err(load::start_failure)?;
     let size = rank_of(&mut simulation).size(system);
     let changes = loaded.model.start_changes(&simulation.state().x, simulation.velocities());
+    more.extend(strikes(&loaded.model, &changes));
     let (start, audit) = (simulation.start().clone(), simulation.audit().clone());
     let form = match with_projection {
         true => {
@@ -62,7 +63,7 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
     let plain = source.model().map_err(Failure::Model)?;
     let mut held = Held::new(&plain, load::method(&plain, None)?, step)?;
     held.notes.extend(unused_parameters(&source));
-    held.notes.extend(unseen);
+    held.notes.extend(more);
     // What asks for too much has a line of its own.
     held.notes.extend(nowhere(&start).filter(|_| held.conflict.is_none()));
     let found = &held.rank;

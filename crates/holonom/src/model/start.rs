@@ -183,10 +183,6 @@ pub(super) fn one_of(joint: &str) -> Option<String> {
     Some(format!("for `{joint}` alone write [start.{base}] with repeat = \"{}\", and a longer range for several", ranges.join(", ")))
 }
 
-/// That beams bend where the run begins.
-const STRUCK: &str = "beams cannot go along at these rates without being deformed, and are struck as by a hammer where the joints are: near these they \
-                      move at once, and elsewhere hardly (a drive brings a joint to its speed smoothly)";
-
 /// Puts the mechanism where the run begins, at equilibrium or not, and sets it off. Notes what that moves.
 ///
 /// # Errors
@@ -208,19 +204,16 @@ pub(super) fn begin(assembly: &mut Assembly<'_>, equilibrium: bool) -> Result<()
         placed => placed?,
     };
     let settled = if equilibrium { rest::settle(assembly, &targets)? } else { None };
-    let mut struck = None;
     leaves_free |= match set_off(&mut assembly.builder, &targets, &elastic) {
-        Err(_) if !elastic.is_empty() => {
-            struck = Some(STRUCK.to_string());
-            set_off(&mut assembly.builder, &targets, &[])?
-        }
+        // Beams that cannot go along without being deformed are struck.
+        Err(_) if !elastic.is_empty() => set_off(&mut assembly.builder, &targets, &[])?,
         set_off => set_off?,
     };
     assembly.elastic = elastic;
     // Where forces balance, what has moved there is all that is told.
     let followed = before.filter(|_| leaves_free).and_then(|before| adrift::followed(assembly, &targets, &before));
     let adrift = (!equilibrium && targets.iter().any(Target::is_placed)).then(|| adrift::moved(assembly)).flatten();
-    for (path, message) in [("start.equilibrium", settled), ("start", struck), ("start", followed), ("start", adrift)] {
+    for (path, message) in [("start.equilibrium", settled), ("start", followed), ("start", adrift)] {
         message.into_iter().for_each(|message| assembly.sink.note(path, || message));
     }
     Ok(())

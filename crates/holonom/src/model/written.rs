@@ -1,9 +1,12 @@
 //! What became of the velocities that were written.
 
+use std::collections::BTreeSet;
+
 use nalgebra::Vector3;
 
 use super::Model;
 use super::bodies::BodyInfo;
+use crate::record::RecordedForce;
 use crate::system::{Place, rate_of};
 
 /// By how much the start has changed the velocity that was written of a body or point, so that constraints are met.
@@ -27,6 +30,9 @@ const STILL: f64 = 1e-12;
 
 /// Velocity and angular velocity as written and as found.
 type Pair = [[Vector3<f64>; 2]; 2];
+
+/// Share of the fastest by which nodes of a beam that goes along as a whole differ.
+const ALIKE: f64 = 1e-6;
 
 impl Model {
     /// The bodies and points whose velocities at the start of a simulation, whose state is `x` (m) with `v` (m/s), are not those that
@@ -60,6 +66,26 @@ impl Model {
             StartChange { name: name.clone(), velocity, angular_velocity, was_at_rest: written.iter().all(|v| v.norm() == 0.0) }
         });
         changes.filter(|change| change.velocity > 0.0 || change.angular_velocity > 0.0).collect()
+    }
+
+    /// Of these changes those of nodes of beams that do not go along as a whole: such a beam is struck.
+    pub fn strikes<'a>(&self, changes: &'a [StartChange]) -> Vec<&'a StartChange> {
+        let beams: BTreeSet<&str> = self.channels.forces.iter().filter_map(RecordedForce::beam).collect();
+        let of_beam = |beam: &str| {
+            let is_node =
+                |name: &str| name.strip_prefix(beam).is_some_and(|rest| rest.starts_with('[') && rest.find(']') == Some(rest.len() - 1));
+            let changed: Vec<&StartChange> = changes.iter().filter(|change| is_node(&change.name)).collect();
+            let nodes = self.bodies.iter().filter(|body| is_node(&body.name)).count();
+            let differ = |of: fn(&StartChange) -> f64| {
+                let all = changed.iter().map(|change| of(change)).chain((changed.len() < nodes).then_some(0.0));
+                let [least, most] = all.fold([f64::INFINITY, 0.0], |[least, most], of| [of.min(least), of.max(most)]);
+                (most > 0.0).then_some(most - least > ALIKE * most)
+            };
+            // What turns as a whole does so at one rate, and has one velocity where it does not turn.
+            let is_struck = differ(|change| change.angular_velocity).or_else(|| differ(|change| change.velocity));
+            if is_struck == Some(true) { changed } else { Vec::new() }
+        };
+        beams.into_iter().flat_map(of_beam).collect()
     }
 
     /// Bodies that were written to turn about themselves with some inertia and do not, as they count as rods, in file order; with that spin, rad/s.

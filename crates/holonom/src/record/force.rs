@@ -228,7 +228,7 @@ impl RecordedForce {
     }
 
     /// The beam that it is an element of, if it is one.
-    pub(super) fn beam(&self) -> Option<&str> {
+    pub(crate) fn beam(&self) -> Option<&str> {
         matches!(self.shows, Shows::Section { .. }).then(|| self.name.rfind('[').map_or(&*self.name, |at| &self.name[..at]))
     }
 
