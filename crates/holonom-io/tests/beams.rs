@@ -258,7 +258,8 @@ fn a_start_takes_beams_along() {
         let drive = format!("[drive.motor]\ntype = \"angle\"\njoint = \"pin\"\nprofile = \"{profile}\"\n[simulation]");
         arm.replace("angle_rate = 2\n", "").replace("[simulation]", &drive)
     };
-    let sliding = "[beam.arm]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nsection = { circle = 0.01 }\nmodulus = 2e11\ndensity = 7800\nvelocity = [3, 0, 0]\n";
+    let sliding =
+        "[beam.arm]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nsection = { circle = 0.01 }\nmodulus = 2e11\ndensity = 7800\nvelocity = [3, 0, 0]\n";
     for (text, is_struck) in [(arm, false), (&driven("2*t"), true), (&driven("2*t^2"), false), (sliding, false)] {
         assert_eq!(strikes(&model(text)), is_struck, "{text}");
     }

@@ -1,6 +1,6 @@
 //! What became of the velocities that were written.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
@@ -70,22 +70,26 @@ impl Model {
 
     /// Of these changes those of nodes of beams that do not go along as a whole: such a beam is struck.
     pub fn strikes<'a>(&self, changes: &'a [StartChange]) -> Vec<&'a StartChange> {
-        let beams: BTreeSet<&str> = self.channels.forces.iter().filter_map(RecordedForce::beam).collect();
-        let of_beam = |beam: &str| {
-            let is_node =
-                |name: &str| name.strip_prefix(beam).is_some_and(|rest| rest.starts_with('[') && rest.find(']') == Some(rest.len() - 1));
-            let changed: Vec<&StartChange> = changes.iter().filter(|change| is_node(&change.name)).collect();
-            let nodes = self.bodies.iter().filter(|body| is_node(&body.name)).count();
+        let mut beams: BTreeMap<&str, (usize, Vec<&StartChange>)> = BTreeMap::new();
+        for beam in self.channels.forces.iter().filter_map(RecordedForce::beam) {
+            beams.entry(beam).or_insert((1, Vec::new())).0 += 1;
+        }
+        for change in changes {
+            let beam = change.name.rfind('[').map(|at| &change.name[..at]);
+            if let Some((_, changed)) = beam.and_then(|beam| beams.get_mut(beam)) {
+                changed.push(change);
+            }
+        }
+        let is_struck = |(nodes, changed): &(usize, Vec<&StartChange>)| {
             let differ = |of: fn(&StartChange) -> f64| {
-                let all = changed.iter().map(|change| of(change)).chain((changed.len() < nodes).then_some(0.0));
+                let all = changed.iter().map(|change| of(change)).chain((changed.len() < *nodes).then_some(0.0));
                 let [least, most] = all.fold([f64::INFINITY, 0.0], |[least, most], of| [of.min(least), of.max(most)]);
                 (most > 0.0).then_some(most - least > ALIKE * most)
             };
             // What turns as a whole does so at one rate, and has one velocity where it does not turn.
-            let is_struck = differ(|change| change.angular_velocity).or_else(|| differ(|change| change.velocity));
-            if is_struck == Some(true) { changed } else { Vec::new() }
+            differ(|change| change.angular_velocity).or_else(|| differ(|change| change.velocity)) == Some(true)
         };
-        beams.into_iter().flat_map(of_beam).collect()
+        beams.into_values().filter(is_struck).flat_map(|(_, changed)| changed).collect()
     }
 
     /// Bodies that were written to turn about themselves with some inertia and do not, as they count as rods, in file order; with that spin, rad/s.
