@@ -14,6 +14,10 @@ fn text(damping: f64, stiffness: f64) -> String {
     )
 }
 
+fn largest(of: &[f64]) -> f64 {
+    of.iter().fold(0.0, |most, v| most.max(v.abs()))
+}
+
 fn named(method: &str) -> Method {
     Method::resolve(&Choice::default().named(method)).unwrap()
 }
@@ -123,6 +127,33 @@ fn a_weak_damper_keeps_order_two_beside_a_strong_one() {
         let errors = [0.04, 0.02, 0.01].map(|h| (run(&text, method, h)[0] - exact).abs());
         println!("{method:18} {errors:?}");
         assert!(errors[0] < 0.02 && (0..2).all(|k| errors[k] / errors[k + 1] > 3.5), "{method}: {errors:?}");
+    }
+}
+
+/// What is overdamped stands still whatever other dampers there are, also one that rows keep from doing anything, and however light it is beside other bodies.
+#[test]
+fn what_is_overdamped_stands_still_beside_what_is_held_or_heavy() {
+    let held = format!(
+        "{}[point.a]\nmass = 1\nposition = [0, 5, 0]\n[point.b]\nmass = 1\nposition = [1, 5, 0]\n\
+         [constraint.rod]\ntype = \"distance\"\nbetween = [\"a\", \"b\"]\n\
+         [force.held]\ntype = \"spring\"\nbetween = [\"a\", \"b\"]\ndamping = 1e9\n",
+        text(1e4, 0.0)
+    );
+    let light = "gravity = [0, 0, 0]\n[body.ship]\nmass = 1e6\nshape = { box = [1, 0.5, 0.3] }\nposition = [0, 0, 0]\n\
+         [body.wheel]\nmass = 1e-6\nshape = { cylinder = [0.1, 0.1] }\nposition = [2, 0, 0]\nangular_velocity = [0, 0, 1]\n\
+         [joint.hinge]\ntype = \"revolute\"\nbetween = [\"ship\", \"wheel\"]\nat = [2, 0, 0]\naxis = [0, 0, 1]\n\
+         [force.brake]\ntype = \"torsion\"\njoint = \"hinge\"\ndamping = 1e-4\n";
+    for (name, text) in [("held", held.as_str()), ("light", light)] {
+        let model = model(text);
+        for method in ["conserving-ggl", "conserving"] {
+            let mut simulation = Simulation::new(model.system.clone(), named(method), 0.01).unwrap();
+            let first = largest(simulation.velocities());
+            assert_eq!(simulation.step_to(0.02), Status::Completed);
+            let left = largest(simulation.velocities()) / first;
+            println!("{name}, {method}: {left:.1e}");
+            // `conserving` has velocities off the rows by the square of the turn.
+            assert!(left < 1e-2, "{name}, {method}: {left} of the velocity is left");
+        }
     }
 }
 

@@ -13,18 +13,14 @@ use super::newton::Newton;
 use super::workspace::Workspace;
 use crate::system::{Evaluation, Law, LawEntry, MAX_ARGUMENTS, Reach, Response, System};
 
-/// z by the masses of single nodes from which on it is found with what else holds these: that may make it larger, as a rod's end
-/// is lighter than the rod.
-const NOTICED: f64 = 0.02;
-
-/// z from which on it is found every [`OFTEN`] steps, and every [`SELDOM`] below; by how much it may grow meanwhile. Too large a z
+/// z from which on what dampers feel is found every [`OFTEN`] steps, and every [`SELDOM`] below; by how much it may grow meanwhile. Too large a z
 /// only takes a rate later than it had to be.
 const NEAR: f64 = 0.5;
 const OFTEN: u32 = 16;
 const SELDOM: u32 = 50;
 const GROWTH: f64 = 1.25;
 
-/// Arguments of laws whose z is found together; of more it is taken by the masses of nodes.
+/// Arguments of laws of which it is found; of more z is taken by the masses of nodes.
 const MOST: usize = 64;
 
 /// Farthest that a composition goes back through a damper, in z: what that makes of a velocity, (1 + z/2)/(1 − z/2), the other parts take back up
@@ -41,8 +37,8 @@ pub struct Damping {
     rate: [f64; MAX_ARGUMENTS],
     /// By how much the force on each argument changes with its own rate.
     stiffness: [f64; MAX_ARGUMENTS],
-    /// z over the step, of the argument that rings most, 1/s.
-    speed: f64,
+    /// Number of its first argument among those of all dissipative laws.
+    first: usize,
     /// 2θ − 1
     late: f64,
 }
@@ -76,12 +72,76 @@ impl Damping {
 }
 
 /// What was last found of all dampers together.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Fit {
-    /// z over its bound by the masses of nodes.
-    share: f64,
-    /// Steps for which that counts.
+    /// Of each two arguments l and k of dissipative laws z of l alone, over c_l and the step, as far as a push along l moves k: |w_kl| √(w_ll/w_kk) with
+    /// w_kl = g_k·w_l and [M Gᵀ; G 0][w_l; μ] = [g_lᵀ; 0], 1/kg in the units of l.
+    felt: Vec<f64>,
+    /// Whether it is known.
+    is_known: bool,
+    /// Steps for which it counts.
     steps_left: u32,
+}
+
+impl Fit {
+    /// Room for the dampers of a system.
+    pub fn new(system: &System) -> Self {
+        let count: usize = system.laws.iter().filter(|law| !law.law.conservative()).map(|law| law.arguments.len()).sum();
+        let room = if count > MOST { 0 } else { count * count };
+        Self { felt: vec![0.0; room], is_known: false, steps_left: 0 }
+    }
+
+    /// Takes over another one of the same system.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.felt.clone_from(&other.felt);
+        (self.is_known, self.steps_left) = (other.is_known, other.steps_left);
+    }
+
+    /// At least the largest z of all together, over the step, 1/s.
+    fn bound(&self, count: usize, dampers: &[Damping]) -> f64 {
+        let mut sum = 0.0;
+        each_active(dampers, |k, i| sum += GROWTH * dampers[k].stiffness[i] * self.felt[(dampers[k].first + i) * (count + 1)]);
+        sum
+    }
+}
+
+/// Shows the arguments of laws whose forces change with their rates.
+fn each_active(dampers: &[Damping], mut see: impl FnMut(usize, usize)) {
+    for (k, damping) in dampers.iter().enumerate() {
+        (0..MAX_ARGUMENTS).filter(|&i| damping.stiffness[i] > 0.0).for_each(|i| see(k, i));
+    }
+}
+
+/// Where dampers meet.
+trait Meeting {
+    /// Shows the z of an argument of a law over the step at each place where it is felt, 1/s.
+    fn each(&self, law: usize, damping: &Damping, argument: usize, see: impl FnMut(usize, f64));
+}
+
+/// Each argument of a dissipative law, with its number.
+struct Found<'a> {
+    felt: &'a [f64],
+    count: usize,
+}
+
+impl Meeting for Found<'_> {
+    fn each(&self, _: usize, damping: &Damping, argument: usize, mut see: impl FnMut(usize, f64)) {
+        let (c, l) = (GROWTH * damping.stiffness[argument], damping.first + argument);
+        self.felt[l * self.count..][..self.count].iter().enumerate().for_each(|(k, felt)| see(k, c * felt));
+    }
+}
+
+/// Each node, by its own mass.
+struct ByNodes<'a> {
+    system: &'a System,
+    work: &'a Workspace,
+}
+
+impl Meeting for ByNodes<'_> {
+    fn each(&self, law: usize, damping: &Damping, argument: usize, mut see: impl FnMut(usize, f64)) {
+        let c = LIGHTER * damping.stiffness[argument];
+        each_pull(self.system, law, argument, self.work, |node, pull| see(node, c * pull * self.work.scales.agility[node]));
+    }
 }
 
 impl Newton {
@@ -97,73 +157,66 @@ impl Newton {
         let mut count = 0;
         for (law, damping) in system.laws.iter().zip(&mut dampers).filter(|(law, _)| !law.law.conservative()) {
             damping.begin(system, law, start, work);
+            damping.first = count;
             count += law.arguments.len();
         }
-        bound_by_nodes(system, &mut dampers, work);
-        // A composition goes back in some of its steps. Nothing rings there, but dampers make energy.
-        let share = if self.fit.share > 0.0 { self.fit.share } else { LIGHTER };
-        let bound = dampers.iter().map(|damping| damping.speed).fold(0.0, f64::max);
-        if let Some(law) = dampers.iter().position(|damping| -h * share * damping.speed > BACK) {
-            work.forces.damping = dampers;
-            return Err(Failure::GoesBack { law });
-        }
-        dampers.iter_mut().for_each(|damping| damping.late = 0.0);
-        if h * bound > NOTICED {
-            // In real time every step does the same work.
-            let may_find = count <= MOST && self.settings.iterations.is_none();
-            let share = self.share(system, h, bound, may_find, &dampers, work);
-            if h * share * bound > 2.0 {
-                be_late(system, h * share, &mut dampers, work);
-            }
-        }
+        // In real time every step does the same work.
+        let may_find = count <= MOST && self.settings.iterations.is_none();
+        let outcome = if may_find && self.find_felt(system, h, count, &dampers, work) {
+            let (mut room, felt) = ([[0.0; 2 * MOST]; 2], &self.fit.felt[..]);
+            be_late(h, &mut dampers, room.each_mut().map(|room| &mut room[..2 * count]), &Found { felt, count })
+        } else {
+            let mut room = [&mut work.full, &mut work.inertial].map(std::mem::take);
+            let room_of_nodes = room.each_mut().map(|room| &mut room[..2 * system.free]);
+            let outcome = be_late(h, &mut dampers, room_of_nodes, &ByNodes { system, work });
+            [work.full, work.inertial] = room;
+            outcome
+        };
         work.forces.damping = dampers;
-        Ok(())
+        outcome
     }
 
-    /// What rows and other masses make of the bound by nodes, over it: found once in a while.
-    fn share(&mut self, system: &System, h: f64, bound: f64, may_find: bool, dampers: &[Damping], work: &mut Workspace) -> f64 {
-        if self.fit.steps_left > 0 && (self.fit.steps_left <= OFTEN || h * self.fit.share * bound < NEAR) {
-            self.fit.steps_left -= 1;
-            return self.fit.share;
+    /// Finds what dampers feel with rows and other masses, once in a while. Says whether it is known.
+    fn find_felt(&mut self, system: &System, h: f64, count: usize, dampers: &[Damping], work: &mut Workspace) -> bool {
+        let is_weak = |fit: &Fit| h.abs() * fit.bound(count, dampers) < NEAR;
+        let fit = &mut self.fit;
+        if fit.is_known && fit.steps_left > 0 && (fit.steps_left <= OFTEN || is_weak(fit)) {
+            fit.steps_left -= 1;
+            return true;
         }
-        let Some(found) = may_find.then(|| self.find_with_rows(system, dampers, work)).flatten() else { return LIGHTER };
-        self.fit = Fit { share: GROWTH * found / bound, steps_left: if GROWTH * h * found < NEAR { SELDOM } else { OFTEN } };
-        self.fit.share
-    }
-
-    /// The largest z over the step with what rows and other masses hold there: Σ √(c_k c_l) |g_k w_l| with [M Gᵀ; G 0][w; μ] = [gᵀ; 0].
-    fn find_with_rows(&mut self, system: &System, dampers: &[Damping], work: &mut Workspace) -> Option<f64> {
-        let n = system.coordinates();
+        fit.is_known = false;
         work.end.at.copy_from(&work.start.at);
         if !self.factor_inertia(work) {
-            return None;
+            return false;
         }
-        let mut largest = 0.0_f64;
-        for k in 0..dampers.len() {
-            for (i, c) in dampers[k].stiffness.into_iter().enumerate().filter(|(_, c)| *c > 0.0) {
-                self.unknowns.fill(0.0);
-                each_slot(system, k, i, work, |node, g| {
-                    let at = &mut self.unknowns[node * system.dim..];
-                    at.iter_mut().zip(g).for_each(|(sum, g)| *sum += g);
+        let of_dissipative = || system.laws.iter().enumerate().filter(|(_, law)| !law.law.conservative());
+        let arguments = || of_dissipative().flat_map(|(k, law)| (0..law.arguments.len()).map(move |i| (k, i)));
+        let mut own = [0.0_f64; MOST];
+        for (l, (law, i)) in arguments().enumerate() {
+            self.unknowns.fill(0.0);
+            each_slot(system, law, i, work, |node, g| {
+                let at = &mut self.unknowns[node * system.dim..];
+                at.iter_mut().zip(g).for_each(|(sum, g)| *sum += g);
+            });
+            self.kkt.solve(&mut self.unknowns);
+            for (k, (law, i)) in arguments().enumerate() {
+                let w = &self.unknowns;
+                let mut product = 0.0;
+                each_slot(system, law, i, work, |node, g| {
+                    product += g.iter().zip(&w[node * system.dim..]).map(|(g, w)| g * w).sum::<f64>()
                 });
-                self.kkt.solve(&mut self.unknowns);
-                let mut sum = 0.0;
-                for (l, other) in dampers.iter().enumerate() {
-                    for (j, d) in other.stiffness.into_iter().enumerate().filter(|(_, d)| *d > 0.0) {
-                        let mut product = 0.0;
-                        each_slot(system, l, j, work, |node, g| {
-                            product += g.iter().zip(&self.unknowns[node * system.dim..n]).map(|(g, w)| g * w).sum::<f64>();
-                        });
-                        sum += (c * d).sqrt() * product.abs();
-                    }
-                }
-                if !sum.is_finite() {
-                    return None;
-                }
-                largest = largest.max(sum);
+                self.fit.felt[l * count + k] = product.abs();
             }
+            own[l] = self.fit.felt[l * count + l].sqrt();
         }
-        Some(largest)
+        for (at, felt) in self.fit.felt.iter_mut().enumerate() {
+            let (l, k) = (at / count, at % count);
+            // What hardly moves at all is known from its own push, and not from that of others.
+            *felt = if own[k] > 0.0 { felt.min(own[k] * own[l]) * (own[l] / own[k]) } else { 0.0 };
+        }
+        self.fit.is_known = self.fit.felt.iter().all(|felt| felt.is_finite());
+        self.fit.steps_left = if is_weak(&self.fit) { SELDOM } else { OFTEN };
+        self.fit.is_known
     }
 }
 
@@ -231,62 +284,57 @@ impl Braking {
     }
 }
 
-/// Has dampers take their rates as late as it takes for them not to ring together: with Σ (1 − θ) z ≤ 1 at each node, over the z of each alone in a step of `h`
-/// (s, over the share of the mass that they feel). Where as many equal ones would not ring a damper keeps the mean rate, and the others share what is left
-/// alike: so a weak one stays of order 2 beside one that is overdamped.
-fn be_late(system: &System, h: f64, dampers: &mut [Damping], work: &mut Workspace) {
-    let [mut counts, mut left] = [&mut work.full, &mut work.inertial].map(std::mem::take);
-    let (all, strong) = counts.split_at_mut(system.free);
-    let each = |k: usize, damping: &Damping, see: &mut dyn FnMut(usize, f64)| {
-        for (i, c) in damping.stiffness.into_iter().enumerate().filter(|(_, c)| *c > 0.0) {
-            each_pull(system, k, i, work, |node, pull| match h * c * pull * work.scales.agility[node] {
-                z if z > 0.0 => see(node, z),
-                _ => (),
-            });
-        }
-    };
-    let is_weak = |z: f64, count: f64| 0.5 * z * count <= 1.0;
-    all.fill(0.0);
-    strong.fill(0.0);
+/// Has dampers take their rates as late as it takes for them not to ring together: with Σ (1 − θ) z ≤ 1 at each place where they meet, over the z of each alone in a
+/// step of `h` (s). Where as many equal ones would not ring a damper keeps the mean rate, and the others share what is left alike: so a weak one stays of order 2
+/// beside one that is overdamped.
+///
+/// # Errors
+/// Where a step back in time goes too far back through a damper: nothing rings there, but dampers make energy.
+fn be_late(h: f64, dampers: &mut [Damping], [counts, sums]: [&mut [f64]; 2], meeting: &impl Meeting) -> Result<(), Failure> {
+    let places = counts.len() / 2;
+    let ((all, strong), (sum, left)) = (counts.split_at_mut(places), sums.split_at_mut(places));
+    for room in [&mut *all, strong, sum] {
+        room.fill(0.0);
+    }
     left.fill(1.0);
-    for (k, damping) in dampers.iter().enumerate() {
-        each(k, damping, &mut |node, _| all[node] += 1.0);
-    }
-    for (k, damping) in dampers.iter().enumerate() {
-        each(k, damping, &mut |node, z| match is_weak(z, all[node]) {
-            true => left[node] -= 0.5 * z,
-            false => strong[node] += 1.0,
-        });
-    }
-    for (k, damping) in dampers.iter_mut().enumerate() {
-        let mut early = 0.5_f64;
-        each(k, damping, &mut |node, z| {
-            if !is_weak(z, all[node]) {
-                early = early.min(left[node] / (strong[node] * z));
+    dampers.iter_mut().for_each(|damping| damping.late = 0.0);
+    let mut most = (0.0, 0);
+    each_active(dampers, |k, i| {
+        meeting.each(k, &dampers[k], i, |place, speed| {
+            let z = h.abs() * speed;
+            all[place] += f64::from(z > 0.0);
+            sum[place] += z;
+            if z > most.0 {
+                most = (z, k);
             }
         });
+    });
+    let largest = sum.iter().copied().fold(0.0, f64::max);
+    if h < 0.0 {
+        return if largest > BACK { Err(Failure::GoesBack { law: most.1 }) } else { Ok(()) };
+    }
+    if largest <= 2.0 {
+        return Ok(());
+    }
+    let is_weak = |z: f64, count: f64| 0.5 * z * count <= 1.0;
+    each_active(dampers, |k, i| {
+        meeting.each(k, &dampers[k], i, |place, speed| match is_weak(h * speed, all[place]) {
+            true => left[place] -= 0.5 * h * speed,
+            false => strong[place] += 1.0,
+        });
+    });
+    for (k, damping) in dampers.iter_mut().enumerate() {
+        let mut early = 0.5_f64;
+        for i in (0..MAX_ARGUMENTS).filter(|&i| damping.stiffness[i] > 0.0) {
+            meeting.each(k, damping, i, |place, speed| {
+                if !is_weak(h * speed, all[place]) {
+                    early = early.min(left[place] / (strong[place] * h * speed));
+                }
+            });
+        }
         damping.late = 1.0 - 2.0 * early;
     }
-    (work.full, work.inertial) = (counts, left);
-}
-
-/// Bounds z over the step by Σ c |g| Σ |g| over the mass of each node: by Gershgorin no eigenvalue of M⁻¹ Gᵀ c G is larger where M
-/// is diagonal.
-fn bound_by_nodes(system: &System, dampers: &mut [Damping], work: &mut Workspace) {
-    let mut pull = std::mem::take(&mut work.full);
-    pull.fill(0.0);
-    for (k, damping) in dampers.iter().enumerate() {
-        for (i, c) in damping.stiffness.into_iter().enumerate().filter(|(_, c)| *c > 0.0) {
-            each_pull(system, k, i, work, |node, of_slot| pull[node] += c * of_slot);
-        }
-    }
-    for (k, damping) in dampers.iter_mut().enumerate() {
-        damping.speed = 0.0;
-        for i in (0..MAX_ARGUMENTS).filter(|&i| damping.stiffness[i] > 0.0) {
-            each_slot(system, k, i, work, |node, _| damping.speed = damping.speed.max(pull[node] * work.scales.agility[node]));
-        }
-    }
-    work.full = pull;
+    Ok(())
 }
 
 /// Shows |g| Σ |g| of an argument of a law at the start of a step, slot by slot.

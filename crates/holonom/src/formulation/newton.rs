@@ -48,7 +48,7 @@ impl Newton {
             rest: vec![0.0; kkt.size()],
             delta: vec![0.0; system.constraints()],
             rank: Rank::new(system.constraints(), system.coordinates()),
-            fit: Fit::default(),
+            fit: Fit::new(system),
             kept: Kept::new(system, kkt.is_changed_by_rows()),
             kkt,
             iterations: 0,

@@ -85,21 +85,21 @@ pub(super) struct Hints {
 
 impl Hints {
     pub(super) fn of(newton: &Newton, integrator: &dyn Integrator) -> Self {
-        let mut hints = Self { rank: newton.rank.clone(), fit: newton.fit, carried: Vec::new() };
+        let mut hints = Self { rank: newton.rank.clone(), fit: newton.fit.clone(), carried: Vec::new() };
         hints.keep(newton, integrator);
         hints
     }
 
     pub(super) fn keep(&mut self, newton: &Newton, integrator: &dyn Integrator) {
         self.rank.copy_from(&newton.rank);
-        self.fit = newton.fit;
+        self.fit.copy_from(&newton.fit);
         self.carried.clear();
         integrator.carry(&mut self.carried);
     }
 
     pub(super) fn restore(&self, newton: &mut Newton, integrator: &mut dyn Integrator) {
         newton.rank.copy_from(&self.rank);
-        newton.fit = self.fit;
+        newton.fit.copy_from(&self.fit);
         integrator.carry_on(&self.carried);
     }
 }
