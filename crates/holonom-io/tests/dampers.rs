@@ -157,6 +157,30 @@ fn what_is_overdamped_stands_still_beside_what_is_held_or_heavy() {
     }
 }
 
+/// What is overdamped and held by a spring goes on by half a step before it stands still. Where that would load the spring with more energy than there is,
+/// the step is taken in parts: a damper makes no energy.
+#[test]
+fn a_strong_damper_loads_no_spring() {
+    let text = text(1e6, 1e8);
+    // s² + 1e6 s + 1e8 = 0 of the slow motion, which begins at v₀ over the difference of both.
+    let root = (0.25e12_f64 - 1e8).sqrt();
+    let slow = 0.5e6 - root;
+    let exact = 10.0 / (2.0 * root) * (-slow * 0.01).exp();
+    for method in ["conserving-ggl", "conserving", "conserving-projected"] {
+        let mut simulation = Simulation::new(model(&text).system, named(method), 1e-3).unwrap();
+        let first = simulation.audit().energy();
+        let mut most = first;
+        let status = simulation.run(0.01, &mut |now: &Simulation| {
+            most = most.max(now.audit().energy());
+            Verdict::GoOn
+        });
+        assert_eq!(status, Status::Completed, "{method}");
+        println!("{method}: {most} J of {first} J, {:e} m and {exact:e} m", simulation.state().x[0] - 5.0);
+        assert!(most <= 1.01 * first, "{method}: {most} J of {first} J");
+        assert!((simulation.state().x[0] - 5.0 - exact).abs() < 5e-4, "{method}");
+    }
+}
+
 /// Compositions go back in time in parts of their step, where a damper makes energy: steps that are too long for that are divided, so that a bushing
 /// only takes energy and the end is that of small steps; where no part is short enough, the run stops and says so.
 #[test]

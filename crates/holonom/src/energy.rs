@@ -131,6 +131,21 @@ pub(crate) fn work_of_law(system: &System, law: &LawEntry, response: &Response, 
     law.invariants.iter().zip(&response.force).map(of_invariant).sum()
 }
 
+/// What dampers that take their rates late make in a step between positions, J: of all together, and the law that makes most.
+pub(crate) fn made_by_dampers(system: &System, stage: &Stage, work: &Workspace) -> (f64, Option<usize>) {
+    let (mut sum, mut most) = (0.0, (0.0, None));
+    for (k, (law, response)) in system.laws.iter().zip(&work.forces.responses).enumerate() {
+        if !law.law.conservative() && !law.law.may_supply() && work.forces.is_late(k) {
+            let made = work_of_law(system, law, response, stage, work);
+            sum += made;
+            if made > most.0 {
+                most = (made, Some(k));
+            }
+        }
+    }
+    (sum, most.1)
+}
+
 /// Share of a step by which its ends are looked at inside of it: what jumps at an end has there what it has in the step.
 const INSIDE: f64 = 1e-6;
 

@@ -72,6 +72,15 @@ pub enum Failure {
         /// All there was to move, J.
         supply: f64,
     },
+    /// Steps are too long for what a strong damper holds back: what moves on in one of them drives a spring, with energy that was not there.
+    Driving {
+        /// Which of the system's laws.
+        law: usize,
+        /// What dampers would make in the step, J.
+        made: f64,
+        /// All there was to move, J.
+        supply: f64,
+    },
     /// A composition goes back in time through a damper that is too strong for that.
     GoesBack {
         /// Which of the system's laws.
@@ -149,6 +158,10 @@ impl Failure {
             ),
             Self::Ringing { law, taken, supply } => format!(
                 "the step turns round what `{}` brakes, which would take {taken:.1e} J of the {supply:.1e} J that could move: it is too long for a damper so strong (shorter steps help, or conserving-ggl and radau, where dampers do not ring)",
+                system.laws[law].name
+            ),
+            Self::Driving { law, made, supply } => format!(
+                "what `{}` brakes goes so far in the step that it would have {made:.1e} J from it, where {supply:.1e} J could move: the step is too long for a damper so strong (shorter steps help, or radau)",
                 system.laws[law].name
             ),
             Self::GoesBack { law } => format!(

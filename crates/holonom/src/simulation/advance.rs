@@ -204,7 +204,7 @@ impl Simulation {
         self.judge.accelerations(step, work)?;
         let of_places = self.judge.of_places(system, work);
         self.judge.energy(step, [before, audit], of_places, work)?;
-        self.judge.dampers(system, [self.state.t, target], step, audit, work)?;
+        self.judge.dampers(system, ([self.state.t, target], step), [before, audit], &taken.stage, work)?;
         // A part that takes the nominal step out of its bound can be taken again.
         self.judge.whole(step, audit, of_places, work)?;
         if !system.gauges().is_empty() {

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use super::Method;
 use super::audit::Audit;
 use crate::energy;
-use crate::formulation::{Failure, Independence, Iteration, Level, Multipliers, RowsAt, Workspace, taken_of_turned};
+use crate::formulation::{Failure, Independence, Iteration, Level, Multipliers, RowsAt, Stage, Workspace, taken_of_turned};
 use crate::linalg::largest;
 use crate::projection::Solve;
 use crate::system::{GaugeValues, System};
@@ -116,6 +116,9 @@ const SUPPLY: f64 = 1.0;
 /// The same of energy that went nowhere, where the method damps nothing.
 const LOST: f64 = 0.5;
 
+/// Most energy that dampers may make in a step, over all that could move before it.
+const MADE: f64 = 0.01;
+
 /// Angles turn by at most so much in a step, rad, where steps are divided: schemes of order 2 lag by a twelfth of its cube.
 const FARTHEST: f64 = 1.0;
 
@@ -126,8 +129,10 @@ const TOLERANCES: f64 = 16.0;
 pub(super) struct Judge {
     /// Whether each promise is one of them.
     promises: [bool; PROMISES],
-    /// Whether there are dampers, and the method may turn round what they stop: those that keep the energy take their rates later.
+    /// Whether there are dampers to look at.
     looks_at_dampers: bool,
+    /// Whether the method has those take their rates later that would turn a motion round: those do that keep the energy.
+    damps_late: bool,
     /// Whether the method takes energy out of what is fast for its steps.
     damps: bool,
     /// Tolerance of the iteration, over the size of the mechanism.
@@ -155,9 +160,9 @@ impl Judge {
         let mass = moving.max(work.scales.heaviest);
         let weight = work.forces.weight.iter().map(|w| w.abs()).sum();
         let mut promises = method.promises();
-        let keeps_energy = [Promise::Energy, Promise::FallingEnergy].iter().any(|kept| promises.contains(kept));
+        let damps_late = [Promise::Energy, Promise::FallingEnergy].iter().any(|kept| promises.contains(kept));
         let has_dampers = system.laws.iter().any(|law| !law.law.conservative());
-        let looks_at_dampers = has_dampers && method.settings.iterations.is_none() && !keeps_energy;
+        let looks_at_dampers = has_dampers && method.settings.iterations.is_none();
         // Where rows move, the impulse that projects velocities does work.
         for promise in promises.iter_mut().filter(|promise| **promise == Promise::FallingEnergy && system.is_driven()) {
             *promise = Promise::SuppliedEnergy;
@@ -169,7 +174,19 @@ impl Judge {
         let damps = method.integrator.damps || method.projection.velocity;
         let mut kept = [false; PROMISES];
         promises.iter().for_each(|promise| kept[*promise as usize] = true);
-        Self { promises: kept, looks_at_dampers, damps, tolerance, mass, weight, farthest, stiffest, shortest, independence: None }
+        Self {
+            promises: kept,
+            looks_at_dampers,
+            damps_late,
+            damps,
+            tolerance,
+            mass,
+            weight,
+            farthest,
+            stiffest,
+            shortest,
+            independence: None,
+        }
     }
 
     fn promises(&self, promise: Promise) -> bool {
@@ -239,16 +256,30 @@ impl Judge {
         }
     }
 
-    /// Looks after a step of length `h` (s) at the times `t` (s) whether it turned round what strong dampers would have stopped.
-    pub(super) fn dampers(&self, system: &System, t: [f64; 2], h: f64, after: &Audit, work: &Workspace) -> Result<(), Failure> {
+    /// Looks after a step of length `h` (s) at the times `t` (s) whether it turned round what strong dampers would have stopped, or where the method has them
+    /// take their rates later, whether these have made energy; `before` and `after` are the audits around it.
+    pub(super) fn dampers(
+        &self,
+        system: &System,
+        (t, h): ([f64; 2], f64),
+        [before, after]: [&Audit; 2],
+        stage: &Stage,
+        work: &Workspace,
+    ) -> Result<(), Failure> {
         if !self.looks_at_dampers {
             return Ok(());
         }
+        let nothing = || self.nothing(h, 0.0, after, work) + self.still(work);
+        if self.damps_late {
+            let [_, supply] = before.supply();
+            return match energy::made_by_dampers(system, stage, work) {
+                (made, Some(law)) if made > MADE * supply + nothing() => Err(Failure::Driving { law, made, supply }),
+                _ => Ok(()),
+            };
+        }
         let [_, supply] = after.supply();
         match taken_of_turned(system, t, h, work) {
-            (taken, Some(law)) if taken > SUPPLY * supply + self.nothing(h, 0.0, after, work) + self.still(work) => {
-                Err(Failure::Ringing { law, taken, supply })
-            }
+            (taken, Some(law)) if taken > SUPPLY * supply + nothing() => Err(Failure::Ringing { law, taken, supply }),
             _ => Ok(()),
         }
     }
