@@ -115,8 +115,8 @@ impl Mode {
 
 impl Modes {
     /// The number of a mode, counted from 1. What does not vibrate has two exponents under each number, which may be zero: the largest and the smallest of all,
-    /// the next ones, and so on. What grows comes first, by how fast; the others go by the natural frequency, |s| or √(s₁ s₂), so that they keep their numbers
-    /// where damping makes two exponents of a vibration.
+    /// the next ones, and so on. What grows without vibrating comes first, by how fast; the others go by the natural frequency, |s| or √(s₁ s₂), so that they keep
+    /// their numbers where damping makes two exponents of one vibration.
     pub fn number(&self, mode: usize) -> usize {
         self.numbers[mode]
     }
