@@ -233,7 +233,7 @@ pub fn is_at_rest(system: &System) -> bool {
 /// How far what moves most at the start of a system would go in a time (s), as fast and with the accelerations that it has there, m. `None` where that
 /// cannot be told.
 pub fn way_ahead(system: &System, time: f64) -> Option<f64> {
-    let pushed = Places::new(system.clone()).ok()?.set_off(system.start_position().to_vec())?;
+    let pushed = Places::new(system.clone()).ok()?.set_off(system.start_position().to_vec()).ok()?;
     Some(largest(&system.start_velocity()[..system.coordinates()]) * time + 0.5 * pushed * time * time)
 }
 

@@ -84,12 +84,7 @@ pub(crate) struct Spot {
 impl Places {
     /// Puts the mechanism at a place, and sees that it is at rest there.
     pub fn rest(&mut self, x: Vec<f64>) -> Result<Rest, NoRest> {
-        self.put(&x).map_err(|_| NoRest::Unbalanced)?;
-        // Which rows are redundant is known from here.
-        if !self.newton.factor_inertia(&self.work) {
-            return Err(NoRest::Singular);
-        }
-        let (here, left) = self.balance(x)?;
+        let (here, left) = self.first_balance(x)?;
         if left.is_nan() || left > BALANCED {
             return Err(NoRest::Unbalanced);
         }
@@ -117,14 +112,23 @@ impl Places {
         Ok(rest)
     }
 
-    /// How fast forces at a place make from rest what they move most there, m/s²: 0 where they balance. `None` where that cannot be told.
-    pub fn set_off(&mut self, x: Vec<f64>) -> Option<f64> {
-        self.put(&x).ok()?;
+    /// How fast forces at a place make from rest what they move most there, m/s²: 0 where they balance.
+    ///
+    /// # Errors
+    /// When that cannot be told.
+    pub fn set_off(&mut self, x: Vec<f64>) -> Result<f64, NoRest> {
+        let left = self.first_balance(x)?.1;
+        Ok(if left > BALANCED { left * self.pushed_at_most() } else { 0.0 })
+    }
+
+    /// The multipliers that balance all forces at a place that the mechanism was not at before, and what share of the forces is left.
+    fn first_balance(&mut self, x: Vec<f64>) -> Result<(Spot, f64), NoRest> {
+        self.put(&x).map_err(|_| NoRest::Unbalanced)?;
+        // Which rows are redundant is known from here.
         if !self.newton.factor_inertia(&self.work) {
-            return None;
+            return Err(NoRest::Singular);
         }
-        let left = self.balance(x).ok()?.1;
-        Some(if left > BALANCED { left * self.pushed_at_most() } else { 0.0 })
+        self.balance(x)
     }
 
     /// Where what is stiff has come to rest again beside places: what little it is stretched there may be more than what it bears. The second place is off by
