@@ -126,6 +126,9 @@ impl<'a> Entry<'a> {
     }
 
     pub(super) fn missing(&self, key: &str) -> Refused {
+        if self.sink.has_taken_for(self.path, key) {
+            return Refused;
+        }
         let message = if self.name.is_empty() { format!("`{key}` is missing") } else { format!("`{}` has no `{key}`", self.name) };
         self.sink.report(|| Fault::new(self.path, self.name, message, format!("add {key} = …")))
     }

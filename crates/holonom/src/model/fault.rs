@@ -5,6 +5,7 @@ use std::fmt;
 
 use super::expression::Program;
 use super::unseen::{Course, OverTime};
+use super::value::key_path;
 use super::{knocks, synonyms};
 
 /// One thing that is wrong, where it is, and how to put it right.
@@ -149,6 +150,12 @@ impl Sink {
         self.faults.borrow().iter().any(|fault| fault.path.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with('.')))
     }
 
+    /// Whether a key of the table at a path was taken for one that is called `key`: that is not missing as well.
+    pub fn has_taken_for(&self, path: &str, key: &str) -> bool {
+        let is_in = |fault: &Fault| fault.on_key && fault.path == key_path(path, &fault.offending);
+        self.faults.borrow().iter().any(|fault| is_in(fault) && fault.cure == taken_for(key))
+    }
+
     /// Nothing, or all that was wrong.
     pub fn finish(self) -> Result<(), Faults> {
         let mut faults = self.faults.into_inner();
@@ -188,10 +195,15 @@ pub fn nearest_few<'a>(name: &str, known: impl IntoIterator<Item = &'a str>, mos
     sorted.into_iter().take_while(is_near).map(|(_, candidate)| candidate).take(most).collect()
 }
 
+/// The cure where a name is taken for a known one.
+fn taken_for(near: &str) -> String {
+    format!("did you mean `{near}`?")
+}
+
 /// A cure from the nearest known name, or from the list of all when none is near and they are few.
 pub fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
     match nearest(name, known.clone()) {
-        Some(near) => format!("did you mean `{near}`?"),
+        Some(near) => taken_for(near),
         None => {
             let all: Vec<&str> = known.into_iter().take(25).collect();
             match all.len() {

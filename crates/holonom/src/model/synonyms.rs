@@ -65,6 +65,7 @@ const SYNONYMS: &[(&str, &[&str])] = &[
     ("profile", &["motion", "function", "trajectory", "value", "angle", "displacement", "distance"]),
     ("end", &["tend", "tstop", "tmax", "tfinal", "tf", "duration", "stop-time", "end-time", "final-time"]),
     ("step", &["dt", "h", "timestep", "step-size", "max-step"]),
+    ("value", &["formula", "expression", "expr", "function"]),
     ("method", &["solver", "scheme"]),
     ("accuracy", &["rtol", "atol", "reltol", "abstol", "tol"]),
     ("max_iterations", &["maxiter", "max-newton-iterations"]),
