@@ -46,7 +46,7 @@ pub struct Point {
 
 impl Point {
     /// Where a simulation is.
-    pub fn of(simulation: &Simulation, recorder: &Recorder<'_>, corrections: &[String]) -> Self {
+    pub fn of(simulation: &Simulation, recorder: &Recorder, corrections: &[String]) -> Self {
         Self { run: simulation.checkpoint(), recorder: recorder.mark(), rows: recorder.recording().rows(), corrections: corrections.into() }
     }
 }

@@ -1,11 +1,10 @@
 //! A run on disk while it goes on, so that a kill costs no more than its last second or two.
 
-use std::fs::OpenOptions;
+use std::fs::{File, OpenOptions};
 use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::time::{Duration, Instant};
 
-use holonom::record::{Recorder, Recording};
-use holonom::simulation::Simulation;
+use holonom::record::Recording;
 use holonom_io::Writer;
 
 use crate::checkpoint::{FILE, Kept, Point};
@@ -17,10 +16,13 @@ use crate::output::has_all;
 use crate::provenance::Provenance;
 
 /// Least time between two savings.
-const PAUSE: Duration = Duration::from_secs(1);
+pub const PAUSE: Duration = Duration::from_secs(1);
 
 /// The time between two savings is at least so many times what the last one took.
 const COST: u32 = 50;
+
+/// Bytes of rows that are ready to be written: the text of others is made when it is written.
+const MOST_TEXT: usize = 1 << 24;
 
 /// Writes the rows and the checkpoint of a run from time to time. Rows are appended, and come before the checkpoint that counts them, so
 /// that a checkpoint always has its rows.
@@ -31,6 +33,9 @@ pub struct Keeper<'a> {
     /// Rows of the table that are on disk, and the bytes that they take.
     rows: usize,
     bytes: u64,
+    /// The text of the rows behind these that are written, and how many rows are.
+    text: Vec<u8>,
+    written: usize,
     /// Time of the results in the folder, s: they are replaced when the run is beyond it.
     beyond: f64,
     /// Whether results in the folder are of an earlier end.
@@ -49,30 +54,56 @@ impl<'a> Keeper<'a> {
     pub fn new(folder: &'a Folder, loaded: &Loaded, writers: &[&Writer], provenance: &Provenance) -> Self {
         let (table, next) = (table(loaded, writers), Instant::now() + PAUSE);
         let beyond = folder.reached().unwrap_or(f64::NEG_INFINITY);
-        Self { folder, provenance: provenance.clone(), table, rows: 0, bytes: 0, beyond, is_stale: true, next }
+        Self {
+            folder,
+            provenance: provenance.clone(),
+            table,
+            rows: 0,
+            bytes: 0,
+            text: Vec::new(),
+            written: 0,
+            beyond,
+            is_stale: true,
+            next,
+        }
     }
 
     /// For a run that goes on from a checkpoint: the table in `file` of the same folder has so many rows of it, in so many bytes.
     pub fn go_on(&mut self, file: &str, rows: usize, bytes: u64) {
         self.beyond = f64::NEG_INFINITY;
         if file == self.table {
-            (self.rows, self.bytes) = (rows, bytes);
+            (self.rows, self.bytes, self.written) = (rows, bytes, rows);
         }
     }
 
     /// Has all rows written once more, as the last of them is another now than it may be on disk.
     pub fn begin_anew(&mut self) {
         self.rows = 0;
+        self.forget_text();
     }
 
-    /// Saves the run if it is time to.
-    pub fn look(&mut self, simulation: &Simulation, recorder: &Recorder<'_>, corrections: &[String]) {
-        let begun = Instant::now();
-        if begun < self.next || simulation.state().t <= self.beyond {
-            return;
+    /// Has the text of new rows ready, as far as there is room.
+    pub fn prepare(&mut self, recording: &Recording) {
+        if self.written < recording.rows() && self.text.len() < MOST_TEXT {
+            holonom_io::append_csv(recording, self.written, &mut self.text).expect("memory takes everything");
+            self.written = recording.rows();
         }
-        let last = Point::of(simulation, recorder, corrections);
-        match self.save(recorder.recording(), last, None) {
+    }
+
+    fn forget_text(&mut self) {
+        self.text.clear();
+        self.written = self.rows;
+    }
+
+    /// Whether a run at the time `t` (s) is to be saved.
+    pub fn is_due(&self, t: f64) -> bool {
+        Instant::now() >= self.next && t > self.beyond
+    }
+
+    /// Saves a run while it goes on.
+    pub fn keep(&mut self, recording: &Recording, last: Point) {
+        let begun = Instant::now();
+        match self.save(recording, last, None) {
             Ok(()) => self.next = Instant::now() + PAUSE.max(COST * begun.elapsed()),
             Err(failure) => {
                 note(&format!("{failure}; the run goes on, and is not saved before its end"));
@@ -92,6 +123,7 @@ impl<'a> Keeper<'a> {
         let saved = self.append(recording).and_then(|()| self.folder.write(FILE, |out| Ok(serde_json::to_writer(out, &kept)?)));
         if saved.is_err() && rows > 0 {
             (self.rows, self.bytes) = (rows, bytes);
+            self.forget_text();
             // On a full disk rows may have been written in part. Where they cannot be cut off either, whoever goes on does it.
             let _ = OpenOptions::new().write(true).open(self.folder.path.join(self.table)).and_then(|file| file.set_len(bytes));
         }
@@ -122,21 +154,27 @@ impl<'a> Keeper<'a> {
     /// Appends the rows that are not on disk yet. What is behind those that are, a kill has left.
     fn append(&mut self, recording: &Recording) -> Result<(), Failure> {
         let path = self.folder.path.join(self.table);
+        let (text, written) = (&self.text, self.written);
+        let write = |out: &mut BufWriter<File>| {
+            out.write_all(text)?;
+            holonom_io::append_csv(recording, written, out)
+        };
         if self.rows == 0 {
-            self.folder.write(self.table, |out| holonom_io::append_csv(recording, 0, out))?;
+            self.folder.write(self.table, write)?;
             self.bytes = std::fs::metadata(&path).map_or(0, |file| file.len());
         } else {
             let appended = OpenOptions::new().write(true).open(&path).and_then(|mut file| {
                 file.set_len(self.bytes)?;
                 file.seek(SeekFrom::End(0))?;
                 let mut out = BufWriter::new(file);
-                holonom_io::append_csv(recording, self.rows, &mut out)?;
+                write(&mut out)?;
                 out.flush()?;
                 out.stream_position()
             });
             self.bytes = appended.map_err(|source| Failure::File { doing: "write", path, source })?;
         }
         self.rows = recording.rows();
+        self.forget_text();
         Ok(())
     }
 }

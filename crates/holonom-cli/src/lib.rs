@@ -5,6 +5,7 @@ mod clock;
 mod columns;
 mod commands;
 mod comparison;
+mod desk;
 mod failure;
 mod folder;
 mod found;

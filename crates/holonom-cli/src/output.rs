@@ -17,6 +17,7 @@ use serde_json::{Value, json};
 
 use crate::checkpoint::Point;
 use crate::clock::Clock;
+use crate::desk::{Desk, Rows};
 use crate::failure::Failure;
 use crate::folder::{Folder, holds};
 use crate::keeper::Keeper;
@@ -88,6 +89,9 @@ pub struct Order {
     pub provenance: Provenance,
     /// Whether nothing is said on standard error.
     pub quiet: bool,
+    /// Whether rows may be made in a thread of their own, while steps go on. What formulas of measures call is then called by two threads, and what it
+    /// says about a step comes after others.
+    pub has_thread: bool,
     /// What notes begin with where there are several runs.
     pub(crate) label: Option<String>,
     /// Where to go on, and the rows before.
@@ -102,12 +106,12 @@ impl Order {
     pub fn new(loaded: &Loaded, method: Option<&str>, every: Option<u64>, quiet: bool) -> Result<Self, Failure> {
         let named = load::method(&loaded.model, method)?;
         let provenance = loaded.provenance(&named, method, every)?;
-        Ok(Self { method: named, provenance, quiet, label: None, resume: None })
+        Ok(Self { method: named, provenance, quiet, has_thread: true, label: None, resume: None })
     }
 }
 
 /// The recorder of a model's runs.
-pub fn recorder(model: &Model, every: u64) -> Recorder<'_> {
+pub fn recorder(model: &Model, every: u64) -> Recorder {
     Recorder::new(&model.channels, &model.system, every, model.output.constraints())
 }
 
@@ -127,7 +131,7 @@ pub(crate) fn simulate_kept(
     keeper: Option<&mut Keeper<'_>>,
 ) -> Result<(Finished, Reached), Failure> {
     let model = &loaded.model;
-    let Order { method, provenance, quiet, label, resume } = order;
+    let Order { method, provenance, quiet, has_thread, label, resume } = order;
     let say = |text: &str| match &label {
         None => note(text),
         Some(label) => note(&format!("{label}: {text}")),
@@ -159,44 +163,55 @@ pub(crate) fn simulate_kept(
         Some((mark, rows)) => recorder.resume(&mark).after(rows),
         None => recorder,
     };
-    let mut watched = Watched::new(recorder, step, end, quiet, interrupted.clone()).kept(keeper, &corrections);
+    let is_real_time = simulation.method().settings.iterations.is_some();
+    let has_thread = has_thread && !is_real_time && std::thread::available_parallelism().is_ok_and(|threads| threads.get() > 1);
+    let desk = Desk { keeper, corrections: corrections.clone(), before_end: None };
     let (first_step, first_time) = (simulation.steps(), simulation.state().t);
     let (wall, cpu) = (std::time::Instant::now(), ProcessTime::now());
-    let (status, step_us) = match simulation.method().settings.iterations {
-        None => (simulation.run(end, &mut watched), Value::Null),
-        Some(_) => {
-            let mut clock = Clock::new(&mut watched, (end / step) as usize + 1);
-            (simulation.run(end, &mut clock), clock.summary())
-        }
-    };
+    let (status, step_us, recorder, desk) = std::thread::scope(|scope| {
+        let rows = match has_thread {
+            true => Rows::in_a_thread(recorder, desk, &mut simulation, scope),
+            false => Rows::Here(Box::new(recorder), desk),
+        };
+        let mut watched = Watched::new(rows, step, end, quiet, interrupted.clone());
+        let (status, step_us) = match is_real_time {
+            false => (simulation.run(end, &mut watched), Value::Null),
+            true => {
+                let mut clock = Clock::new(&mut watched, (end / step) as usize + 1);
+                (simulation.run(end, &mut clock), clock.summary())
+            }
+        };
+        let (recorder, desk) = watched.finish().join(&mut simulation);
+        (status, step_us, recorder, desk)
+    });
     let (wall, cpu) = (wall.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64());
     let summary = simulation.summary(&loaded.name, end, &status, rank.size(&model.system));
     let mut value = serde_json::to_value(&summary).expect("a summary is plain data");
     value["time"] = json!({
         "cpu_s": cpu,
-        "us_per_step": 1e6 * cpu / (simulation.steps() - first_step).max(1) as f64,
+        "us_per_step": 1e6 * wall / (simulation.steps() - first_step).max(1) as f64,
         "realtime_factor": (simulation.state().t - first_time) / wall.max(1e-9),
     });
     if !step_us.is_null() {
         value["time"]["step_us"] = step_us;
     }
-    let unknown = unknown_measures(model, watched.recorder.recording());
-    let without = rows_without_forces(model, watched.recorder.recording());
-    let turns = long_turns(model, &simulation, watched.recorder.recording(), summary.size.dof > 0);
-    let turned = turned_bushings(model, watched.recorder.recording());
+    let unknown = unknown_measures(model, recorder.recording());
+    let without = rows_without_forces(model, recorder.recording());
+    let turns = long_turns(model, &simulation, recorder.recording(), summary.size.dof > 0);
+    let turned = turned_bushings(model, recorder.recording());
     // What spins is told by its name.
     let hasty = if turns.is_none() { hasty(&simulation) } else { None };
     let of_steps = doubts(&simulation, &rank, status == Status::Completed).chain(turned).chain(turns).chain(hasty);
     let of_results: Vec<String> =
-        unknown.into_iter().chain(without).chain(shared_forces(model, &simulation, watched.recorder.recording())).chain(of_steps).collect();
+        unknown.into_iter().chain(without).chain(shared_forces(model, &simulation, recorder.recording())).chain(of_steps).collect();
     if !quiet {
         of_results.iter().for_each(|text| say(text));
     }
     value["provenance"] = serde_json::to_value(&provenance).expect("a provenance is plain data");
     value["notes"] = before_it.into_iter().chain(of_results).collect();
-    let last = Point::of(&simulation, &watched.recorder, &corrections);
-    let before_end = watched.before_end.take().filter(|_| !last.run.goes_on_unbroken());
-    let recording = watched.finish();
+    let last = Point::of(&simulation, &recorder, &corrections);
+    let before_end = desk.before_end.filter(|_| !last.run.goes_on_unbroken()).map(|point| *point);
+    let recording = recorder.finish();
     value["work_by"] = serde_json::to_value(Works::of(&model.channels, &simulation)).expect("works are plain data");
     value["peaks"] = serde_json::to_value(Peaks::of(&model.channels, &recording, &model.system)).expect("peaks are plain data");
     let finished = Finished { method: name, recording, summary: value, completed: status == Status::Completed };

@@ -5,52 +5,41 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use holonom::record::Recorder;
 use holonom::simulation::{Divisions, Observer, Simulation, Verdict};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::checkpoint::Point;
-use crate::keeper::Keeper;
+use crate::desk::Rows;
+use crate::keeper::PAUSE;
 use crate::notes::many_parts;
 
 /// Time between two changes of what the terminal shows.
 const SHOWN: Duration = Duration::from_millis(100);
 
-/// A recorder with a progress bar that saves the run from time to time and stops on an interrupt.
-pub struct Watched<'a, 'f> {
-    pub recorder: Recorder<'a>,
-    /// Where the run was before a step that may be its last.
-    pub before_end: Option<Point>,
-    keeper: Option<&'a mut Keeper<'f>>,
-    /// What was put right before the start, in words.
-    corrections: Vec<String>,
+/// Has rows made, with a progress bar, saves the run from time to time and stops on an interrupt.
+pub struct Watched<'scope, 'a, 'f> {
+    rows: Rows<'scope, 'a, 'f>,
     bar: ProgressBar,
     is_shown: bool,
     step: f64,
     end: f64,
     next_shown: Instant,
+    next_saved: Instant,
     interrupted: Arc<AtomicBool>,
 }
 
-impl<'a, 'f> Watched<'a, 'f> {
+impl<'scope, 'a, 'f> Watched<'scope, 'a, 'f> {
     /// Watches a run in steps of `step` to `end` (s).
-    pub fn new(recorder: Recorder<'a>, step: f64, end: f64, quiet: bool, interrupted: Arc<AtomicBool>) -> Self {
+    pub fn new(rows: Rows<'scope, 'a, 'f>, step: f64, end: f64, quiet: bool, interrupted: Arc<AtomicBool>) -> Self {
         let bar = bar(1000, "{bar:30} {percent:>3} %  {eta} left  {msg}", quiet);
-        let next_shown = Instant::now() + SHOWN;
+        let (next_shown, next_saved) = (Instant::now() + SHOWN, Instant::now() + PAUSE);
         let is_shown = !bar.is_hidden();
-        Self { recorder, before_end: None, keeper: None, corrections: Vec::new(), bar, is_shown, step, end, next_shown, interrupted }
-    }
-
-    /// The same run, saved while it goes on, with what was put right before its start.
-    pub fn kept(mut self, keeper: Option<&'a mut Keeper<'f>>, corrections: &[String]) -> Self {
-        (self.keeper, self.corrections) = (keeper, corrections.into());
-        self
+        Self { rows, bar, is_shown, step, end, next_shown, next_saved, interrupted }
     }
 
     /// Ends the bar.
-    pub fn finish(self) -> holonom::record::Recording {
+    pub fn finish(self) -> Rows<'scope, 'a, 'f> {
         self.bar.finish_and_clear();
-        self.recorder.finish()
+        self.rows
     }
 
     fn show(&self, simulation: &Simulation) {
@@ -62,41 +51,35 @@ impl<'a, 'f> Watched<'a, 'f> {
     }
 }
 
-impl Observer for Watched<'_, '_> {
+impl Observer for Watched<'_, '_, '_> {
     fn after_step(&mut self, simulation: &Simulation) -> Verdict {
-        let rows = self.recorder.recording().rows();
-        self.recorder.after_step(simulation);
-        if let Some(keeper) = &mut self.keeper
-            && simulation.ended_by().is_some()
-            && self.recorder.recording().rows() == rows
-        {
-            keeper.begin_anew();
-        }
+        let are_made = self.rows.after_step(simulation);
         // An event before the end may end the run within a step, and what is at the end itself needs no other place to go on from.
         if simulation.goes_on_unbroken() && simulation.state().t >= self.end - 1.5 * self.step {
-            let is_before = simulation.state().t < self.end;
-            self.before_end = is_before.then(|| Point::of(simulation, &self.recorder, &self.corrections));
+            self.rows.keep_before_end(simulation, simulation.state().t < self.end);
         }
-        if self.is_shown && Instant::now() >= self.next_shown {
+        let now = Instant::now();
+        if self.is_shown && now >= self.next_shown {
             self.show(simulation);
-            self.next_shown = Instant::now() + SHOWN;
+            self.next_shown = now + SHOWN;
         }
-        if let Some(keeper) = &mut self.keeper {
-            keeper.look(simulation, &self.recorder, &self.corrections);
+        if now >= self.next_saved {
+            self.rows.save(simulation);
+            self.next_saved = now + PAUSE;
         }
-        if self.interrupted.load(Ordering::Relaxed) { Verdict::Stop } else { Verdict::GoOn }
+        if are_made && !self.interrupted.load(Ordering::Relaxed) { Verdict::GoOn } else { Verdict::Stop }
     }
 
     fn wants_forces(&self) -> bool {
-        self.recorder.wants_forces()
+        self.rows.wants_forces()
     }
 
     fn divisions(&self) -> Divisions {
-        self.recorder.divisions()
+        self.rows.divisions()
     }
 
     fn at_division(&mut self, simulation: &Simulation) {
-        self.recorder.at_division(simulation);
+        self.rows.at_division(simulation);
     }
 }
 

@@ -88,12 +88,12 @@ fn model(path: &Path) -> Model {
 }
 
 /// Stops after some nominal steps.
-struct Until<'a> {
-    recorder: Recorder<'a>,
+struct Until {
+    recorder: Recorder,
     left: u64,
 }
 
-impl Observer for Until<'_> {
+impl Observer for Until {
     fn after_step(&mut self, simulation: &Simulation) -> Verdict {
         self.recorder.after_step(simulation);
         self.left -= 1;
@@ -114,7 +114,7 @@ impl Case<'_> {
         Method::resolve(&self.choice).ok()
     }
 
-    fn watch(&self, simulation: &mut Simulation, left: u64) -> Until<'_> {
+    fn watch(&self, simulation: &mut Simulation, left: u64) -> Until {
         simulation.find_reactions();
         Until { recorder: Recorder::new(&self.model.channels, &self.model.system, self.every, Constraints::Rows), left }
     }

@@ -40,6 +40,11 @@ impl Trouble {
         called.iter().try_for_each(|parts| visit.call(&parts.callable).and_then(|()| visit.call(&parts.gradient)))
     }
 
+    /// Whether there are functions that may raise something.
+    pub fn is_possible(&self) -> bool {
+        !self.called.lock().unwrap_or_else(|broken| broken.into_inner()).is_empty()
+    }
+
     /// Which function has raised what, in words.
     pub fn words(&self) -> Option<String> {
         self.held().as_ref().map(|raised| raised.words.clone())

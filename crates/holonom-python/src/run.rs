@@ -57,6 +57,7 @@ pub fn run(
     loaded.model.times().map_err(|error| run_error(py, error))?;
     let mut order = Order::new(&loaded, method, None, true).map_err(|fault| failure(py, fault))?;
     order.provenance.command = "holonom in Python".into();
+    order.has_thread = !trouble.is_possible();
     let finished = match can_interrupt {
         true => watched(py, &trouble.end, || simulate(&loaded, order, &trouble.end))?,
         false => py.detach(|| simulate(&loaded, order, &trouble.end)),

@@ -17,7 +17,7 @@ const SHORT: Duration = Duration::from_micros(100);
 /// A simulation, what is recorded of it, and what is known of its present state.
 pub(crate) struct Running {
     pub simulation: Simulation,
-    pub recorder: Recorder<'static>,
+    pub recorder: Recorder,
     /// The columns at the present state, and whether they are those.
     row: Vec<f64>,
     pub is_row_new: bool,
@@ -36,7 +36,7 @@ pub(crate) struct Running {
 }
 
 /// Lets a recorder see where a step is divided. Where measures are of the whole run, it sees every step, too.
-struct Watch<'a>(&'a mut Recorder<'static>);
+struct Watch<'a>(&'a mut Recorder);
 
 impl Observer for Watch<'_> {
     fn after_step(&mut self, _: &Simulation) -> Verdict {
@@ -64,12 +64,12 @@ pub(crate) fn find_forces(model: &Model, simulation: &mut Simulation) {
 }
 
 /// Records the start of a run and no row after it.
-fn recorder(model: &Model) -> Recorder<'static> {
-    Recorder::new(&model.channels, &model.system, u64::MAX, model.output.constraints()).into_owned()
+fn recorder(model: &Model) -> Recorder {
+    Recorder::new(&model.channels, &model.system, u64::MAX, model.output.constraints())
 }
 
 /// Whether a recorder has measures of the whole run.
-fn sees_all(recorder: &Recorder<'_>) -> bool {
+fn sees_all(recorder: &Recorder) -> bool {
     recorder.divisions() == Divisions::Inside
 }
 

@@ -212,7 +212,7 @@ struct Takes {
 
 impl Takes {
     /// What the column of a name takes; `None` where there is none.
-    fn of(name: &str, model: &Model, recorders: &[Recorder<'_>; 3]) -> Option<Self> {
+    fn of(name: &str, model: &Model, recorders: &[Recorder; 3]) -> Option<Self> {
         let level = recorders.iter().position(|recorder| recorder.recording().find(name).is_some())?;
         let owner = name.strip_suffix(".effort").or(name.strip_suffix(".power"));
         let efforts = owner.is_some_and(|owner| model.channels.efforts.iter().any(|effort| effort.name == owner));
@@ -280,7 +280,7 @@ fn columns(model: &Model, asked: Vec<Asked>) -> Result<Columns, Failure> {
 }
 
 /// Units of columns, which functions of them keep.
-fn units(asked: &[Asked], recorder: &Recorder<'_>) -> Vec<String> {
+fn units(asked: &[Asked], recorder: &Recorder) -> Vec<String> {
     let unit = |asked: &Asked| match asked.function {
         Function::TimeOf => "s".into(),
         Function::Mode(of, _) => of.unit().into(),

@@ -37,7 +37,7 @@ pub struct Watch<'a> {
     constraints: Constraints,
     forces: bool,
     /// Looks at every step where that is needed: at forces of constraints only where these are found.
-    recorder: Recorder<'a>,
+    recorder: Recorder,
     needs_steps: bool,
     /// What is gathered of each column; `None` for those that the run's model does not have, and for those that are not of a run.
     columns: Vec<Option<Column>>,
@@ -130,7 +130,7 @@ impl Observer for Watch<'_> {
 }
 
 /// A recorder of every step.
-pub fn recorder(model: &Model, constraints: Constraints) -> Recorder<'_> {
+pub fn recorder(model: &Model, constraints: Constraints) -> Recorder {
     Recorder::new(&model.channels, &model.system, 1, constraints)
 }
 

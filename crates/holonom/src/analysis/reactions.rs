@@ -77,7 +77,7 @@ fn gram(rows: usize, n: usize, values: &[f64]) -> Vec<f64> {
 /// Finds what redundant rows leave undetermined of the forces that a simulation finds at its present state, with its positions on the rows: beside
 /// them redundant rows are independent. `None` as above, and for more than `most` rows.
 pub fn undetermined_of(simulation: &Simulation, most: usize) -> Option<Undetermined<'_>> {
-    let (system, _) = simulation.reacting();
+    let system = simulation.found().system;
     if system.constraints() > most {
         return None;
     }

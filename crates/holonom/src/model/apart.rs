@@ -1,6 +1,7 @@
 //! The forces of joints whose bodies share nodes, by the same model without shared nodes.
 
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 use super::assembly::Assembly;
 use super::bodies::frame::Frame;
@@ -89,7 +90,7 @@ impl Model {
         if let Some(nodes) = nodes {
             let nodes_of = |frame: &Frame| frame.nodes().into_iter().map(|(node, _)| node).collect();
             let bodies = apart.frames.iter().filter(|frame| matches!(frame, Frame::Body { .. })).map(nodes_of).collect();
-            self.channels.apart = Some((Apart::new(apart.system, nodes, bodies), apart.channels).into());
+            Arc::make_mut(&mut self.channels).apart = Some((Apart::new(apart.system, nodes, bodies), apart.channels).into());
             return Ok(true);
         }
         Ok(false)

@@ -246,7 +246,7 @@ impl Compiler<'_> {
             measures.push(measure.recorded(entry, &columns)?);
             Ok(())
         });
-        model.channels.measures = measure::sorted(measures, self.sink);
+        Arc::make_mut(&mut model.channels).measures = measure::sorted(measures, self.sink);
         names
     }
 

@@ -83,7 +83,7 @@ pub(super) fn finish(
         scene,
         points,
         bars,
-        channels: Channels {
+        channels: Arc::new(Channels {
             bodies: bodies.iter().map(|body| Arc::clone(&body.recorded)).collect(),
             forces,
             efforts: recorded_efforts(efforts),
@@ -91,7 +91,7 @@ pub(super) fn finish(
             rods,
             inputs: signals.inputs,
             ..channels
-        },
+        }),
         bodies,
         joints,
         notes,

@@ -242,7 +242,7 @@ pub struct Model {
     /// Joints between bodies, in file order.
     pub joints: Vec<joints::JointInfo>,
     /// What is recorded of it.
-    pub channels: Channels,
+    pub channels: Arc<Channels>,
     /// What looks like a slip and was taken all the same, each with its place in the description.
     pub notes: Vec<String>,
     /// Whether it begins where all forces balance.

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::force::{self, RecordedForce};
-use crate::simulation::{Simulation, any_number};
+use super::force::RecordedForce;
+use crate::simulation::any_number;
 
 /// The state in which something that acts is largest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -71,7 +71,6 @@ pub(super) struct Between {
     pub largest: Vec<Largest>,
     /// Of all forces.
     columns: usize,
-    row: Vec<f64>,
 }
 
 impl Between {
@@ -85,7 +84,7 @@ impl Between {
             before += headings.len();
         }
         let largest = vec![Largest::default(); groups.len()];
-        Self { groups, largest, columns: before, row: Vec::new() }
+        Self { groups, largest, columns: before }
     }
 
     /// How many columns the forces have.
@@ -96,18 +95,6 @@ impl Between {
     /// Whether there is anything to look at.
     pub fn is_needed(&self) -> bool {
         !self.groups.is_empty()
-    }
-
-    /// Looks at the present state.
-    pub fn look(&mut self, forces: &[RecordedForce], simulation: &Simulation) {
-        if !self.is_needed() {
-            return;
-        }
-        let mut row = std::mem::take(&mut self.row);
-        row.clear();
-        force::append(forces, simulation, false, &mut row);
-        self.see(&row, simulation.state().t);
-        self.row = row;
     }
 
     /// Looks at a row that begins with the columns of the forces, at the time `t` (s).

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use nalgebra::UnitQuaternion;
 
 use super::body::RecordedBody;
-use super::force::{self, RecordedForce};
+use super::force::RecordedForce;
 use super::heading::{Endings, Heading, Units};
 use super::joint::{RecordedJoint, Wrench};
 use super::measure::{RecordedInput, RecordedMeasure};
 use super::recorder::{COLUMNS, Constraints, MEANINGS};
 use super::transmission::{Push, RecordedTransmission};
-use crate::simulation::{Apart, Simulation};
+use crate::simulation::{Apart, Found, Simulation};
 use crate::system::{NodeId, Place, Signal, System, Term, place_of, rate_of};
 
 /// A point whose motion is recorded.
@@ -91,7 +91,7 @@ pub struct Channels {
     /// Numbers from outside.
     pub inputs: Vec<RecordedInput>,
     /// The system that the forces of the constraints are found in and the same of it, where it is another one.
-    pub apart: Option<Arc<(Apart, Self)>>,
+    pub apart: Option<Arc<(Apart, Arc<Self>)>>,
 }
 
 /// Suffixes of the columns of a body in space behind those of its centre: the unit quaternion of its orientation (from
@@ -112,9 +112,9 @@ impl Channels {
         self.apart.as_ref().map_or(self, |apart| &apart.1)
     }
 
-    /// The same, where a simulation finds their forces, and not those of a system in which bodies share nodes.
-    fn found_by(&self, simulation: &Simulation) -> Option<&Self> {
-        Some(self.told()).filter(|_| self.apart.is_none() || simulation.reacts_apart())
+    /// The same, where their forces are found, and not those of a system in which bodies share nodes.
+    fn found_in(&self, found: &Found<'_>) -> Option<&Self> {
+        Some(self.told()).filter(|_| self.apart.is_none() || found.is_apart)
     }
 
     /// All columns but those of measures: what every recording begins with, motion, accelerations, the coordinates of joints and their
@@ -195,11 +195,11 @@ impl Channels {
         points.chain(self.bodies.iter().flat_map(|body| of_bodies.of(&body.name))).collect()
     }
 
-    /// Appends the columns of accelerations, where the simulation finds forces.
-    pub(super) fn accelerations(&self, simulation: &Simulation, row: &mut Vec<f64>) {
-        let Some(reactions) = simulation.reactions() else { return };
-        let (told, dim) = (self.found_by(simulation).unwrap_or(self), self.axes.len());
-        let (x, v, a) = (simulation.reacting_positions(), simulation.reacting_v(), &reactions.a);
+    /// Appends the columns of accelerations, where forces are found.
+    pub(super) fn accelerations(&self, found: &Found<'_>, row: &mut Vec<f64>) {
+        let Some(reactions) = found.reactions else { return };
+        let (told, dim) = (self.found_in(found).unwrap_or(self), self.axes.len());
+        let (x, v, a) = (found.positions(), found.v, &reactions.a);
         told.points.iter().for_each(|point| row.extend_from_slice(&rate_of(&point.terms, a, dim)[..dim]));
         for body in &told.bodies {
             row.extend_from_slice(&rate_of(&body.centre, a, dim)[..dim]);
@@ -242,22 +242,20 @@ impl Channels {
         headings
     }
 
-    /// Appends the columns of what forces do, and of drives where the simulation finds forces.
-    pub(super) fn forces(&self, simulation: &Simulation, row: &mut Vec<f64>) {
-        if !self.forces.is_empty() {
-            force::append(&self.forces, simulation, true, row);
-        }
-        let t = simulation.state().t;
+    /// Appends the columns of drives at the time `t` (s); no numbers of what they exert where forces are not found.
+    pub(super) fn efforts(&self, found: Option<&Found<'_>>, t: f64, row: &mut Vec<f64>) {
         for effort in &self.told().efforts {
-            let lambda = simulation.reactions().map_or(f64::NAN, |reactions| reactions.lambda[effort.row]);
             let length = effort.length.as_ref().map_or(1.0, |length| {
                 let [length, rate, _] = length.at(t);
                 row.extend([length, rate]);
                 length
             });
-            // The target of the row moves with the length times the rate.
-            let (system, at) = simulation.reacting();
-            row.extend([-lambda * length, lambda * system.explicit_rate(effort.row, at, t)]);
+            let exerted = found.and_then(|found| {
+                let lambda = found.reactions?.lambda[effort.row];
+                // The target of the row moves with the length times the rate.
+                Some([-lambda * length, lambda * found.system.explicit_rate(effort.row, found.at, t)])
+            });
+            row.extend(exerted.unwrap_or([f64::NAN; 2]));
         }
     }
 
@@ -320,22 +318,21 @@ impl Channels {
         }
     }
 
-    /// Appends the columns of the forces of joints, couplers and rods; no numbers where bodies share nodes at the joint.
-    pub(super) fn joint_forces(&self, simulation: &Simulation, row: &mut Vec<f64>) {
-        let (dim, x) = (self.axes.len(), simulation.reacting_positions());
+    /// Appends the columns of the forces of joints, couplers and rods at the time `t` (s); no numbers where bodies share nodes at the joint.
+    pub(super) fn joint_forces(&self, found: &Found<'_>, t: f64, row: &mut Vec<f64>) {
+        let (dim, x) = (self.axes.len(), found.positions());
         let (first, components) = (row.len(), RecordedJoint::components(dim));
-        let Some(told) = self.found_by(simulation) else {
+        let Some(told) = self.found_in(found) else {
             let told = self.told();
             let others = told.couplings.len() + told.transmissions.len() * dim + told.rods.len();
             row.extend(std::iter::repeat_n(f64::NAN, told.joints.len() * components.len() + others));
             return;
         };
         for joint in &told.joints {
-            let wrench = joint.wrench(simulation, &x).unwrap_or(([f64::NAN; 3], [f64::NAN; 3]));
+            let wrench = joint.wrench(found, &x).unwrap_or(([f64::NAN; 3], [f64::NAN; 3]));
             row.extend(components.iter().map(|&k| component(wrench, k)));
         }
-        let (lambda, t) = (simulation.reactions().map(|reactions| &reactions.lambda), simulation.state().t);
-        let of = |row: usize| lambda.map_or(f64::NAN, |lambda| lambda[row]);
+        let of = |row: usize| found.reactions.map_or(f64::NAN, |reactions| reactions.lambda[row]);
         let pushes: Vec<Push> = told.transmissions.iter().map(|transmission| told.push(transmission, of(transmission.row), &x)).collect();
         for (transmission, push) in told.transmissions.iter().zip(&pushes) {
             for (joint, wrench) in transmission.borne(push) {
@@ -343,9 +340,9 @@ impl Channels {
                 own.iter_mut().zip(components).for_each(|(own, &k)| *own += component(wrench, k));
             }
         }
-        let (system, at) = simulation.reacting();
-        let share =
-            |coupling: &RecordedCoupling| coupling.factor * coupling.curve.map_or(1.0, |part| system.slope_in_row(coupling.row, part, at));
+        let share = |coupling: &RecordedCoupling| {
+            coupling.factor * coupling.curve.map_or(1.0, |part| found.system.slope_in_row(coupling.row, part, found.at))
+        };
         row.extend(told.couplings.iter().map(|coupling| -share(coupling) * of(coupling.row)));
         pushes.iter().for_each(|push| row.extend_from_slice(&push.force.as_slice()[..dim]));
         row.extend(told.rods.iter().map(|rod| of(rod.row) * rod.length.at(t)[0]));
@@ -371,15 +368,16 @@ impl Channels {
 
     /// Force and moment of one of the joints whose forces are found, as [`RecordedJoint::wrench`] has it, with what it bears of transmissions.
     pub(crate) fn wrench(&self, joint: usize, simulation: &Simulation) -> Option<Wrench> {
-        let (told, x) = (self.found_by(simulation)?, simulation.reacting_positions());
-        let (force, moment) = told.joints[joint].wrench(simulation, &x)?;
-        let more = told.borne(joint, &simulation.reactions()?.lambda, &x);
+        let found = simulation.found();
+        let (told, x) = (self.found_in(&found)?, found.positions());
+        let (force, moment) = told.joints[joint].wrench(&found, &x)?;
+        let more = told.borne(joint, &found.reactions?.lambda, &x);
         Some((std::array::from_fn(|c| force[c] + more.0[c]), std::array::from_fn(|c| moment[c] + more.1[c])))
     }
 
     /// Appends the columns of the multipliers, and of what the constraints exert on points.
-    pub(super) fn multipliers(&self, simulation: &Simulation, row: &mut Vec<f64>) {
-        let (Some(reactions), Some(force)) = (simulation.reactions(), simulation.constraint_forces()) else { return };
+    pub(super) fn multipliers(&self, found: &Found<'_>, row: &mut Vec<f64>) {
+        let (Some(reactions), Some(force)) = (found.reactions, found.constraint_forces()) else { return };
         let dim = self.axes.len();
         row.extend_from_slice(&reactions.lambda);
         for node in self.told().points.iter().filter_map(node) {

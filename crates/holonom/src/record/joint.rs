@@ -1,7 +1,7 @@
 //! What a joint transmits.
 
 use super::heading::Endings;
-use crate::simulation::Simulation;
+use crate::simulation::Found;
 use crate::system::{NodeId, Term, place_of};
 
 /// Force (N) and moment (N·m).
@@ -65,15 +65,15 @@ impl RecordedJoint {
         place_of(&self.at, x, dim)
     }
 
-    /// Force (N) on its second body and moment (N·m) on it about the joint's place there, in world axes, at the present state, of which `x`
-    /// are the [positions of all nodes](Simulation::reacting_positions). `None` where the simulation finds no forces or bodies share nodes
-    /// at the joint. What it bears of teeth and belts is not in it.
-    pub fn wrench(&self, simulation: &Simulation, x: &[f64]) -> Option<([f64; 3], [f64; 3])> {
+    /// Force (N) on its second body and moment (N·m) on it about the joint's place there, in world axes, at the state where forces were found, of
+    /// which `x` are the positions of all nodes. `None` where no forces are found or bodies share nodes at the joint. What it bears of teeth and
+    /// belts is not in it.
+    pub(super) fn wrench(&self, found: &Found<'_>, x: &[f64]) -> Option<Wrench> {
         if !self.is_known {
             return None;
         }
-        let about = self.place(x, simulation.system().dimension());
-        let (force, moment) = simulation.wrench(self.rows.clone(), &self.nodes, about)?;
+        let about = self.place(x, found.system.dimension());
+        let (force, moment) = found.wrench(self.rows.clone(), &self.nodes, about)?;
         Some((force.map(|f| self.sign * f), moment.map(|m| self.sign * m)))
     }
 }

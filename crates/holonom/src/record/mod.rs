@@ -3,12 +3,14 @@
 mod between;
 mod body;
 mod channels;
+mod composer;
 mod force;
 mod heading;
 mod joint;
 mod measure;
 mod peaks;
 mod recorder;
+mod sampler;
 mod scene;
 mod transmission;
 mod works;
@@ -18,6 +20,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 pub use between::{Bounds, Largest};
 pub use body::RecordedBody;
 pub use channels::{Channels, RecordedCoupling, RecordedEffort, RecordedPoint, RecordedRod};
+pub use composer::Composer;
 pub use force::{Along, Exerts, Lengths, RecordedForce, Shows};
 pub use heading::Heading;
 pub use joint::RecordedJoint;
@@ -25,6 +28,7 @@ pub use measure::{Formula, RecordedInput, RecordedMeasure, Running, RunningValue
 pub(crate) use measure::{MeasureReads, Series};
 pub use peaks::{Extremes, Peak, Peaks};
 pub use recorder::{COLUMNS, Constraints, Recorder, RecorderMark};
+pub use sampler::{Sampler, SamplerMark, Samples};
 pub use scene::{
     Anchor, Line, LineKind, PointKind, Scene, SceneAxis, SceneBody, SceneJoint, SceneLoad, ScenePoint, SceneShape, SceneWheels, WheelsKind,
 };

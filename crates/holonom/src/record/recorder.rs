@@ -1,14 +1,13 @@
 //! An observer that records a run: the columns of `trajectory.csv`.
 
-use std::borrow::Cow;
-use std::ops::Range;
+use std::sync::Arc;
 
-use nalgebra::{Quaternion, UnitQuaternion};
 use serde::{Deserialize, Serialize};
-use smallvec::SmallVec;
 
 use super::between::{Between, Bounds, Largest};
+use super::composer::{Composer, Rows};
 use super::measure::{Measures, RunningValue};
+use super::sampler::{Sampler, SamplerMark, Samples};
 use super::{Channels, Heading, Recording};
 use crate::simulation::{Divisions, Observer, Simulation, Verdict};
 use crate::system::System;
@@ -35,22 +34,17 @@ pub(super) const MEANINGS: [(&str, &str); 11] = [
 /// What a recording goes on from when a run is resumed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RecorderMark {
-    /// Steps seen, the start included.
-    seen: u64,
-    /// ΔE_i and ΔE_p since the last row, J, and those in it.
-    since: [f64; 2],
-    last: [f64; 2],
-    /// Quaternions (w, x, y, z) of the bodies in the last row, of two signs the one near the row before.
-    orientations: Vec<[f64; 4]>,
+    #[serde(flatten)]
+    pub(super) sampler: SamplerMark,
     /// Of each measure its running values.
     #[serde(default)]
-    sums: Vec<Vec<RunningValue>>,
+    pub(super) sums: Vec<Vec<RunningValue>>,
     /// The largest values of forces between the rows.
     #[serde(default)]
-    between: Vec<Largest>,
+    pub(super) between: Vec<Largest>,
     /// How far measures have gone.
     #[serde(default)]
-    bounds: Vec<Bounds>,
+    pub(super) bounds: Vec<Bounds>,
 }
 
 /// What is recorded of the forces of constraints, and of the accelerations, which are found with them.
@@ -66,38 +60,15 @@ pub enum Constraints {
 
 /// Records the start, every `every`-th step and nothing else. ΔE_i and ΔE_p of the steps between are summed into the
 /// row that follows them, so that the columns add up whatever is left out.
-pub struct Recorder<'a> {
-    channels: Cow<'a, Channels>,
-    every: u64,
-    seen: u64,
-    /// ΔE_i and ΔE_p since the last row, J.
-    since: [f64; 2],
-    last: [f64; 2],
-    resumed: bool,
-    /// Time of the step that was seen last, s.
-    seen_at: f64,
-    constraints: Constraints,
-    measures: Measures,
-    /// Where they are looked at beside the rows.
-    divisions: Divisions,
-    between: Between,
-    orientations: Vec<UnitQuaternion<f64>>,
-    /// Where the columns of accelerations and those of coordinates of joints are.
-    accelerations: Range<usize>,
-    coordinates: Range<usize>,
-    /// Of each size the columns of its components.
-    sizes: Vec<SmallVec<[usize; 3]>>,
-    row: Vec<f64>,
-    recording: Recording,
+pub struct Recorder {
+    sampler: Sampler,
+    rows: Rows,
+    samples: Samples,
 }
 
-impl<'a> Recorder<'a> {
+impl Recorder {
     /// Records channels of a system, and `constraints` where the simulation finds forces.
-    pub fn new(channels: &'a Channels, system: &System, every: u64, constraints: Constraints) -> Self {
-        Self::of(Cow::Borrowed(channels), system, every, constraints)
-    }
-
-    fn of(channels: Cow<'a, Channels>, system: &System, every: u64, constraints: Constraints) -> Self {
+    pub fn new(channels: &Arc<Channels>, system: &System, every: u64, constraints: Constraints) -> Self {
         let of_sizes = channels.sizes(constraints);
         let sections = channels.sections(system, constraints, &of_sizes);
         // Where each section ends.
@@ -118,206 +89,122 @@ impl<'a> Recorder<'a> {
         };
         let place = |name: &String| recording.place(name).expect("components are recorded");
         let sizes = of_sizes.iter().map(|components| components.iter().map(place).collect()).collect();
-        Self {
-            row: Vec::with_capacity(recording.columns().len()),
-            orientations: vec![UnitQuaternion::identity(); channels.bodies.len()],
-            channels,
-            every: every.max(1),
-            seen: 0,
-            since: [0.0; 2],
-            last: [0.0; 2],
-            resumed: false,
-            seen_at: f64::NAN,
-            constraints,
-            measures,
-            divisions,
-            between,
-            accelerations,
-            coordinates,
-            sizes,
-            recording,
-        }
-    }
-
-    /// The same recorder with channels of its own, which goes wherever its simulation goes.
-    pub fn into_owned(self) -> Recorder<'static> {
-        Recorder { channels: Cow::Owned(self.channels.into_owned()), ..self }
+        let sampler = Sampler::new(Arc::clone(channels), every, divisions, between.is_needed());
+        let rows = Rows::new(Arc::clone(channels), constraints, [accelerations, coordinates], sizes, measures, between, recording);
+        Self { sampler, rows, samples: Samples::default() }
     }
 
     /// Goes on from an earlier recording of the same model, where the run is resumed.
     pub fn resume(mut self, mark: &RecorderMark) -> Self {
-        (self.seen, self.since, self.last, self.resumed) = (mark.seen, mark.since, mark.last, true);
-        for (own, [w, x, y, z]) in self.orientations.iter_mut().zip(&mark.orientations) {
-            *own = UnitQuaternion::new_unchecked(Quaternion::new(*w, *x, *y, *z));
-        }
-        for (own, sums) in self.measures.sums.iter_mut().zip(&mark.sums).filter(|(own, sums)| own.len() == sums.len()) {
-            own.copy_from_slice(sums);
-        }
-        if mark.between.len() == self.between.largest.len() {
-            self.between.largest.copy_from_slice(&mark.between);
-        }
-        if mark.bounds.len() == self.measures.bounds.len() {
-            self.measures.bounds.copy_from_slice(&mark.bounds);
-        }
+        self.sampler.resume(&mark.sampler);
+        self.rows.resume(mark);
         self
     }
 
     /// Appends to the rows that were recorded before, of a recording with the same columns; the row where the run was left is among them,
     /// and is not recorded once more.
     pub fn after(mut self, rows: Recording) -> Self {
-        self.recording = rows;
+        self.sampler.go_on_after(rows.columns()[0].values.last().copied());
+        self.rows.recording = rows;
         self
     }
 
     /// What a resumed recording goes on from.
     pub fn mark(&self) -> RecorderMark {
-        let orientations = self.orientations.iter().map(|q| [q.w, q.i, q.j, q.k]).collect();
-        let (sums, between, bounds) = (self.measures.sums.clone(), self.between.largest.clone(), self.measures.bounds.clone());
-        RecorderMark { seen: self.seen, since: self.since, last: self.last, orientations, sums, between, bounds }
+        self.rows.mark(self.sampler.mark())
     }
 
     /// What was recorded so far.
     pub fn recording(&self) -> &Recording {
-        &self.recording
+        &self.rows.recording
     }
 
     /// Ends the recording.
-    pub fn finish(mut self) -> Recording {
-        (self.recording.between, self.recording.bounds) = (self.between.largest, self.measures.bounds);
-        self.recording
+    pub fn finish(self) -> Recording {
+        self.rows.finish()
+    }
+
+    /// Divides it into what samples states and what makes rows of the samples, which may be elsewhere by then, with what finds the forces
+    /// of the constraints. Whole where rows have forces that only the simulation finds.
+    pub fn divide(self, simulation: &mut Simulation) -> Result<(Sampler, Composer), Box<Self>> {
+        let finder = simulation.lend_finder();
+        if finder.is_none() && !self.rows.need_no_forces() {
+            return Err(Box::new(self));
+        }
+        let Self { mut sampler, rows, .. } = self;
+        sampler.is_for_finder = finder.is_some();
+        Ok((sampler, Composer { rows, finder }))
+    }
+
+    /// Puts both together again; the simulation finds forces as before.
+    pub fn join(mut sampler: Sampler, composer: Composer, simulation: &mut Simulation) -> Self {
+        if let Some(finder) = composer.finder {
+            simulation.take_back(finder);
+        }
+        sampler.is_for_finder = false;
+        Self { sampler, rows: composer.rows, samples: Samples::default() }
     }
 
     /// Looks at how bodies are turned and at nothing else, so that the sign of their quaternions does not depend on when somebody looks at the rest.
     pub fn follow(&mut self, simulation: &Simulation) {
-        self.channels.follow(simulation, &mut self.orientations);
+        self.sampler.follow(simulation);
     }
 
     /// The row of the present state, which is not kept. It counts as the row after the step before it; running values of measures follow from
     /// the rows that were looked at.
     pub fn look(&mut self, simulation: &Simulation) -> &[f64] {
-        self.last = [simulation.audit().integrator, simulation.audit().projection];
-        self.fill(simulation);
-        &self.row
+        self.samples.clear();
+        self.sampler.look(simulation, &mut self.samples);
+        self.rows.compose(&self.samples.numbers, Some(simulation.found()));
+        &self.rows.row
     }
 
     /// The same row where the recorder observes the run: running values of measures go on as if nobody had looked.
     pub fn look_beside_run(&mut self, simulation: &Simulation) -> &[f64] {
-        let (sums, bounds) = (self.measures.sums.clone(), self.measures.bounds.clone());
+        let before = self.rows.measured();
         self.look(simulation);
-        (self.measures.sums, self.measures.bounds) = (sums, bounds);
-        &self.row
+        self.rows.go_back(before);
+        &self.rows.row
     }
 
     /// Whether a column is of the motion alone: energies, positions, velocities, coordinates of joints and their rates.
     pub fn is_of_motion(&self, place: usize) -> bool {
-        place < self.accelerations.start || self.coordinates.contains(&place)
+        self.rows.is_of_motion(place)
     }
 
     /// The columns that are [of the motion](Self::is_of_motion) in their places of the row, for which no forces need be found; the others
     /// are no numbers.
     pub fn look_at_motion(&mut self, simulation: &Simulation) -> &[f64] {
-        self.last = [simulation.audit().integrator, simulation.audit().projection];
-        self.fill_motion(simulation);
-        self.row.resize(self.accelerations.end, f64::NAN);
-        self.fill_coordinates(simulation);
-        self.row.resize(self.recording.columns().len(), f64::NAN);
-        &self.row
+        self.samples.clear();
+        self.sampler.look_at_motion(simulation, &mut self.samples);
+        self.rows.show_motion(&self.samples.numbers);
+        &self.rows.row
     }
 
-    fn fill_motion(&mut self, simulation: &Simulation) {
-        let (audit, state) = (simulation.audit(), simulation.state());
-        self.row.clear();
-        let lift = audit.lift;
-        let [integrator, projection] = self.last;
-        self.row.extend([state.t, audit.energy() + lift, audit.kinetic, audit.potential + lift, audit.work, integrator, projection]);
-        self.row.extend([audit.phi, audit.phi_dot, audit.phi_ddot, audit.iterations as f64]);
-        self.channels.motion(simulation, &mut self.orientations, &mut self.row);
-    }
-
-    fn fill_coordinates(&mut self, simulation: &Simulation) {
-        let gauges = simulation.gauges();
-        gauges.value.iter().zip(&gauges.rate).for_each(|(&value, &rate)| self.row.extend([value, rate]));
-    }
-
-    /// Puts together what is to be recorded of the present state.
-    fn fill(&mut self, simulation: &Simulation) {
-        self.fill_motion(simulation);
-        if self.constraints != Constraints::Nothing {
-            self.channels.accelerations(simulation, &mut self.row);
-        }
-        self.fill_coordinates(simulation);
-        self.channels.forces(simulation, &mut self.row);
-        self.row.extend_from_slice(&simulation.state().inputs);
-        if self.constraints != Constraints::Nothing {
-            self.channels.joint_forces(simulation, &mut self.row);
-        }
-        if self.constraints == Constraints::Rows {
-            self.channels.multipliers(simulation, &mut self.row);
-        }
-        for components in &self.sizes {
-            self.row.push(components.iter().map(|&k| self.row[k] * self.row[k]).sum::<f64>().sqrt());
-        }
-        self.measures.append(&mut self.row);
-    }
-
-    /// Records the end of a run at the time of the step that was seen last, in place of its row where there is one.
-    fn replace_last(&mut self, simulation: &Simulation) {
-        let is_there = self.recording.columns()[0].values.last() == Some(&self.seen_at);
-        match is_there.then(|| self.recording.pop()).flatten() {
-            Some(row) => self.between.see(&row[self.coordinates.end..], self.seen_at),
-            None => self.last = std::mem::take(&mut self.since),
-        }
-        self.fill(simulation);
-        self.recording.push(&self.row);
+    /// Has rows made of what was sampled.
+    fn compose(&mut self, simulation: &Simulation) {
+        self.samples.iter().for_each(|(kind, sample)| self.rows.take(kind, sample, Some(simulation.found())));
+        self.samples.clear();
     }
 }
 
-impl Observer for Recorder<'_> {
+impl Observer for Recorder {
     fn wants_forces(&self) -> bool {
-        self.divisions == Divisions::Inside || self.seen.is_multiple_of(self.every)
+        self.sampler.wants_forces()
     }
 
     fn divisions(&self) -> Divisions {
-        self.divisions
+        self.sampler.divisions()
     }
 
     fn at_division(&mut self, simulation: &Simulation) {
-        if self.channels.measures.is_empty() {
-            self.between.look(&self.channels.forces, simulation);
-        } else {
-            self.fill(simulation);
-            self.between.see(&self.row[self.coordinates.end..], simulation.state().t);
-        }
+        self.sampler.at_division(simulation, &mut self.samples);
+        self.compose(simulation);
     }
 
     fn after_step(&mut self, simulation: &Simulation) -> Verdict {
-        let before = std::mem::replace(&mut self.seen_at, simulation.state().t);
-        if before == self.seen_at && simulation.ended_by().is_some() {
-            self.replace_last(simulation);
-            return Verdict::GoOn;
-        }
-        if std::mem::take(&mut self.resumed) {
-            // Where the run was left, that row is the first once more, unless it is there.
-            if self.recording.rows() == 0 && (self.seen.max(1) - 1).is_multiple_of(self.every) {
-                self.fill(simulation);
-                self.recording.push(&self.row);
-            }
-            return Verdict::GoOn;
-        }
-        self.since[0] += simulation.audit().integrator;
-        self.since[1] += simulation.audit().projection;
-        let is_kept = self.seen.is_multiple_of(self.every) || simulation.ended_by().is_some();
-        if is_kept {
-            self.last = std::mem::take(&mut self.since);
-        }
-        match is_kept {
-            true => {
-                self.fill(simulation);
-                self.recording.push(&self.row);
-            }
-            false => self.at_division(simulation),
-        }
-        self.seen += 1;
+        self.sampler.after_step(simulation, &mut self.samples);
+        self.compose(simulation);
         Verdict::GoOn
     }
 }

@@ -28,6 +28,13 @@ impl Checkpoint {
     pub fn goes_on_unbroken(&self) -> bool {
         self.run.as_ref().is_some_and(|run| run.grid.is_on(self.state.t) && !run.has_ended)
     }
+
+    /// Keeps forces of the constraints that were found apart from the simulation.
+    pub(crate) fn keep(&mut self, reactions: &Reactions) {
+        if let Some(run) = &mut self.run {
+            run.progress.reactions = Some(reactions.clone());
+        }
+    }
 }
 
 impl From<State> for Checkpoint {

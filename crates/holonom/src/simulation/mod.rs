@@ -50,8 +50,9 @@ pub(crate) use motions::{Motions, Slow};
 pub(crate) use periods::uncountable;
 pub(crate) use places::Places;
 pub use promise::Promise;
+pub(crate) use reactions::Found;
 pub(crate) use reactions::wrench;
-pub use reactions::{Apart, Reactions};
+pub use reactions::{Apart, Finder, Reactions};
 pub(crate) use rest::Restless;
 use start::Asked;
 pub use start::{Start, StartError};
@@ -215,8 +216,8 @@ impl Simulation {
         };
         let found = Self::begin(Arc::clone(&self.system), self.method.clone(), self.step, &asked)?;
         let before = std::mem::replace(self, found);
-        match before.apart {
-            Some(elsewhere) => self.find_reactions_apart(&elsewhere.apart),
+        match before.apart.and_then(|elsewhere| elsewhere.apart) {
+            Some(apart) => self.find_reactions_apart(&apart),
             None if before.reactions.is_some() => self.find_reactions(),
             None => (),
         }
