@@ -151,3 +151,28 @@ fn bars_between_free_bodies_keep_momenta() {
         assert!(energy.max_drift < 1e-12 && momentum.linear_drift < 1e-12 && momentum.angular_drift < 1e-12, "{energy:?} {momentum:?}");
     }
 }
+
+/// A bead of a thousandth of a hair between two hinges that are close together, with its centre five times as far off: nothing turns it or the
+/// boxes beside it about the axis.
+#[test]
+fn a_small_body_spins_at_the_end_of_a_long_arm() {
+    let body = |name: &str, shape: &str, x: f64, spin: &str| {
+        format!("[body.{name}]\nmass = 1\nshape = {{ {shape} }}\nposition = [{x}, 0, 0]\nangular_velocity = {spin}\n")
+    };
+    let hinge = |name: &str, between: &str, x: f64| {
+        format!("[joint.{name}]\ntype = \"revolute\"\nbetween = {between}\nat = [{x}, 0, 0]\naxis = [1, 0, 0]\n")
+    };
+    let text = [
+        "gravity = [0, 0, 0]\n".to_string(),
+        body("arm", "box = [0.1, 0.02, 0.02]", -0.1, "[60, 0, 0]"),
+        body("bead", "sphere = 4.6e-8", 0.03, "[20, 5, 0]"),
+        body("hand", "box = [0.1, 0.02, 0.02]", 0.1, "[-40, 0, 7]"),
+        hinge("a", "[\"arm\", \"bead\"]", 0.0),
+        hinge("b", "[\"bead\", \"hand\"]", 0.006),
+    ];
+    let recording = run(&model(&text.concat()), Choice::default(), 1e-4, 0.01).1;
+    for (name, rate) in [("a.angle_rate", -40.0), ("b.angle_rate", -60.0)] {
+        let found = recording.column(name).expect("the hinge has a rate").last().copied().expect("there are rows");
+        assert!((found - rate).abs() < 1e-6, "{name}: {found} rad/s of {rate}");
+    }
+}

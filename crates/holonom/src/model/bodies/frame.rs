@@ -4,7 +4,7 @@
 //! All geometry of a model is given where it is at the start, so that the *reference* coordinates of a point or a
 //! direction of a body are the world's at the start.
 
-use nalgebra::{DMatrix, Vector4};
+use nalgebra::{DMatrix, Matrix3, Vector3};
 use smallvec::SmallVec;
 
 use super::rigid::RigidBody;
@@ -110,6 +110,14 @@ impl Frame {
     }
 
     fn combine(&self, one: f64, x: Vec3) -> Vec<Term> {
+        let Self::Body { basis, .. } = self else { unreachable!("only bodies combine nodes") };
+        let nodes = basis.iter().zip(self.factors(one, x)).filter(|(_, factor)| *factor != [0.0; 2]);
+        // A body has many of these sums: each takes the room of its terms.
+        nodes.map(|(node, [factor, turn])| Term { place: node.place, factor, turn }).collect::<SmallVec<[Term; 4]>>().into_vec()
+    }
+
+    /// What each node of the basis of a body counts in a point (`one` is 1) at the way `x` from the first of them, or in a direction (0).
+    fn factors(&self, one: f64, x: Vec3) -> SmallVec<[Factor; 4]> {
         let Self::Body { dim, basis, inverse } = self else { unreachable!("only bodies combine nodes") };
         let largest = |factors: &mut dyn Iterator<Item = &Factor>| factors.flatten().fold(0.0_f64, |m, c| m.max(c.abs()));
         let (of_one, of_length) = (largest(&mut inverse.iter().map(|row| &row[0])), largest(&mut inverse.iter().flat_map(|row| &row[1..])));
@@ -117,7 +125,7 @@ impl Frame {
         let places = basis.iter().filter(|node| node.is_point).map(|node| geometry::norm(node.at));
         let rounded = 2.0 * f64::EPSILON * places.fold(0.0, f64::max) * of_length;
         let nothing = rounded.max(ROUNDED) * (of_one * one + of_length * geometry::norm(x));
-        let terms = basis.iter().zip(inverse).map(|(basis, row)| {
+        let factors = inverse.iter().map(|row| {
             let (mut factor, mut turn) = (row[0][0] * one, row[0][1] * one);
             if *dim == 2 {
                 // Complex times complex: the row's second number times x + i y.
@@ -127,25 +135,22 @@ impl Frame {
             } else {
                 factor += (0..3).map(|c| row[c + 1][0] * x[c]).sum::<f64>();
             }
-            let clean = |value: f64| if value.abs() <= nothing { 0.0 } else { value };
-            Term { place: basis.place, factor: clean(factor), turn: clean(turn) }
+            [factor, turn].map(|value| if value.abs() <= nothing { 0.0 } else { value })
         });
-        let mut terms = terms.collect::<SmallVec<[Term; 4]>>();
-        keep_sum(one, basis, &mut terms);
-        terms.retain(|term| term.factor != 0.0 || term.turn != 0.0);
-        // A body has many of these sums: each takes the room of its terms.
-        terms.into_vec()
+        let mut factors: SmallVec<[Factor; 4]> = factors.collect();
+        keep_sum(one, basis, &mut factors);
+        factors
     }
 }
 
 /// Has the factors of points sum up to one, or to nothing for a direction, as places far away would be that much times their distance off.
-fn keep_sum(one: f64, basis: &[Basis], terms: &mut [Term]) {
+fn keep_sum(one: f64, basis: &[Basis], factors: &mut [Factor]) {
     let of_points = || basis.iter().enumerate().filter(|(_, node)| node.is_point).map(|(k, _)| k);
-    let [factor, turn] = of_points().fold([one, 0.0], |[f, g], k| [f - terms[k].factor, g - terms[k].turn]);
-    let size = |k: &usize| terms[*k].factor.hypot(terms[*k].turn);
+    let [factor, turn] = of_points().fold([one, 0.0], |[f, g], k| [f - factors[k][0], g - factors[k][1]]);
+    let size = |k: &usize| factors[*k][0].hypot(factors[*k][1]);
     let largest = of_points().max_by(|a, b| size(a).total_cmp(&size(b))).expect("a body has a point");
-    terms[largest].factor += factor;
-    terms[largest].turn += turn;
+    factors[largest][0] += factor;
+    factors[largest][1] += turn;
 }
 
 /// A point of a bar (`one` is 1) at the way `x` from its first end, or a direction (0): (1 − z) a + z b or z (b − a) with z = x/(b − a), complex.
@@ -217,44 +222,30 @@ pub fn edges(basis: &[Basis]) -> Vec<Edge> {
     basis[1..].iter().map(edge).collect()
 }
 
-/// Second moments of a body about the first point of its basis, in reference coordinates: ∫ (1, x)(1, x)ᵀ dm, the
-/// pseudo-inertia (4 × 4).
-pub type PseudoInertia = nalgebra::Matrix4<f64>;
-
-/// The mass matrix of a body: the blocks (a, b, m, s) of its nodes, S⁻¹ 𝒫 S⁻ᵀ.
-pub fn mass_blocks(frame: &Frame, inertia: &PseudoInertia) -> Vec<(Place, Place, f64, f64)> {
+/// The mass matrix of a body: the blocks (a, b, m, s) of its nodes, of its mass (kg) at its centre and of its second moments ∫ x xᵀ dm
+/// (kg·m²) about that. They come apart from each other: those of a small body would be round-off of its mass at the end of a long arm.
+pub fn mass_blocks(frame: &Frame, mass: f64, centre: Vec3, second: &Matrix3<f64>) -> Vec<(Place, Place, f64, f64)> {
     let Frame::Body { dim, basis, inverse } = frame else { return Vec::new() };
-    let mut blocks = Vec::new();
-    for (a, left) in basis.iter().zip(inverse).map(|(basis, row)| (basis.place, row)) {
-        for (b, right) in basis.iter().zip(inverse).map(|(basis, row)| (basis.place, row)) {
-            let (m, s) = match dim {
-                2 => planar_block(left, right, inertia),
-                _ => {
-                    let row = |row: &[Factor; 4]| Vector4::from_fn(|c, _| row[c][0]);
-                    ((row(left).transpose() * inertia * row(right))[0], 0.0)
-                }
-            };
-            blocks.push((a, b, m, s));
+    let pairs = || (0..basis.len()).flat_map(|a| (0..basis.len()).map(move |b| [a, b]));
+    let turning = |[a, b]: [usize; 2]| match dim {
+        2 => product(inverse[a][1], inverse[b][1]).map(|c| c * second.trace()),
+        _ => {
+            let [left, right] = [a, b].map(|k| Vector3::from_fn(|c, _| inverse[k][c + 1][0]));
+            [left.dot(&(second * right)), 0.0]
         }
-    }
+    };
     // Round-off is no mass: the nodes across a plate have none.
-    let largest = blocks.iter().fold(0.0_f64, |largest, &(_, _, m, _)| largest.max(m.abs()));
+    let largest = pairs().flat_map(turning).fold(0.0, |largest: f64, c| largest.max(c.abs()));
     let clean = |value: f64| if value.abs() <= 1e-14 * largest { 0.0 } else { value };
-    blocks.into_iter().map(|(a, b, m, s)| (a, b, clean(m), clean(s))).collect()
+    let at_centre = frame.factors(1.0, geometry::subtract(centre, basis[0].at));
+    let block = |[a, b]: [usize; 2]| {
+        let ([m, s], moving) = (turning([a, b]).map(clean), product(at_centre[a], at_centre[b]).map(|c| mass * c));
+        (basis[a].place, basis[b].place, moving[0] + m, moving[1] + s)
+    };
+    pairs().map(block).collect()
 }
 
-/// ∫ conj(α) β dm for α = l₀ + l₁ z, β = r₀ + r₁ z with z = x + i y: its real part and its imaginary one, the turn of b
-/// against a.
-fn planar_block(left: &[Factor; 4], right: &[Factor; 4], inertia: &PseudoInertia) -> (f64, f64) {
-    let (mass, first) = (inertia[(0, 0)], [inertia[(0, 1)], inertia[(0, 2)]]);
-    let polar = inertia[(1, 1)] + inertia[(2, 2)];
-    let times = |[a, b]: Factor, [c, d]: Factor| [a * c - b * d, a * d + b * c];
-    let conj = |[a, b]: Factor| [a, -b];
-    let parts = [
-        times(conj(left[0]), right[0]).map(|c| c * mass),
-        times(conj(left[0]), times(right[1], first)),
-        times(conj(times(left[1], first)), right[0]),
-        times(conj(left[1]), right[1]).map(|c| c * polar),
-    ];
-    parts.iter().fold((0.0, 0.0), |(m, s), part| (m + part[0], s + part[1]))
+/// conj(a) b: its real part and its imaginary one, the turn of b against a.
+fn product([a, b]: Factor, [c, d]: Factor) -> Factor {
+    [a * c + b * d, a * d - b * c]
 }

@@ -8,7 +8,7 @@ use std::collections::{BTreeSet, HashSet};
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::frame::{Basis, Frame, PseudoInertia, edges, mass_blocks};
+use super::frame::{Basis, Frame, edges, mass_blocks};
 use super::{RigidBody, inertia};
 use crate::model::ends::is_fixed;
 use crate::model::geometry::{Vec3, dot, norm, rest, scale, subtract};
@@ -262,7 +262,7 @@ impl Group<'_> {
 
     /// Second moments ∫ x² dm along the principal axes, kg·m², and these axes.
     fn principal(&self) -> ([f64; 3], [Vec3; 3]) {
-        let tensor = self.inertia_about(self.centre());
+        let tensor = self.inertia();
         let (moments, axes) = inertia::principal(std::array::from_fn(|i| std::array::from_fn(|j| tensor[(i, j)])));
         let half: f64 = 0.5 * moments.iter().sum::<f64>();
         (moments.map(|moment| half - moment), axes)
@@ -300,15 +300,18 @@ impl Group<'_> {
         (moment / mass).into()
     }
 
-    fn inertia_about(&self, place: Vec3) -> Matrix3<f64> {
-        let bodies = self.members.iter().map(|&k| &self.wanted.bodies[k]);
-        bodies.fold(Matrix3::zeros(), |sum, body| sum + inertia_about(body, place))
+    /// Inertia tensor about the centre of mass of all, kg·m².
+    fn inertia(&self) -> Matrix3<f64> {
+        let centre = Vector3::from(self.centre());
+        self.members.iter().map(|&k| &self.wanted.bodies[k]).fold(Matrix3::zeros(), |sum, body| {
+            let x = Vector3::from(body.position) - centre;
+            sum + body.inertia + body.mass * (Matrix3::identity() * x.norm_squared() - x * x.transpose())
+        })
     }
 
     fn add_mass(&self, builder: &mut SystemBuilder, frame: &Frame, basis: &[Basis]) {
-        let (dim, origin) = (builder.dimension(), basis[0].at);
         let mass: f64 = self.members.iter().map(|&k| self.wanted.bodies[k].mass).sum();
-        let blocks = mass_blocks(frame, &pseudo_inertia(dim, mass, self.centre(), self.inertia_about(origin), origin));
+        let blocks = mass_blocks(frame, mass, self.centre(), &second_moments(builder.dimension(), self.inertia()));
         for (k, (a, b, m, s)) in blocks.into_iter().enumerate() {
             if k / basis.len() <= k % basis.len() {
                 builder.inertia(a, b, m, s);
@@ -316,35 +319,20 @@ impl Group<'_> {
         }
         frame.point(self.centre()).into_iter().for_each(|term| builder.weight(term, mass));
         for body in self.members.iter().map(|&k| &self.wanted.bodies[k]) {
-            let inertia = pseudo_inertia(dim, body.mass, body.position, inertia_about(body, origin), origin);
-            for (k, (a, b, m, s)) in mass_blocks(frame, &inertia).into_iter().enumerate() {
+            let blocks = mass_blocks(frame, body.mass, body.position, &second_moments(builder.dimension(), body.inertia));
+            for (k, (a, b, m, s)) in blocks.into_iter().enumerate() {
                 builder.moves(a, b, m, s, basis[k % basis.len()].velocity(body));
             }
         }
     }
 }
 
-/// Inertia tensor of a body about a place, kg·m².
-fn inertia_about(body: &RigidBody, place: Vec3) -> Matrix3<f64> {
-    let x = Vector3::from(body.position) - Vector3::from(place);
-    body.inertia + body.mass * (Matrix3::identity() * x.norm_squared() - x * x.transpose())
-}
-
-/// Second moments about `origin` of what has its centre of mass at `centre` and this inertia tensor about `origin`.
-fn pseudo_inertia(dim: usize, mass: f64, centre: Vec3, tensor: Matrix3<f64>, origin: Vec3) -> PseudoInertia {
-    let second = Matrix3::identity() * (0.5 * tensor.trace()) - tensor;
-    let first = mass * (Vector3::from(centre) - Vector3::from(origin));
-    let mut pseudo = PseudoInertia::zeros();
-    pseudo[(0, 0)] = mass;
-    for i in 0..3 {
-        (pseudo[(0, i + 1)], pseudo[(i + 1, 0)]) = (first[i], first[i]);
-        (0..3).for_each(|j| pseudo[(i + 1, j + 1)] = second[(i, j)]);
+/// Second moments ∫ x xᵀ dm, kg·m², of what has this inertia tensor; in the plane any two that add up to the polar one.
+fn second_moments(dim: usize, tensor: Matrix3<f64>) -> Matrix3<f64> {
+    match dim {
+        2 => Matrix3::from_diagonal(&Vector3::new(0.5, 0.5, 0.0)) * tensor[(2, 2)],
+        _ => Matrix3::identity() * (0.5 * tensor.trace()) - tensor,
     }
-    if dim == 2 {
-        // Of the polar moment any split will do.
-        (pseudo[(1, 1)], pseudo[(2, 2)]) = (0.5 * tensor[(2, 2)], 0.5 * tensor[(2, 2)]);
-    }
-    pseudo
 }
 
 fn is_independent(spanned: &[Vec3], edge: Vec3) -> bool {
