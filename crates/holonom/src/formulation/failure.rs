@@ -140,7 +140,9 @@ impl Failure {
                 format!("the matrix of the step is singular at the row `{}`: nothing there resists it", system.row_names()[row])
             }
             Self::Singular(Unknown::Node(node)) => {
-                format!("the matrix of the step is singular at node {node}: it has no mass and nothing holds it")
+                let row = system.slots.rows.iter().position(|row| system.slots.nodes[row.clone()].contains(&(node as u32)));
+                let place = row.map_or(format!("node {node}"), |row| format!("a node of `{}`", system.row_names()[row]));
+                format!("the matrix of the step is singular at {place}: it has no mass and nothing holds it")
             }
             Self::NotFinite => {
                 "positions, velocities, forces or their derivatives are not finite (a formula may be outside its domain, or a table outside its range)".into()
@@ -208,6 +210,20 @@ fn told_apart(a: f64, b: f64) -> [String; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::system::{Place, SystemBuilder};
+
+    #[test]
+    fn a_node_has_the_name_of_a_row_that_it_is_in() {
+        let mut builder = SystemBuilder::new(2, [0.0; 3]);
+        let [alone, held] = [0.0, 1.0].map(|x| builder.free_node([x, 0.0, 0.0], [0.0; 3]));
+        let square = builder.square(&[(Place::Node(held), 1.0)]);
+        builder.constant_row("rod", square, 0.5);
+        let system = builder.build();
+        for (node, place) in [(alone, "at node 0:"), (held, "at a node of `rod`:")] {
+            let what = Failure::Singular(Unknown::Node(node.index())).describe(&system);
+            assert!(what.contains(place), "{what}");
+        }
+    }
 
     #[test]
     fn what_is_off_is_told_from_what_round_off_explains() {
