@@ -28,7 +28,7 @@ pub fn shared_forces(model: &Model, simulation: &Simulation, recording: &Recordi
     let open = open_columns(&free, model.channels.told(), model);
     let named = (!open.is_empty()).then(|| listed(&open))?;
     Some(format!(
-        "redundant constraints leave open how they share forces: of {named} one way of many is shown (a bushing in place of a joint decides it)"
+        "redundant constraints leave open how they share forces: one way of many is shown for {named} (a bushing in place of a joint decides it)"
     ))
 }
 

@@ -100,7 +100,7 @@ fn runs_name_the_forces_that_are_not_unique() {
     fs::write(folder.path().join("gears.toml"), gears).unwrap();
     let efforts = "m[0].effort, m[1].effort, mesh.a[0].angle.effort, mesh.a[1].angle.effort";
     let output = holonom(&folder, "run gears.toml");
-    assert!(text(&output.stderr).contains(&format!(": of {efforts} one way of many")), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains(&format!(": one way of many is shown for {efforts}")), "{}", text(&output.stderr));
     assert!(on_one_line(&prints(&folder, "check gears.toml", 0)).contains(&format!("not unique: {efforts}; all others are")));
     // With teeth or a belt the bearings bear what either does: of a belt without tension at rest along both axes, of a tight one across the strands alone.
     let borne = |keys: &str| {

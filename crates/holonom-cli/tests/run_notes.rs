@@ -337,7 +337,7 @@ fn forces_that_redundant_rows_share_are_told_off_the_rows_as_on_them() {
                    [force.push]\ntype = \"force\"\nbody = \"rod\"\nat = \"rod.a\"\nforce = [30, 0]\n[simulation]\nend = 0.2\nstep = 0.001\n";
     let notes = |words: &str| text(&holonom(&folder, &format!("run m.toml --no-report --force --out a {words}")).stderr);
     fs::write(folder.path().join("m.toml"), trammel).unwrap();
-    let shared = "note: redundant constraints leave open how they share forces: of crank.force one way of many is shown";
+    let shared = "note: redundant constraints leave open how they share forces: one way of many is shown for crank.force";
     for method in ["conserving-ggl", "penalty/conserving", "penalty/radau", "penalty-stabilized/trapezoidal", "lagrange-1/trapezoidal"] {
         let said = notes(&format!("--method {method}"));
         assert!(said.contains(shared), "{method}: {said}");

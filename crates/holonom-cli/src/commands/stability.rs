@@ -169,6 +169,7 @@ fn describe(loaded: &Loaded, bounds: &Bounds, found: &[(String, LargestStep)]) -
     };
     let rows: Vec<Vec<String>> = found.iter().map(row).collect();
     let Bounds { end, first, limit } = bounds;
-    let question = format!("largest step that completes {} s, searched from {} s up to {} s", short(*end), short(*first), short(*limit));
+    let question =
+        format!("largest step that completes a run of {} s, searched from {} s up to {} s", short(*end), short(*first), short(*limit));
     format!("{}\n{question}\n\n{}", loaded.title(), table(&header, &rows))
 }
