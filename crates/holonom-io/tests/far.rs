@@ -3,6 +3,7 @@
 mod common;
 
 use common::{CONSERVING, complete, coordinates, model};
+use holonom::simulation::Choice;
 
 /// A spatial double pendulum on a carrier that goes a hundred kilometres: positions are rounded by 1e-11 m there, and an
 /// iteration that wants less finds nothing but that: it took 22 a step for 2.7, and 288 of 1000 steps in halves.
@@ -158,4 +159,21 @@ fn momenta_that_gravity_changes_by_a_short_lever_are_not_among_those_kept() {
     let summary = fall(thrown);
     assert!(summary.linear_drift > 0.0 || summary.angular_drift > 0.0, "round-off of what is kept is measured");
     assert!(summary.linear_drift <= 1e-15 && summary.angular_drift <= 1e-17, "{summary:?}");
+}
+
+/// A bob on a spring below a hand that shakes: far from the origin the place of the hand is rounded by 2e-12 m where its formula has it, and the spring
+/// makes energy of that which no shorter step makes less.
+#[test]
+fn a_hand_that_is_far_away_shakes_what_it_holds() {
+    let end = |z: f64| {
+        let text = format!(
+            "plane = \"xz\"\n[point.hand]\nmotion = [0, \"{z} + 0.03*sin(25*t)\"]\n[point.bob]\nmass = 0.06\nposition = [0, {}]\n\
+             [force.string]\ntype = \"spring\"\nbetween = [\"hand\", \"bob\"]\nstiffness = 800\ndamping = 0.15\n",
+            z - 0.25
+        );
+        let choice = Choice { accuracy: Some(1e-8), ..Choice::default().named("radau") };
+        common::last(&common::run(&model(&text), choice, 0.01, 1.0).1, "bob.z") - z
+    };
+    let (near, far) = (end(0.0), end(1e4));
+    assert!((far - near).abs() < 1e-9, "{far} m below a hand that is far away, {near} m below one that is near");
 }
