@@ -49,13 +49,13 @@ pub fn size(system: &System, work: &Workspace, x: &[f64]) -> f64 {
     size
 }
 
-/// The sizes of the terms of an invariant that are rounded with positions: of its gradient times these. Those of known motion are rounded in the
-/// world, where formulas have them.
+/// The sizes of the terms of an invariant that are rounded with positions: of its gradient times these. Points whose motion is known are rounded in
+/// the world, where formulas have them.
 fn size_of_invariant(system: &System, id: InvariantId, work: &Workspace, x: &[f64]) -> f64 {
     let slots = system.invariants.slots_of(id);
     let of_slot = |s: usize| {
         let (g, node) = (s * system.dim, system.slots.nodes[s] as usize);
-        let far = if node < system.free { 0.0 } else { largest(&system.origin) };
+        let far = if node < system.free || !system.is_point[node] { 0.0 } else { largest(&system.origin) };
         largest(&work.end.at.gradient[g..g + system.dim]) * (far + largest(&x[node * system.dim..(node + 1) * system.dim]))
     };
     slots.map(of_slot).sum()
