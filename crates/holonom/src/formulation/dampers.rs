@@ -13,22 +13,24 @@ use super::newton::Newton;
 use super::workspace::Workspace;
 use crate::system::{Evaluation, Law, LawEntry, MAX_ARGUMENTS, Reach, Response, System};
 
-/// z from which on what dampers feel is found every [`OFTEN`] steps, and every [`SELDOM`] below; by how much it may grow meanwhile. Too large a z
-/// only takes a rate later than it had to be.
+/// z of all together up to which no damper has to be late; below [`NEAR`] what they feel is found every [`SELDOM`] steps, else every [`OFTEN`], or at once where a
+/// step is [`LONGER`] than when it was found. So much may z grow meanwhile: too large a z only takes a rate later than it had to be.
+const EASY: f64 = 2.0;
 const NEAR: f64 = 0.5;
-const OFTEN: u32 = 16;
-const SELDOM: u32 = 50;
+const OFTEN: usize = 16;
+const SELDOM: usize = 50;
+const LONGER: f64 = 2.0;
 const GROWTH: f64 = 1.25;
 
-/// Arguments of laws of which it is found; of more z is taken by the masses of nodes.
-const MOST: usize = 64;
+/// Arguments that are looked at for each step that goes by. In real time they are so many in each step, in turn.
+const EACH_STEP: usize = 4;
+
+/// Rounds in which dampers that meet are told to be weak or strong. Each leaves shares that are small enough.
+const ROUNDS: usize = 4;
 
 /// Farthest that a composition goes back through a damper, in z: what that makes of a velocity, (1 + z/2)/(1 − z/2), the other parts take back up
 /// to there, and it has no bound at 2.
 const BACK: f64 = 1.0;
-
-/// How much less than the mass of a node the mass that a damper feels there may be, where it is not found.
-const LIGHTER: f64 = 4.0;
 
 /// What a dissipative law knows of the start of a step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -37,6 +39,10 @@ pub struct Damping {
     rate: [f64; MAX_ARGUMENTS],
     /// By how much the force on each argument changes with its own rate.
     stiffness: [f64; MAX_ARGUMENTS],
+    /// w_kk of each argument k, 1/kg in its units.
+    own: [f64; MAX_ARGUMENTS],
+    /// |w_kl|/√(w_kk w_ll) of each argument k with the one l that is looked at.
+    shared: [f64; MAX_ARGUMENTS],
     /// Number of its first argument among those of all dissipative laws.
     first: usize,
     /// 2θ − 1
@@ -71,76 +77,45 @@ impl Damping {
     }
 }
 
-/// What was last found of all dampers together.
+/// What was last found of the arguments of dissipative laws.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Fit {
-    /// Of each two arguments l and k of dissipative laws z of l alone, over c_l and the step, as far as a push along l moves k: |w_kl| √(w_ll/w_kk) with
-    /// w_kl = g_k·w_l and [M Gᵀ; G 0][w_l; μ] = [g_lᵀ; 0], 1/kg in the units of l.
-    felt: Vec<f64>,
+    arguments: Vec<Felt>,
     /// Whether it is known.
     is_known: bool,
     /// Steps for which it counts.
-    steps_left: u32,
+    steps_left: usize,
+    /// The argument that is looked at next in real time.
+    next: usize,
+    /// Length of the step where it was found, s, and the sum of all z.
+    h: f64,
+    sum: f64,
+}
+
+/// What an argument l feels of dampers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Felt {
+    /// w_ll: w_kl = g_k·w_l with [M Gᵀ; G 0][w_l; μ] = [g_lᵀ; 0], 1/kg in the units of l.
+    own: f64,
+    /// Σ ρ_kl z_k over the step, of all k, with ρ_kl = |w_kl|/√(w_kk w_ll), 1/s.
+    speed: f64,
+    /// Σ ρ_kl z_k/2 of the weak ones, over the step, and Σ ρ_kl of the others.
+    weak: f64,
+    strong: f64,
 }
 
 impl Fit {
     /// Room for the dampers of a system.
     pub fn new(system: &System) -> Self {
-        let count: usize = system.laws.iter().filter(|law| !law.law.conservative()).map(|law| law.arguments.len()).sum();
-        let room = if count > MOST { 0 } else { count * count };
-        Self { felt: vec![0.0; room], is_known: false, steps_left: 0 }
+        let count = system.laws.iter().filter(|law| !law.law.conservative()).map(|law| law.arguments.len()).sum();
+        Self { arguments: vec![Felt::default(); count], ..Self::default() }
     }
 
     /// Takes over another one of the same system.
     pub fn copy_from(&mut self, other: &Self) {
-        self.felt.clone_from(&other.felt);
-        (self.is_known, self.steps_left) = (other.is_known, other.steps_left);
-    }
-
-    /// At least the largest z of all together, over the step, 1/s.
-    fn bound(&self, count: usize, dampers: &[Damping]) -> f64 {
-        let mut sum = 0.0;
-        each_active(dampers, |k, i| sum += GROWTH * dampers[k].stiffness[i] * self.felt[(dampers[k].first + i) * (count + 1)]);
-        sum
-    }
-}
-
-/// Shows the arguments of laws whose forces change with their rates.
-fn each_active(dampers: &[Damping], mut see: impl FnMut(usize, usize)) {
-    for (k, damping) in dampers.iter().enumerate() {
-        (0..MAX_ARGUMENTS).filter(|&i| damping.stiffness[i] > 0.0).for_each(|i| see(k, i));
-    }
-}
-
-/// Where dampers meet.
-trait Meeting {
-    /// Shows the z of an argument of a law over the step at each place where it is felt, 1/s.
-    fn each(&self, law: usize, damping: &Damping, argument: usize, see: impl FnMut(usize, f64));
-}
-
-/// Each argument of a dissipative law, with its number.
-struct Found<'a> {
-    felt: &'a [f64],
-    count: usize,
-}
-
-impl Meeting for Found<'_> {
-    fn each(&self, _: usize, damping: &Damping, argument: usize, mut see: impl FnMut(usize, f64)) {
-        let (c, l) = (GROWTH * damping.stiffness[argument], damping.first + argument);
-        self.felt[l * self.count..][..self.count].iter().enumerate().for_each(|(k, felt)| see(k, c * felt));
-    }
-}
-
-/// Each node, by its own mass.
-struct ByNodes<'a> {
-    system: &'a System,
-    work: &'a Workspace,
-}
-
-impl Meeting for ByNodes<'_> {
-    fn each(&self, law: usize, damping: &Damping, argument: usize, mut see: impl FnMut(usize, f64)) {
-        let c = LIGHTER * damping.stiffness[argument];
-        each_pull(self.system, law, argument, self.work, |node, pull| see(node, c * pull * self.work.scales.agility[node]));
+        let Self { arguments, is_known, steps_left, next, h, sum } = other;
+        self.arguments.copy_from_slice(arguments);
+        (self.is_known, self.steps_left, self.next, self.h, self.sum) = (*is_known, *steps_left, *next, *h, *sum);
     }
 }
 
@@ -150,7 +125,7 @@ impl Newton {
     /// # Errors
     /// Where a composition goes back in time through a damper so strong that the whole step could make energy of nothing.
     pub fn fit_dampers(&mut self, system: &System, start: f64, h: f64, work: &mut Workspace) -> Result<(), Failure> {
-        if !work.forces.dissipative {
+        if self.fit.arguments.is_empty() {
             return Ok(());
         }
         let mut dampers = std::mem::take(&mut work.forces.damping);
@@ -160,63 +135,114 @@ impl Newton {
             damping.first = count;
             count += law.arguments.len();
         }
-        // In real time every step does the same work.
-        let may_find = count <= MOST && self.settings.iterations.is_none();
-        let outcome = if may_find && self.find_felt(system, h, count, &dampers, work) {
-            let (mut room, felt) = ([[0.0; 2 * MOST]; 2], &self.fit.felt[..]);
-            be_late(h, &mut dampers, room.each_mut().map(|room| &mut room[..2 * count]), &Found { felt, count })
-        } else {
-            let mut room = [&mut work.full, &mut work.inertial].map(std::mem::take);
-            let room_of_nodes = room.each_mut().map(|room| &mut room[..2 * system.free]);
-            let outcome = be_late(h, &mut dampers, room_of_nodes, &ByNodes { system, work });
-            [work.full, work.inertial] = room;
-            outcome
-        };
+        self.feel(system, h, &mut dampers, work);
+        let outcome = be_late(h, &mut dampers, &self.fit);
         work.forces.damping = dampers;
         outcome
     }
 
-    /// Finds what dampers feel with rows and other masses, once in a while. Says whether it is known.
-    fn find_felt(&mut self, system: &System, h: f64, count: usize, dampers: &[Damping], work: &mut Workspace) -> bool {
-        let is_weak = |fit: &Fit| h.abs() * fit.bound(count, dampers) < NEAR;
+    /// Finds what dampers feel, once in a while or, in real time, where every step does the same work, of a few in each step.
+    fn feel(&mut self, system: &System, h: f64, dampers: &mut [Damping], work: &mut Workspace) {
+        let is_real_time = self.settings.iterations.is_some();
+        let sum = h.abs() * self.take_own(system, dampers);
         let fit = &mut self.fit;
-        if fit.is_known && fit.steps_left > 0 && (fit.steps_left <= OFTEN || is_weak(fit)) {
+        let still_counts = fit.steps_left > 0 && (sum <= EASY || (fit.sum > NEAR && h.abs() <= LONGER * fit.h));
+        if fit.is_known && still_counts && !is_real_time {
             fit.steps_left -= 1;
-            return true;
+            return;
         }
-        fit.is_known = false;
         work.end.at.copy_from(&work.start.at);
         if !self.factor_inertia(work) {
-            return false;
+            self.fit.is_known = false;
+            return;
         }
-        let of_dissipative = || system.laws.iter().enumerate().filter(|(_, law)| !law.law.conservative());
-        let arguments = || of_dissipative().flat_map(|(k, law)| (0..law.arguments.len()).map(move |i| (k, i)));
-        let mut own = [0.0_f64; MOST];
-        for (l, (law, i)) in arguments().enumerate() {
-            self.unknowns.fill(0.0);
-            each_slot(system, law, i, work, |node, g| {
-                let at = &mut self.unknowns[node * system.dim..];
-                at.iter_mut().zip(g).for_each(|(sum, g)| *sum += g);
-            });
-            self.kkt.solve(&mut self.unknowns);
-            for (k, (law, i)) in arguments().enumerate() {
-                let w = &self.unknowns;
-                let mut product = 0.0;
-                each_slot(system, law, i, work, |node, g| {
-                    product += g.iter().zip(&w[node * system.dim..]).map(|(g, w)| g * w).sum::<f64>()
-                });
-                self.fit.felt[l * count + k] = product.abs();
+        let arguments = || {
+            let laws = system.laws.iter().enumerate().filter(|(_, law)| !law.law.conservative());
+            laws.flat_map(|(k, law)| (0..law.arguments.len()).map(move |i| (k, i))).enumerate()
+        };
+        let count = self.fit.arguments.len();
+        let some = if is_real_time && self.fit.is_known { count.min(EACH_STEP) } else { count };
+        if !self.fit.is_known {
+            for (l, of) in arguments() {
+                self.push_along(system, of, work);
+                self.fit.arguments[l].own = self.moved_along(system, of, work).abs();
             }
-            own[l] = self.fit.felt[l * count + l].sqrt();
+            self.take_own(system, dampers);
         }
-        for (at, felt) in self.fit.felt.iter_mut().enumerate() {
-            let (l, k) = (at / count, at % count);
-            // What hardly moves at all is known from its own push, and not from that of others.
-            *felt = if own[k] > 0.0 { felt.min(own[k] * own[l]) * (own[l] / own[k]) } else { 0.0 };
+        for (l, (law, i)) in arguments().cycle().skip(self.fit.next).take(some) {
+            self.push_along(system, (law, i), work);
+            let own = dampers[law].own[i];
+            for (_, (law, i)) in arguments() {
+                // What hardly moves at all is known from its own push, and not from that of others.
+                let both = (own * dampers[law].own[i]).sqrt();
+                dampers[law].shared[i] = if both > 0.0 { (self.moved_along(system, (law, i), work).abs() / both).min(1.0) } else { 0.0 };
+            }
+            self.fit.arguments[l] = Felt::of(self.moved_along(system, (law, i), work).abs(), h.abs(), dampers);
         }
-        self.fit.is_known = self.fit.felt.iter().all(|felt| felt.is_finite());
-        self.fit.steps_left = if is_weak(&self.fit) { SELDOM } else { OFTEN };
-        self.fit.is_known
+        let sum = h.abs() * self.take_own(system, dampers);
+        let fit = &mut self.fit;
+        fit.is_known = fit.arguments.iter().all(|felt| felt.own.is_finite() && felt.speed.is_finite());
+        fit.steps_left = (count / EACH_STEP).max(if sum > NEAR { OFTEN } else { SELDOM });
+        fit.next = (fit.next + some) % count;
+        (fit.h, fit.sum) = (h.abs(), sum);
+    }
+
+    /// Takes what is known of each argument alone. The sum of their z over the step, 1/s.
+    fn take_own(&self, system: &System, dampers: &mut [Damping]) -> f64 {
+        let mut sum = 0.0;
+        for (law, damping) in system.laws.iter().zip(dampers).filter(|(law, _)| !law.law.conservative()) {
+            for i in 0..law.arguments.len() {
+                damping.own[i] = self.fit.arguments[damping.first + i].own;
+                sum += damping.speed(i);
+            }
+        }
+        sum
+    }
+
+    /// Leaves in the unknowns how all moves with a push along an argument of a law.
+    fn push_along(&mut self, system: &System, (law, argument): (usize, usize), work: &Workspace) {
+        self.unknowns.fill(0.0);
+        each_slot(system, law, argument, work, |node, g| {
+            let at = &mut self.unknowns[node * system.dim..];
+            at.iter_mut().zip(g).for_each(|(sum, g)| *sum += g);
+        });
+        self.kkt.solve(&mut self.unknowns);
+    }
+
+    /// How an argument of a law moves with that.
+    fn moved_along(&self, system: &System, (law, argument): (usize, usize), work: &Workspace) -> f64 {
+        let mut sum = 0.0;
+        each_slot(system, law, argument, work, |node, g| {
+            sum += g.iter().zip(&self.unknowns[node * system.dim..]).map(|(g, w)| g * w).sum::<f64>();
+        });
+        sum
+    }
+}
+
+impl Felt {
+    /// Of an argument that has so much `shared` with each.
+    fn of(own: f64, h: f64, dampers: &[Damping]) -> Self {
+        let meets = || {
+            let all = dampers.iter().flat_map(|damping| (0..MAX_ARGUMENTS).map(|i| (damping.shared[i], damping.speed(i))));
+            all.filter(|(_, speed)| *speed > 0.0)
+        };
+        let mut felt = Self { own, speed: meets().map(|(shared, speed)| shared * speed).sum(), weak: 0.0, strong: f64::INFINITY };
+        for _ in 0..ROUNDS {
+            let share = felt.share(h);
+            (felt.weak, felt.strong) = (0.0, 0.0);
+            for (shared, speed) in meets() {
+                match 0.5 * h * speed <= share {
+                    true => felt.weak += 0.5 * shared * speed,
+                    false => felt.strong += shared,
+                }
+            }
+        }
+        felt
+    }
+
+    /// The largest β with Σ ρ_kl min(z_k/2, β) ≤ 1 in a step of `h` (s), or a smaller one in other steps than that of which it was found.
+    fn share(&self, h: f64) -> f64 {
+        ((1.0 - h * self.weak) / self.strong).clamp(0.0, 1.0)
     }
 }
 
@@ -228,6 +254,11 @@ impl Damping {
         // Of friction that slides the force hardly changes with the rate: what counts is what would stop it.
         let secant = |i: usize| if rate[i] == 0.0 { 0.0 } else { power[i] / (rate[i] * rate[i]) };
         self.stiffness = std::array::from_fn(|i| slope[i].abs().max(secant(i)));
+    }
+
+    /// z of an argument alone, over the step, 1/s.
+    fn speed(&self, argument: usize) -> f64 {
+        GROWTH * self.stiffness[argument] * self.own[argument]
     }
 }
 
@@ -284,65 +315,27 @@ impl Braking {
     }
 }
 
-/// Has dampers take their rates as late as it takes for them not to ring together: with Σ (1 − θ) z ≤ 1 at each place where they meet, over the z of each alone in a
-/// step of `h` (s). Where as many equal ones would not ring a damper keeps the mean rate, and the others share what is left alike: so a weak one stays of order 2
-/// beside one that is overdamped.
+/// Has dampers take their rates as late as it takes for them not to ring together in a step of `h` (s): (1 − θ) z is no more than what dampers share where each
+/// is. A weak one keeps the mean rate: so it stays of order 2 beside one that is overdamped.
 ///
 /// # Errors
 /// Where a step back in time goes too far back through a damper: nothing rings there, but dampers make energy.
-fn be_late(h: f64, dampers: &mut [Damping], [counts, sums]: [&mut [f64]; 2], meeting: &impl Meeting) -> Result<(), Failure> {
-    let places = counts.len() / 2;
-    let ((all, strong), (sum, left)) = (counts.split_at_mut(places), sums.split_at_mut(places));
-    for room in [&mut *all, strong, sum] {
-        room.fill(0.0);
-    }
-    left.fill(1.0);
-    dampers.iter_mut().for_each(|damping| damping.late = 0.0);
-    let mut most = (0.0, 0);
-    each_active(dampers, |k, i| {
-        meeting.each(k, &dampers[k], i, |place, speed| {
-            let z = h.abs() * speed;
-            all[place] += f64::from(z > 0.0);
-            sum[place] += z;
-            if z > most.0 {
-                most = (z, k);
-            }
-        });
-    });
-    let largest = sum.iter().copied().fold(0.0, f64::max);
-    if h < 0.0 {
-        return if largest > BACK { Err(Failure::GoesBack { law: most.1 }) } else { Ok(()) };
-    }
-    if largest <= 2.0 {
-        return Ok(());
-    }
-    let is_weak = |z: f64, count: f64| 0.5 * z * count <= 1.0;
-    each_active(dampers, |k, i| {
-        meeting.each(k, &dampers[k], i, |place, speed| match is_weak(h * speed, all[place]) {
-            true => left[place] -= 0.5 * h * speed,
-            false => strong[place] += 1.0,
-        });
-    });
-    for (k, damping) in dampers.iter_mut().enumerate() {
+fn be_late(h: f64, dampers: &mut [Damping], fit: &Fit) -> Result<(), Failure> {
+    let (mut largest, mut most) = (0.0, (0.0, 0));
+    for (law, damping) in dampers.iter_mut().enumerate() {
         let mut early = 0.5_f64;
         for i in (0..MAX_ARGUMENTS).filter(|&i| damping.stiffness[i] > 0.0) {
-            meeting.each(k, damping, i, |place, speed| {
-                if !is_weak(h * speed, all[place]) {
-                    early = early.min(left[place] / (strong[place] * h * speed));
-                }
-            });
+            let felt = fit.arguments[damping.first + i];
+            let (z, share) = if fit.is_known { (h.abs() * damping.speed(i), felt.share(h.abs())) } else { (f64::INFINITY, 0.0) };
+            early = early.min(share / z);
+            largest = z.max(h.abs() * felt.speed).max(largest);
+            if z > most.0 {
+                most = (z, law);
+            }
         }
-        damping.late = 1.0 - 2.0 * early;
+        damping.late = if h > 0.0 { 1.0 - 2.0 * early } else { 0.0 };
     }
-    Ok(())
-}
-
-/// Shows |g| Σ |g| of an argument of a law at the start of a step, slot by slot.
-fn each_pull(system: &System, law: usize, argument: usize, work: &Workspace, mut see: impl FnMut(usize, f64)) {
-    let size = |g: &[f64]| g.iter().map(|g| g * g).sum::<f64>().sqrt();
-    let mut all = 0.0;
-    each_slot(system, law, argument, work, |_, g| all += size(g));
-    each_slot(system, law, argument, work, |node, g| see(node, size(g) * all));
+    if h < 0.0 && largest > BACK { Err(Failure::GoesBack { law: most.1 }) } else { Ok(()) }
 }
 
 /// Shows the gradient of an argument of a law at the start of a step, free node by free node.
