@@ -174,9 +174,18 @@ fn what_is_overdamped_stands_still_beside_what_is_held_or_heavy() {
         "gravity = [0, 0, 0]\n[body.ship]\nmass = 1e6\nshape = { box = [1, 0.5, 0.3] }\nposition = [0, 0, 0]\n".to_owned()
             + &(0..wheels).map(wheel).collect::<String>()
     };
-    for (name, text, iterations) in
-        [("held", held, None), ("light", light(1), None), ("many light ones", light(70), None), ("light in real time", light(3), Some(6))]
-    {
+    // More of them than are looked at one by one.
+    let many = "gravity = [0, 0, 0]\n[point.p]\nrepeat = \"i = 1 to 1200\"\nmass = 1\nposition = [\"i\", 0, 0]\nvelocity = [1, 0, 0]\n\
+                [force.d]\nrepeat = \"i = 1 to 1200\"\ntype = \"spring\"\nbetween = [[\"i - 1\", 0, 0], \"p[i]\"]\ndamping = 1e4\n\
+                [force.e]\nrepeat = \"i = 2 to 1200\"\ntype = \"spring\"\nbetween = [\"p[i-1]\", \"p[i]\"]\ndamping = 1e4\n";
+    let cases = [
+        ("held", held, None),
+        ("light", light(1), None),
+        ("many light ones", light(70), None),
+        ("light in real time", light(3), Some(6)),
+        ("very many", many.into(), None),
+    ];
+    for (name, text, iterations) in cases {
         let model = model(&text);
         for method in ["conserving-ggl", "conserving"] {
             let method = Method::resolve(&Choice { iterations, ..Choice::default().named(method) }).unwrap();

@@ -25,6 +25,13 @@ const GROWTH: f64 = 1.25;
 /// Arguments that are looked at for each step that goes by. In real time they are so many in each step, in turn.
 const EACH_STEP: usize = 4;
 
+/// Arguments of which this is found: that takes twice as many solutions before the first step. Of more it is taken by the masses of nodes, with how much less the
+/// mass that a damper feels may be than that of the node.
+const MOST: usize = 1000;
+const LIGHTER: f64 = 4.0;
+
+const ROUNDED: f64 = 1e-12;
+
 /// Rounds in which dampers that meet are told to be weak or strong. Each leaves shares that are small enough.
 const ROUNDS: usize = 4;
 
@@ -143,6 +150,9 @@ impl Newton {
 
     /// Finds what dampers feel, once in a while or, in real time, where every step does the same work, of a few in each step.
     fn feel(&mut self, system: &System, h: f64, dampers: &mut [Damping], work: &mut Workspace) {
+        if self.fit.arguments.len() > MOST {
+            return self.feel_by_nodes(system, h.abs(), dampers, work);
+        }
         let is_real_time = self.settings.iterations.is_some();
         let sum = h.abs() * self.take_own(system, dampers);
         let fit = &mut self.fit;
@@ -185,6 +195,44 @@ impl Newton {
         fit.steps_left = (count / EACH_STEP).max(if sum > NEAR { OFTEN } else { SELDOM });
         fit.next = (fit.next + some) % count;
         (fit.h, fit.sum) = (h.abs(), sum);
+    }
+
+    /// Takes for what dampers feel in a step of `h` (s) the most that it is at one of their nodes, by the masses there.
+    fn feel_by_nodes(&mut self, system: &System, h: f64, dampers: &mut [Damping], work: &mut Workspace) {
+        // At each node: how many dampers, the sum of their speeds, and what is weak of it and how many are strong.
+        let mut room = [&mut work.full, &mut work.inertial].map(std::mem::take);
+        let [(counts, sums), (weak, strong)] = room.each_mut().map(|room| {
+            room.fill(0.0);
+            room.split_at_mut(system.free)
+        });
+        let each = |dampers: &[Damping], see: &mut dyn FnMut(usize, usize, f64)| {
+            for (law, damping) in dampers.iter().enumerate() {
+                for i in (0..MAX_ARGUMENTS).filter(|&i| damping.stiffness[i] > 0.0) {
+                    let moves = |node: usize, pull: f64| {
+                        see(damping.first + i, node, LIGHTER * pull * work.scales.agility[node] * damping.stiffness[i])
+                    };
+                    each_pull(system, law, i, work, moves);
+                }
+            }
+        };
+        each(dampers, &mut |_, node, speed| (counts[node], sums[node]) = (counts[node] + 1.0, sums[node] + speed));
+        each(dampers, &mut |_, node, speed| match 0.5 * h * speed * counts[node] <= 1.0 {
+            true => weak[node] += 0.5 * speed,
+            false => strong[node] += 1.0,
+        });
+        self.fit.arguments.fill(Felt::default());
+        each(dampers, &mut |l, node, speed| {
+            let felt = &mut self.fit.arguments[l];
+            let here = Felt { own: felt.own.max(speed), speed: felt.speed.max(sums[node]), weak: weak[node], strong: strong[node] };
+            *felt = if here.share(h) < felt.share(h) { here } else { Felt { own: here.own, speed: here.speed, ..*felt } };
+        });
+        for damping in &mut *dampers {
+            for i in (0..MAX_ARGUMENTS).filter(|&i| damping.stiffness[i] > 0.0) {
+                damping.own[i] = self.fit.arguments[damping.first + i].own / (GROWTH * damping.stiffness[i]);
+            }
+        }
+        self.fit.is_known = true;
+        [work.full, work.inertial] = room;
     }
 
     /// Takes what is known of each argument alone. The sum of their z over the step, 1/s.
@@ -242,7 +290,8 @@ impl Felt {
 
     /// The largest β with Σ ρ_kl min(z_k/2, β) ≤ 1 in a step of `h` (s), or a smaller one in other steps than that of which it was found.
     fn share(&self, h: f64) -> f64 {
-        ((1.0 - h * self.weak) / self.strong).clamp(0.0, 1.0)
+        // Weak ones that fill a step but for rounding leave nothing to others, and keep what they have where there are none.
+        ((1.0 + ROUNDED - h * self.weak) / self.strong).clamp(0.0, 1.0)
     }
 }
 
@@ -336,6 +385,14 @@ fn be_late(h: f64, dampers: &mut [Damping], fit: &Fit) -> Result<(), Failure> {
         damping.late = if h > 0.0 { 1.0 - 2.0 * early } else { 0.0 };
     }
     if h < 0.0 && largest > BACK { Err(Failure::GoesBack { law: most.1 }) } else { Ok(()) }
+}
+
+/// Shows |g| Σ |g| of an argument of a law at the start of a step, slot by slot.
+fn each_pull(system: &System, law: usize, argument: usize, work: &Workspace, mut see: impl FnMut(usize, f64)) {
+    let size = |g: &[f64]| g.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let mut all = 0.0;
+    each_slot(system, law, argument, work, |_, g| all += size(g));
+    each_slot(system, law, argument, work, |node, g| see(node, size(g) * all));
 }
 
 /// Shows the gradient of an argument of a law at the start of a step, free node by free node.
