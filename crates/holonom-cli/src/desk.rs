@@ -15,6 +15,10 @@ const AT_ONCE: usize = 1 << 13;
 /// Samples that wait, in such portions: steps that are faster than rows wait for these.
 const PORTIONS: usize = 4;
 
+/// Numbers, and samples, after which the run is saved: what it is resumed from is some samples more to write.
+const MANY: usize = 1 << 20;
+const SAMPLES: usize = 200;
+
 /// What is done with a run beside its rows.
 pub struct Desk<'a, 'f> {
     pub keeper: Option<&'a mut Keeper<'f>>,
@@ -34,7 +38,11 @@ struct Mark {
 enum Work {
     Samples(Samples),
     /// To be saved if it is time to.
-    Save(Box<Mark>),
+    Save {
+        mark: Box<Mark>,
+        /// Whether many rows are new.
+        has_many: bool,
+    },
     BeforeEnd(Option<Box<Mark>>),
 }
 
@@ -50,6 +58,8 @@ pub enum Rows<'scope, 'a, 'f> {
 pub struct There<'scope, 'a, 'f> {
     sampler: Sampler,
     samples: Samples,
+    /// Numbers, and samples, that were handed over since the run was saved.
+    handed: [usize; 2],
     work: SyncSender<Work>,
     /// Room of samples of which rows were made.
     room: Receiver<Samples>,
@@ -70,7 +80,7 @@ impl<'scope, 'a: 'scope, 'f: 'scope> Rows<'scope, 'a, 'f> {
                 let (work, to_do) = sync_channel(PORTIONS);
                 let (done, room) = channel();
                 let thread = scope.spawn(move || make_rows(composer, desk, &to_do, &done));
-                Self::There(Box::new(There { sampler, samples: Samples::default(), work, room, thread }))
+                Self::There(Box::new(There { sampler, samples: Samples::default(), handed: [0; 2], work, room, thread }))
             }
         }
     }
@@ -131,13 +141,22 @@ impl Rows<'_, '_, '_> {
         }
     }
 
+    /// Whether there are so many new rows that the run is to be saved before it is time to: they are written meanwhile, and not at the end.
+    pub fn are_many(&self) -> bool {
+        matches!(self, Self::There(there) if there.has_many())
+    }
+
     /// Saves the run if it is time to.
     pub fn save(&mut self, simulation: &Simulation) {
         match self {
             Self::Here(recorder, desk) => {
-                desk.save(simulation.state().t, recorder.recording(), |corrections| Point::of(simulation, recorder, corrections))
+                desk.save(simulation.state().t, false, recorder.recording(), |corrections| Point::of(simulation, recorder, corrections))
             }
-            Self::There(there) => there.mark(simulation, |mark| Work::Save(Box::new(mark))),
+            Self::There(there) => {
+                let has_many = there.has_many();
+                there.mark(simulation, |mark| Work::Save { mark, has_many });
+                there.handed = [0; 2];
+            }
         }
     }
 
@@ -145,22 +164,27 @@ impl Rows<'_, '_, '_> {
     pub fn keep_before_end(&mut self, simulation: &Simulation, is_there: bool) {
         match self {
             Self::Here(recorder, desk) => desk.before_end = is_there.then(|| Box::new(Point::of(simulation, recorder, &desk.corrections))),
-            Self::There(there) if is_there => there.mark(simulation, |mark| Work::BeforeEnd(Some(Box::new(mark)))),
+            Self::There(there) if is_there => there.mark(simulation, |mark| Work::BeforeEnd(Some(mark))),
             Self::There(there) => drop(there.work.send(Work::BeforeEnd(None))),
         }
     }
 }
 
 impl There<'_, '_, '_> {
+    fn has_many(&self) -> bool {
+        self.handed[0] >= MANY && self.handed[1] >= SAMPLES
+    }
+
     /// Hands samples over; says whether somebody takes them.
     fn hand_over(&mut self) -> bool {
+        self.handed = [self.handed[0] + self.samples.size(), self.handed[1] + self.samples.count()];
         let room = self.room.try_recv().unwrap_or_default();
         self.work.send(Work::Samples(std::mem::replace(&mut self.samples, room))).is_ok()
     }
 
     /// Hands over where the run is, behind the samples up to there.
-    fn mark(&mut self, simulation: &Simulation, work: fn(Mark) -> Work) {
-        let mark = Mark { run: simulation.checkpoint(), sampler: self.sampler.mark() };
+    fn mark(&mut self, simulation: &Simulation, work: impl FnOnce(Box<Mark>) -> Work) {
+        let mark = Box::new(Mark { run: simulation.checkpoint(), sampler: self.sampler.mark() });
         if self.hand_over() {
             // As above.
             let _ = self.work.send(work(mark));
@@ -188,9 +212,9 @@ fn make_rows<'a, 'f>(
                 // The run may have ended.
                 let _ = done.send(samples);
             }
-            Work::Save(mark) => {
+            Work::Save { mark, has_many } => {
                 let t = mark.run.state.t;
-                desk.save(t, composer.recording(), |corrections| point(&composer, *mark, corrections));
+                desk.save(t, has_many, composer.recording(), |corrections| point(&composer, *mark, corrections));
             }
             Work::BeforeEnd(mark) => desk.before_end = mark.map(|mark| Box::new(point(&composer, *mark, &desk.corrections))),
         }
@@ -209,8 +233,8 @@ impl Desk<'_, '_> {
     }
 
     /// Saves the run, which is at the time `t` (s), if it is time to.
-    fn save(&mut self, t: f64, recording: &Recording, point: impl FnOnce(&[String]) -> Point) {
-        if let Some(keeper) = self.keeper.as_mut().filter(|keeper| keeper.is_due(t)) {
+    fn save(&mut self, t: f64, has_many: bool, recording: &Recording, point: impl FnOnce(&[String]) -> Point) {
+        if let Some(keeper) = self.keeper.as_mut().filter(|keeper| keeper.is_due(t, has_many)) {
             keeper.keep(recording, point(&self.corrections));
         }
     }

@@ -22,7 +22,7 @@ pub const PAUSE: Duration = Duration::from_secs(1);
 const COST: u32 = 50;
 
 /// Bytes of rows that are ready to be written: the text of others is made when it is written.
-const MOST_TEXT: usize = 1 << 24;
+const MOST_TEXT: usize = 1 << 25;
 
 /// Writes the rows and the checkpoint of a run from time to time. Rows are appended, and come before the checkpoint that counts them, so
 /// that a checkpoint always has its rows.
@@ -95,9 +95,9 @@ impl<'a> Keeper<'a> {
         self.written = self.rows;
     }
 
-    /// Whether a run at the time `t` (s) is to be saved.
-    pub fn is_due(&self, t: f64) -> bool {
-        Instant::now() >= self.next && t > self.beyond
+    /// Whether a run at the time `t` (s) is to be saved, where it has many new rows at once.
+    pub fn is_due(&self, t: f64, has_many: bool) -> bool {
+        t > self.beyond && (has_many || Instant::now() >= self.next)
     }
 
     /// Saves a run while it goes on.

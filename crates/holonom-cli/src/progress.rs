@@ -63,7 +63,7 @@ impl Observer for Watched<'_, '_, '_> {
             self.show(simulation);
             self.next_shown = now + SHOWN;
         }
-        if now >= self.next_saved {
+        if now >= self.next_saved || self.rows.are_many() {
             self.rows.save(simulation);
             self.next_saved = now + PAUSE;
         }

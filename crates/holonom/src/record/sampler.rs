@@ -38,6 +38,11 @@ impl Samples {
         self.numbers.len()
     }
 
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.kinds.len()
+    }
+
     /// Forgets them, and keeps their room.
     pub fn clear(&mut self) {
         self.numbers.clear();
