@@ -68,7 +68,7 @@ def test_the_largest_step_is_that_of_the_command():
     with tempfile.TemporaryDirectory() as folder:
         told = json.loads(command(*words, "--out", folder))
     assert [found[one["method"]]["completes"] for one in told] == [one["completes"] for one in told]
-    assert "largest step that completes 1 s" in repr(found)
+    assert "largest step that completes a run of 1 s" in repr(found)
 
 
 def test_differences_are_those_by_hand():

@@ -153,9 +153,9 @@ impl Recorder {
     /// The row of the present state, which is not kept. It counts as the row after the step before it; running values of measures follow from
     /// the rows that were looked at.
     pub fn look(&mut self, simulation: &Simulation) -> &[f64] {
-        self.samples.clear();
         self.sampler.look(simulation, &mut self.samples);
         self.rows.compose(&self.samples.numbers, Some(simulation.found()));
+        self.samples.clear();
         &self.rows.row
     }
 
@@ -175,9 +175,9 @@ impl Recorder {
     /// The columns that are [of the motion](Self::is_of_motion) in their places of the row, for which no forces need be found; the others
     /// are no numbers.
     pub fn look_at_motion(&mut self, simulation: &Simulation) -> &[f64] {
-        self.samples.clear();
         self.sampler.look_at_motion(simulation, &mut self.samples);
         self.rows.show_motion(&self.samples.numbers);
+        self.samples.clear();
         &self.rows.row
     }
 
