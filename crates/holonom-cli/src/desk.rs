@@ -12,7 +12,7 @@ use crate::keeper::Keeper;
 /// Numbers that are handed over at once: to hand them over takes as long as to sample some of them.
 const AT_ONCE: usize = 1 << 13;
 
-/// Samples that wait, in such portions: steps that are faster than rows wait for these.
+/// Samples that wait, in such portions, and of large models in one: steps that are faster than rows wait for these.
 const PORTIONS: usize = 4;
 
 /// Numbers, and samples, after which the run is saved: what it is resumed from is some samples more to write.
@@ -58,6 +58,8 @@ pub enum Rows<'scope, 'a, 'f> {
 pub struct There<'scope, 'a, 'f> {
     sampler: Sampler,
     samples: Samples,
+    /// Whether the run is saved.
+    is_kept: bool,
     /// Numbers, and samples, that were handed over since the run was saved.
     handed: [usize; 2],
     work: SyncSender<Work>,
@@ -67,20 +69,22 @@ pub struct There<'scope, 'a, 'f> {
 }
 
 impl<'scope, 'a: 'scope, 'f: 'scope> Rows<'scope, 'a, 'f> {
-    /// Has rows made in a thread of its own, where forces of the constraints are found apart from the simulation.
+    /// Has rows made in a thread of its own, where they have no forces that only the simulation finds.
     pub fn in_a_thread<'env>(
         recorder: Recorder,
         desk: Desk<'a, 'f>,
         simulation: &mut Simulation,
         scope: &'scope Scope<'scope, 'env>,
     ) -> Self {
+        let is_large = recorder.recording().columns().len() > AT_ONCE;
         match recorder.divide(simulation) {
             Err(recorder) => Self::Here(recorder, desk),
             Ok((sampler, composer)) => {
-                let (work, to_do) = sync_channel(PORTIONS);
+                let (work, to_do) = sync_channel(if is_large { 1 } else { PORTIONS });
                 let (done, room) = channel();
+                let is_kept = desk.keeper.is_some();
                 let thread = scope.spawn(move || make_rows(composer, desk, &to_do, &done));
-                Self::There(Box::new(There { sampler, samples: Samples::default(), handed: [0; 2], work, room, thread }))
+                Self::There(Box::new(There { sampler, samples: Samples::default(), is_kept, handed: [0; 2], work, room, thread }))
             }
         }
     }
@@ -152,6 +156,7 @@ impl Rows<'_, '_, '_> {
             Self::Here(recorder, desk) => {
                 desk.save(simulation.state().t, false, recorder.recording(), |corrections| Point::of(simulation, recorder, corrections))
             }
+            Self::There(there) if !there.is_kept => (),
             Self::There(there) => {
                 let has_many = there.has_many();
                 there.mark(simulation, |mark| Work::Save { mark, has_many });
@@ -172,7 +177,7 @@ impl Rows<'_, '_, '_> {
 
 impl There<'_, '_, '_> {
     fn has_many(&self) -> bool {
-        self.handed[0] >= MANY && self.handed[1] >= SAMPLES
+        self.is_kept && self.handed[0] >= MANY && self.handed[1] >= SAMPLES
     }
 
     /// Hands samples over; says whether somebody takes them.
@@ -186,7 +191,7 @@ impl There<'_, '_, '_> {
     fn mark(&mut self, simulation: &Simulation, work: impl FnOnce(Box<Mark>) -> Work) {
         let mark = Box::new(Mark { run: simulation.checkpoint(), sampler: self.sampler.mark() });
         if self.hand_over() {
-            // As above.
+            // As in joining.
             let _ = self.work.send(work(mark));
         }
     }

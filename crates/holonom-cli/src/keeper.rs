@@ -22,7 +22,7 @@ pub const PAUSE: Duration = Duration::from_secs(1);
 const COST: u32 = 50;
 
 /// Bytes of rows that are ready to be written: the text of others is made when it is written.
-const MOST_TEXT: usize = 1 << 25;
+const MOST_TEXT: usize = 1 << 23;
 
 /// Writes the rows and the checkpoint of a run from time to time. Rows are appended, and come before the checkpoint that counts them, so
 /// that a checkpoint always has its rows.
