@@ -273,8 +273,7 @@ fn an_accuracy_behind_round_off_is_refused() {
         let mut simulation = Simulation::new(model.system.clone(), resolved, 0.1).unwrap();
         let status = simulation.run(end, &mut |_: &Simulation| holonom::simulation::Verdict::GoOn);
         let holonom::simulation::Status::Stopped { at, reason } = status else { panic!("{method}: {status:?}") };
-        // The corner is at 0.17 s, and some steps whose errors are seen tell that it is passed.
-        assert!((0.1..0.4).contains(&at) && reason.contains("round-off hides"), "{method}: {at} s, {reason}");
+        assert!((0.1..0.3).contains(&at) && reason.contains("round-off hides"), "{method}: {at} s, {reason}");
     }
 }
 

@@ -49,12 +49,12 @@ pub(super) struct Control {
     order: u8,
     in_use: u8,
     estimate: Estimate,
-    /// Whether the last attempt showed nothing but round-off near a singular position.
+    /// Whether the last attempt showed nothing but round-off near a singular position, and how many such steps were accepted in a row.
     is_rounded: bool,
-    /// Whether it did so anywhere, and how many such steps were accepted in a row.
+    unseen: u32,
+    /// Whether the last attempt showed nothing but round-off anywhere.
     #[serde(skip)]
     is_noise: bool,
-    unseen: u32,
     /// Length of the run, s, over which errors may add up to the accuracy.
     pub span: f64,
     /// Step to try next, s.
@@ -232,9 +232,8 @@ impl Control {
         if !(1.0 / WORTH..WORTH).contains(&factor) {
             self.step = h * factor.clamp(0.2, 2.0);
         }
-        let shows_nothing = self.is_rounded || self.is_noise;
-        self.unseen = if shows_nothing { self.unseen + 1 } else { 0 };
-        if shows_nothing && self.unseen.is_multiple_of(ASKED) {
+        self.unseen = if self.is_rounded { self.unseen + 1 } else { 0 };
+        if self.is_rounded && self.unseen.is_multiple_of(ASKED) {
             self.step = 2.0 * h;
         }
     }
