@@ -10,7 +10,8 @@ use holonom_io::Source;
 /// Numbers of samples that are handed over at once.
 const PORTION: usize = 1000;
 
-/// A ball that hits a floor of stiff rubber, with what reads forces of a joint over the whole run, and an event that stops at a nominal time.
+/// An arm of two links on a spring, with measures that read forces of joints over the whole run, an event that sets an input, and one that ends the
+/// run at a nominal time.
 const EVENTFUL: &str = r#"
 [body.arm]
 mass = 2
