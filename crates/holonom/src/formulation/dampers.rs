@@ -30,6 +30,7 @@ const EACH_STEP: usize = 4;
 const MOST: usize = 1000;
 const LIGHTER: f64 = 4.0;
 
+/// Share of a step by which rounding may have weak dampers fill more than all of it.
 const ROUNDED: f64 = 1e-12;
 
 /// Rounds in which dampers that meet are told to be weak or strong. Each leaves shares that are small enough.
