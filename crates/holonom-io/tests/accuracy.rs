@@ -324,3 +324,27 @@ fn accuracies_below_round_off_are_refused() {
         assert!(error.contains("1e-13"), "{error}");
     }
 }
+
+/// A block that is braked in 0.5 s and creeps then: steps of its own time, 0.5 µs, show nothing but the rounding of velocities, and get longer as
+/// velocities farther apart show that they may.
+#[test]
+fn what_creeps_takes_long_steps() {
+    let text = "plane = \"xy\"\ngravity = [0, 0]\n[body.block]\nmass = 1\ninertia = 1\nposition = [0, 0]\nvelocity = [1, 0]\n\
+                [joint.rail]\ntype = \"prismatic\"\nbetween = [\"ground\", \"block\"]\nat = [0, 0]\naxis = [1, 0]\n\
+                [force.rub]\ntype = \"friction\"\njoint = \"rail\"\neffort = 2\nspeed = 1e-6\n\
+                [force.pull]\ntype = \"effort\"\njoint = \"rail\"\neffort = 1\n";
+    let model = model(text);
+    let end = 0.5 + 1e-6 * 0.5_f64.atanh();
+    for method in ["conserving-ggl", "conserving", "generalized-alpha"] {
+        for accuracy in [1e-6, 1e-7, 1e-8, 1e-9] {
+            let choice = Choice { accuracy: Some(accuracy), ..Choice::default().named(method) };
+            let (simulation, recording) = common::run(&model, choice, 0.1, 2.0);
+            let error = common::last(&recording, "block.x") - end;
+            let size = holonom::analysis::rank(&model.system, &simulation.state().x, 2.0).size(&model.system);
+            let steps = simulation.summary("test", 2.0, &Status::Completed, size).work.steps_taken;
+            println!("{method}, {accuracy:e}: {steps} steps, {error:.1e} m");
+            assert!(error.abs() <= 1e-11, "{method}, {accuracy:e}: {error:e} m");
+            assert!(steps < 10_000, "{method}, {accuracy:e}: {steps} steps");
+        }
+    }
+}

@@ -182,7 +182,7 @@ impl Simulation {
             }
             pilot.control.remember(self.state.t, &pilot.v);
             let planned = pilot.control.step;
-            pilot.control.accept(step, ratio);
+            pilot.control.accept(step, ratio, self.work.scales.length);
             pilot.book_hidden(self);
             pilot.last = Some((taken, step));
             pilot.patience.rejected = 0;

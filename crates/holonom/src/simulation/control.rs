@@ -3,12 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::State;
+use super::past::Past;
 use crate::formulation::Workspace;
 use crate::integrator::{Estimate, Step};
 use crate::linalg::largest;
-
-/// Velocities that the third derivatives are taken from, the present ones included.
-const KEPT: usize = 4;
 
 /// A step is aimed at this share of what is allowed.
 const SAFETY: f64 = 0.9;
@@ -23,7 +21,8 @@ const TERMS: f64 = 8.0;
 /// The share of it in velocities that are no differences of positions.
 const OWN_ROUNDED: f64 = 0.1;
 
-/// Where nothing is seen of errors, one step in so many asks whether longer ones do.
+/// Where nothing is seen of errors, one step in so many asks whether longer ones do. Where velocities so many steps apart do not show it, those
+/// twice as far apart may.
 const ASKED: u32 = 16;
 
 /// Ratio of error and allowance that leaves the step about as it is.
@@ -49,12 +48,13 @@ pub(super) struct Control {
     order: u8,
     in_use: u8,
     estimate: Estimate,
-    /// Whether the last attempt showed nothing but round-off near a singular position, and how many such steps were accepted in a row.
+    /// Whether the last attempt showed nothing but round-off near a singular position.
     is_rounded: bool,
-    unseen: u32,
-    /// Whether the last attempt showed nothing but round-off anywhere.
-    #[serde(skip)]
+    /// Whether it did so anywhere, and how many such steps were accepted in a row.
     is_noise: bool,
+    unseen: u32,
+    /// Steps between the velocities of `far`.
+    apart: u32,
     /// Length of the run, s, over which errors may add up to the accuracy.
     pub span: f64,
     /// Step to try next, s.
@@ -62,10 +62,9 @@ pub(super) struct Control {
     last_ratio: f64,
     /// Largest speed so far, m/s: the unit of velocity errors.
     pub speed: f64,
-    /// Times and velocities of the last accepted steps, the latest first.
-    times: [f64; KEPT],
-    velocities: [Vec<f64>; KEPT],
-    count: usize,
+    /// The last accepted steps, and those far apart in a row that showed nothing but round-off.
+    past: Past,
+    far: Past,
     /// Accelerations at the start (n), m/s².
     start: Vec<f64>,
 }
@@ -78,15 +77,15 @@ impl Control {
             in_use: order,
             estimate,
             is_rounded: false,
-            unseen: 0,
             is_noise: false,
+            unseen: 0,
+            apart: ASKED,
             span: 0.0,
             step: 0.0,
             last_ratio: 1.0,
             speed: 0.0,
-            times: [0.0; KEPT],
-            velocities: std::array::from_fn(|_| vec![0.0; n]),
-            count: 0,
+            past: Past::new(n),
+            far: Past::new(n),
             start: vec![0.0; n],
         }
     }
@@ -96,7 +95,7 @@ impl Control {
         let n = self.start.len();
         self.span = span;
         self.start.copy_from_slice(&state.a[..n]);
-        self.count = 0;
+        self.past.keep(0);
         self.remember(state.t, v);
         self.speed = largest(&state.v).max((largest(&state.a) * length).sqrt()).max(length / span);
         if self.step == 0.0 {
@@ -108,9 +107,9 @@ impl Control {
     /// Begins anew at a state with velocities `v`, where something changes abruptly: of what came before nothing tells what comes,
     /// and a step of a tenth asks.
     pub(super) fn begin_anew(&mut self, state: &State, v: &[f64]) {
-        let count = self.count;
+        let count = self.past.count();
         self.remember(state.t, v);
-        self.count = count;
+        self.past.keep(count);
         self.forget(state);
     }
 
@@ -119,11 +118,12 @@ impl Control {
         let n = self.start.len();
         self.start.copy_from_slice(&state.a[..n]);
         // Where no step was taken since the last time the next is one that asks already.
-        if self.count > 1 {
+        if self.past.count() > 1 {
             self.step *= 0.1;
         }
-        self.count = 1;
+        self.past.keep(1);
         self.last_ratio = 1.0;
+        self.look_near();
     }
 
     /// The accuracy that errors are held to.
@@ -148,7 +148,7 @@ impl Control {
 
     /// Whether nothing has been remembered since the start or since something changed abruptly.
     pub(super) fn begins(&self) -> bool {
-        self.count == 1
+        self.past.count() == 1
     }
 
     /// A few lengths of the mechanism over the longest way that anything may go in the run, or 1 where that is shorter.
@@ -158,12 +158,7 @@ impl Control {
 
     /// Takes note of an accepted state's time and velocities.
     pub(super) fn remember(&mut self, t: f64, v: &[f64]) {
-        self.velocities.rotate_right(1);
-        self.times.rotate_right(1);
-        self.times[0] = t;
-        let n = self.start.len();
-        self.velocities[0].copy_from_slice(&v[..n]);
-        self.count = (self.count + 1).min(KEPT);
+        self.past.remember(t, v);
         self.speed = largest(v).max(self.speed);
     }
 
@@ -207,24 +202,17 @@ impl Control {
     /// Local errors of a scheme of order 2 that errs by h³/12 of the third derivatives, from divided differences. Where the step is much shorter
     /// than those before, what jumped within it is little of a third derivative over all of them: it counts as within equal steps, too.
     fn look_back(&self, h: f64, now: f64, latest: &[f64], work: &mut Workspace) {
-        let t = |k: usize| if k == 0 { now } else { self.times[k - 1] };
+        let equal = if self.past.tells_thirds() { self.past.back(now, 2) * self.past.back(now, 3) / (6.0 * WORSE) } else { 0.0 };
         for i in 0..self.start.len() {
-            let v = |k: usize| if k == 0 { latest[i] } else { self.velocities[k - 1][i] };
-            let slope = |k: usize| (v(k) - v(k + 1)) / (t(k) - t(k + 1));
-            let second = |k: usize| (slope(k) - slope(k + 1)) / (t(k) - t(k + 2));
-            let (bend, twist) = match self.count {
-                1 => ((slope(0) - self.start[i]) / h, 0.0),
-                2 => (second(0), 0.0),
-                _ => (second(0), (second(0) - second(1)) / (t(0) - t(3))),
-            };
-            let equal = if self.count < 3 { 0.0 } else { (t(0) - t(2)) * (t(0) - t(3)) / (6.0 * WORSE) };
+            let [slope, second, third] = self.past.differences(i, now, latest[i]);
+            let bend = if self.begins() { (slope - self.start[i]) / h } else { second };
             work.estimate.q[i] = h * h * h * bend / 6.0;
-            work.estimate.v[i] = h * twist / 2.0 * equal.max(h * h);
+            work.estimate.v[i] = h * third / 2.0 * equal.max(h * h);
         }
     }
 
-    /// The next step after one of length `h` that was accepted with `ratio`: a proportional and integral controller.
-    pub(super) fn accept(&mut self, h: f64, ratio: f64) {
+    /// The next step after one of length `h` that was accepted with `ratio`: a proportional and integral controller. `length` is that of the mechanism.
+    pub(super) fn accept(&mut self, h: f64, ratio: f64, length: f64) {
         let order = f64::from(self.in_use);
         let trend = (self.last_ratio / ratio).clamp(0.1, 10.0);
         let factor = SAFETY * ratio.powf(-0.3 / order) * trend.powf(0.4 / order);
@@ -232,10 +220,40 @@ impl Control {
         if !(1.0 / WORTH..WORTH).contains(&factor) {
             self.step = h * factor.clamp(0.2, 2.0);
         }
-        self.unseen = if self.is_rounded { self.unseen + 1 } else { 0 };
-        if self.is_rounded && self.unseen.is_multiple_of(ASKED) {
+        if !self.is_noise {
+            return self.look_near();
+        }
+        self.unseen += 1;
+        let may_double = if self.is_rounded { self.unseen.is_multiple_of(ASKED) } else { self.shows_afar(2.0 * h, length) };
+        if may_double {
             self.step = 2.0 * h;
         }
+    }
+
+    /// Goes by the last steps again.
+    fn look_near(&mut self) {
+        (self.unseen, self.apart) = (0, ASKED);
+        self.far.keep(0);
+    }
+
+    /// Whether velocities far apart, of whose third derivatives round-off hides less, show that a step of length `h` errs by little.
+    fn shows_afar(&mut self, h: f64, length: f64) -> bool {
+        if self.estimate != Estimate::History || !self.unseen.is_multiple_of(self.apart) {
+            return false;
+        }
+        let (now, latest) = self.past.latest();
+        let errs = |i: usize| {
+            let [_, second, third] = self.far.differences(i, now, latest[i]);
+            (h * h * h * second / 6.0 / length).abs().max((h * h * h * third / 2.0 / self.speed).abs())
+        };
+        let largest = (0..latest.len()).map(errs).fold(0.0, f64::max);
+        let shows = self.far.tells_thirds() && largest <= KEEPING * self.allowed() * h;
+        self.far.remember(now, latest);
+        if self.far.is_full() && !shows {
+            self.far.thin();
+            self.apart *= 2;
+        }
+        shows
     }
 
     /// The next step after one that was rejected.

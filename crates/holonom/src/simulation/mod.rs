@@ -21,6 +21,7 @@ mod method;
 mod motions;
 mod no_value;
 mod passage;
+mod past;
 mod periods;
 mod pilot;
 mod places;
