@@ -110,26 +110,29 @@ impl Spline {
         a * self.values[k] + b * self.values[k + 1] + cubic(a, self.bends[k]) + cubic(b, self.bends[k + 1])
     }
 
-    /// The derivative at `s`, with whatever derivatives the number carries.
-    pub fn slope<N: Number>(&self, s: N) -> N {
-        let (k, s) = self.interval(s);
-        let Some(k) = k else {
-            let outside = self.evaluate(num_dual::Dual64::new(s.re(), 1.0));
-            return N::from(outside.eps);
-        };
-        let h = self.knots[k + 1] - self.knots[k];
-        let (b, a) = ((s - self.knots[k]) / h, (-s + self.knots[k + 1]) / h);
-        let square = |share: N| share * share * 3.0 - 1.0;
-        (square(b) * self.bends[k + 1] - square(a) * self.bends[k]) * (h / 6.0) + (self.values[k + 1] - self.values[k]) / h
+    /// The derivative at `s`.
+    pub fn slope(&self, s: f64) -> f64 {
+        self.derivatives(s)[1]
     }
 
-    /// The second derivative at `s`.
-    pub fn bend(&self, s: f64) -> f64 {
+    /// The value at `s` and its three derivatives.
+    pub fn derivatives(&self, s: f64) -> [f64; 4] {
         let (k, s) = self.interval(s);
-        k.map_or(0.0, |k| {
-            let share = (s - self.knots[k]) / (self.knots[k + 1] - self.knots[k]);
-            (1.0 - share) * self.bends[k] + share * self.bends[k + 1]
-        })
+        let Some(k) = k else {
+            let outside = self.evaluate(num_dual::Dual64::new(s, 1.0));
+            return [outside.re, outside.eps, 0.0, 0.0];
+        };
+        let h = self.knots[k + 1] - self.knots[k];
+        let (b, a) = ((s - self.knots[k]) / h, (self.knots[k + 1] - s) / h);
+        let ([left, right], [low, high]) = ([self.values[k], self.values[k + 1]], [self.bends[k], self.bends[k + 1]]);
+        let cubic = |share: f64, bend: f64| (share * share * share - share) * (bend * h * h / 6.0);
+        let square = |share: f64, bend: f64| (3.0 * share * share - 1.0) * (bend * h / 6.0);
+        [
+            a * left + b * right + cubic(a, low) + cubic(b, high),
+            (right - left) / h + square(b, high) - square(a, low),
+            a * low + b * high,
+            (high - low) / h,
+        ]
     }
 
     /// The interval of `s`, none beyond a natural end, and `s` brought into the first period.

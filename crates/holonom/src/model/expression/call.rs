@@ -20,6 +20,10 @@ fn functions() -> impl Iterator<Item = &'static str> + Clone {
 const IN_BODY_AXES: &str = "give a force or torque in body axes by axes = \"body\", a spring along = \"BODY.AXIS\"; for a component take two places of the \
                             body one metre apart along the axis: (BODY.Q.x - BODY.P.x)*BODY.vx + (BODY.Q.y - BODY.P.y)*BODY.vy + (BODY.Q.z - BODY.P.z)*BODY.vz";
 
+/// How to pass smoothly from one value to another.
+const SMOOTHLY: &str = "h0 + (h1 - h0)*u^2*(3 - 2*u) with u = max(0, min((x - x0)/(x1 - x0), 1)), which passes smoothly from h0 to h1; a drive does so by \
+                        profile = { table = [[t0, h0], [t1, h1]], ends = \"rest\" }";
+
 /// Functions that other programs have, and how their values are written here.
 const ELSEWHERE: &[(&str, &str)] = &[
     ("log", "ln(x), or log10(x)"),
@@ -31,6 +35,10 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("clamp", "max(low, min(x, high))"),
     ("saturate", "max(0, min(x, 1))"),
     ("hypot", "sqrt(x^2 + y^2)"),
+    ("smoothstep", SMOOTHLY),
+    ("smooth", SMOOTHLY),
+    ("step5", SMOOTHLY),
+    ("havsin", SMOOTHLY),
     ("mean", "integral(x)/t, where measures know it"),
 ];
 
@@ -133,6 +141,11 @@ impl Parser<'_> {
         }
         if *self.peek() == Token::Comma && matches!(function, Function::Min | Function::Max) {
             return Err(self.mistake(format!("`{name}` takes {arguments} arguments"), format!("write {name}(a, {name}(b, c))")));
+        }
+        if *self.peek() == Token::Comma && function == Function::Step {
+            return Err(
+                self.mistake(format!("`{name}` takes 1 argument: it is 0 below x = 0 and 1 from there on"), format!("write {SMOOTHLY}"))
+            );
         }
         self.close()?;
         match (function, arguments) {

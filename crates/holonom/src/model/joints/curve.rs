@@ -2,16 +2,18 @@
 
 use std::sync::Arc;
 
+use num_dual::{Dual2_64, DualNum};
+
 use crate::model::geometry::{Vec3, across, add, carried, cross, dot, norm, scale, subtract};
 use crate::model::spline::Spline;
-use crate::system::{FollowedFunction, Number};
+use crate::system::{Derivatives, Followed};
 
 /// A spline through points over the length of its chords, with a direction across it at each, carried along it.
 #[derive(Debug)]
 pub struct Curve {
     place: Vec<Spline>,
     /// A direction across, by its components; none in the plane, where that is the tangent's quarter turn.
-    across: Vec<Spline>,
+    carried: Vec<Spline>,
     /// Length of all chords.
     length: f64,
 }
@@ -19,6 +21,9 @@ pub struct Curve {
 /// Share of its length in which a curve bends so little that the mean of a derivative by Simpson's rule has no error but round-off, also where a
 /// thousand points bend it.
 const STRAIGHT: f64 = 1e-5;
+
+/// Parts of each stretch of a curve at whose ends the nearest point is looked for.
+const SAMPLES: u32 = 16;
 
 /// Most Newton steps to the nearest point of a curve.
 const STEPS: usize = 50;
@@ -37,8 +42,8 @@ impl Curve {
         let spline =
             |values: Vec<f64>| if closed { Spline::periodic(knots.clone(), values) } else { Spline::natural(knots.clone(), values) };
         let place: Vec<Spline> = (0..dim).map(|c| spline(points.iter().map(|point| point[c]).collect())).collect();
-        let across = if dim == 2 { Vec::new() } else { (0..3).map(|c| spline(carried_across(&place, &knots, closed, c))).collect() };
-        Self { place, across, length: knots[knots.len() - 1] }
+        let carried = if dim == 2 { Vec::new() } else { (0..3).map(|c| spline(carried_across(&place, &knots, closed, c))).collect() };
+        Self { place, carried, length: knots[knots.len() - 1] }
     }
 
     /// The place at `s`.
@@ -51,9 +56,9 @@ impl Curve {
         (0..=count).map(move |k| self.at(self.length * f64::from(k) / f64::from(count)))
     }
 
-    /// The tangent at `s`, not of unit length.
-    pub fn tangent(&self, s: f64) -> Vec3 {
-        vector(&self.place, |spline| spline.slope(s))
+    /// The place at `s` and its three derivatives.
+    fn derivatives(&self, s: f64) -> [Vec3; 4] {
+        of_each(&self.place, s)
     }
 
     /// How far beyond `start` the parameter of the point nearest to `x` is, from `near` on: |x − C(s)|² is least. From what it has found it
@@ -62,8 +67,8 @@ impl Curve {
         let mut way = near;
         for _ in 0..STEPS {
             let s = start + way;
-            let (arm, tangent) = (subtract(x, self.at(s)), self.tangent(s));
-            let bend = vector(&self.place, |spline| spline.bend(s));
+            let [place, tangent, bend, _] = self.derivatives(s);
+            let arm = subtract(x, place);
             let square = dot(tangent, tangent);
             // Where the curve bends away too strongly for Newton's step, that of Gauss.
             let curvature = square - dot(arm, bend);
@@ -77,30 +82,45 @@ impl Curve {
     }
 
     /// The parameter of the point nearest to `x` of all.
-    pub fn nearest_of_all(&self, x: Vec3, length: f64) -> f64 {
-        let samples = 400;
+    pub fn nearest_of_all(&self, x: Vec3) -> f64 {
         let distance = |s: f64| norm(subtract(x, self.at(s)));
-        let best = (0..=samples).map(|k| length * f64::from(k) / f64::from(samples)).min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+        let within = |pair: &[f64]| {
+            let [low, high] = [pair[0], pair[1]];
+            (0..=SAMPLES).map(move |k| low + (high - low) * f64::from(k) / f64::from(SAMPLES))
+        };
+        let best = self.place[0].knots().windows(2).flat_map(within).min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
         self.nearest(x, 0.0, best.expect("samples"))
     }
 
-    /// s with derivatives: the root of (x − C(s))·C'(s) for an `x` that carries some, from the root for its value.
-    fn parameter<N: Number>(&self, x: &[N], root: f64) -> N {
-        let tangent = self.tangent(root);
-        let arm: Vec3 =
-            std::array::from_fn(|c| x.get(c).map_or(0.0, |x| x.re()) - self.place.get(c).map_or(0.0, |spline| spline.evaluate(root)));
-        let curvature = dot(tangent, tangent) - dot(arm, vector(&self.place, |spline| spline.bend(root)));
-        let mut s = N::from(root);
-        // Each step adds an order of derivatives.
-        for _ in 0..3 {
-            let mut along = N::from(0.0);
-            for (x, spline) in x.iter().zip(&self.place) {
-                along += (*x - spline.evaluate(s)) * spline.slope(s);
+    /// The direction across the curve at `s`, first or second, of unit length, and its two derivatives.
+    fn across(&self, s: f64, tangents: [Vec3; 3], which: usize) -> [Vec3; 3] {
+        let of =
+            |[value, first, second]: [Vec3; 3]| -> [Dual2_64; 3] { std::array::from_fn(|c| Dual2_64::new(value[c], first[c], second[c])) };
+        let dot = |u: [Dual2_64; 3], w: [Dual2_64; 3]| u[0] * w[0] + u[1] * w[1] + u[2] * w[2];
+        let [value, first, second, _] = of_each(&self.carried, s);
+        let (carried, tangent) = (of([value, first, second]), of(tangents));
+        let square = dot(tangent, tangent);
+        let along = dot(carried, tangent) / square;
+        let across: [Dual2_64; 3] = std::array::from_fn(|c| carried[c] - tangent[c] * along);
+        let size = dot(across, across).sqrt();
+        let direction: [Dual2_64; 3] = std::array::from_fn(|c| {
+            let (i, j) = ((c + 1) % 3, (c + 2) % 3);
+            match which {
+                0 => across[c] / size,
+                _ => (tangent[i] * across[j] - tangent[j] * across[i]) / (square.sqrt() * size),
             }
-            s += along / curvature;
-        }
-        s
+        });
+        [direction.map(|e| e.re), direction.map(|e| e.v1), direction.map(|e| e.v2)]
     }
+}
+
+/// Values of the splines at `s` and their three derivatives.
+fn of_each(splines: &[Spline], s: f64) -> [Vec3; 4] {
+    let mut all = [[0.0; 3]; 4];
+    for (c, spline) in splines.iter().enumerate() {
+        spline.derivatives(s).iter().zip(&mut all).for_each(|(&value, vector)| vector[c] = value);
+    }
+    all
 }
 
 fn vector(splines: &[Spline], of: impl Fn(&Spline) -> f64) -> Vec3 {
@@ -151,40 +171,54 @@ pub enum What {
     Beside(usize),
 }
 
-impl FollowedFunction for Measured {
+impl Followed for Measured {
     fn locate(&self, value: &[f64], near: f64) -> f64 {
-        let x = std::array::from_fn(|c| value.get(c).copied().unwrap_or(0.0));
-        self.curve.nearest(x, self.start, near)
+        self.curve.nearest(vector_of(value), self.start, near)
     }
 
     fn least_change(&self) -> f64 {
         STRAIGHT * self.curve.length
     }
 
-    fn evaluate<N: Number>(&self, value: &[N], at: f64) -> N {
-        let s = self.curve.parameter(value, at + self.start);
-        let What::Beside(k) = self.what else { return s - self.start };
-        let zero = N::from(0.0);
-        let (mut arm, mut tangent, mut first) = ([zero; 3], [zero; 3], [zero; 3]);
-        for (c, spline) in self.curve.place.iter().enumerate() {
-            arm[c] = value[c] - spline.evaluate(s);
-            tangent[c] = spline.slope(s);
-        }
-        let square = tangent[0] * tangent[0] + tangent[1] * tangent[1] + tangent[2] * tangent[2];
-        if value.len() == 2 {
-            return (arm[1] * tangent[0] - arm[0] * tangent[1]) / square.sqrt();
-        }
-        self.curve.across.iter().zip(&mut first).for_each(|(spline, first)| *first = spline.evaluate(s));
-        let dot = |u: [N; 3], w: [N; 3]| u[0] * w[0] + u[1] * w[1] + u[2] * w[2];
-        let along = dot(first, tangent) / square;
-        (0..3).for_each(|c| first[c] -= tangent[c] * along);
-        let across = match k {
-            0 => first,
-            _ => std::array::from_fn(|c| {
-                let (i, j) = ((c + 1) % 3, (c + 2) % 3);
-                (tangent[i] * first[j] - tangent[j] * first[i]) / square.sqrt()
-            }),
+    /// With r from the nearest point to the place, r·C'(s) = 0 gives s by its derivatives: κ ds = C'·dx with κ = C'·C' − r·C''.
+    fn derivatives(&self, value: &[f64], at: f64) -> Derivatives {
+        let s = at + self.start;
+        let [place, tangent, bend, twist] = self.curve.derivatives(s);
+        let arm = subtract(vector_of(value), place);
+        let square = dot(tangent, tangent);
+        let curvature = square - dot(arm, bend);
+        let slope = scale(tangent, 1.0 / curvature);
+        let change = dot(arm, twist) - 3.0 * dot(tangent, bend);
+        let turned = |i: usize, j: usize| (bend[i] * slope[j] + slope[i] * bend[j] + change * slope[i] * slope[j]) / curvature;
+        let mut out = Derivatives::default();
+        let mut write = |value: f64, gradient: Vec3, hessian: &dyn Fn(usize, usize) -> f64| {
+            out.value = value;
+            for i in 0..self.curve.place.len() {
+                out.gradient[i] = gradient[i];
+                (0..self.curve.place.len()).for_each(|j| out.hessian[i][j] = hessian(i, j));
+            }
         };
-        dot(arm, across) / dot(first, first).sqrt()
+        match self.what {
+            What::Parameter => write(at + dot(arm, tangent) / curvature, slope, &turned),
+            What::Beside(_) if value.len() == 2 => {
+                let size = square.sqrt();
+                let normal = [-tangent[1] / size, tangent[0] / size, 0.0];
+                let share = -dot(normal, bend) / curvature / square;
+                write(dot(arm, normal), normal, &|i, j| share * tangent[i] * tangent[j]);
+            }
+            What::Beside(k) => {
+                let [across, first, second] = self.curve.across(s, [tangent, bend, twist], k);
+                let (by_first, by_second) = (dot(arm, first), dot(arm, second) - dot(tangent, first));
+                let gradient = add(across, scale(slope, by_first));
+                write(dot(arm, across), gradient, &|i, j| {
+                    first[i] * slope[j] + slope[i] * first[j] + by_second * slope[i] * slope[j] + by_first * turned(i, j)
+                });
+            }
+        }
+        out
     }
+}
+
+fn vector_of(value: &[f64]) -> Vec3 {
+    std::array::from_fn(|c| value.get(c).copied().unwrap_or(0.0))
 }

@@ -8,7 +8,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Number, Site};
 use crate::model::geometry::{Vec3, add, norm, subtract, unit};
 use crate::model::key::Shape;
-use crate::system::{Differentiated, Form, Term};
+use crate::system::{Form, Term};
 
 /// a cam, a track, a roller coaster: a point of the second body moves along a curve of the first, a cubic spline; the second may be
 /// a point
@@ -56,7 +56,7 @@ impl Joint for PointOnCurve {
         let curve = Arc::new(Curve::new(dim, &points.iter().map(|&point| subtract(point, origin)).collect::<Vec<_>>(), closed));
         let length: f64 = points.windows(2).map(|pair| norm(subtract(pair[1], pair[0]))).sum();
         let place = subtract(at, origin);
-        let start = curve.nearest_of_all(place, length);
+        let start = curve.nearest_of_all(place);
         let off = norm(subtract(place, curve.at(start)));
         let nearest = add(curve.at(start), origin);
         pair.assembly.check_start_within(pair.entry, off, length, NEAR, || {
@@ -67,7 +67,7 @@ impl Joint for PointOnCurve {
         let of: Vec<[Vec<Term>; 2]> = (0..dim).map(|k| [d.clone(), pair.fixed_to(Side::A, unit(k))]).collect();
         let form = |what| {
             let measured = Measured { curve: Arc::clone(&curve), start, what };
-            Form::Followed { of: of.clone(), function: Arc::new(Differentiated(measured)) }
+            Form::Followed { of: of.clone(), function: Arc::new(measured) }
         };
         for k in 0..dim - 1 {
             pair.keep(&[(form(What::Beside(k)), 1.0)]);
