@@ -130,7 +130,8 @@ impl Held {
     /// of coordinates costs the cube of their number in a sum over many points.
     fn slopes<N: AnyNumber>(&self, x: &[N], t: N, by_position: &mut [N]) {
         let variables = self.variables(x, t);
-        let mut slopes: SmallVec<[N; ROOM]> = SmallVec::from_elem(N::from(0.0), variables.len());
+        let mut slopes: SmallVec<[N; ROOM]> = SmallVec::new();
+        slopes.resize(variables.len(), N::from(0.0));
         self.value.slopes(&variables, &mut slopes);
         by_position.fill(N::from(0.0));
         self.readings.spread(&slopes[1..], [x, x], [by_position, &mut []]);
