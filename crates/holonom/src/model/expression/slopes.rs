@@ -25,20 +25,15 @@ impl Program {
     /// The value, and what it changes by with each variable added to `slopes`.
     pub fn slopes<N: Number>(&self, variables: &[N], slopes: &mut [N]) -> N {
         let zero = N::from(0.0);
-        match self.ops.len() {
-            ..=SHORT => {
-                let room = Room { values: &mut [zero; SHORT], weights: &mut [zero; SHORT], taken: &mut [0; SHORT] };
-                self.slopes_in(room, variables, slopes)
-            }
-            ..=LONG => {
-                let room = Room { values: &mut [zero; LONG], weights: &mut [zero; LONG], taken: &mut [0; LONG] };
-                self.slopes_in(room, variables, slopes)
-            }
-            count => {
-                let room = Room { values: &mut vec![zero; count], weights: &mut vec![zero; count], taken: &mut vec![0; count] };
-                self.slopes_in(room, variables, slopes)
-            }
-        }
+        let count = self.ops.len();
+        let room = if count <= SHORT {
+            Room { values: &mut [zero; SHORT], weights: &mut [zero; SHORT], taken: &mut [0; SHORT] }
+        } else if count <= LONG {
+            Room { values: &mut [zero; LONG], weights: &mut [zero; LONG], taken: &mut [0; LONG] }
+        } else {
+            Room { values: &mut vec![zero; count], weights: &mut vec![zero; count], taken: &mut vec![0; count] }
+        };
+        self.slopes_in(room, variables, slopes)
     }
 
     fn slopes_in<N: Number>(&self, room: Room<'_, N>, variables: &[N], slopes: &mut [N]) -> N {
