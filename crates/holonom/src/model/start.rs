@@ -204,9 +204,9 @@ pub(super) fn begin(assembly: &mut Assembly<'_>, equilibrium: bool) -> Result<()
         placed => placed?,
     };
     let settled = if equilibrium { rest::settle(assembly, &targets)? } else { None };
-    leaves_free |= match set_off(&mut assembly.builder, &targets, &elastic) {
+    leaves_free |= match set_off(&mut assembly.builder, &targets, &elastic, &assembly.efforts) {
         // Beams that cannot go along without being deformed are struck.
-        Err(_) if !elastic.is_empty() => set_off(&mut assembly.builder, &targets, &[])?,
+        Err(_) if !elastic.is_empty() => set_off(&mut assembly.builder, &targets, &[], &assembly.efforts)?,
         set_off => set_off?,
     };
     assembly.elastic = elastic;
@@ -295,7 +295,12 @@ pub(super) fn hold(builder: &mut SystemBuilder, first: usize, mut target: impl F
 
 /// Gives the nodes the velocities at which coordinates have their rates and all constraints are met, with as little as possible of a change
 /// of those that are written, in the metric of the mass. Says whether the rates leave anything free.
-fn set_off(builder: &mut SystemBuilder, targets: &[Target], elastic: &[Elastic]) -> Result<bool, (String, &'static str)> {
+fn set_off(
+    builder: &mut SystemBuilder,
+    targets: &[Target],
+    elastic: &[Elastic],
+    efforts: &[Effort],
+) -> Result<bool, (String, &'static str)> {
     let rated: Vec<(&Target, f64)> = targets.iter().filter_map(|target| Some((target, target.rate?))).collect();
     if rated.is_empty() {
         return Ok(false);
@@ -304,26 +309,30 @@ fn set_off(builder: &mut SystemBuilder, targets: &[Target], elastic: &[Elastic])
         let message = format!("`{}.{}` is driven: its drive says how fast it is", coordinate.joint, coordinate.name);
         return Err((message, "remove the rate, or the drive"));
     }
-    let led = leading(&stiffened(builder, elastic), &rated);
-    let here = led.clone().build();
-    let mut places = Places::new(led.build());
-    let velocities = places.as_mut().ok().and_then(|places| {
-        places.put(here.start_position()).ok()?;
-        let leaves_free = way::leaves_free(places);
-        Some((places.velocities().ok()?, leaves_free))
-    });
-    match velocities {
+    let stiff = stiffened(builder, elastic);
+    match velocities(&leading(&stiff, &rated)) {
         Some((velocities, leaves_free)) => {
-            builder.set_velocity(velocities);
+            builder.set_velocity(&velocities);
             Ok(leaves_free)
         }
         None => {
             let name = |(Target { coordinate, .. }, _): &(&Target, f64)| format!("`{}.{}`", coordinate.joint, coordinate.name);
             let names = rated.iter().map(name).collect::<Vec<_>>().join(", ");
             let message = format!("no velocities at the start meet all constraints and the rates that are given of {names}");
+            let drives = barring(&stiff, &rated, efforts);
+            if !drives.is_empty() {
+                let are = if drives.len() == 1 { "is driven at another speed" } else { "are driven at other speeds" };
+                let drives = drives.iter().map(|drive| format!("`{drive}`")).collect::<Vec<_>>().join(", ");
+                return Err((
+                    format!("{message}: {drives} {are} there"),
+                    "remove the rates, or the drives, or give the drives the speeds at t = 0 that go with the rates",
+                ));
+            }
             // Such as the axis of one of four parallel hinges that is a little off: the loop is stuck, and no other rate helps.
-            let redundant = Places::new(builder.clone().build())
-                .is_ok_and(|mut places| places.put(here.start_position()).is_ok() && places.redundant_rows() > 0);
+            let redundant = Places::new(builder.clone().build()).is_ok_and(|mut places| {
+                let x = places.system().start_position().to_vec();
+                places.put(&x).is_ok() && places.redundant_rows() > 0
+            });
             Err((
                 message,
                 match redundant {
@@ -336,4 +345,33 @@ fn set_off(builder: &mut SystemBuilder, targets: &[Target], elastic: &[Elastic])
             ))
         }
     }
+}
+
+/// The velocities at which all constraints are met where the nodes are, and whether these leave anything free. `None` where there are none.
+fn velocities(builder: &SystemBuilder) -> Option<(Vec<f64>, bool)> {
+    let mut places = Places::new(builder.clone().build()).ok()?;
+    let x = places.system().start_position().to_vec();
+    places.put(&x).ok()?;
+    let leaves_free = way::leaves_free(&places);
+    Some((places.velocities().ok()?.to_vec(), leaves_free))
+}
+
+/// Drives, by name, with any of which there are no velocities at the rates that are given, while there are without them.
+fn barring<'e>(builder: &SystemBuilder, rated: &[(&Target, f64)], efforts: &'e [Effort]) -> Vec<&'e str> {
+    let has_velocities = |without: &[&Effort]| {
+        let mut free = builder.clone();
+        without.iter().rev().for_each(|effort| free.remove_row(effort.row));
+        velocities(&leading(&free, rated)).is_some()
+    };
+    let mut barring: Vec<&Effort> = efforts.iter().collect();
+    if barring.is_empty() || !has_velocities(&barring) {
+        return Vec::new();
+    }
+    for effort in efforts {
+        let fewer: Vec<&Effort> = barring.iter().copied().filter(|other| other.row != effort.row).collect();
+        if has_velocities(&fewer) {
+            barring = fewer;
+        }
+    }
+    barring.into_iter().map(|effort| effort.name.as_str()).collect()
 }
