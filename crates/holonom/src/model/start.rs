@@ -209,6 +209,14 @@ pub(super) fn begin(assembly: &mut Assembly<'_>, equilibrium: bool) -> Result<()
         Err(_) if !elastic.is_empty() => set_off(&mut assembly.builder, &targets, &[], &assembly.efforts)?,
         set_off => set_off?,
     };
+    let is_at_rest = !equilibrium && !elastic.is_empty() && !assembly.builder.is_moving();
+    // Beams go along with drives, too, where they can without being deformed. Velocities that are written say what is struck.
+    if is_at_rest
+        && assembly.builder.clone().build().is_driven()
+        && let Some((velocities, _)) = velocities(&stiffened(&assembly.builder, &elastic))
+    {
+        assembly.builder.set_velocity(&velocities);
+    }
     assembly.elastic = elastic;
     // Where forces balance, what has moved there is all that is told.
     let followed = before.filter(|_| leaves_free).and_then(|before| adrift::followed(assembly, &targets, &before));
