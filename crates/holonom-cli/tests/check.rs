@@ -162,3 +162,28 @@ fn only_the_mass_matrix_never_adds_energy() {
     let out = prints(&folder, &format!("check {PAPER} {heavy} --set simulation.projection.matrix=identity"), 0);
     assert!(out.contains("can add energy"), "{out}");
 }
+
+/// A four-bar in space one of whose hinges is off by less than bodies that share nodes see moves in a run, and `check` does not refuse it.
+#[test]
+fn what_runs_is_checked() {
+    let folder = folder();
+    let body = |name: &str, at: &str| format!("[body.{name}]\nmass = 1\ninertia = [0.1, 0.1, 0.1]\nposition = {at}\n");
+    let hinge = |name: &str, between: &str, at: &str, off: &str| {
+        format!("[joint.{name}]\ntype = \"revolute\"\nbetween = [{between}]\nat = {at}\naxis = [{off}, 0, 1]\n")
+    };
+    let bodies = body("crank", "[0, 0.5, 0]") + &body("rod", "[1, 1.2, 0]") + &body("rocker", "[2, 0.7, 0]");
+    let loops = hinge("a", "\"ground\", \"crank\"", "[0, 0, 0]", "0")
+        + &hinge("b", "\"crank\", \"rod\"", "[0, 1, 0]", "0")
+        + &hinge("c", "\"rod\", \"rocker\"", "[2, 1.4, 0]", "1e-7")
+        + &hinge("d", "\"ground\", \"rocker\"", "[2, 0, 0]", "0");
+    for moved in ["[start.a]\nangle_rate = 2\n", "[drive.motor]\ntype = \"angle\"\njoint = \"a\"\nprofile = \"2*t\"\n"] {
+        fs::write(folder.path().join("m.toml"), format!("{bodies}{loops}{moved}")).unwrap();
+        prints(&folder, "run m.toml --end 0.1 --step 0.01 --no-report --out a --force", 0);
+        let found = json(&folder, "check m.toml --json");
+        assert_eq!(found["redundant"], 1);
+        let notes = found["notes"].to_string();
+        assert!(notes.contains("those of bodies that share nodes"), "{notes}");
+        assert!(prints(&folder, "check m.toml", 0).contains("reactions  not known"), "{moved}");
+        fails(&folder, "check m.toml --set output.reactions=true", 2);
+    }
+}

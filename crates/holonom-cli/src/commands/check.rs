@@ -57,11 +57,22 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
     // The room that the simulation and its model take is for the next ones. Bodies that share nodes have no rows where they are joined: what holds
     // what is asked of the model without sharing.
     drop(simulation);
-    let Loaded { model, mut source, name: own } = loaded;
+    let Loaded { model, source, name: own } = loaded;
     drop(model);
-    source.put("output.reactions", Value::Bool(true)).map_err(Failure::Model)?;
-    let plain = source.model().map_err(Failure::Model)?;
-    let mut held = Held::new(&plain, load::method(&plain, None)?, step)?;
+    let apart = |source: &Source| {
+        let mut apart = source.clone();
+        apart.put("output.reactions", Value::Bool(true)).map_err(Failure::Model)?;
+        Held::of(&apart, step)
+    };
+    // Where rows of every joint by itself forbid what these bodies together may do, as places and axes have too few digits, a run goes on all the same.
+    let (plain, mut held, is_apart) = match apart(&source) {
+        Ok((plain, held)) => (plain, held, true),
+        Err(_) => {
+            let (model, mut held) = Held::of(&source, step)?;
+            held.notes.push(ONLY_SHARED.into());
+            (model, held, false)
+        }
+    };
     held.notes.extend(unused_parameters(&source));
     held.notes.extend(more);
     // What asks for too much has a line of its own.
@@ -90,11 +101,13 @@ pub fn checked(source: Source, name: &str, with_projection: bool) -> Result<Foun
         });
     }
     let redundant = match (found.redundant.is_empty(), &held.conflict) {
+        (true, _) if !is_apart => "none".into(),
         (true, _) => none_redundant(size.redundant),
         (false, None) => format!("{}: these follow from the others and may stay", listed(&found.redundant)),
         (false, Some(_)) => format!("{}: these follow from the others", listed(&found.redundant)),
     };
     let reactions = match (found.redundant.is_empty(), held.not_unique.is_empty()) {
+        _ if !is_apart => "not known, as bodies share nodes".to_string(),
         (true, _) => "all are unique".to_string(),
         (false, true) => "those of all joints are unique; multipliers of single rows are not".to_string(),
         (false, false) => format!("not unique: {}; all others are", listed(&held.not_unique)),
@@ -176,7 +189,18 @@ struct Held {
     notes: Vec<String>,
 }
 
+/// What is noted of a model that can begin with shared nodes alone.
+const ONLY_SHARED: &str = "rank and redundant rows are those of bodies that share nodes: the rows of every joint by itself do not allow the motion that the start \
+                           has, as places or axes are off by a little (write them with all digits)";
+
 impl Held {
+    /// Of the model of a source, with that.
+    fn of(source: &Source, step: f64) -> Result<(Model, Self), Failure> {
+        let model = source.model().map_err(Failure::Model)?;
+        let held = Self::new(&model, load::method(&model, None)?, step)?;
+        Ok((model, held))
+    }
+
     fn new(model: &Model, method: Method, step: f64) -> Result<Self, Failure> {
         let mut simulation = Simulation::new(model.system.clone(), method, step).map_err(load::start_failure)?;
         let conflict = simulation.conflict();
