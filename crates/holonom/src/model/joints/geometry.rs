@@ -193,10 +193,16 @@ fn place(assembly: &Assembly<'_>, entry: &Entry<'_>, spot: Spot<'_>, value: &Val
 fn is_one_of_each(assembly: &Assembly<'_>, entry: &Entry<'_>, items: &[Value]) -> bool {
     let is_place = |item: &Value| match item {
         Value::List(_) => true,
-        Value::Text(text) => assembly.is_place_of_body(entry, text),
+        Value::Text(text) => assembly.is_place_of_body(entry, text) || is_dotted(text),
         _ => false,
     };
     items.len() == 2 && items.iter().any(is_place)
+}
+
+/// Whether a text is two names with a dot between them, which no number is: that of a place, also where it is misspelt.
+fn is_dotted(text: &str) -> bool {
+    let is_name = |name: &str| name.starts_with(char::is_alphabetic) && name.chars().all(|c| c.is_alphanumeric() || "_-[]".contains(c));
+    text.split_once('.').is_some_and(|(owner, place)| is_name(owner) && is_name(place))
 }
 
 /// The triads of both sides.
