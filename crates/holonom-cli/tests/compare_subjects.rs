@@ -104,6 +104,25 @@ fn models_results_and_measured_data_stand_side_by_side() {
     }
 }
 
+/// Of what was measured the answers are told that its columns have.
+#[test]
+fn measured_data_have_answers() {
+    let folder = prepared();
+    fs::write(folder.path().join("c.toml"), format!("{OSCILLATOR}\n[measure.reach]\nvalue = \"m.x\"\nunit = \"m\"\n")).unwrap();
+    fs::write(folder.path().join("rig.csv"), "t,reach,strut.force,m.vx\n0,1.1,-11,0\n0.1,1.2,7,1\n0.2,,8,2\n0.3,0.7,-9,3\n").unwrap();
+    let out = prints(&folder, "compare c.toml rig.csv --no-report --out s", 0);
+    let told = |answer: &str| out.lines().find(|line| line.starts_with(answer)).unwrap_or_else(|| panic!("no {answer}\n{out}")).to_string();
+    for (answer, value) in
+        [("reach least (m)", "0.7"), ("reach largest (m)", "1.2"), ("reach last (m)", "0.7"), ("strut largest (N)", "11")]
+    {
+        let line = told(answer);
+        assert!(line.contains(&format!(" {value}")) && !line.contains('–'), "{line}");
+    }
+    let peaks = &read_json(folder.path().join("s/summary.json"))[1]["peaks"];
+    assert_eq!(peaks["measures"][0]["max_at"], 0.1);
+    assert_eq!((&peaks["forces"][0]["value"], &peaks["forces"][0]["at"]), (&(-11.0).into(), &0.0.into()));
+}
+
 #[test]
 fn measured_times_in_other_units_are_noticed() {
     let folder = prepared();

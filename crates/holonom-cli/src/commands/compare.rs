@@ -10,7 +10,7 @@ use holonom_report::{Answer, Report, Run, answers, ended};
 use serde_json::{Map, Value, json};
 
 use crate::columns::unknown;
-use crate::comparison::{Difference, Entry, Of, Plan, difference};
+use crate::comparison::{Difference, Entry, MEASURED, Of, Plan, difference};
 use crate::failure::{Failure, STOPPED};
 use crate::folder::{Folder, TABLE, file_stems, holds};
 use crate::found::Found;
@@ -55,6 +55,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
         name(&mut summary, &label, model.map(|model| &plan.models[model]));
         compared.push(Compared { label, model, recording, summary });
     }
+    tell_measured(&mut compared);
     tell_differences(&plan.columns, &mut compared);
     write(&folder, &plan, &compared, &writers, output.no_report)?;
     let summaries: Vec<&Value> = compared.iter().map(|one| &one.summary).collect();
@@ -113,6 +114,47 @@ fn name(summary: &mut Value, label: &str, loaded: Option<&Loaded>) {
     summary["label"] = json!(label);
     if let Some(accuracy) = loaded.and_then(|loaded| loaded.model.settings.choice.accuracy) {
         summary["accuracy"] = json!(accuracy);
+    }
+}
+
+/// Endings of the columns of what drives, forces and joints exert.
+const EXERTED: [&str; 4] = ["effort", "force", "f", "t"];
+
+/// Puts into the summaries of what was measured what it has of the answers of runs, by the names of their columns.
+fn tell_measured(compared: &mut [Compared]) {
+    let mut asked: Vec<(&str, Value)> = Vec::new();
+    for sort in ["measures", "drives", "forces", "joints"] {
+        for one in compared.iter().filter_map(|one| one.summary["peaks"][sort].as_array()).flatten() {
+            if asked.iter().all(|(of, known)| *of != sort || known["name"] != one["name"] || known["unit"] != one["unit"]) {
+                asked.push((sort, one.clone()));
+            }
+        }
+    }
+    for one in compared.iter_mut().filter(|one| one.summary["status"] == MEASURED) {
+        for (sort, answer) in &asked {
+            let name = text(answer, "name");
+            let exerted = || EXERTED.iter().map(|ending| format!("{name}.{ending}"));
+            let columns = if *sort == "measures" { vec![name.to_string()] } else { exerted().collect() };
+            let column =
+                columns.iter().filter_map(|column| one.recording.find(column)).find(|column| *column.heading.unit == answer["unit"]);
+            let Some(column) = column else { continue };
+            let times = one.recording.column("t").unwrap_or_default().iter();
+            let rows: Vec<(f64, f64)> = times.copied().zip(column.values.iter().copied()).filter(|(_, value)| value.is_finite()).collect();
+            let most = |of: fn(f64) -> f64| rows.iter().copied().reduce(|most, row| if of(row.1) > of(most.1) { row } else { most });
+            let (Some(least), Some(most), Some(largest)) = (most(|value| -value), most(|value| value), most(f64::abs)) else { continue };
+            let found = match *sort {
+                "measures" => json!({
+                    "name": name, "unit": answer["unit"], "min": least.1, "min_at": least.0, "max": most.1, "max_at": most.0,
+                    "last": rows.last().map(|row| row.1),
+                }),
+                _ => json!({ "name": name, "what": answer["what"], "value": largest.1, "unit": answer["unit"], "at": largest.0 }),
+            };
+            let own = &mut one.summary["peaks"][*sort];
+            match own.as_array_mut() {
+                Some(own) => own.push(found),
+                None => *own = json!([found]),
+            }
+        }
     }
 }
 

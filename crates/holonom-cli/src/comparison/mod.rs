@@ -6,3 +6,4 @@ mod subject;
 
 pub use difference::{Difference, difference};
 pub use plan::{Entry, Of, Plan};
+pub use subject::MEASURED;

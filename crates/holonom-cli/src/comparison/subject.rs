@@ -21,6 +21,9 @@ pub enum Subject {
     Measured(PathBuf),
 }
 
+/// The status of a table of what was measured.
+pub const MEASURED: &str = "measured";
+
 /// Headings of columns by their names.
 pub type Headings = HashMap<String, Heading>;
 
@@ -89,7 +92,7 @@ impl Subject {
                 let (recording, sum) = read_table(path, known)?;
                 let end = recording.column("t").and_then(|times| times.last().copied());
                 let files = json!({ path.display().to_string(): sum });
-                let summary = json!({ "status": "measured", "end": end, "rows": recording.rows(), "provenance": { "files": files } });
+                let summary = json!({ "status": MEASURED, "end": end, "rows": recording.rows(), "provenance": { "files": files } });
                 Ok(Some((recording, summary)))
             }
         }
