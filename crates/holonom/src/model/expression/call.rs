@@ -39,7 +39,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("smooth", SMOOTHLY),
     ("step5", SMOOTHLY),
     ("havsin", SMOOTHLY),
-    ("mean", "integral(x)/t, where measures know it"),
+    ("mean", "integral(x)/integral(1), where measures know it"),
 ];
 
 /// The function that a name calls, and which of its values.
