@@ -3,7 +3,7 @@
 mod common;
 
 use common::{CONSERVING, complete, coordinates, model};
-use holonom::simulation::Choice;
+use holonom::simulation::{Choice, Method, Simulation, Status, Verdict};
 
 /// A spatial double pendulum on a carrier that goes a hundred kilometres: positions are rounded by 1e-11 m there, and an
 /// iteration that wants less finds nothing but that: it took 22 a step for 2.7, and 288 of 1000 steps in halves.
@@ -176,4 +176,27 @@ fn a_hand_that_is_far_away_shakes_what_it_holds() {
     };
     let (near, far) = (end(0.0), end(1e4));
     assert!((far - near).abs() < 1e-9, "{far} m below a hand that is far away, {near} m below one that is near");
+}
+
+/// A hand that shakes far away holds a light rod, which feels how its place is rounded: the run that finds no step short enough says that.
+#[test]
+fn runs_that_stop_for_rounded_places_say_so() {
+    let reason = |z: f64| {
+        let text = format!(
+            "[point.hand]\nmotion = [\"{z} + 0.02*sin(9*t)\", {z}, \"{z} + 0.03*sin(25*t)\"]\n[body.rod]\nmass = 1e-4\ninertia = [1e-9, 1e-8, 1e-8]\n\
+             position = [{}, {z}, {z}]\n[joint.ball]\ntype = \"spherical\"\nbetween = [\"hand\", \"rod\"]\nat = [{z}, {z}, {z}]\n\
+             [point.bob]\nmass = 0.3\nposition = [{}, {z}, {z}]\n[constraint.string]\ntype = \"distance\"\nbetween = [\"rod\", \"bob\"]\n",
+            z + 0.1,
+            z + 0.3
+        );
+        let method = Method::resolve(&Choice { accuracy: Some(1e-9), ..Choice::default().named("radau") }).unwrap();
+        let mut simulation = Simulation::new(model(&text).system.clone(), method, 0.01).unwrap();
+        match simulation.run(0.05, &mut |_: &Simulation| Verdict::GoOn) {
+            Status::Stopped { reason, .. } => reason,
+            status => format!("{status:?}"),
+        }
+    };
+    assert_eq!(reason(0.0), "Completed");
+    let far = reason(1e5);
+    assert!(far.contains("1.0e5 m from the origin places are rounded to 2e-11 m") && far.contains("nearer to the origin"), "{far}");
 }

@@ -100,12 +100,28 @@ impl Simulation {
                 "; it is near a singular position, where rows hardly differ from others and little errors of steps become large ({less})"
             );
         }
+        if let Some(far) = self.far_away().filter(|_| self.redundant_rows() == 0) {
+            return format!(
+                "; {far:.1e} m from the origin places are rounded to {:.0e} m, and so are those of what moves as it is told, so that steps err by no less \
+                 (put the mechanism nearer to the origin, or {less})",
+                far * f64::EPSILON
+            );
+        }
         match is_rough(&self.method) {
             true => "; this method leaves velocities off the constraints, and by how much they are off differs from step to step, which hides the errors of \
                      short steps (take radau or ggl/bdf, which hold them)"
                 .into(),
             false => format!(" ({less}){}", self.disagreement()),
         }
+    }
+
+    /// How far the mechanism is from the origin, m, where that is so far that rounding of places shows: of all places where it has gone there, and of those that
+    /// are given over time.
+    fn far_away(&self) -> Option<f64> {
+        let system = &self.system;
+        let gone = largest(&self.state.x);
+        let given = if system.is_driven() { largest(&system.origin) } else { 0.0 };
+        (gone.max(given) > FAR * self.length()).then(|| largest(&system.in_world(&self.state.x)))
     }
 
     /// The last event, where it has happened again and again within a nominal step.
