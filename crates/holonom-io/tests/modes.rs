@@ -110,6 +110,29 @@ fn modes_keep_their_numbers_where_dampers_are_strong() {
     }
 }
 
+/// Two that fall off without vibrating have the numbers that they have as vibrations, before and behind one that vibrates.
+#[test]
+fn what_two_dampers_make_of_vibrations_stays_together() {
+    let rail = |k: usize, omega: f64, damping: f64| {
+        format!(
+            "[body.m{k}]\nmass = 1\nshape = {{ box = [0.1, 0.1, 0.1] }}\nposition = [0, {k}, 0]\n\
+             [joint.r{k}]\ntype = \"prismatic\"\nbetween = [\"ground\", \"m{k}\"]\nat = [0, {k}, 0]\naxis = [1, 0, 0]\n\
+             [force.k{k}]\ntype = \"torsion\"\njoint = \"r{k}\"\nstiffness = {}\ndamping = {damping}\n",
+            omega * omega
+        )
+    };
+    // The exponents of the first and of the last.
+    for [first, last] in [[[-1.0, -100.0], [-10.0, -1000.0]], [[-5.0, -20.0], [-50.0, -200.0]], [[-2.0, -50.0], [-9.0, -1111.0]]] {
+        let of = |[a, b]: [f64; 2]| ((a * b).sqrt(), -a - b);
+        let ((low, weak), (high, strong)) = (of(first), of(last));
+        let text = format!("gravity = [0, 0, 0]\n{}{}{}", rail(0, high, strong), rail(1, 15.0, 1.0), rail(2, low, weak));
+        let found = found(&text);
+        let growths: Vec<(usize, f64)> = found.modes.iter().enumerate().map(|(k, mode)| (found.number(k), mode.growth)).collect();
+        let expected = [(1, first[0]), (1, first[1]), (2, -0.5), (3, last[0]), (3, last[1])];
+        assert!(growths.iter().zip(expected).all(|(a, b)| a.0 == b.0 && (a.1 / b.1 - 1.0).abs() < 1e-9), "{growths:?} for {expected:?}");
+    }
+}
+
 /// Fifty masses on springs between a wall and a free end: ω = 2 √(k/m) sin((2j − 1)π/(4N + 2)); the same in other units, and beside a spring that is
 /// 1e10 times as stiff.
 #[test]

@@ -97,6 +97,10 @@ const AWAY: f64 = 0.83;
 /// The shortest step that shows the slowest motion, over the longest.
 const SHORTER: f64 = 2e-4;
 
+/// The cosine of two shapes above which the same moves in them, and how far two exponents are apart, over the larger, that are not one that comes twice.
+const ALIKE: f64 = 0.9;
+const APART: f64 = 1e-6;
+
 /// A speed over that of the mechanism's size in its fastest motion that is none.
 const STILL: f64 = 1e-12;
 
@@ -107,6 +111,13 @@ impl Mode {
         0.0 - self.growth / self.growth.hypot(TAU * self.frequency)
     }
 
+    /// The size of the product of its shape with that of another.
+    fn product(&self, other: &Self) -> f64 {
+        let terms = self.shape.iter().zip(&other.shape).map(|([ar, ai], [br, bi])| [ar * br + ai * bi, ar * bi - ai * br]);
+        let [re, im] = terms.fold([0.0; 2], |sum, term| [sum[0] + term[0], sum[1] + term[1]]);
+        re.hypot(im)
+    }
+
     /// Whether it vibrates, and does not only grow or fall off.
     pub fn vibrates(&self) -> bool {
         self.frequency > 0.0
@@ -114,8 +125,8 @@ impl Mode {
 }
 
 impl Modes {
-    /// The number of a mode, counted from 1. What does not vibrate has two exponents under each number, which may be zero: the largest and the smallest of all,
-    /// the next ones, and so on. What grows without vibrating comes first, by how fast; the others go by the natural frequency, |s| or √(s₁ s₂), so that they keep
+    /// The number of a mode, counted from 1. What does not vibrate has two exponents under each number, which may be zero: two in which the same moves, as damping
+    /// makes them of one vibration, and of those left the largest and the smallest, the next ones, and so on. What grows without vibrating comes first, by how fast; the others go by the natural frequency, |s| or √(s₁ s₂), so that they keep
     /// their numbers where damping makes two exponents of one vibration.
     pub fn number(&self, mode: usize) -> usize {
         self.numbers[mode]
@@ -135,16 +146,24 @@ impl Modes {
     pub(super) fn numbered(mut self) -> Self {
         self.modes.sort_by(|a, b| b.growth.total_cmp(&a.growth));
         let (swinging, still): (Vec<Mode>, Vec<Mode>) = self.modes.into_iter().partition(Mode::vibrates);
-        let mut still: Vec<Option<Mode>> = still.into_iter().map(Some).collect();
-        let growing = still.partition_point(|mode| mode.as_ref().is_some_and(|mode| mode.growth > 0.0));
-        still.splice(growing..growing, std::iter::repeat_with(|| None).take(self.free));
-        let rate = |mode: &Option<Mode>| mode.as_ref().map_or(0.0, |mode| mode.growth);
         let mut all: Vec<(f64, f64, Vec<Mode>)> = Vec::new();
-        while !still.is_empty() {
-            let (first, last) = (still.remove(0), still.pop());
+        let rate = |mode: &Option<Mode>| mode.as_ref().map_or(0.0, |mode| mode.growth);
+        let mut number = |first: Option<Mode>, last: Option<Option<Mode>>| {
             let growth = rate(&first);
             let speed = if growth > 0.0 { -growth } else { (growth * last.as_ref().map_or(growth, rate)).sqrt() };
             all.push((speed, growth, [first, last.flatten()].into_iter().flatten().collect()));
+        };
+        let mut still: Vec<Option<Mode>> = still.into_iter().map(Some).collect();
+        for [first, last] in of_one_vibration(&still) {
+            let first = still[first].take();
+            number(first, Some(still[last].take()));
+        }
+        still.retain(Option::is_some);
+        let growing = still.partition_point(|mode| mode.as_ref().is_some_and(|mode| mode.growth > 0.0));
+        still.splice(growing..growing, std::iter::repeat_with(|| None).take(self.free));
+        while !still.is_empty() {
+            let (first, last) = (still.remove(0), still.pop());
+            number(first, last);
         }
         all.extend(swinging.into_iter().map(|mode| (mode.growth.hypot(TAU * mode.frequency), mode.growth, vec![mode])));
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -153,6 +172,28 @@ impl Modes {
         self.modes = all.into_iter().flat_map(|(_, _, modes)| modes).collect();
         self
     }
+}
+
+/// Pairs of these, the larger exponent first, in which the same moves: those that are most alike first.
+fn of_one_vibration(still: &[Option<Mode>]) -> Vec<[usize; 2]> {
+    let modes: Vec<&Mode> = still.iter().flatten().collect();
+    let sizes: Vec<f64> = modes.iter().map(|mode| mode.product(mode).sqrt()).collect();
+    let pairs = (0..still.len()).flat_map(|last| (0..last).map(move |first| [first, last]));
+    let likeness = |[first, last]: [usize; 2]| {
+        let (a, b) = (modes[first], modes[last]);
+        let is_apart = a.growth - b.growth > APART * a.growth.abs().max(b.growth.abs());
+        let likeness = if is_apart { a.product(b) / (sizes[first] * sizes[last]) } else { 0.0 };
+        (likeness > ALIKE).then_some((likeness, [first, last]))
+    };
+    let mut alike: Vec<(f64, [usize; 2])> = pairs.filter_map(likeness).collect();
+    alike.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut is_taken = vec![false; still.len()];
+    alike.retain(|(_, pair)| {
+        let is_left = pair.iter().all(|k| !is_taken[*k]);
+        pair.iter().for_each(|k| is_taken[*k] |= is_left);
+        is_left
+    });
+    alike.into_iter().map(|(_, pair)| pair).collect()
 }
 
 /// Finds the modes about the start of a system, which is at rest there. Drives stand still at the time 0.
