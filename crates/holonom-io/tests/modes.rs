@@ -133,6 +133,25 @@ fn what_two_dampers_make_of_vibrations_stays_together() {
     }
 }
 
+/// Six alike that hardly feel each other fall off at two rates, and none of them vibrates by rounding.
+#[test]
+fn what_is_repeated_does_not_vibrate() {
+    let mass = |k: usize| {
+        format!(
+            "[body.m{k}]\nmass = 1\ninertia = 1\nposition = [0, {k}]\n[joint.r{k}]\ntype = \"prismatic\"\nbetween = [\"ground\", \"m{k}\"]\naxis = [1, 0]\n\
+             [force.k{k}]\ntype = \"torsion\"\njoint = \"r{k}\"\nstiffness = 100\ndamping = 101\n"
+        )
+    };
+    let weak = |k: usize| format!("[force.c{k}]\ntype = \"spring\"\nbetween = [\"m{k}\", \"m{}\"]\nstiffness = 1e-9\n", k + 1);
+    let text = format!("plane = \"xy\"\n{}{}", (0..6).map(mass).collect::<String>(), (0..5).map(weak).collect::<String>());
+    let found = found(&text);
+    let all: Vec<(usize, f64)> = found.modes.iter().enumerate().map(|(k, mode)| (found.number(k), mode.growth)).collect();
+    assert!(all.len() == 12 && found.modes.iter().all(|mode| !mode.vibrates()), "{all:?}");
+    for pair in all.chunks(2) {
+        assert!(pair[0].0 == pair[1].0 && (pair[0].1 + 1.0).abs() < 1e-9 && (pair[1].1 + 100.0).abs() < 1e-7, "{all:?}");
+    }
+}
+
 /// Fifty masses on springs between a wall and a free end: ω = 2 √(k/m) sin((2j − 1)π/(4N + 2)); the same in other units, and beside a spring that is
 /// 1e10 times as stiff.
 #[test]

@@ -18,7 +18,7 @@ const FAST: f64 = 1e-9;
 /// By how many times what both steps differ by a real part is round-off.
 const UNSURE: f64 = 10.0;
 
-/// Share of an s that its real part may be by round-off.
+/// Share of an s that its real or imaginary part may be by round-off.
 const ROUNDED: f64 = 1e-10;
 
 /// An exponent as steps of two lengths have it.
@@ -68,15 +68,23 @@ pub(super) fn look_again(
 }
 
 impl Mode {
-    pub(super) fn new(system: &System, motions: &[Vec<f64>], found: &Found) -> Self {
+    /// What is found of a motion; `None` of the second of the two exponents of a vibration.
+    pub(super) fn of(system: &System, motions: &[Vec<f64>], found: &Found) -> Option<Self> {
         let [re, im] = found.s;
+        let vibrates = im.abs() > ROUNDED * found.speed();
+        if vibrates && im < 0.0 {
+            return None;
+        }
+        // Exponents of several that are equal may come as those of a vibration: what moves in the one is the real part, in the other the imaginary part.
+        let is_whole = vibrates || im == 0.0;
+        let share = |[re, other]: [f64; 2]| if is_whole { [re, other] } else { [if im > 0.0 { re } else { other }, 0.0] };
         let mut shape = vec![[0.0; 2]; system.nodes() * system.dimension()];
-        for (motion, [re, im]) in motions.iter().zip(&found.shares) {
+        for (motion, [re, im]) in motions.iter().zip(found.shares.iter().map(|part| share(*part))) {
             shape.iter_mut().zip(motion).for_each(|(shape, q)| *shape = [shape[0] + re * q, shape[1] + im * q]);
         }
-        let rounding = (ROUNDED * re.hypot(im)).max(UNSURE * found.apart);
+        let rounding = (ROUNDED * found.speed()).max(UNSURE * found.apart);
         let growth = if re.abs() <= rounding { 0.0 } else { re };
-        Self { growth, frequency: im / TAU, shape }
+        Some(Self { growth, frequency: if vibrates { im / TAU } else { 0.0 }, shape })
     }
 }
 

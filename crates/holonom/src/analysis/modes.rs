@@ -247,9 +247,7 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
                 modes.within = modes.within.max(share * middle);
             } else if found.is_sure && is_here {
                 left = left.saturating_sub(1);
-                if found.s[1] >= 0.0 {
-                    modes.modes.push(Mode::new(system, &motions.basis, &found));
-                }
+                modes.modes.extend(Mode::of(system, &motions.basis, &found));
             }
         }
         if left == 0 {

@@ -52,8 +52,7 @@ pub(super) fn slowest(system: &System, places: &mut Places, rest: &Rest, starts:
         let (here, faster) = others.split_at(others.partition_point(|found| found.speed() * h < FAR));
         let sure = here.iter().take_while(|found| found.is_sure).count();
         told += sure;
-        let of_pairs = here[..sure].iter().filter(|found| found.s[1] >= 0.0);
-        modes.modes.extend(of_pairs.map(|found| Mode::new(system, &motions.basis, found)));
+        modes.modes.extend(here[..sure].iter().filter_map(|found| Mode::of(system, &motions.basis, found)));
         // Where others are much faster, a step of their own shows them.
         match faster.first() {
             Some(next) if told < ENOUGH && sure == here.len() => (h, least) = (LENGTH / next.speed(), BELOW * next.speed()),
