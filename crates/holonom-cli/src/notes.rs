@@ -128,10 +128,11 @@ fn lost_energy(simulation: &Simulation, is_free: bool) -> Option<String> {
 /// Parts of a nominal step from which on it is said how many there are.
 const MANY_PARTS: f64 = 10.0;
 
-/// In how many parts nominal steps were taken on average, where they are many.
+/// In how many parts nominal steps were taken on average, beside those that events end, where they are many.
 pub fn many_parts(simulation: &Simulation) -> Option<f64> {
     let steps = simulation.steps();
-    let parts = simulation.audit().work_summary(steps).steps_taken as f64 / steps.max(1) as f64;
+    let taken = simulation.audit().work_summary(steps).steps_taken.saturating_sub(simulation.times_of_events());
+    let parts = taken as f64 / steps.max(1) as f64;
     (simulation.method().accuracy.is_none() && parts >= MANY_PARTS).then_some(parts)
 }
 

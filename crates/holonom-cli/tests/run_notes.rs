@@ -138,6 +138,20 @@ fn work_that_steps_get_wrong_is_told() {
     }
 }
 
+/// A controller that looks ten times within each nominal step divides it, and no step has failed.
+#[test]
+fn steps_that_events_divide_have_not_failed() {
+    let folder = folder();
+    let model = "plane = \"xz\"\n[body.arm]\nmass = 2\ninertia = 0.1\nposition = [0.3, 0]\n\
+                 [joint.shoulder]\ntype = \"revolute\"\nbetween = [\"ground\", \"arm\"]\nat = [0, 0]\n[input.torque]\n\
+                 [event.controller]\nevery = 0.002\nset = { torque = \"-30*shoulder.angle - 3*shoulder.angle_rate\" }\n\
+                 [force.motor]\ntype = \"effort\"\njoint = \"shoulder\"\neffort = \"torque\"\n";
+    fs::write(folder.path().join("arm.toml"), model).unwrap();
+    let out = holonom(&folder, "run arm.toml --step 0.05 --end 1 --no-report --out a");
+    let said = text(&out.stdout) + &text(&out.stderr);
+    assert!(said.contains("completed") && !said.contains("failed"), "{said}");
+}
+
 /// Two wheels on one axle hold it sideways twice, at positions and at velocities, which within a step ask for different motions: a method that takes it
 /// in many small parts says so, one that stops names those that do not.
 #[test]

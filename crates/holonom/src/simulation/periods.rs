@@ -57,6 +57,11 @@ impl Simulation {
         of_period.or_else(|| self.happenings.iter().find(|happening| happening.event == event).map(|happening| happening.t))
     }
 
+    /// How often events happened so far, those with a period among them: at most so many steps were divided by them.
+    pub fn times_of_events(&self) -> u64 {
+        self.happenings.len() as u64 + self.periods().map(|(_, _, taken)| taken).sum::<u64>()
+    }
+
     /// When the next event with a period happens.
     pub(super) fn next_sample(&self) -> Option<f64> {
         self.periods().map(|(_, period, taken)| taken as f64 * period).reduce(f64::min)
