@@ -373,6 +373,16 @@ pub fn driven(modes: &Modes) -> Option<&'static str> {
     )
 }
 
+/// That modes are those of one side of kinks.
+pub fn kinked(modes: &Modes) -> Option<String> {
+    (!modes.kinked.is_empty()).then(|| {
+        let named = listed(&modes.kinked.iter().map(|name| format!("`{name}`")).collect::<Vec<String>>());
+        format!(
+            "the mechanism rests where a force has a kink, and what it drives back or damps there is that of one side; on the other side modes are others: {named}"
+        )
+    })
+}
+
 /// The largest coordinate of a place.
 fn farthest(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |most: f64, x| x.abs().max(most))

@@ -185,6 +185,20 @@ fn drives_that_move_are_told() {
     assert_eq!(json(&folder, "modes m.toml --set parameters.w=0 --json")["driven"], false);
 }
 
+/// A damper that is harder one way than the other has two slopes at rest: the one that counts is told to be one of two.
+#[test]
+fn kinks_at_rest_are_told() {
+    let folder = folder();
+    let model = "plane = \"xz\"\n[table.law]\npoints = [[-1, -800], [0, 0], [1, 300]]\n[body.car]\nmass = 300\ninertia = 1\nposition = [0, 0]\n\
+                 [joint.strut]\ntype = \"prismatic\"\nbetween = [\"ground\", \"car\"]\naxis = [0, 1]\n\
+                 [force.spring]\ntype = \"torsion\"\njoint = \"strut\"\nstiffness = 2e4\n\
+                 [force.damper]\ntype = \"effort\"\njoint = \"strut\"\neffort = \"-law(q_rate)\"\n[start]\nequilibrium = true\n";
+    let found = sweep(&folder, model, "--vary force.spring.stiffness=1e4,2e4 --columns damping(1)", 0);
+    assert!(found.words("notes").iter().all(|note| note.contains("a force has a kink") && note.ends_with("`damper`")), "{}", found.said);
+    assert!(prints(&folder, "modes m.toml", 0).contains("modes are others: `damper`"));
+    assert_eq!(json(&folder, "modes m.toml --set table.law.points=[[-1,-300],[1,300]] --json")["kinked"], serde_json::json!([]));
+}
+
 #[test]
 fn what_is_not_at_rest_is_told_how_it_may_be() {
     let folder = folder();

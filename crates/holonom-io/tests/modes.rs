@@ -283,6 +283,30 @@ fn kinks_have_one_side() {
     assert!(found.len() == 1 && off(5.0).min(off(10.0)) < 1e-9, "{found:?}");
 }
 
+/// Forces that have another slope on each side of the place at rest are named: a stop that just touches, a damper that is harder one way, and a rope that is
+/// just taut. What goes through it smoothly is not, nor what no motion takes through its kink.
+#[test]
+fn forces_at_kinks_are_named() {
+    let table = "[table.d]\npoints = [[-1, -300], [0, 0], [1, 100]]\n";
+    let effort = |formula: &str| format!("[force.e]\ntype = \"effort\"\njoint = \"r\"\neffort = \"{formula}\"\n");
+    let stop = |lower: f64| format!("[force.s]\ntype = \"stop\"\njoint = \"r\"\nlower = {lower}\nstiffness = 150\n");
+    let across = "[force.f]\ntype = \"force\"\nbody = \"m\"\nforce = [0, \"max(0, -100*y)\", 0]\n";
+    for (force, named) in [
+        (stop(0.0), vec!["s"]),
+        (stop(-0.1), vec![]),
+        (effort("-d(q_rate)"), vec!["e"]),
+        (effort("-d(q_rate + 0.5)+d(0.5)"), vec![]),
+        (effort("-300*abs(q)*q - 7*abs(q_rate)*q_rate - 5*tanh(q_rate/0.01)"), vec![]),
+        ("[force.w]\ntype = \"rope\"\nbetween = [\"m\", [0, 0, 7]]\nstiffness = 40\n".into(), vec!["w"]),
+        (across.into(), vec![]),
+    ] {
+        for damping in [0.0, 3.0] {
+            let found = found(&format!("{}{table}{force}", rail(damping)));
+            assert_eq!(found.kinked, named, "{force}");
+        }
+    }
+}
+
 /// Six masses of one frequency, each led by the one before: rounding splits their exponents, and none is told to be zero.
 #[test]
 fn what_is_not_found_is_not_free() {

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use crate::failure::Failure;
 use crate::folder::{Folder, holds};
 use crate::load::{self, Loaded};
-use crate::notes::{driven, slowest};
+use crate::notes::{driven, kinked, slowest};
 use crate::options::ModesArguments;
 use crate::table::{short, table};
 
@@ -73,7 +73,7 @@ impl Vibrations {
             json!({ "number": found.number(k), "frequency": mode.frequency, "growth": mode.growth, "damping": mode.damping(), "moves": moves })
         };
         let all: Vec<Value> = (0..swings.len()).map(of_mode).collect();
-        json!({ "model": loaded.name, "modes": all, "zero": found.free, "within": found.within, "faster": found.faster, "unsure": found.unsure, "driven": found.driven })
+        json!({ "model": loaded.name, "modes": all, "zero": found.free, "within": found.within, "faster": found.faster, "unsure": found.unsure, "driven": found.driven, "kinked": found.kinked })
     }
 
     /// The table of the modes.
@@ -102,6 +102,7 @@ impl Vibrations {
             notes.push(format!("{} more cannot be told from rounding beside the others", found.unsure));
         }
         notes.extend(driven(found).map(str::to_string));
+        notes.extend(kinked(found));
         notes
     }
 

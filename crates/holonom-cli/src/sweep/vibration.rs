@@ -4,7 +4,7 @@ use holonom::analysis::{Mode, Modes};
 
 use super::column::Asked;
 use super::reduction::Function;
-use crate::notes::{driven, slowest};
+use crate::notes::{driven, kinked, slowest};
 use crate::table::short;
 
 /// A number of a mode.
@@ -55,5 +55,5 @@ pub fn notes(modes: &Modes) -> Vec<String> {
     });
     let unsure = (modes.unsure > 0)
         .then(|| format!("{} exponents cannot be told from rounding beside the others, and modes are counted without them", modes.unsure));
-    unstable.into_iter().chain(slowest(modes)).chain(unsure).chain(driven(modes).map(String::from)).collect()
+    unstable.into_iter().chain(slowest(modes)).chain(unsure).chain(driven(modes).map(String::from)).chain(kinked(modes)).collect()
 }

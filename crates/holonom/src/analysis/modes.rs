@@ -40,6 +40,8 @@ pub struct Modes {
     pub length: f64,
     /// Whether drives, which stand still here, move at the start.
     pub driven: bool,
+    /// Names of the forces that have kinks there, of which one side counts.
+    pub kinked: Vec<String>,
 }
 
 /// Why there are no modes.
@@ -213,7 +215,9 @@ pub fn modes(system: &System) -> Result<Modes, NoModes> {
     }
     let speed = places.velocities()?.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
     let driven = freedom > 0 && speed > STILL * places.length() * rest.speed;
-    let none = Modes { free: 2 * freedom, length: places.length(), driven, ..Modes::default() };
+    places.put(system.start_position())?;
+    let kinked = places.kinked(&motions, &rest);
+    let none = Modes { free: 2 * freedom, length: places.length(), driven, kinked, ..Modes::default() };
     if rest.speed == 0.0 || freedom == 0 {
         return Ok(none.numbered());
     }

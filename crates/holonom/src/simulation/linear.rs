@@ -38,6 +38,9 @@ const BESIDE: f64 = 1e-13;
 const BACK: f64 = 10.0;
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
+/// How far beside it kinks of forces are looked for, over the mechanism's size.
+const NEAR: f64 = 1e-8;
+
 /// Share of what a motion would bend rows by, were all of the mechanism as fast as its fastest node, that is left at a singular position. Elsewhere hardly
 /// any rounding is.
 const FORKS: f64 = 1e-8;
@@ -152,6 +155,26 @@ impl Places {
         let Workspace { end, inputs, .. } = &self.work;
         let seen = self.system.see(Look { x: &end.x, v: &vec![0.0; end.v.len()], t: 0.0, at: &end.at, inputs, span: None });
         self.system.bends(&seen).corners.iter().map(|corner| [*corner > 0.0, *corner < 0.0]).collect()
+    }
+
+    /// The forces, by name, that jump or have kinks where a mechanism at rest was put last, and one of its motions goes through it.
+    pub fn kinked(&self, motions: &Motions, rest: &Rest) -> Vec<String> {
+        let Workspace { end, inputs, scales, .. } = &self.work;
+        let mut found: Vec<String> = Vec::new();
+        for motion in &motions.basis {
+            let mut v = motion.clone();
+            v.resize(end.x.len(), 0.0);
+            let fast = self.system.largest_of_points(&v).max(scales.length * self.system.largest_of_directions(&v));
+            let way = NEAR * scales.length / fast;
+            let seen = self.system.see(Look { x: &end.x, v: &v, t: 0.0, at: &end.at, inputs, span: None });
+            let open = self.system.open(&end.at, self.system.rounding(&end.x, &v, None));
+            for name in self.system.kinked(&seen, &open, [way, way * rest.speed]) {
+                if !found.iter().any(|known| known == name) {
+                    found.push(name.into());
+                }
+            }
+        }
+        found
     }
 
     /// The multipliers that balance all forces at a place, as far as they do, and what share of the forces is left.

@@ -10,7 +10,47 @@ const FAR: f64 = 1e3;
 /// Which share of that tells them apart.
 const JUMPS: f64 = 0.01;
 
+/// By what share of the slope of a force that on the other side of a kink differs.
+const STEEPER: f64 = 0.01;
+
+/// A way that is so much shorter, and the least share of what slopes differ by on the whole that is left on it: of a curve less is left.
+const SHORTER: f64 = 0.1;
+const KINKED: f64 = 0.03;
+
+/// Roundings of a force that are no difference.
+const ROUNDED: f64 = 64.0 * f64::EPSILON;
+
 impl System {
+    /// The names of the forces that jump or have kinks at a place at rest, `seen` with the rates of a motion that goes through it, of which rounding leaves
+    /// some `open`: so far, in seconds of it, or so many times as fast.
+    pub(crate) fn kinked(&self, seen: &Seen, open: &Seen, [way, pace]: [f64; 2]) -> impl Iterator<Item = &str> {
+        let bent = (0..self.bending.seen.len()).map(|number| (self.bent(number), self.bending.seen[number].clone()));
+        bent.filter(move |(force, own)| {
+            let moves = |(rate, open): (&f64, &f64)| if rate.abs() > FAR * open { *rate } else { 0.0 };
+            let x = &seen.values[own.clone()];
+            let rates: Local = seen.rates[own.clone()].iter().zip(&open.rates[own.clone()]).map(moves).collect();
+            let at = |way: f64, pace: f64| {
+                let x: Local = x.iter().zip(&rates).map(|(x, rate)| x + way * rate).collect();
+                let v: Local = rates.iter().map(|rate| pace * rate).collect();
+                force.force(&x, &v, seen.t)
+            };
+            let here = at(0.0, 0.0);
+            let most = |of: &dyn Fn(usize) -> f64| (0..here.len()).fold(0.0, |most: f64, k| most.max(of(k).abs()));
+            let rounding = ROUNDED * most(&|k| here[k]);
+            // What slopes differ by to both sides, and what the force changes by in all.
+            let differ = |way: f64, pace: f64| {
+                let [up, down] = [at(way, pace), at(-way, -pace)];
+                [most(&|k| (up[k] - here[k]) - (here[k] - down[k])), most(&|k| up[k] - down[k])]
+            };
+            [[way, 0.0], [0.0, pace]].iter().any(|[way, pace]| {
+                let [whole, change] = differ(*way, *pace);
+                let part = differ(SHORTER * way, SHORTER * pace)[0];
+                whole > STEEPER * change && part > KINKED * whole && part > rounding
+            })
+        })
+        .map(|(force, _)| force.name())
+    }
+
     /// What is left open of what the forces that bend depend on, and of its rates.
     pub(crate) fn open(&self, at: &Evaluation, rounding: Rounding) -> Seen {
         let mut open = Seen::default();
