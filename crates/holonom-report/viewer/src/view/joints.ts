@@ -78,7 +78,7 @@ class JointBuilder {
     }
     if (STANDS.has(joint.kind) && (joint.body === null || joint.other === null)) this.addFoot(here, joint.body ?? joint.other, hub);
     for (const group of this.groups.slice(before)) mark(group, { sort: "joint", kind: `${joint.kind} joint`, name: joint.name });
-    if (joint.drives.length > 0) this.addDrive(joint, here, hub ?? 2 * this.pen.unit);
+    if (joint.drives.length > 0) this.addDrive(joint, sides, hub ?? 2 * this.pen.unit);
   }
 
   /** A symbol is as large as the smallest of the bodies that it ties has room for. */
@@ -106,10 +106,11 @@ class JointBuilder {
     for (const group of this.groups.slice(before)) mark(group, { sort: "line", kind: "bushing", name });
   }
 
-  private addDrive({ kind, name, drives }: Joint, here: Side, hub: number): void {
+  private addDrive({ kind, name, drives }: Joint, [here, other]: [Side, Side], hub: number): void {
     const before = this.groups.length;
-    const { around, housing } = driveOf(kind);
+    const { around, housing, along } = driveOf(kind);
     this.hang(around, here, undefined, this.motion.planar ? 0.5 * hub : 0);
+    this.hang(along, other, undefined, this.motion.planar ? 0.5 * hub : 0);
     const end = { ...here, at: here.at.clone().addScaledVector(here.axis, 0.5 * hub) };
     if (!this.motion.planar) this.hang(housing, end);
     for (const group of this.groups.slice(before)) mark(group, { sort: "drive", kind: `drive of ${name}`, name: drives[0] });

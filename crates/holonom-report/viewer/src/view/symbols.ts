@@ -57,9 +57,20 @@ const SLIDES: Piece[] = [
   },
 ];
 
-/** What shows that a joint of some kind is driven; `housing`: at the end of its axis, where that is seen. */
-export function driveOf(kind: string): { around: Piece[]; housing: Piece[] } {
-  return kind === "prismatic" ? { around: SLIDES, housing: [] } : { around: TURNS, housing: MOTOR };
+/** Around what is led along a curve, whose direction changes. */
+const LED: Piece[] = [{ geometry: new TorusGeometry(1.7, 0.4, 12, 36), part: "drive" }];
+
+/** What shows that a joint of some kind is driven; `housing`: at the end of its axis, where that is seen; `along`: on what slides. */
+export function driveOf(kind: string): { around: Piece[]; housing: Piece[]; along: Piece[] } {
+  switch (kind) {
+    case "prismatic":
+    case "point-on-line":
+      return { around: SLIDES, housing: [], along: [] };
+    case "point-on-curve":
+      return { around: [], housing: [], along: LED };
+    default:
+      return { around: TURNS, housing: MOTOR, along: [] };
+  }
 }
 
 /** Of the side that carries the joint. */
