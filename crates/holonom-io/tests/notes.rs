@@ -246,3 +246,25 @@ fn sections_larger_than_their_beam_are_noted() {
     assert_eq!(notes(0.4), [""; 0]);
     assert_eq!(notes(3.0), ["beam.b.section: the section is 6 m across, and the beam 1 m long: check units"]);
 }
+
+/// A planet on an elastic pin: a gear of angles pushes the pin by nothing, so that it does not yield. On one carrier nothing is noted.
+#[test]
+fn gears_on_bearings_that_yield_are_noted() {
+    let text = |pin: &str| {
+        format!(
+            "[body.carrier]\nmass = 6\nshape = {{ cylinder = [0.1, 0.02] }}\nposition = [0, 0, 0]\n\
+             [body.sun]\nmass = 2\nshape = {{ cylinder = [0.05, 0.04] }}\nposition = [0, 0, 0]\n\
+             [body.pin]\nmass = 0.3\ninertia = [2e-4, 2e-4, 1e-4]\nposition = [0.1, 0, 0]\n\
+             [body.planet]\nmass = 1\nshape = {{ cylinder = [0.05, 0.04] }}\nposition = [0.1, 0, 0]\n\
+             [joint.main]\ntype = \"revolute\"\nbetween = [\"ground\", \"carrier\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n\
+             [joint.input]\ntype = \"revolute\"\nbetween = [\"carrier\", \"sun\"]\nat = [0, 0, 0]\naxis = [0, 0, 1]\n\
+             [joint.bearing]\ntype = \"revolute\"\nbetween = [\"{pin}\", \"planet\"]\nat = [0.1, 0, 0]\naxis = [0, 0, 1]\n\
+             [joint.mesh]\ntype = \"gear\"\njoints = [\"input\", \"bearing\"]\nratio = -1\n\
+             [force.seat]\ntype = \"bushing\"\nbetween = [\"pin\", \"carrier\"]\nat = [0.1, 0, 0]\nstiffness = [5e7, 5e7, 5e7, 1e5, 1e5, 1e5]\n"
+        )
+    };
+    let notes = model(&text("pin")).notes;
+    assert_eq!(notes.len(), 1, "{notes:?}");
+    assert!(notes[0].contains("the wheels of `mesh` yield here against each other"), "{notes:?}");
+    assert_eq!(model(&text("carrier")).notes, Vec::<String>::new());
+}

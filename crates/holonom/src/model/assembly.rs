@@ -130,6 +130,8 @@ pub struct Assembly<'a> {
     pub(in crate::model) efforts: Vec<Effort>,
     /// What couplers exert along the coordinates that they couple.
     pub(in crate::model) couplings: Vec<RecordedCoupling>,
+    /// Couplers, by name, of wheels on parts of which none carries both: the members of the two joints.
+    pub(in crate::model) wheels_apart: Vec<(String, [[Member; 2]; 2])>,
     /// Couplers whose forces bearings feel.
     pub(in crate::model) transmissions: Vec<RecordedTransmission>,
     /// Bars and constraints that keep a distance.
@@ -195,6 +197,7 @@ impl<'a> Assembly<'a> {
             limits: Vec::new(),
             efforts: Vec::new(),
             couplings: Vec::new(),
+            wheels_apart: Vec::new(),
             transmissions: Vec::new(),
             rods: Vec::new(),
             kept_apart: Vec::new(),

@@ -65,6 +65,7 @@ impl Element for Bushing {
             return Err(entry.refuse_all(format!("the bushing `{}` does nothing", entry.name), "give it a stiffness or a damping above 0"));
         }
         assembly.draw_bushing(entry, members, at);
+        note_coupler(assembly, entry, members);
         let coordinates = coordinates(assembly, members, at);
         let axes = members.map(|member| (0..assembly.dimension()).map(|k| assembly.frame(member).vector(unit(k))).collect());
         assembly.show(Shows::Bushing { coordinates: shown(&coordinates, assembly.axes.name), axes });
@@ -77,6 +78,18 @@ impl Element for Bushing {
             }
         }
         Ok(())
+    }
+}
+
+/// Notes a coupler of wheels that a bushing lets yield against each other.
+fn note_coupler(assembly: &Assembly<'_>, entry: &Entry<'_>, [a, b]: [Member; 2]) {
+    let is_tied = |[first, second]: &[[Member; 2]; 2]| [[a, b], [b, a]].iter().any(|[a, b]| first.contains(a) && second.contains(b));
+    if let Some((coupler, _)) = assembly.wheels_apart.iter().find(|(_, joints)| is_tied(joints)) {
+        let message = format!(
+            "the wheels of `{coupler}` yield here against each other, and a coupler of angles pushes no bearing: nothing yields under its force (write the way \
+             that the bearing yields as one of the coordinates of a coupler of type = \"linear\")"
+        );
+        entry.note("between", message);
     }
 }
 

@@ -33,7 +33,7 @@ impl Seats {
     }
 
     /// Of joints that turn about parallel axes, or of one that turns and one that slides at right angles to that axis, or why there are none.
-    pub fn find(assembly: &Assembly<'_>, entry: &Entry<'_>, coordinates: [&Coordinate; 2]) -> Read<Result<Self, String>> {
+    pub fn find(assembly: &mut Assembly<'_>, entry: &Entry<'_>, coordinates: [&Coordinate; 2]) -> Read<Result<Self, String>> {
         let infos: [&JointInfo; 2] = {
             let spot = |k| Spot { key: "joints", item: Some(k) };
             [assembly.joint(entry, spot(0), &coordinates[0].joint)?, assembly.joint(entry, spot(1), &coordinates[1].joint)?]
@@ -44,16 +44,20 @@ impl Seats {
         let slides = !coordinates[1].is_angle;
         let [first, second] = infos.map(|info| info.geometry.members);
         let common: Vec<Member> = first.into_iter().filter(|member| second.contains(member)).collect();
-        let ([carrier], [Some(first), Some(second)], true) = (&common[..], coordinates.map(|known| known.about), coordinates[0].is_angle)
+        let ([carrier], [Some(about), Some(other)], true) = (&common[..], coordinates.map(|known| known.about), coordinates[0].is_angle)
         else {
-            return Ok(Err(format!(
+            let message = format!(
                 "`{}` and `{}` are not two axles, or an axle and a rail, on one part that carries both",
                 infos[0].name, infos[1].name
-            )));
+            );
+            if common.is_empty() {
+                assembly.wheels_apart.push((entry.name.to_string(), [first, second]));
+            }
+            return Ok(Err(message));
         };
         let sides = infos.map(|info| if info.geometry.members[0] == *carrier { 1.0 } else { -1.0 });
         let is_planar = assembly.dimension() == 2;
-        let axes = [(infos[0], first), (infos[1], second)].map(|(info, about)| info.geometry.triad[0][about]);
+        let axes = [(infos[0], about), (infos[1], other)].map(|(info, about)| info.geometry.triad[0][about]);
         let [axis, other] = match (is_planar, slides) {
             (true, false) => [[0.0, 0.0, 1.0]; 2],
             (true, true) => [[0.0, 0.0, 1.0], axes[1]],
