@@ -378,7 +378,7 @@ pub fn kinked(modes: &Modes) -> Option<String> {
     (!modes.kinked.is_empty()).then(|| {
         let named = listed(&modes.kinked.iter().map(|name| format!("`{name}`")).collect::<Vec<String>>());
         format!(
-            "the mechanism rests where a force has a kink, and what it drives back or damps there is that of one side; on the other side modes are others: {named}"
+            "the mechanism rests where a force has a kink or jumps: one side of a kink counts, and nothing of a jump; on the other side modes are others: {named}"
         )
     })
 }

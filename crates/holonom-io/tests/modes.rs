@@ -295,6 +295,7 @@ fn forces_at_kinks_are_named() {
         (stop(0.0), vec!["s"]),
         (stop(-0.1), vec![]),
         (effort("-d(q_rate)"), vec!["e"]),
+        (effort("-2*step(q_rate - 1e-3)"), vec![]),
         (effort("-d(q_rate + 0.5)+d(0.5)"), vec![]),
         (effort("-300*abs(q)*q - 7*abs(q_rate)*q_rate - 5*tanh(q_rate/0.01)"), vec![]),
         ("[force.w]\ntype = \"rope\"\nbetween = [\"m\", [0, 0, 7]]\nstiffness = 40\n".into(), vec!["w"]),
@@ -304,6 +305,16 @@ fn forces_at_kinks_are_named() {
             let found = found(&format!("{}{table}{force}", rail(damping)));
             assert_eq!(found.kinked, named, "{force}");
         }
+    }
+}
+
+/// Dry friction of a rod that hangs jumps at rest, to both sides alike.
+#[test]
+fn forces_that_jump_at_rest_are_named() {
+    for (formula, named) in [("-1e-3*sign(q_rate)", vec!["e"]), ("-1e-3*tanh(q_rate/0.1)", vec![])] {
+        let hanging = rod(0, "ground", [0.0, 0.0], -0.5 * PI);
+        let text = format!("plane = \"xz\"\n{hanging}[force.e]\ntype = \"effort\"\njoint = \"h0\"\neffort = \"{formula}\"\n");
+        assert_eq!(found(&text).kinked, named, "{formula}");
     }
 }
 

@@ -100,6 +100,7 @@ impl<'a> Spins<'a> {
         }
         spins
     }
+
     /// What the turns may not do: turn fixed places, give momentum to a node, move a row.
     fn conditions(&self) -> Vec<BTreeMap<usize, Share>> {
         let system = self.assembly.builder.clone().build();

@@ -17,6 +17,9 @@ const STEEPER: f64 = 0.01;
 const SHORTER: f64 = 0.1;
 const KINKED: f64 = 0.03;
 
+/// The least share of what a force that jumps changes by on the whole that is left on it, in both directions alike: of a slope as much as the way is shorter.
+const JUMPED: f64 = 0.5;
+
 /// Roundings of a force that are no difference.
 const ROUNDED: f64 = 64.0 * f64::EPSILON;
 
@@ -44,8 +47,9 @@ impl System {
             };
             [[way, 0.0], [0.0, pace]].iter().any(|[way, pace]| {
                 let [whole, change] = differ(*way, *pace);
-                let part = differ(SHORTER * way, SHORTER * pace)[0];
-                whole > STEEPER * change && part > KINKED * whole && part > rounding
+                let [part, left] = differ(SHORTER * way, SHORTER * pace);
+                let is_kink = whole > STEEPER * change && part > KINKED * whole && part > rounding;
+                is_kink || (left > JUMPED * change && left > rounding)
             })
         })
         .map(|(force, _)| force.name())
