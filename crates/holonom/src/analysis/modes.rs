@@ -40,7 +40,7 @@ pub struct Modes {
     pub length: f64,
     /// Whether drives, which stand still here, move at the start.
     pub driven: bool,
-    /// Names of the forces that have kinks there, of which one side counts.
+    /// Names of the forces that have kinks there, of which one side counts, or jump, of which nothing does.
     pub kinked: Vec<String>,
 }
 
