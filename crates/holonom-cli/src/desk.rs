@@ -12,11 +12,13 @@ use crate::keeper::Keeper;
 /// Numbers that are handed over at once: to hand them over takes as long as to sample some of them.
 const AT_ONCE: usize = 1 << 13;
 
-/// Samples that wait, in such portions, and of large models in one: steps that are faster than rows wait for these.
-const PORTIONS: usize = 4;
+/// Samples that wait, in such portions, and of large models in one: steps that are faster than rows wait for these, and should not while these are
+/// saved.
+const PORTIONS: usize = 32;
 
-/// Numbers, and samples, after which the run is saved: what it is resumed from is some samples more to write.
-const MANY: usize = 1 << 20;
+/// Numbers of rows, and samples, after which the run is saved for the first time, from which on rows are written as they are made: what it is
+/// resumed from is some samples more to write.
+const MANY: usize = 1 << 18;
 const SAMPLES: usize = 200;
 
 /// What is done with a run beside its rows.
@@ -60,8 +62,11 @@ pub struct There<'scope, 'a, 'f> {
     samples: Samples,
     /// Whether the run is saved.
     is_kept: bool,
-    /// Numbers, and samples, that were handed over since the run was saved.
-    handed: [usize; 2],
+    /// Numbers of a row.
+    columns: usize,
+    /// Samples that were handed over before the run was saved.
+    handed: usize,
+    is_saved: bool,
     work: SyncSender<Work>,
     /// Room of samples of which rows were made.
     room: Receiver<Samples>,
@@ -76,15 +81,25 @@ impl<'scope, 'a: 'scope, 'f: 'scope> Rows<'scope, 'a, 'f> {
         simulation: &mut Simulation,
         scope: &'scope Scope<'scope, 'env>,
     ) -> Self {
-        let is_large = recorder.recording().columns().len() > AT_ONCE;
+        let columns = recorder.recording().columns().len();
         match recorder.divide(simulation) {
             Err(recorder) => Self::Here(recorder, desk),
             Ok((sampler, composer)) => {
-                let (work, to_do) = sync_channel(if is_large { 1 } else { PORTIONS });
+                let (work, to_do) = sync_channel(if columns > AT_ONCE { 1 } else { PORTIONS });
                 let (done, room) = channel();
                 let is_kept = desk.keeper.is_some();
                 let thread = scope.spawn(move || make_rows(composer, desk, &to_do, &done));
-                Self::There(Box::new(There { sampler, samples: Samples::default(), is_kept, handed: [0; 2], work, room, thread }))
+                Self::There(Box::new(There {
+                    sampler,
+                    samples: Samples::default(),
+                    is_kept,
+                    columns,
+                    handed: 0,
+                    is_saved: false,
+                    work,
+                    room,
+                    thread,
+                }))
             }
         }
     }
@@ -160,7 +175,7 @@ impl Rows<'_, '_, '_> {
             Self::There(there) => {
                 let has_many = there.has_many();
                 there.mark(simulation, |mark| Work::Save { mark, has_many });
-                there.handed = [0; 2];
+                there.is_saved = true;
             }
         }
     }
@@ -177,12 +192,12 @@ impl Rows<'_, '_, '_> {
 
 impl There<'_, '_, '_> {
     fn has_many(&self) -> bool {
-        self.is_kept && self.handed[0] >= MANY && self.handed[1] >= SAMPLES
+        self.is_kept && !self.is_saved && self.handed >= SAMPLES.max(MANY / self.columns)
     }
 
     /// Hands samples over; says whether somebody takes them.
     fn hand_over(&mut self) -> bool {
-        self.handed = [self.handed[0] + self.samples.size(), self.handed[1] + self.samples.count()];
+        self.handed += self.samples.count();
         let room = self.room.try_recv().unwrap_or_default();
         self.work.send(Work::Samples(std::mem::replace(&mut self.samples, room))).is_ok()
     }

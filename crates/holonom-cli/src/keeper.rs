@@ -24,6 +24,9 @@ const COST: u32 = 50;
 /// Bytes of rows that are ready to be written: the text of others is made when it is written.
 const MOST_TEXT: usize = 1 << 23;
 
+/// Bytes of rows that are written without a checkpoint that counts them, while they are near the processor: a run that is resumed cuts them off.
+const AT_ONCE: usize = 1 << 19;
+
 /// Writes the rows and the checkpoint of a run from time to time. Rows are appended, and come before the checkpoint that counts them, so
 /// that a checkpoint always has its rows.
 pub struct Keeper<'a> {
@@ -82,11 +85,18 @@ impl<'a> Keeper<'a> {
         self.forget_text();
     }
 
-    /// Has the text of new rows ready, as far as there is room.
+    /// Has the text of new rows ready, as far as there is room, and once there are rows on disk writes it behind them.
     pub fn prepare(&mut self, recording: &Recording) {
         if self.written < recording.rows() && self.text.len() < MOST_TEXT {
-            holonom_io::append_csv(recording, self.written, &mut self.text).expect("memory takes everything");
+            holonom_io::append_csv_text(recording, self.written, &mut self.text);
             self.written = recording.rows();
+        }
+        if self.rows > 0 && !self.is_stale && self.beyond < f64::INFINITY && self.text.len() >= AT_ONCE {
+            let before = (self.rows, self.bytes);
+            if let Err(failure) = self.append(recording) {
+                self.take_back(before);
+                self.give_up(&failure);
+            }
         }
     }
 
@@ -105,11 +115,15 @@ impl<'a> Keeper<'a> {
         let begun = Instant::now();
         match self.save(recording, last, None) {
             Ok(()) => self.next = Instant::now() + PAUSE.max(COST * begun.elapsed()),
-            Err(failure) => {
-                note(&format!("{failure}; the run goes on, and is not saved before its end"));
-                self.beyond = f64::INFINITY;
-            }
+            Err(failure) => self.give_up(&failure),
         }
+    }
+
+    fn give_up(&mut self, failure: &Failure) {
+        let failure = failure.to_string();
+        let reason = failure.strip_prefix("error: ").unwrap_or(&failure);
+        note(&format!("{reason}; the run goes on, and is not saved before its end"));
+        self.beyond = f64::INFINITY;
     }
 
     /// Saves rows and checkpoint.
@@ -118,14 +132,11 @@ impl<'a> Keeper<'a> {
             // A table that a kill leaves with more rows than the earlier run had is not to be taken for its.
             self.folder.remove(["summary.json", "report.html"].map(String::from))?;
         }
-        let (rows, bytes) = (self.rows, self.bytes);
+        let before = (self.rows, self.bytes);
         let kept = Kept { last, before_end, table: self.table.into(), provenance: self.provenance.clone() };
         let saved = self.append(recording).and_then(|()| self.folder.write(FILE, |out| Ok(serde_json::to_writer(out, &kept)?)));
-        if saved.is_err() && rows > 0 {
-            (self.rows, self.bytes) = (rows, bytes);
-            self.forget_text();
-            // On a full disk rows may have been written in part. Where they cannot be cut off either, whoever goes on does it.
-            let _ = OpenOptions::new().write(true).open(self.folder.path.join(self.table)).and_then(|file| file.set_len(bytes));
+        if saved.is_err() {
+            self.take_back(before);
         }
         saved?;
         if std::mem::take(&mut self.is_stale) {
@@ -133,6 +144,16 @@ impl<'a> Keeper<'a> {
             self.folder.write("columns.json", |out| holonom_io::write_json(&holonom_io::headings(recording.columns()), out))?;
         }
         Ok(())
+    }
+
+    /// Has so many rows on disk, in so many bytes, after others could not be written: on a full disk they may have been in part.
+    fn take_back(&mut self, (rows, bytes): (usize, u64)) {
+        if rows > 0 {
+            (self.rows, self.bytes) = (rows, bytes);
+            self.forget_text();
+            // Where they cannot be cut off either, whoever goes on does it.
+            let _ = OpenOptions::new().write(true).open(self.folder.path.join(self.table)).and_then(|file| file.set_len(bytes));
+        }
     }
 
     /// The time (s) that the results in the folder reach, where the same run ended later there than at `t`.

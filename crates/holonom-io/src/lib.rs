@@ -9,4 +9,7 @@ pub use read::{
     DEEPEST, LARGEST_FILE, LARGEST_MESH, LARGEST_NUMBERS, MOST_TRIANGLES, MeshError, Source, TableError, read_csv, read_mesh,
     read_recording, read_value, sha256,
 };
-pub use write::{Cells, Table, WRITERS, WriteTable, Writer, append_csv, csv_cells, csv_line, csv_number, headings, model_text, write_json};
+pub use write::{
+    Cells, Table, WRITERS, WriteTable, Writer, append_csv, append_csv_text, csv_cells, csv_line, csv_number, headings, model_text,
+    write_json,
+};

@@ -20,15 +20,43 @@ pub(super) fn write(recording: &Recording, out: &mut dyn Write) -> io::Result<()
 /// Writes the rows from `first` on, as they follow those before in a file; the header, too, where there are none before.
 pub fn append_csv(recording: &Recording, first: usize, out: &mut dyn Write) -> io::Result<()> {
     if first == 0 {
-        // There may be millions of names: they are not put together in memory.
-        let names = recording.columns().iter().map(|column| &column.heading.name);
-        let mut header = csv::Writer::from_writer(&mut *out);
-        header.write_record(names)?;
-        header.flush()?;
+        write_header(recording, out)?;
     }
+    let mut text = Vec::new();
+    append_lines(recording, first, &mut text, |text| {
+        if text.len() >= BYTES_AT_ONCE {
+            out.write_all(text)?;
+            text.clear();
+        }
+        Ok(())
+    })?;
+    out.write_all(&text)?;
+    out.flush()
+}
+
+/// The same at the end of a text in memory.
+pub fn append_csv_text(recording: &Recording, first: usize, text: &mut Vec<u8>) {
+    let header = if first == 0 { write_header(recording, text) } else { Ok(()) };
+    header.and_then(|()| append_lines(recording, first, text, |_| Ok(()))).expect("memory takes everything");
+}
+
+fn write_header(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
+    // There may be millions of names: they are not put together in memory.
+    let names = recording.columns().iter().map(|column| &column.heading.name);
+    let mut header = csv::Writer::from_writer(out);
+    header.write_record(names)?;
+    header.flush()
+}
+
+/// Appends lines to a text, of which something is done after each.
+fn append_lines(
+    recording: &Recording,
+    first: usize,
+    text: &mut Vec<u8>,
+    mut after_line: impl FnMut(&mut Vec<u8>) -> io::Result<()>,
+) -> io::Result<()> {
     // Numbers are never quoted.
-    let (mut text, mut number) = (Vec::new(), zmij::Buffer::new());
-    let width = recording.columns().len();
+    let (width, mut number) = (recording.columns().len(), zmij::Buffer::new());
     let mut cells = vec![0.0; ROWS_AT_ONCE.min(recording.rows() - first) * width];
     for from in (first..recording.rows()).step_by(ROWS_AT_ONCE) {
         let rows = ROWS_AT_ONCE.min(recording.rows() - from);
@@ -42,14 +70,10 @@ pub fn append_csv(recording: &Recording, first: usize, out: &mut dyn Write) -> i
             }
             text.pop();
             text.push(b'\n');
-            if text.len() >= BYTES_AT_ONCE {
-                out.write_all(&text)?;
-                text.clear();
-            }
+            after_line(text)?;
         }
     }
-    out.write_all(&text)?;
-    out.flush()
+    Ok(())
 }
 
 /// The shortest text of a number that reads back to the same bits.

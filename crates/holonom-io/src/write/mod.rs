@@ -12,7 +12,7 @@ use std::io::{self, Write};
 
 use holonom::record::Recording;
 
-pub use csv::{append_csv, csv_cells, csv_line, csv_number};
+pub use csv::{append_csv, append_csv_text, csv_cells, csv_line, csv_number};
 pub use json::{headings, write_json};
 pub use model::model_text;
 pub use table::{Cells, Table};

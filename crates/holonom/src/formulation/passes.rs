@@ -47,7 +47,8 @@ const FOLLOWS: f64 = 100.0;
 const ROUNDED: f64 = 0.1 * f64::EPSILON;
 const SHOWN: f64 = 1e-12;
 
-/// What the one solution that is all there is may miss, over the accelerations that forces make: in a long chain what links miss adds up.
+/// What the one solution that is all there is may miss, over the accelerations that forces make, those of the rows too, whose sums have no smaller
+/// rounding: in a long chain what links miss adds up.
 const MISSES: f64 = 16.0 * f64::EPSILON;
 
 /// What accelerations and multipliers are for.
@@ -323,7 +324,7 @@ fn passes(matrix: &mut impl LinearSystem, of: Passes, system: &System, work: &mu
             // There is none before it to compare with: its residual tells, where no part is light.
             matrix.is_even(work) && {
                 work.sum_reactions(system, matrix.unknowns());
-                matrix.accelerates(system, work) <= MISSES * sizes[0]
+                matrix.accelerates(system, work) <= MISSES * sizes[0].max(work.scales.length * sizes[1])
             }
         } else {
             (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(of.leaves) <= of.open * sizes[k])
@@ -451,7 +452,9 @@ impl Workspace {
         let Self { full, forces, end, .. } = self;
         let (accelerated, rows) = unknowns.split_at_mut(system.coordinates());
         full.copy_from_slice(&forces.sum);
-        system.slots.add_forces(system.dim, &self.lambda, &end.at.gradient, full);
+        if self.lambda.iter().any(|lambda| *lambda != 0.0) {
+            system.slots.add_forces(system.dim, &self.lambda, &end.at.gradient, full);
+        }
         rows.iter_mut().zip(&self.phi).for_each(|(row, phi)| *row = -phi);
         // The first pass begins without accelerations.
         if self.a.iter().all(|a| *a == 0.0) {

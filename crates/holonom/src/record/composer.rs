@@ -11,6 +11,9 @@ use super::sampler::{Kind, SamplerMark, Samples};
 use super::{Channels, Constraints, RecorderMark, Recording};
 use crate::simulation::{Checkpoint, Finder, Found};
 
+/// Numbers of rows after which the recording takes them: they stay near the processor until then.
+const NEAR: usize = 1 << 11;
+
 /// Makes rows.
 pub(super) struct Rows {
     channels: Arc<Channels>,
@@ -23,6 +26,8 @@ pub(super) struct Rows {
     measures: Measures,
     between: Between,
     pub row: Vec<f64>,
+    /// Rows that the recording has not yet, one after the other.
+    fresh: Vec<f64>,
     pub recording: Recording,
 }
 
@@ -37,7 +42,7 @@ impl Rows {
         recording: Recording,
     ) -> Self {
         let row = Vec::with_capacity(recording.columns().len());
-        Self { channels, constraints, accelerations, coordinates, sizes, measures, between, row, recording }
+        Self { channels, constraints, accelerations, coordinates, sizes, measures, between, row, fresh: Vec::new(), recording }
     }
 
     pub fn resume(&mut self, mark: &RecorderMark) {
@@ -126,15 +131,29 @@ impl Rows {
         if kind == Kind::Forces {
             return self.between.see(&sample[1..], sample[0]);
         }
-        if kind == Kind::InPlaceOfLast
-            && let Some(row) = self.recording.pop()
-        {
-            self.between.see(&row[self.coordinates.end..], row[0]);
+        if kind == Kind::InPlaceOfLast {
+            self.settle();
+            if let Some(row) = self.recording.pop() {
+                self.between.see(&row[self.coordinates.end..], row[0]);
+            }
         }
         self.compose(sample, found);
         match kind {
-            Kind::Row | Kind::InPlaceOfLast => self.recording.push(&self.row),
+            Kind::Row | Kind::InPlaceOfLast => {
+                self.fresh.extend_from_slice(&self.row);
+                if self.fresh.len() >= NEAR {
+                    self.settle();
+                }
+            }
             _ => self.between.see(&self.row[self.coordinates.end..], sample[0]),
+        }
+    }
+
+    /// Has the recording take the rows that it has not yet.
+    pub fn settle(&mut self) {
+        if !self.fresh.is_empty() {
+            self.recording.extend(&self.fresh);
+            self.fresh.clear();
         }
     }
 }
@@ -161,6 +180,7 @@ impl Composer {
             rows.take(kind, sample, finder.as_ref().map(Finder::found));
             replaces |= kind == Kind::InPlaceOfLast;
         }
+        rows.settle();
         replaces
     }
 

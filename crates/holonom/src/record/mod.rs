@@ -84,6 +84,14 @@ impl Recording {
         }
     }
 
+    /// Appends rows that stand one after the other: each column, which is far from the next, takes its values of all of them at once.
+    pub(crate) fn extend(&mut self, rows: &[f64]) {
+        let width = self.columns.len();
+        for (k, column) in self.columns.iter_mut().enumerate() {
+            column.values.extend(rows[k..].iter().step_by(width));
+        }
+    }
+
     /// Takes the last row away; nothing where there is none.
     pub(crate) fn pop(&mut self) -> Option<Vec<f64>> {
         self.columns.iter_mut().map(|column| column.values.pop()).collect()

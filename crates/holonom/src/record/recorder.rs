@@ -184,6 +184,7 @@ impl Recorder {
     /// Has rows made of what was sampled.
     fn compose(&mut self, simulation: &Simulation) {
         self.samples.iter().for_each(|(kind, sample)| self.rows.take(kind, sample, Some(simulation.found())));
+        self.rows.settle();
         self.samples.clear();
     }
 }
