@@ -47,8 +47,7 @@ const FOLLOWS: f64 = 100.0;
 const ROUNDED: f64 = 0.1 * f64::EPSILON;
 const SHOWN: f64 = 1e-12;
 
-/// What the one solution that is all there is may miss, over the accelerations that forces make, those of the rows too, whose sums have no smaller
-/// rounding: in a long chain what links miss adds up.
+/// What the one solution that is all there is may miss, over the accelerations that forces make: in a long chain what links miss adds up.
 const MISSES: f64 = 16.0 * f64::EPSILON;
 
 /// What accelerations and multipliers are for.
@@ -316,15 +315,19 @@ fn passes(matrix: &mut impl LinearSystem, of: Passes, system: &System, work: &mu
     let natural = of.pushed.max(work.of_motion());
     // What hardly moves is not to be known better than what forces and motion make, but where rows hardly hold it.
     let least = if of.leaves == 0.0 { natural } else { 0.0 };
-    let mut before = [f64::INFINITY; 2];
+    let (mut before, mut is_summed) = ([f64::INFINITY; 2], false);
     for count in 1..=of.most {
-        let [taken, whole] = pass(matrix, system, work)?;
+        if !std::mem::take(&mut is_summed) {
+            work.sum_reactions(system, matrix.unknowns());
+        }
+        let [taken, whole] = take_up(matrix, system, work)?;
         let sizes = [whole[0].max(least), whole[1]];
         let is_met = if of.leaves == 0.0 && count == 1 {
             // There is none before it to compare with: its residual tells, where no part is light.
             matrix.is_even(work) && {
                 work.sum_reactions(system, matrix.unknowns());
-                matrix.accelerates(system, work) <= MISSES * sizes[0].max(work.scales.length * sizes[1])
+                is_summed = true;
+                matrix.accelerates(system, work) <= MISSES * sizes[0]
             }
         } else {
             (0..2).all(|k| taken[k] * (taken[k] / before[k]).max(of.leaves) <= of.open * sizes[k])
@@ -356,8 +359,13 @@ fn passes(matrix: &mut impl LinearSystem, of: Passes, system: &System, work: &mu
 /// Solves for what accelerations and multipliers miss, and adds it: the largest of that, and of all there is then, of accelerations and of
 /// multipliers.
 pub(super) fn pass(matrix: &mut impl LinearSystem, system: &System, work: &mut Workspace) -> Result<[[f64; 2]; 2], Failure> {
-    let n = system.coordinates();
     work.sum_reactions(system, matrix.unknowns());
+    take_up(matrix, system, work)
+}
+
+/// The same of what is missed that stands in the unknowns.
+fn take_up(matrix: &mut impl LinearSystem, system: &System, work: &mut Workspace) -> Result<[[f64; 2]; 2], Failure> {
+    let n = system.coordinates();
     matrix.solve(system, work)?;
     let (steps, multipliers) = matrix.unknowns().split_at(n);
     work.a.iter_mut().zip(steps).for_each(|(a, step)| *a += step);
