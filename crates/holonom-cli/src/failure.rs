@@ -22,8 +22,8 @@ pub enum Failure {
         /// What to do about it.
         cure: String,
     },
-    #[error("error: cannot read {path}: there is no such file or folder\n  cure: {cure}", path = .path.display())]
-    /// A file or a folder that is not there.
+    #[error("error: cannot read {path}: {why}\n  cure: {cure}", path = .path.display(), why = if .source.kind() == ErrorKind::IsADirectory { "it is a folder" } else { "there is no such file or folder" })]
+    /// A file or a folder that is not there, or a folder in place of a file.
     NotThere {
         /// Which one.
         path: PathBuf,
@@ -53,10 +53,10 @@ impl Failure {
         }
     }
 
-    /// A file that cannot be read, with the cure for one that is not there.
+    /// A file that cannot be read, with the cure for one that is not there or is none.
     pub fn unread(path: impl Into<PathBuf>, source: std::io::Error, cure: &'static str) -> Self {
         match source.kind() {
-            ErrorKind::NotFound => Self::NotThere { path: path.into(), source, cure },
+            ErrorKind::NotFound | ErrorKind::IsADirectory => Self::NotThere { path: path.into(), source, cure },
             _ => Self::File { doing: "read", path: path.into(), source },
         }
     }

@@ -119,7 +119,10 @@ pub fn load_to_run(argument: &str, overrides: Overrides) -> Result<Loaded, Failu
 }
 
 /// The name of a model file that is standard input.
-const STANDARD_INPUT: &str = "-";
+pub const STANDARD_INPUT: &str = "-";
+
+/// What the model of standard input is called.
+pub const STDIN: &str = "stdin";
 
 /// Reads a model file, or an example, as a description with the overrides of the command line; and its name.
 pub fn open(argument: &str, overrides: &Overrides) -> Result<(Source, String), Failure> {
@@ -127,7 +130,7 @@ pub fn open(argument: &str, overrides: &Overrides) -> Result<(Source, String), F
     // The name, the file as messages call it, its bytes, and the folder of the files that it names.
     let (name, shown, bytes, folder) = match (argument, argument.strip_prefix("example:")) {
         (_, Some(name)) => (name.to_string(), format!("{name}.toml"), example(name)?.as_bytes().to_vec(), None),
-        (STANDARD_INPUT, _) => ("stdin".to_string(), "stdin".to_string(), standard_input().map_err(fail)?, Some(Path::new(""))),
+        (STANDARD_INPUT, _) => (STDIN.to_string(), STDIN.to_string(), standard_input().map_err(fail)?, Some(Path::new(""))),
         _ => {
             let path = Path::new(argument);
             let bytes = File::open(path).and_then(read_at_most).map_err(fail)?;

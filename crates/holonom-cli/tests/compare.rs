@@ -45,3 +45,16 @@ fn compare_shows_runs_that_stop() {
     let all = json(&folder, &format!("compare {PAPER} {words}"));
     assert_eq!((&all[0]["status"], &all[1]["status"]), (&"stopped".into(), &"completed".into()));
 }
+
+#[test]
+fn methods_that_cannot_have_the_accuracy_of_a_model_are_left_out() {
+    let folder = folder();
+    let output = holonom(&folder, "compare example:simple-pendulum --end 0.1 --set simulation.accuracy=1e-4 --no-report --json --out a");
+    let (out, told) = (text(&output.stdout), text(&output.stderr));
+    assert!(output.status.success() && told.contains("trapezoidal is left out") && told.contains("gives an accuracy"), "{told}");
+    let labels: Vec<String> =
+        serde_json::from_str::<Vec<serde_json::Value>>(&out).unwrap().iter().map(|one| one["label"].as_str().unwrap().into()).collect();
+    assert_eq!(labels, NAMED.into_iter().filter(|name| *name != "trapezoidal").collect::<Vec<_>>());
+    // Where it is asked for it is refused.
+    fails(&folder, "compare example:simple-pendulum --end 0.1 --set simulation.accuracy=1e-4 --method trapezoidal", 2);
+}

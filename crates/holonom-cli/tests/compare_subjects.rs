@@ -133,6 +133,49 @@ fn measured_times_in_other_units_are_noticed() {
     assert!(!prints(&folder, "compare a.toml measured.csv --columns m.x --no-report --out s", 0).contains("times are in s"));
 }
 
+/// A name that is spelled otherwise has no curve beside it.
+#[test]
+fn measured_data_that_nothing_is_beside_are_told() {
+    let folder = prepared();
+    fs::write(folder.path().join("rig.csv"), "time,M.x,temperature\n0,1.1,20\n1,1,20\n").unwrap();
+    let noted = |words: &str| {
+        let output = holonom(&folder, &format!("compare {words} --no-report --out rig --force"));
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stderr)
+    };
+    let told = noted("a.toml rig.csv");
+    assert!(told.contains("nothing is beside the columns of rig") && told.contains("did you mean `m.x` by `M.x`?"), "{told}");
+    assert_eq!((noted("a.toml measured.csv"), noted("a.toml rig.csv --quiet"), noted("measured.csv")), Default::default());
+    // Nor has one at other times.
+    fs::write(folder.path().join("late.csv"), "t,m.x\n3,1.1\n4,1\n").unwrap();
+    let out = prints(&folder, "compare a.toml late.csv --no-report --out late", 0);
+    assert!(out.contains("only 0 of 2 rows of late are at times that a has"), "{out}");
+}
+
+#[test]
+fn a_model_of_standard_input_has_a_name() {
+    let folder = prepared();
+    let mut command = assert_cmd::Command::cargo_bin("holonom").unwrap();
+    let words = "compare - --method radau --method gauss --end 0.1 --no-report";
+    let output = command.current_dir(&folder).args(words.split(' ')).write_stdin(OSCILLATOR).output().unwrap();
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(files(folder.path().join("results")), names(&["stdin-compare"]));
+}
+
+/// Where the table of a run has some columns only, or another format, the recording beside it has all.
+#[test]
+fn a_folder_has_all_columns_whatever_its_table_has() {
+    let folder = prepared();
+    for (k, with) in ["--format npz", "--set output.columns=[\"strut.*\"]"].iter().enumerate() {
+        prints(&folder, &format!("run a.toml --quiet --no-report {with} --out old{k}"), 0);
+        let all = json(&folder, &format!("compare a.toml old{k} --columns m.x --json --no-report --out c{k}"));
+        assert_eq!(number(&all[1], "/differences/m.x/largest"), 0.0, "{all:#}");
+    }
+    fs::remove_file(folder.path().join("old0/summary.json")).unwrap();
+    let message = fails(&folder, "compare a.toml old0", 2);
+    assert!(message.contains("old0 has no summary.json") && message.contains("name old0/recording.csv"), "{message}");
+}
+
 #[test]
 fn variants_are_further_runs_of_each_model() {
     let folder = prepared();
@@ -205,6 +248,7 @@ fn what_cannot_be_compared_is_refused_before_anything_runs() {
         ("windows.csv", "t,m.x\r\n\r\n0,1\r\n1,one\r\n"),
         ("uneven.csv", "t,m.x\n0,1\n1\n"),
         ("short.csv", "t,m.x\n0,1\n"),
+        ("nameless.csv", "0,1\n1,2\n2,\n"),
     ] {
         fs::write(folder.path().join(name), text).unwrap();
     }
@@ -215,7 +259,8 @@ fn what_cannot_be_compared_is_refused_before_anything_runs() {
         ("a.toml tabs.csv", "put commas between columns"),
         ("a.toml windows.csv", "line 4 has `one` in the column `m.x`"),
         ("a.toml uneven.csv", "line 3 has 1 cells"),
-        ("a.toml short.csv", "1 rows"),
+        ("a.toml short.csv", "1 row,"),
+        ("a.toml nameless.csv", "numbers where the names of the columns should be"),
         ("a.toml empty", "not the folder of a run"),
         ("a.toml b.toml --columns m.xx", "did you mean `m.x`"),
         ("a.toml measured.csv --columns strut.force", "only `a` has a column `strut.force`"),

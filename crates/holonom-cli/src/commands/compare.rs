@@ -15,6 +15,7 @@ use crate::failure::{Failure, STOPPED};
 use crate::folder::{Folder, TABLE, file_stems, holds};
 use crate::found::Found;
 use crate::load::Loaded;
+use crate::message::note;
 use crate::options::CompareArguments;
 use crate::output::{Finished, Order, simulate, writers};
 use crate::progress::interrupt_flag;
@@ -35,6 +36,9 @@ pub fn compare(arguments: &CompareArguments) -> Result<ExitCode, Failure> {
     let output = &arguments.output;
     let writers = writers(&output.formats)?;
     let mut plan = Plan::new(arguments)?;
+    if !output.to.quiet {
+        plan.notes().iter().for_each(|text| note(text));
+    }
     let summaries: Value = plan.entries.iter().map(Entry::identity).collect();
     let folder = Folder::claim(&output.to, &format!("{}-compare", plan.name), |path| holds(path, &summaries))?;
     let stems = file_stems(plan.entries.iter().map(|entry| entry.label.as_str()));
@@ -201,7 +205,7 @@ fn run<'a>(one: &'a Compared, plan: &'a Plan) -> Run<'a> {
 /// What was asked, the answers of all runs, and how the solver did.
 fn describe(columns: &[String], compared: &[Compared]) -> String {
     let summaries: Vec<&Value> = compared.iter().map(|one| &one.summary).collect();
-    let mut parts = vec![describe_columns(columns, compared), describe_answers(&summaries), describe_runs(&summaries)];
+    let mut parts = vec![describe_columns(columns, compared), describe_answers(&summaries), describe_runs(&summaries), strangers(compared)];
     parts.retain(|part| !part.is_empty());
     parts.join("\n\n")
 }
@@ -240,8 +244,13 @@ fn describe_columns(columns: &[String], compared: &[Compared]) -> String {
         };
         table(&[&heading, "least", "largest", "difference", "at s", "rms"], &compared.iter().map(row).collect::<Vec<_>>())
     });
-    let strangers: String = compared[1..].iter().filter_map(|other| hardly_meets(other, first)).collect();
-    format!("{}\ndifferences are to {}{strangers}", tables.collect::<Vec<_>>().join("\n\n"), first.label)
+    format!("{}\ndifferences are to {}", tables.collect::<Vec<_>>().join("\n\n"), first.label)
+}
+
+/// Says of which hardly any rows are at times of the first.
+fn strangers(compared: &[Compared]) -> String {
+    let Some((first, others)) = compared.split_first() else { return String::new() };
+    others.iter().filter_map(|other| hardly_meets(other, first)).collect::<Vec<_>>().join("\n")
 }
 
 /// Share of its rows that a curve has in common with another below which it is probably told in other units of time.
@@ -253,7 +262,7 @@ fn hardly_meets(one: &Compared, first: &Compared) -> Option<String> {
     let whole = *others.first()?..=*others.last()?;
     let common = own.iter().filter(|t| whole.contains(t)).count();
     (common as f64 <= HARDLY * own.len() as f64)
-        .then(|| format!("\nonly {common} of {} rows of {} are at times that {} has: times are in s", own.len(), one.label, first.label))
+        .then(|| format!("only {common} of {} rows of {} are at times that {} has: times are in s", own.len(), one.label, first.label))
 }
 
 /// A table of all runs, and why those ended that did not come to the end asked for.

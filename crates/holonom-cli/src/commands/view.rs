@@ -11,7 +11,8 @@ use crate::options::ViewArguments;
 /// Serves the report of a folder on this machine only, until it is interrupted.
 pub fn view(arguments: &ViewArguments) -> Result<ExitCode, Failure> {
     let path = arguments.folder.join("report.html");
-    let page = std::fs::read(&path).map_err(|source| Failure::File { doing: "read", path, source })?;
+    let page =
+        std::fs::read(&path).map_err(|source| Failure::unread(path, source, "name a folder that a command left without --no-report"))?;
     let server = Server::http(("127.0.0.1", arguments.port)).map_err(|error| {
         Failure::usage(format!("cannot serve on port {}: {error}", arguments.port), "take another port, or 0 for a free one")
     })?;

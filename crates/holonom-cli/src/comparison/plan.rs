@@ -1,11 +1,11 @@
 //! What is compared with what, in which order, and what each is called.
 
-use holonom::model::Model;
+use holonom::model::{Model, nearest};
 use holonom::record::{Recorder, Recording, Scene};
-use holonom::simulation::NAMED;
+use holonom::simulation::{Method, NAMED};
 use serde_json::{Value, json};
 
-use super::subject::{Headings, Subject};
+use super::subject::{Headings, MEASURED, Subject};
 use crate::columns::unknown;
 use crate::failure::Failure;
 use crate::items::items;
@@ -29,6 +29,8 @@ pub struct Plan {
     pub blank: Scene,
     /// Columns whose differences are told.
     pub columns: Vec<String>,
+    /// Named methods that cannot have the accuracy of the model, and why.
+    left_out: Vec<String>,
 }
 
 /// One curve of each plot.
@@ -76,7 +78,7 @@ impl Plan {
             known.entry(column.heading.name.clone()).or_insert(column.heading);
         }
         subjects.iter().for_each(|subject| subject.add_headings(&mut known));
-        let methods = methods(arguments, &subjects);
+        let (methods, left_out) = methods(arguments, &subjects, &models);
         let mut entries = Vec::new();
         for one in &prepared {
             match one.subject.read(&known)? {
@@ -95,9 +97,35 @@ impl Plan {
             columns: arguments.columns.iter().flat_map(|given| items(given)).map(str::to_string).collect(),
             models,
             entries,
+            left_out,
         };
         plan.check_columns()?;
         Ok(plan)
+    }
+
+    /// Says which methods are left out, and of what was measured where no column of it is beside one of another, as where a name is spelled otherwise.
+    pub fn notes(&self) -> Vec<String> {
+        let names = |entry: &Entry| -> Vec<String> {
+            let of = |recording: &Recording| recording.columns().iter().map(|column| column.heading.name.clone()).collect();
+            match &entry.of {
+                Of::Run(model, _) => of(&headings(&self.models[*model].model)),
+                Of::Read(recording, _) => of(recording),
+            }
+        };
+        let all: Vec<Vec<String>> = self.entries.iter().map(names).collect();
+        let is_measured = |entry: &Entry| matches!(&entry.of, Of::Read(_, summary) if summary["status"] == MEASURED);
+        let told = |(k, entry): (usize, &Entry)| {
+            let others =
+                || all.iter().enumerate().filter(|(other, _)| *other != k).flat_map(|(_, names)| names).filter(|name| *name != "t");
+            let mut own = all[k].iter().filter(|name| *name != "t");
+            if !is_measured(entry) || others().next().is_none() || own.clone().any(|name| others().any(|other| other == name)) {
+                return None;
+            }
+            let near = own.find_map(|name| Some((name, nearest(name, others().map(String::as_str))?)));
+            let near = near.map_or_else(String::new, |(name, near)| format!("; did you mean `{near}` by `{name}`?"));
+            Some(format!("nothing is beside the columns of {}, as columns are compared by their names{near}", entry.label))
+        };
+        self.left_out.iter().cloned().chain(self.entries.iter().enumerate().filter_map(told)).collect()
     }
 
     /// Refuses columns without which there is no difference.
@@ -220,12 +248,18 @@ fn refuse_part(given: &str, arguments: &CompareArguments) -> Result<(), Failure>
     }
 }
 
-/// The methods that each model is run with; `None` is its own. A single model without variants is run with all.
-fn methods(arguments: &CompareArguments, subjects: &[Subject]) -> Vec<Option<String>> {
+/// The methods that each model is run with; `None` is its own. A single model without variants is run with all that can have its accuracy; and what
+/// is said of the others.
+fn methods(arguments: &CompareArguments, subjects: &[Subject], models: &[Loaded]) -> (Vec<Option<String>>, Vec<String>) {
     match (arguments.methods.is_empty(), subjects.len() == 1 && arguments.variants.is_empty()) {
-        (false, _) => arguments.methods.iter().cloned().map(Some).collect(),
-        (true, true) => NAMED.iter().map(|named| Some(named.name.to_string())).collect(),
-        (true, false) => vec![None],
+        (false, _) => (arguments.methods.iter().cloned().map(Some).collect(), Vec::new()),
+        (true, true) => {
+            let by_accuracy = || models.iter().filter(|loaded| loaded.model.settings.choice.accuracy.is_some());
+            let error = |name: &str| by_accuracy().find_map(|loaded| Method::resolve(&loaded.model.choice(Some(name))).err());
+            let left_out = NAMED.iter().filter_map(|named| Some(format!("{} is left out: {}", named.name, error(named.name)?))).collect();
+            (NAMED.iter().filter(|named| error(named.name).is_none()).map(|named| Some(named.name.to_string())).collect(), left_out)
+        }
+        (true, false) => (vec![None], Vec::new()),
     }
 }
 

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use crate::checkpoint;
 use crate::failure::Failure;
+use crate::load::{STANDARD_INPUT, STDIN};
 
 /// Something to compare, as it was named on the command line.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,6 +44,7 @@ impl Subject {
     pub fn name(&self) -> String {
         let of = |path: &Path| path.file_stem().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
         match self {
+            Self::Model(argument) if argument == STANDARD_INPUT => STDIN.into(),
             Self::Model(argument) => argument.strip_prefix("example:").map_or_else(|| of(Path::new(argument)), str::to_string),
             // The point in a folder's name begins no ending.
             Self::Folder(path) => path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned()),
@@ -53,6 +55,7 @@ impl Subject {
     /// The word that named it.
     pub fn argument(&self) -> String {
         match self {
+            Self::Model(argument) if argument == STANDARD_INPUT => STDIN.into(),
             Self::Model(argument) => argument.clone(),
             Self::Folder(path) | Self::Measured(path) => path.display().to_string(),
         }
@@ -78,13 +81,20 @@ impl Subject {
         match self {
             Self::Model(_) => Ok(None),
             Self::Folder(folder) => {
-                let table = folder.join("trajectory.csv");
+                // The second has all columns where the first is of some only, or in another format.
+                let table = ["recording.csv", "trajectory.csv"].map(|name| folder.join(name)).into_iter().find(|table| table.is_file());
+                let table = table.ok_or_else(|| {
+                    Failure::usage(
+                        format!("{} is not the folder of a run: it has neither a trajectory.csv nor a recording.csv", folder.display()),
+                        "name a folder that `holonom run` left, or a table of measured data",
+                    )
+                })?;
                 let summary = std::fs::read(folder.join("summary.json")).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
-                match summary.filter(Value::is_object).filter(|_| table.is_file()) {
+                match summary.filter(Value::is_object) {
                     Some(summary) => Ok(Some((read_table(&table, known)?.0, summary))),
                     None => Err(Failure::usage(
-                        format!("{} is not the folder of a run with a trajectory.csv", folder.display()),
-                        "name a folder that `holonom run` left, with --format csv among its formats",
+                        format!("{} has no summary.json of a run, which is written when a run ends", folder.display()),
+                        format!("go on with the run by --resume, or name {}, whose rows are then measured data", table.display()),
                     )),
                 }
             }
@@ -101,7 +111,7 @@ impl Subject {
 
 /// A table, and the SHA-256 of its file.
 fn read_table(path: &Path, known: &Headings) -> Result<(Recording, String), Failure> {
-    let bytes = std::fs::read(path).map_err(|source| Failure::File { doing: "read", path: path.into(), source })?;
+    let bytes = std::fs::read(path).map_err(|source| Failure::unread(path, source, "give a CSV file with a line for each time"))?;
     // Runs end each row with a line feed; measured tables may leave out the last.
     let is_of_run = || path.with_file_name(checkpoint::FILE).exists();
     if bytes.last().is_some_and(|last| *last != b'\n') && is_of_run() {

@@ -14,6 +14,9 @@ pub enum TableError {
     /// No columns beside that of time.
     #[error("its first line names no columns beside the time")]
     NoColumns,
+    /// Numbers where the names of columns should be.
+    #[error("the first line has numbers where the names of the columns should be")]
+    Nameless,
     /// Two columns of one name.
     #[error("it has two columns `{name}`")]
     Twice {
@@ -47,7 +50,7 @@ pub enum TableError {
         line: usize,
     },
     /// Fewer than two rows.
-    #[error("it has {rows} rows, and a comparison takes two or more")]
+    #[error("it has {rows} {}, and a comparison takes two or more", if *.rows == 1 { "row" } else { "rows" })]
     FewRows {
         /// How many it has.
         rows: usize,
@@ -61,7 +64,7 @@ impl TableError {
             Self::NotText => "give a CSV file: text with a line for each time",
             Self::NoCommas => "put commas between columns, and a point into numbers",
             Self::NoColumns => "name the columns in the first line as a run does, such as t,chassis.z",
-            Self::Twice { name } if name.parse::<f64>().is_ok() => "name the columns in the first line",
+            Self::Nameless => "write the names into a line before it, such as t,force",
             Self::Twice { .. } => "rename one of them",
             Self::Uneven { .. } => "give each line a cell for each column; it may be empty",
             Self::NoNumber { .. } => "write numbers with a point, such as 0.5 or 5e-1, and nothing where there is no value",
@@ -91,6 +94,11 @@ impl<'a> Columns<'a> {
         let names: Vec<String> = reader.headers().map_err(|error| uneven(text, &error))?.iter().map(str::to_string).collect();
         if matches!(&names[..], [only] if only.contains([';', '\t'])) {
             return Err(TableError::NoCommas);
+        }
+        // Of a row of numbers some may be missing.
+        let is_number = |name: &String| name.parse::<f64>().is_ok();
+        if names.iter().any(is_number) && names.iter().all(|name| name.is_empty() || is_number(name)) {
+            return Err(TableError::Nameless);
         }
         if let Some(k) = (1..names.len()).find(|&k| names[..k].contains(&names[k])) {
             return Err(TableError::Twice { name: names[k].clone() });

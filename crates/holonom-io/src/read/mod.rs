@@ -318,10 +318,6 @@ impl Files for FilesBeside {
             let number = |cell: &str| if cell.trim().is_empty() { Some(f64::NAN) } else { cell.parse().ok() };
             let read =
                 Columns::read(&bytes, |_, _, cell| number(cell)).map_err(|error| [format!("`{name}`: {error}"), error.cure().into()])?;
-            if read.names.iter().all(|name| name.parse::<f64>().is_ok()) {
-                let message = format!("`{name}`: the first line has numbers where the names of the columns should be");
-                return Err([message, "write the names into a line before it, such as t,force".into()]);
-            }
             Ok(NumberFile { names: read.names, columns: read.columns })
         })
     }
