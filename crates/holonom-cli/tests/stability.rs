@@ -68,3 +68,16 @@ fn what_cannot_be_done_is_said_before_the_search() {
     assert_eq!(output.status.code(), Some(4));
     assert!(String::from_utf8_lossy(&output.stderr).contains("cannot create file/results"));
 }
+
+/// An accuracy chooses the steps of a run, and of a search there is nothing to choose.
+#[test]
+fn a_model_with_an_accuracy_is_searched_with_equal_steps() {
+    let folder = folder();
+    let found = |more: &str| {
+        let words = format!(
+            "stability example:simple-pendulum --method trapezoidal --method conserving --end 2 --json --no-report --out s --force {more}"
+        );
+        json(&folder, &words).as_array().unwrap().iter().map(|one| one["completes"].clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(found("--set simulation.accuracy=1e-6"), found(""));
+}

@@ -42,7 +42,7 @@ impl Bounds {
     }
 }
 
-/// Searches the largest step of each method. Steps are never subdivided here.
+/// Searches the largest step of each method. Steps are never subdivided here, nor chosen by an accuracy.
 pub fn stability(arguments: &StabilityArguments) -> Result<ExitCode, Failure> {
     load::require_kept(&arguments.model.set, !arguments.methods.is_empty())?;
     let mut overrides = load::overrides(&arguments.model.set);
@@ -76,6 +76,8 @@ fn searches(methods: &[String], loaded: &Loaded) -> Result<Vec<(String, Choice, 
     let search = |name: &str| {
         let mut choice = loaded.model.choice(Some(name));
         choice.subdivide = Some(false);
+        // Of steps that it chooses none is the largest.
+        choice.accuracy = None;
         let method = Method::resolve(&choice).map_err(load::method_failure)?;
         Ok((name.to_string(), choice, loaded.provenance(&method, None, None)?))
     };
