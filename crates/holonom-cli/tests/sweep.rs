@@ -274,6 +274,7 @@ fn what_cannot_be_swept_is_refused_before_anything_runs() {
     for (words, told) in [
         (PAPER.to_string(), "--vary"),
         (format!("{PAPER} --vary point.m1.mss=1,2"), "did you mean `mass`"),
+        (format!("{PAPER} --vary point.m1.position[0]=1,2"), "a point has no key `position[0]`"),
         (format!("{PAPER} --vary point.m9.mass=1,2"), "`m9`"),
         (format!("{PAPER} --vary paramters.k=1,2"), "paramters"),
         ("example:four-bar --vary parameters.n=1,2".into(), "did you mean `N`"),

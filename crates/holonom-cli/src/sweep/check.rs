@@ -52,10 +52,13 @@ pub fn check(asked: &[String], source: &mut Source, method: Option<&str>, plan: 
     if asked.is_empty() { Ok(usual(&model)) } else { columns(&model, asked) }
 }
 
+/// What the names of measures begin with that are made of columns.
+const OWN: &str = "formula_of_column_";
+
 /// Makes measures of the formulas asked for, which are the columns asked for then.
 fn make_measures(asked: &mut [Asked], source: &mut Source) -> Result<(), Failure> {
     for (k, asked) in asked.iter_mut().enumerate().filter(|(_, asked)| asked.is_formula) {
-        let name = format!("formula_of_column_{}", k + 1);
+        let name = format!("{OWN}{}", k + 1);
         source.put(&path_of(&name), Value::Text(std::mem::replace(&mut asked.of, name))).map_err(Failure::Model)?;
     }
     Ok(())
@@ -70,7 +73,8 @@ fn path_of(measure: &str) -> String {
 pub fn of_formula(faults: &Faults, asked: &[Asked]) -> Option<(String, String)> {
     let typed = |fault: &Fault| asked.iter().find(|asked| asked.is_formula && path_of(&asked.of) == fault.path);
     let (fault, asked) = faults.0.iter().find_map(|fault| Some((fault, typed(fault)?)))?;
-    Some((format!("`{}`: {}", asked.text, fault.message), fault.cure.clone()))
+    let cure = fault.cure.split(", ").filter(|name| !name.starts_with(OWN)).collect::<Vec<_>>().join(", ");
+    Some((format!("`{}`: {}", asked.text, fault.message), cure))
 }
 
 /// What looks like a slip in a plan: parameters that nothing uses in any of its runs, varied or not.
@@ -170,7 +174,8 @@ fn is_of_key(fault: &Fault, plan: &Plan, source: &Source) -> bool {
     let within = |outer: &str, inner: &str| inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
     plan.varied.iter().any(|vary| {
         let owner = vary.path.rsplit_once('.').map_or("", |(owner, _)| owner);
-        (fault.on_key && within(&fault.path, &vary.path)) || (source.get(owner).is_none() && within(owner, &fault.path))
+        // A path has quotes around names with other signs than those of a name.
+        (fault.on_key && within(&fault.path.replace('"', ""), &vary.path)) || (source.get(owner).is_none() && within(owner, &fault.path))
     })
 }
 

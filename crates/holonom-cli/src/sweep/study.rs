@@ -92,12 +92,12 @@ impl Study {
     /// Columns that runs of a table lack, as they ended before a time, or as there is no such vibration.
     fn lacking(&self, table: &Table) -> Vec<String> {
         let told = |asked: &Asked| {
+            let count = self.sheet.lacking(table, &asked.text);
             let why = match asked.function {
-                Function::At(t) => format!("which ended before {t} s or lack the column"),
+                Function::At(t) => format!("which ended before {t} s or {} the column", if count == 1 { "lacks" } else { "lack" }),
                 Function::Mode(_, number) => format!("where mode {number} does not vibrate or there are fewer"),
                 _ => return None,
             };
-            let count = self.sheet.lacking(table, &asked.text);
             let runs = if count == 1 { "one run".into() } else { format!("{count} runs") };
             (count > 0).then(|| format!("`{}` has no value in {runs} of {}, {why}", asked.text, table.rows()))
         };
