@@ -1,6 +1,7 @@
 """Wrong studies and analyses: each raises an error that names the argument and says what to do."""
 
 import inspect
+import pickle
 
 import numpy as np
 import pytest
@@ -81,6 +82,7 @@ CALLS = {
     "no such method to compare": (lambda m: m.compare(methods=["raddau"]), ["`raddau`"]),
     "methods is a text": (lambda m: m.compare(methods="radau"), ["`methods`", "str", "list"]),
     "a variant is a text": (lambda m: m.compare(variants=["parameters.v=2"]), ["`variants`", "str"]),
+    "a study to pickle": (lambda m: pickle.dumps(hm.sweep(m, V)), ["neither copied nor pickled", "cure", "write()"]),
     "no such method to search": (lambda m: m.stability(methods=["raddau"]), ["`raddau`"]),
     "set of a check": (lambda m: m.check(set=["a"]), ["`set`", "list", "dictionary"]),
 }

@@ -73,6 +73,9 @@ class Study:
     def __len__(self) -> int:
         return len(self.table["run"])
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise refuse("study", "a study can be neither copied nor pickled", "keep its table, which is plain arrays, or write() it to a file")
+
     @property
     def columns(self) -> list[str]:
         """Names of all columns."""
