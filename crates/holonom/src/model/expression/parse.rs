@@ -7,6 +7,7 @@ use super::lex::{Token, lex};
 use super::names::{self, Names};
 use super::{Mistake, Op, Program, Scope, Value};
 use crate::model::fault::{nearest, suggest};
+use crate::record::COLUMNS;
 
 /// Deepest nesting of brackets, signs and powers.
 const DEPTH: usize = 50;
@@ -242,6 +243,12 @@ impl Parser<'_> {
         if let Some(what @ ("an input" | "a measure")) = self.scope.called(name) {
             let message = format!("`{name}` is {what}, which cannot be read here: what this formula says must be known before the run");
             return self.mistake(message, "let a force read it, such as an `effort` that pushes towards it, or make it a parameter");
+        }
+        // A number that stays as it is reads nothing, and means a parameter.
+        if COLUMNS[1..].contains(&name) && !self.variables.is_empty() {
+            let message = format!("`{name}` is a column of every run, which only measures read, and no parameter");
+            let cure = format!("read it in a [measure.NAME], write this by positions and velocities, or add `{name}` to [parameters]");
+            return self.mistake(message, cure);
         }
         let of_mechanism = self.names.known();
         let message = format!("the name `{name}` is not known here");
