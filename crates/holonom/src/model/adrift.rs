@@ -1,22 +1,26 @@
 //! What a start moves that it does not name: joints that the named ones leave free, and what no joint ties to the ground.
 
 use std::cell::LazyCell;
+use std::collections::HashMap;
+use std::f64::consts::{PI, TAU};
 
 use super::assembly::Assembly;
 use super::beams::stiffened;
-use super::bodies::frame::Frame;
 use super::bodies::nodes::Member;
-use super::bodies::{RigidBody, short};
-use super::geometry::{norm, subtract};
+use super::bodies::short;
+use super::geometry::{Vec3, norm, subtract, unit};
 use super::start::{Target, leading};
 use crate::simulation::{GOLDEN, Places};
-use crate::system::{GaugeValues, System, SystemBuilder, Term, place_of};
+use crate::system::{GaugeValues, System, SystemBuilder, place_of};
 
 /// Most bodies or coordinates that are named.
 const NAMED: usize = 3;
 
 /// What bodies move by less than, over the size of the mechanism, and turn by, rad, without a word; of rates it is a share of the largest.
 const ADRIFT: f64 = 1e-6;
+
+/// Difference of two angles that is rounding where they are found by a cosine, rad.
+const SAME_TURN: f64 = 1e-6;
 
 /// Says how bodies that no joint ties to the ground were moved to a start where coordinates are given: they only move as little as they can.
 pub(super) fn moved(assembly: &Assembly<'_>) -> Option<String> {
@@ -35,9 +39,10 @@ pub(super) fn moved(assembly: &Assembly<'_>) -> Option<String> {
             }
         }
     }
-    let moved = bodies.iter().zip(&assembly.frames).zip(&tied).filter(|(_, tied)| !**tied).filter_map(|((body, frame), _)| {
-        let (way, turn) = moved_by(assembly, body, frame);
-        by_in_words(&body.name, way, turn, ADRIFT * assembly.builder.size())
+    let turns = Turns::of(assembly);
+    let moved = (0..bodies.len()).filter(|k| !tied[*k]).filter_map(|k| {
+        let (way, turn) = moved_by(assembly, k, &turns);
+        by_in_words(&bodies[k].name, way, turn, ADRIFT * assembly.builder.size())
     });
     let moved = list(moved)?;
     Some(format!(
@@ -54,19 +59,48 @@ pub(super) fn by_in_words(name: &str, way: f64, turn: f64, least: f64) -> Option
     (!by.is_empty()).then(|| format!("`{name}` by {}", by.join(" and ")))
 }
 
-/// How far the centre of a body is from where that is written, m, and by what it is turned, rad.
-pub(super) fn moved_by(assembly: &Assembly<'_>, body: &RigidBody, frame: &Frame) -> (f64, f64) {
-    let (dim, position) = (assembly.dimension(), assembly.builder.position());
-    let at = |terms: Vec<Term>| place_of(&terms, position, dim);
-    let way = norm(subtract(at(frame.point(body.position)), body.position));
-    let turned = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|unit| at(frame.vector(unit)));
-    let trace = if dim == 2 { 2.0 * turned[0][0] + 1.0 } else { turned[0][0] + turned[1][1] + turned[2][2] };
-    // A thin rod has no directions across it.
-    let is_whole = turned[..dim].iter().all(|unit| norm(*unit) > 0.5);
-    (way, if is_whole { ((trace - 1.0) / 2.0).clamp(-1.0, 1.0).acos() } else { 0.0 })
+/// How far the centre of the k-th body is from where that is written, m, and by what it is turned, rad.
+pub(super) fn moved_by(assembly: &Assembly<'_>, k: usize, turns: &Turns) -> (f64, f64) {
+    let (dim, position, body) = (assembly.dimension(), assembly.builder.position(), &assembly.bodies[k]);
+    let at = place_of(&assembly.frames[k].point(body.position), position, dim);
+    (norm(subtract(at, body.position)), turns.of_body(assembly, k))
 }
 
-/// Coordinates of the joints of a system and their rates.
+/// Angles of joints, and in the plane of bodies, counted over any number of turns since the pose that is written, rad.
+pub(super) struct Turns(HashMap<String, f64>);
+
+impl Turns {
+    pub fn of(assembly: &Assembly<'_>) -> Self {
+        let (system, measured) = measured(&assembly.builder);
+        let angles = (0..measured.value.len()).filter(|&k| system.is_angle(k));
+        Self(angles.map(|k| (system.gauges()[k].clone(), measured.value[k])).collect())
+    }
+
+    /// By how much the k-th body is turned, rad. How it stands does not tell whole turns: in space those of a joint count whose angle
+    /// is the same but for these.
+    fn of_body(&self, assembly: &Assembly<'_>, k: usize) -> f64 {
+        let body = &assembly.bodies[k];
+        if assembly.dimension() == 2 {
+            return (self.0[&format!("{}.angle", body.name)] - body.turned).abs();
+        }
+        let at = |unit: Vec3| place_of(&assembly.frames[k].vector(unit), assembly.builder.position(), 3);
+        let turned = [0, 1, 2].map(|c| at(unit(c)));
+        // A thin rod has no directions across it.
+        if turned.iter().any(|unit| norm(*unit) <= 0.5) {
+            return 0.0;
+        }
+        let trace: f64 = (0..3).map(|c| turned[c][c]).sum();
+        let stands = ((trace - 1.0) / 2.0).clamp(-1.0, 1.0).acos();
+        let joints = assembly.joints.iter().filter(|joint| joint.geometry.members.contains(&Member::Body(k)));
+        let angles = joints.flat_map(|joint| joint.coordinates.iter().map(move |of| format!("{}.{}", joint.name, of.name)));
+        let mut turns = angles.filter_map(|name| Some(self.0.get(&name)?.abs()));
+        // From half a turn back to half a turn on.
+        let within = |turn: f64| (turn + PI).rem_euclid(TAU) - PI;
+        turns.find(|turn| *turn > PI && (within(*turn).abs() - stands).abs() < SAME_TURN).unwrap_or(stands)
+    }
+}
+
+/// Coordinates of the joints of a system, and in the plane angles of its bodies behind them, and their rates.
 pub(super) fn measured(builder: &SystemBuilder) -> (System, GaugeValues) {
     let system = builder.clone().build();
     let mut values = system.gauge_values();
@@ -92,7 +126,10 @@ fn left_free<'t>(assembly: &Assembly<'_>, targets: impl Iterator<Item = &'t Targ
         let v = places.velocities().ok()?.to_vec();
         let (system, mut measured) = (places.system(), places.system().gauge_values());
         system.measure(&x, &v, &mut measured);
-        let scaled = measured.rate.iter().enumerate().map(|(k, rate)| if system.is_angle(k) { size * rate } else { *rate });
+        let scaled = measured.rate[..assembly.joint_coordinates()]
+            .iter()
+            .enumerate()
+            .map(|(k, rate)| if system.is_angle(k) { size * rate } else { *rate });
         Some(scaled.collect::<Vec<f64>>())
     };
     let (at_rest, pushed) = (rates(0.0)?, rates(size)?);
@@ -108,11 +145,12 @@ pub(super) fn followed(assembly: &Assembly<'_>, targets: &[Target], before: &Gau
     let (system, after) = measured(&assembly.builder);
     let size = |k: usize| if system.is_angle(k) { 1.0 } else { assembly.builder.size() };
     let quicker = |k: usize| (after.rate[k] - before.rate[k]).abs() / size(k);
-    let quickest = (0..after.rate.len()).map(quicker).fold(0.0, f64::max);
+    let coordinates = assembly.joint_coordinates();
+    let quickest = (0..coordinates).map(quicker).fold(0.0, f64::max);
     let free = |is_given: fn(&Target) -> bool| LazyCell::new(move || left_free(assembly, targets.iter().filter(|target| is_given(target))));
     let (may_be_elsewhere, may_be_quick) = (free(Target::is_placed), free(Target::is_rated));
     let is_free = |free: &Option<Vec<bool>>, k: usize| free.as_ref().is_none_or(|free| free[k]);
-    let moved = system.gauges().iter().enumerate().filter_map(|(k, name)| {
+    let moved = system.gauges()[..coordinates].iter().enumerate().filter_map(|(k, name)| {
         let target = targets.iter().find(|target| target.name() == *name);
         let unit = if system.is_angle(k) { "rad" } else { "m" };
         let (value, rate) = (after.value[k], after.rate[k]);

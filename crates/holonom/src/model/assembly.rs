@@ -212,6 +212,22 @@ impl<'a> Assembly<'a> {
 }
 
 impl Assembly<'_> {
+    /// Has the angles of planar bodies measured, from the first axis of the plane to that of the body: before the mechanism is moved to its start, so
+    /// that their turns on the way there count as those of joints do.
+    pub(in crate::model) fn measure_bodies(&mut self) {
+        if self.dimension() == 2 {
+            for (body, frame) in self.bodies.iter().zip(&self.frames) {
+                self.builder.measure(format!("{}.angle", body.name), &body.angle(frame));
+            }
+        }
+    }
+
+    /// How many coordinates of joints are measured: they come before the angles of planar bodies.
+    pub(in crate::model) fn joint_coordinates(&self) -> usize {
+        let of_bodies = if self.dimension() == 2 { self.bodies.len() } else { 0 };
+        self.builder.measured() - of_bodies
+    }
+
     /// Coordinates of a point.
     pub fn dimension(&self) -> usize {
         self.axes.dimension()

@@ -102,6 +102,7 @@ pub(super) fn model(
         for program in sink.switches.take() {
             assembly.builder.switch(Arc::new(TimeProgram(program)));
         }
+        assembly.measure_bodies();
         let begun = match shared {
             None => start::begin(&mut assembly, description.equilibrium),
             Some(shared) => start::begin_as(&mut assembly, shared),

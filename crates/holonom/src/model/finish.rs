@@ -24,7 +24,7 @@ pub(super) fn finish(
     assembly.doubt_forces();
     let channels = channels(&assembly);
     let Assembly {
-        mut builder,
+        builder,
         axes,
         gravity,
         points,
@@ -67,7 +67,7 @@ pub(super) fn finish(
         bushings,
         wheels,
     };
-    let bodies: Vec<BodyInfo> = bodies.iter().zip(&frames).map(|(body, frame)| BodyInfo::new(body, frame, axes, &mut builder)).collect();
+    let bodies: Vec<BodyInfo> = bodies.iter().zip(&frames).map(|(body, frame)| BodyInfo::new(body, frame, axes)).collect();
     let points = points
         .into_iter()
         .map(|point| PointInfo { kind: kind(&point), place: place(&point), name: point.name, mass: point.mass, velocity: point.velocity })

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::adrift::{by_in_words, list, moved_by};
+use super::adrift::{Turns, by_in_words, list, moved_by};
 use super::assembly::Assembly;
 use super::geometry::{norm, subtract};
 use super::start::Target;
@@ -65,8 +65,9 @@ fn require_no_motion(assembly: &Assembly<'_>) -> Result<(), (String, &'static st
 /// The bodies and points that are farthest from where they were before.
 fn moved(assembly: &Assembly<'_>, before: &[f64]) -> Option<String> {
     let (dim, least) = (assembly.dimension(), MOVED * assembly.builder.size());
-    let bodies = assembly.bodies.iter().zip(&assembly.frames).filter_map(|(body, frame)| {
-        let (way, turn) = moved_by(assembly, body, frame);
+    let turns = Turns::of(assembly);
+    let bodies = assembly.bodies.iter().enumerate().filter_map(|(k, body)| {
+        let (way, turn) = moved_by(assembly, k, &turns);
         Some((way, by_in_words(&body.name, way, turn, least)?))
     });
     let points = assembly.points.iter().filter_map(|point| {

@@ -146,6 +146,11 @@ impl SystemBuilder {
     pub fn measure(&mut self, name: impl Into<String>, form: &Form) {
         self.gauges.add(name.into(), form);
     }
+
+    /// How much is measured.
+    pub fn measured(&self) -> usize {
+        self.gauges.names.len()
+    }
 }
 
 impl System {

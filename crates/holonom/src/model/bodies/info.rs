@@ -9,7 +9,6 @@ use super::frame::Frame;
 use crate::model::Axes;
 use crate::model::geometry::{norm, rest, scale, unit};
 use crate::record::RecordedBody;
-use crate::system::SystemBuilder;
 
 /// A body of the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,11 +28,7 @@ pub struct BodyInfo {
 }
 
 impl BodyInfo {
-    /// Has the angle of a planar body measured, too, from the first axis of the plane to the body's.
-    pub(in crate::model) fn new(body: &RigidBody, frame: &Frame, axes: Axes, builder: &mut SystemBuilder) -> Self {
-        if axes.dimension() == 2 {
-            builder.measure(format!("{}.angle", body.name), &body.angle(frame));
-        }
+    pub(in crate::model) fn new(body: &RigidBody, frame: &Frame, axes: Axes) -> Self {
         let directions = directions(axes.dimension(), body, frame);
         let recorded =
             RecordedBody { name: body.name.clone(), centre: frame.point(body.position), directions, start: body.world_from_body };
