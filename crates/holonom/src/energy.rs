@@ -1,5 +1,9 @@
 //! The energy audit: T, V, what was done on the system, and momenta (the paper's §6).
 
+mod unsure;
+
+pub(crate) use unsure::unsure_work;
+
 use crate::formulation::{Moment, Sampling, Stage, Workspace};
 use crate::linalg::largest;
 use crate::system::{Evaluation, InvariantId, LawEntry, Response, System};
@@ -146,56 +150,6 @@ pub(crate) fn made_by_dampers(system: &System, stage: &Stage, work: &Workspace) 
         }
     }
     (sum, most.1)
-}
-
-/// Share of a step by which its ends are looked at inside of it: what jumps at an end has there what it has in the step.
-const INSIDE: f64 = 1e-6;
-
-/// By how much the work of forces that may supply energy, as formulas do, is another in a step between positions by Simpson's rule, which has their
-/// power at both ends beside that between, J: of all together, and of the force that differs most its number among [`System::working_forces`] with
-/// its part.
-pub(crate) fn unsure_work(system: &System, stage: &Stage, work: &Workspace) -> (f64, (usize, f64)) {
-    let (h, dim) = (stage.step, system.dim);
-    let t = [stage.start + INSIDE * h, stage.end() - INSIDE * h];
-    let (mut sum, mut most) = (0.0, (0, 0.0_f64));
-    let mut differ = |number: usize, booked: f64, power: [f64; 2]| {
-        let by = (0.5 * h * (power[0] + power[1]) - booked) / 3.0;
-        sum += by;
-        if by.abs() > most.1.abs() {
-            most = (number, by);
-        }
-    };
-    let laws = system.laws.iter().zip(&work.forces.responses).enumerate().filter(|(_, (law, _))| !law.law.conservative());
-    let mut number = 0;
-    for (k, (law, response)) in laws {
-        // A law that is damped at the end of the step has another power at its start.
-        if law.law.may_supply() && !work.forces.is_late(k) {
-            let power = [(&work.start, t[0]), (&work.end, t[1])].map(|(end, t)| {
-                let mut own = Response::default();
-                let rates = system.respond(law, &end.at, &end.v, t, &mut own);
-                -own.force.iter().zip(&rates).map(|(force, rate)| force * rate).sum::<f64>()
-            });
-            differ(number, work_of_law(system, law, response, stage, work), power);
-        }
-        number += 1;
-    }
-    let mut used = &work.forces.of_loads[..];
-    for load in &system.loads {
-        let (mut booked, mut power) = (0.0, [0.0; 2]);
-        let ends = work.load_at_ends(system, load, t);
-        for (k, node) in load.nodes.iter().enumerate().filter(|(_, node)| node.index() < system.free) {
-            for c in 0..dim {
-                let (i, j) = (node.index() * dim + c, k * dim + c);
-                booked += used[j] * work.d[i];
-                power[0] += ends[0][j] * work.start.v[i];
-                power[1] += ends[1][j] * work.end.v[i];
-            }
-        }
-        differ(number, booked, power);
-        used = &used[load.nodes.len() * dim..];
-        number += 1;
-    }
-    (sum, most)
 }
 
 /// Power of everything that [`work_between`] counts, at a moment of a workspace with its accelerations, W. Needs the state sampled. Leaves in the

@@ -90,17 +90,38 @@ impl System {
 
     /// Forces of a load on all of its nodes (D a node), N.
     pub(crate) fn load_forces(&self, load: &LoadEntry, look: Look<'_>, out: &mut [f64]) {
-        let [x, v] = &self.read(&load.reading, look);
+        self.load_forces_behind(load, look, &[], out);
+    }
+
+    /// The same where the rates of what it reads are less by `lag`, one for each of its senses, and the power of its forces along that, W.
+    pub(crate) fn load_forces_behind(&self, load: &LoadEntry, look: Look<'_>, lag: &[f64], out: &mut [f64]) -> f64 {
+        let [x, v] = &mut self.read(&load.reading, look);
         let own = load.reading.nodes.len() * self.dim;
         out.fill(0.0);
         if load.reading.senses.is_empty() {
             load.load.force(x, v, look.t, out);
-            return;
+            return 0.0;
         }
+        v[own..].iter_mut().zip(lag).for_each(|(rate, lag)| *rate -= lag);
         let mut force = Local::from_elem(0.0, x.len());
         load.load.force(x, v, look.t, &mut force);
         out[..own].copy_from_slice(&force[..own]);
         self.spread_senses(load, &look.at.gradient, |line, sense, slope| line[0] += force[own + sense] * slope, out, 1);
+        force[own..].iter().zip(lag).map(|(force, lag)| force * lag).sum()
+    }
+
+    /// By how much the mean of the rates at both ends of a step of length `h` (s) is more than what each sense of a load comes on by.
+    pub(crate) fn lag_of_senses(&self, load: &LoadEntry, h: f64, [start, end]: [Look<'_>; 2]) -> Local {
+        if load.reading.senses.is_empty() {
+            return Local::new();
+        }
+        let own = load.reading.nodes.len() * self.dim;
+        let [[from, before], [to, after]] = [start, end].map(|look| self.read(&load.reading, look));
+        let lag = |k: usize| match load.reading.senses[k - own] {
+            Sense::Input(_) => 0.0,
+            Sense::Quantity(_) => 0.5 * (before[k] + after[k]) - (to[k] - from[k]) / h,
+        };
+        (own..from.len()).map(lag).collect()
     }
 
     /// Calls `add` with each line of `out` (`width` numbers for each coordinate of all nodes of the load), each sense that acts, and the
