@@ -142,6 +142,7 @@ mod schema;
 mod sections;
 mod settings;
 mod signals;
+mod spin;
 mod spinless;
 mod spline;
 mod spread;

@@ -11,7 +11,8 @@ use super::expression::{self, Mistake, Names, Program, Scope, indexed, names_in}
 use super::fields::Number;
 use super::geometry::unit;
 use super::measure::like;
-use super::sum::{Sum, cross};
+use super::spin;
+use super::sum::Sum;
 use crate::record::RecordedInput;
 use crate::system::{Form, Number as AnyNumber, Quantity, Reading, Sense};
 
@@ -104,7 +105,7 @@ impl Readings {
                 Leaf::Place(k, axis, true) => self.places[k].at(v, self.dim, 0.0)[axis],
                 Leaf::Sense(k, false) => x[own + k],
                 Leaf::Sense(k, true) => v[own + k],
-                Leaf::Turn(k, axis) => angular_velocity(&self.turns[k], x, v, self.dim)[axis],
+                Leaf::Turn(k, axis) => spin::angular_velocity(&self.turns[k], x, v, self.dim)[axis],
             });
         }
     }
@@ -121,13 +122,7 @@ impl Readings {
                 Leaf::Place(k, axis, true) => self.places[k].spread(along(axis), self.dim, by_v),
                 Leaf::Sense(k, false) => by_x[own + k] += slope,
                 Leaf::Sense(k, true) => by_v[own + k] += slope,
-                Leaf::Turn(k, axis) => {
-                    for sum in &self.turns[k] {
-                        let part = along(axis).map(|slope: N| slope * if self.dim == 2 { 1.0 } else { 0.5 });
-                        sum.spread(cross(sum.at(v, self.dim, 0.0), part), self.dim, by_x);
-                        sum.spread(cross(part, sum.at(x, self.dim, 1.0)), self.dim, by_v);
-                    }
-                }
+                Leaf::Turn(k, axis) => spin::spread(&self.turns[k], along(axis), [x, v], self.dim, [&mut *by_x, &mut *by_v]),
             }
         }
     }
@@ -135,16 +130,6 @@ impl Readings {
 
 /// Variables of a formula that are not put on the heap.
 pub(super) const ROOM: usize = 16;
-
-/// ½ Σ e_k × ė_k of the axes of a body; in the plane e × ė of the first.
-pub(super) fn angular_velocity<N: AnyNumber>(axes: &[Sum], x: &[N], v: &[N], dim: usize) -> [N; 3] {
-    let mut turn = [N::from(0.0); 3];
-    for sum in axes {
-        let own = cross(sum.at(x, dim, 1.0), sum.at(v, dim, 0.0));
-        (0..3).for_each(|c| turn[c] += own[c] * if dim == 2 { 1.0 } else { 0.5 });
-    }
-    turn
-}
 
 /// Resolves names while the formulas of an entry are parsed.
 pub(super) struct Reader<'a, 'b> {

@@ -15,7 +15,8 @@ use crate::model::expression::Program;
 use crate::model::fault::Read;
 use crate::model::fields::{List, Number, Turn};
 use crate::model::geometry::unit;
-use crate::model::signals::{ROOM, Reader, Readings, angular_velocity};
+use crate::model::signals::{ROOM, Reader, Readings};
+use crate::model::spin::{angular_velocity, turning};
 use crate::model::sum::{Sum, cross};
 use crate::model::tables::require_inside;
 use crate::model::value::Value;
@@ -107,25 +108,6 @@ impl BodyLoad {
             _ => given,
         }
     }
-}
-
-/// The c whose c × e_k on the axes e_k have the torque n: Σ (|e_k|² 1 − e_k e_kᵀ) c = n. That is n/2 for axes of length 1 across each other,
-/// which the means of two positions are not.
-fn turning<N: AnyNumber>(torque: [N; 3], axes: &[[N; 3]], dim: usize) -> [N; 3] {
-    let zero = N::from(0.0);
-    let mut m = [[zero; 3]; 3];
-    for e in axes {
-        for i in 0..3 {
-            m[i][i] += e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
-            (0..3).for_each(|j| m[i][j] -= e[i] * e[j]);
-        }
-    }
-    if dim == 2 {
-        return [zero, zero, torque[2] / m[2][2]];
-    }
-    let columns: [[N; 3]; 3] = std::array::from_fn(|k| cross(m[(k + 1) % 3], m[(k + 2) % 3]));
-    let determinant = m[0][0] * columns[0][0] + m[0][1] * columns[0][1] + m[0][2] * columns[0][2];
-    std::array::from_fn(|c| (columns[0][c] * torque[0] + columns[1][c] * torque[1] + columns[2][c] * torque[2]) / determinant)
 }
 
 impl Exerts for BodyLoad {
