@@ -258,35 +258,3 @@ fn a_rejected_step_leaves_no_trace() {
     assert!(cases > 100, "only {cases} of the steps were rejected");
     assert!(wrong.is_empty(), "{} of {cases} steps:\n{}", wrong.len(), wrong.join("\n"));
 }
-
-/// Nodes and rows alone do not tell one system from another.
-#[test]
-fn a_checkpoint_of_another_system_is_refused() {
-    const ARM: &str = "plane = 'xz'\n[body.arm]\nmass = 2\ninertia = 0.3\nposition = [0.4, 0]\n\
-        [joint.pin]\ntype = 'revolute'\nbetween = ['ground', 'arm']\nat = [0, 0]\n[input.u]\n";
-    let parts = [
-        "",
-        "[force.motor]\ntype = 'effort'\njoint = 'pin'\neffort = 'u - q'",
-        "[force.spring]\ntype = 'torsion'\njoint = 'pin'\nstiffness = 1\ndamping = 1",
-        "[force.wind]\ntype = 'constant'\npoint = 'arm'\nforce = [1, 0]",
-        "[event.low]\nwhen = 'pin.angle + 0.1'",
-        "[event.low]\nwhen = 'pin.angle + 0.1'\n[event.lower]\nwhen = 'pin.angle + 0.2'",
-        "[event.sample]\nevery = 0.05\nset = { u = 'u + 1' }\n[event.low]\nwhen = 'pin.angle + 0.1'\n[event.lower]\nwhen = 'pin.angle + 0.2'",
-    ];
-    let models = parts.map(|part| Source::read("arm.toml", format!("{ARM}{part}").as_bytes()).unwrap().model().unwrap());
-    for accuracy in [None, Some(1e-5)] {
-        let method = Method::resolve(&Choice { accuracy, ..Choice::default() }).unwrap();
-        for (k, of) in models.iter().enumerate() {
-            let mut run = Simulation::new(of.system.clone(), method.clone(), 0.01).unwrap();
-            assert_eq!(run.step_to(0.23), Status::Completed);
-            for (other, model) in models.iter().enumerate() {
-                let resumed = Simulation::resume(model.system.clone(), method.clone(), 0.01, run.checkpoint());
-                assert_eq!(resumed.is_some(), k == other, "a checkpoint of {k} and the system of {other}, {accuracy:?}");
-                // A state alone is of any that has these nodes and rows.
-                if let Some(mut begun) = Simulation::resume(model.system.clone(), method.clone(), 0.01, run.state().clone()) {
-                    assert_eq!(begun.step_to(0.3), Status::Completed);
-                }
-            }
-        }
-    }
-}

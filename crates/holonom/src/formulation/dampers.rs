@@ -119,11 +119,6 @@ impl Fit {
         Self { arguments: vec![Felt::default(); count], ..Self::default() }
     }
 
-    /// Whether it is of as many arguments.
-    pub fn is_like(&self, other: &Self) -> bool {
-        self.arguments.len() == other.arguments.len()
-    }
-
     /// Takes over another one of the same system.
     pub fn copy_from(&mut self, other: &Self) {
         let Self { arguments, is_known, steps_left, next, h, sum } = other;

@@ -105,11 +105,6 @@ impl Rank {
         (1.0 / (rho * self.weakest)).min(1.0)
     }
 
-    /// Whether it is of as many rows.
-    pub fn is_like(&self, other: &Self) -> bool {
-        self.regular.len() == other.regular.len()
-    }
-
     /// Becomes the same, without any allocation where no row is weak.
     pub fn copy_from(&mut self, other: &Self) {
         let Self { regular, weak, redundant, changes, singular, left_out, least: _, rounded: _, spares_regular, weakest } = other;

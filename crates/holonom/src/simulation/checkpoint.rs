@@ -58,15 +58,6 @@ struct Run {
     progress: Progress,
 }
 
-impl Run {
-    /// Whether it is one of the system of a simulation, that has just begun.
-    fn is_like(&self, simulation: &Simulation) -> bool {
-        let (system, own) = (&simulation.system, simulation.progress());
-        let is_watched = self.watched.as_ref().is_none_or(|(_, indicators)| indicators.len() == system.events.len());
-        is_watched && self.samples.len() == system.events.len() && self.progress.is_like(&own, system)
-    }
-}
-
 /// What a step changes beside the state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Progress {
@@ -164,23 +155,6 @@ impl Grid {
     }
 }
 
-impl Progress {
-    /// Whether it is of the same system, as one that has just begun there.
-    fn is_like(&self, own: &Self, system: &System) -> bool {
-        let has_flight = match (&self.flight, &own.flight) {
-            (Some(flight), Some(own)) => flight.is_like(own, system),
-            _ => true,
-        };
-        has_flight
-            && [0, 1].iter().all(|&k| self.shown[k].len() == own.shown[k].len())
-            && self.contacts.len() == own.contacts.len()
-            && self.measured.is_like(&own.measured)
-            && self.shares.is_like(&own.shares)
-            && self.hints.rank.is_like(&own.hints.rank)
-            && self.hints.fit.is_like(&own.hints.fit)
-    }
-}
-
 impl Moment {
     pub(super) fn t(&self) -> f64 {
         self.state.t
@@ -245,9 +219,6 @@ impl Simulation {
         system.evaluate_again(&state.x, state.t, &mut work.start.at);
         let mut simulation = Self::assemble(system, method, integrator, step, newton, work, state);
         if let Some(run) = run.filter(|run| run.method == words(&simulation.method)) {
-            if !run.is_like(&simulation) {
-                return None;
-            }
             simulation.go_on(run.progress);
             (simulation.happenings, simulation.samples, simulation.has_ended) = (run.happenings, run.samples, run.has_ended);
             simulation.watched = run.watched;

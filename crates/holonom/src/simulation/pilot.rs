@@ -192,23 +192,6 @@ pub(super) struct Flight {
     clear: f64,
 }
 
-impl Flight {
-    /// Whether it is of the same system, as one that has just begun there.
-    pub fn is_like(&self, own: &Self, system: &System) -> bool {
-        let is_like = |moment: &Moment, own: &Moment| {
-            moment.state.fits(system)
-                && moment.state.memory.len() == own.state.memory.len()
-                && [moment.v.len(), moment.a.len()] == [own.v.len(), own.a.len()]
-                && moment.measured.is_like(&own.measured)
-                && moment.shares.is_like(&own.shares)
-        };
-        self.v.len() == own.v.len()
-            && self.sight.is_like(&own.sight)
-            && is_like(&self.before, &own.before)
-            && is_like(&self.front, &own.front)
-    }
-}
-
 impl Pilot {
     /// Where a step from `t` ends at the latest on the way to `target`, as something changes abruptly there, and how long it may be.
     pub fn reach(&self, t: f64, target: f64) -> (f64, f64) {

@@ -36,12 +36,6 @@ impl Shares {
         self.powers.copy_from_slice(&other.powers);
     }
 
-    /// Whether it is of as many workers and laws.
-    pub fn is_like(&self, other: &Self) -> bool {
-        let sizes = |shares: &Self| [shares.done.len(), shares.powers.len(), shares.first.len()];
-        sizes(self) == sizes(other)
-    }
-
     /// Adds what was done in a step.
     pub fn add(&mut self, work: &Workspace) {
         self.done.iter_mut().zip(&work.shares).for_each(|(done, share)| *done += share);

@@ -22,14 +22,6 @@ pub(super) struct Sight {
     pub peaks: Vec<f64>,
 }
 
-impl Sight {
-    /// Whether it is of as many forces.
-    pub fn is_like(&self, other: &Self) -> bool {
-        let sizes = |sight: &Self| [sight.corners.len(), sight.reached.len(), sight.peaks.len()];
-        sizes(self) == sizes(other)
-    }
-}
-
 /// The first force that bends on a way.
 pub(super) struct Passed {
     /// Its number.

@@ -87,11 +87,6 @@ impl Measured {
         self.value.clone_from(&values.value);
         self.rate.clone_from(&values.rate);
     }
-
-    /// Whether it is of as many coordinates.
-    pub fn is_like(&self, other: &Self) -> bool {
-        self.value.len() == other.value.len() && self.rate.len() == other.rate.len()
-    }
 }
 
 impl GaugeValues {
