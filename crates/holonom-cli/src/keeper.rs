@@ -24,7 +24,8 @@ const COST: u32 = 50;
 /// Bytes of rows that are ready to be written: the text of others is made when it is written.
 const MOST_TEXT: usize = 1 << 23;
 
-/// Bytes of rows that are written without a checkpoint that counts them, while they are near the processor: a run that is resumed cuts them off.
+/// Bytes of rows that are written between two checkpoints, as they are still in the cache of the processor: a run that is resumed cuts off those that
+/// its checkpoint does not count.
 const AT_ONCE: usize = 1 << 19;
 
 /// Writes the rows and the checkpoint of a run from time to time. Rows are appended, and come before the checkpoint that counts them, so
