@@ -163,6 +163,8 @@ pub(crate) fn simulate_kept(
         Some((mark, rows)) => recorder.resume(&mark).after(rows),
         None => recorder,
     };
+    let nominal = (end - simulation.state().t) / (step * every as f64);
+    let recorder = recorder.expecting(nominal.min(1e9) as usize + 2);
     let is_real_time = simulation.method().settings.iterations.is_some();
     let has_thread = has_thread && !is_real_time && std::thread::available_parallelism().is_ok_and(|threads| threads.get() > 1);
     let desk = Desk { keeper, corrections: corrections.clone(), before_end: None };

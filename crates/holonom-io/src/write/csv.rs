@@ -9,6 +9,13 @@ use super::Table;
 /// Columns are in memory one after the other: of each so many rows come along with the first.
 const ROWS_AT_ONCE: usize = 8;
 
+/// Bytes of the longest number, `-2.2250738585072014e-308`.
+const WIDEST: usize = 24;
+
+/// Room for a number and a comma, and half of it.
+const ROOM: usize = 32;
+const HALF: usize = ROOM / 2;
+
 /// Bytes that are written at once: to ask the system for a few lines each takes as long as to make them.
 const BYTES_AT_ONCE: usize = 1 << 18;
 
@@ -55,31 +62,46 @@ fn append_lines(
     text: &mut Vec<u8>,
     mut after_line: impl FnMut(&mut Vec<u8>) -> io::Result<()>,
 ) -> io::Result<()> {
-    // Numbers are never quoted.
     let (width, mut number) = (recording.columns().len(), zmij::Buffer::new());
     let mut cells = vec![0.0; ROWS_AT_ONCE.min(recording.rows() - first) * width];
+    // Numbers are never quoted.
+    let mut line = vec![0; width * (WIDEST + 1) + ROOM];
     for from in (first..recording.rows()).step_by(ROWS_AT_ONCE) {
         let rows = ROWS_AT_ONCE.min(recording.rows() - from);
         for (k, column) in recording.columns().iter().enumerate() {
             column.values[from..from + rows].iter().enumerate().for_each(|(row, value)| cells[row * width + k] = *value);
         }
         for cells in cells.chunks_exact(width).take(rows) {
-            for cell in cells {
-                text.extend_from_slice(shortest(*cell, &mut number).as_bytes());
-                text.push(b',');
-            }
-            text.pop();
-            text.push(b'\n');
+            let end = cells.iter().fold(0, |end, cell| end + put(shortest(*cell, &mut number), &mut line[end..]));
+            line[end - 1] = b'\n';
+            text.extend_from_slice(&line[..end]);
             after_line(text)?;
         }
     }
     Ok(())
 }
 
+/// Puts a number and a comma at the begin of a line, in which there is [`ROOM`]; says how many bytes they are. Most numbers have more than half as
+/// many, and two copies of sixteen, each of which the processor does at once, take less time than one of any length.
+fn put(number: &str, line: &mut [u8]) -> usize {
+    let (number, length) = (number.as_bytes(), number.len());
+    let to = line.first_chunk_mut::<ROOM>().expect("there is room");
+    match (number.first_chunk::<HALF>(), number.last_chunk::<HALF>()) {
+        (Some(first), Some(last)) => {
+            to[..HALF].copy_from_slice(first);
+            to[length - HALF..length].copy_from_slice(last);
+        }
+        _ => to[..length].copy_from_slice(number),
+    }
+    to[length] = b',';
+    length + 1
+}
+
 /// The shortest text of a number that reads back to the same bits.
 fn shortest(value: f64, buffer: &mut zmij::Buffer) -> &str {
     let digits = buffer.format(value);
-    digits.strip_suffix(".0").unwrap_or(digits)
+    // Looked at by its bytes, which takes less time.
+    if let [.., b'.', b'0'] = digits.as_bytes() { &digits[..digits.len() - 2] } else { digits }
 }
 
 /// A number as it stands in a cell: the shortest text that reads back to the same bits.
@@ -127,7 +149,8 @@ mod tests {
     #[test]
     fn numbers_read_back_to_the_same_bits() {
         let mut recording = Recording::new(["t", "a,b"].map(String::from));
-        let values = [0.1, -1.0 / 3.0, 5e-324, 1.7976931348623157e308, 0.0];
+        let values =
+            [0.1, -1.0 / 3.0, 5e-324, 1.7976931348623157e308, 0.0, -f64::MIN_POSITIVE, 123456789012.25, f64::NAN, f64::NEG_INFINITY];
         for (k, value) in values.iter().enumerate() {
             recording.push(&[k as f64, *value]);
         }
@@ -136,7 +159,8 @@ mod tests {
         let mut reader = csv::Reader::from_reader(text.as_slice());
         assert_eq!(reader.headers().unwrap().iter().collect::<Vec<_>>(), ["t", "a,b"]);
         let read: Vec<f64> = reader.records().map(|record| record.unwrap()[1].parse().unwrap()).collect();
-        assert!(read.iter().zip(&values).all(|(a, b)| a.to_bits() == b.to_bits()));
+        assert!(read.iter().zip(&values).all(|(a, b)| a.to_bits() == b.to_bits()), "{read:?}");
+        assert_eq!(read.len(), values.len());
     }
 
     #[test]

@@ -84,11 +84,16 @@ impl Recording {
         }
     }
 
+    /// Has room for so many rows more, which are then not moved as their number grows.
+    pub(crate) fn make_room(&mut self, rows: usize) {
+        self.columns.iter_mut().for_each(|column| column.values.reserve(rows));
+    }
+
     /// Appends rows that stand one after the other: each column, which is far from the next, takes its values of all of them at once.
     pub(crate) fn extend(&mut self, rows: &[f64]) {
         let width = self.columns.len();
         for (k, column) in self.columns.iter_mut().enumerate() {
-            column.values.extend(rows[k..].iter().step_by(width));
+            column.values.extend(rows.chunks_exact(width).map(|row| row[k]));
         }
     }
 

@@ -16,6 +16,9 @@ use crate::system::System;
 pub const COLUMNS: [&str; 11] =
     ["t", "energy", "kinetic", "potential", "work", "dE_integrator", "dE_projection", "phi", "phi_dot", "phi_ddot", "iterations"];
 
+/// Numbers that there is room for before they are recorded. Room that is not used takes no memory, only addresses.
+const ROOM: usize = 1 << 23;
+
 /// Units and meanings of these.
 pub(super) const MEANINGS: [(&str, &str); 11] = [
     ("s", "time"),
@@ -106,6 +109,13 @@ impl Recorder {
     pub fn after(mut self, rows: Recording) -> Self {
         self.sampler.go_on_after(rows.columns()[0].values.last().copied());
         self.rows.recording = rows;
+        self
+    }
+
+    /// Has room for so many rows more, as far as they are not more than [`ROOM`] numbers: columns that grow are moved again and again.
+    pub fn expecting(mut self, rows: usize) -> Self {
+        let recording = &mut self.rows.recording;
+        recording.make_room(rows.min(ROOM / recording.columns().len()));
         self
     }
 
