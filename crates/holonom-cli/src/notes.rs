@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use holonom::analysis::{self, Modes, Rank, Undetermined, is_at_rest, way_ahead};
 use holonom::formulation::Multipliers;
 use holonom::model::{Model, StartChange};
-use holonom::record::{Channels, RecordedJoint, Recording};
+use holonom::record::{Channels, RecordedJoint, Recording, Where};
 use holonom::simulation::{Simulation, Start};
 
 use crate::load::Loaded;
@@ -32,7 +32,7 @@ pub fn shared_forces(model: &Model, simulation: &Simulation, recording: &Recordi
     ))
 }
 
-/// Components of forces and moments of joints, efforts of drives and couplers, and tensions of rods, that are left undetermined:
+/// Components of forces and moments of joints and constraints, efforts of drives and couplers, and tensions of rods, that are left undetermined:
 /// `hinge.fy .tx`, `motor.effort`.
 pub fn open_columns(free: &Undetermined<'_>, channels: &Channels, model: &Model) -> Vec<String> {
     let (mut open, world) = (Vec::new(), &*free.positions());
@@ -54,6 +54,18 @@ pub fn open_columns(free: &Undetermined<'_>, channels: &Channels, model: &Model)
     open.extend(pushes.map(|push| format!("{}.f{}", push.name, model.axes.chars().map(String::from).collect::<Vec<_>>().join(" .f"))));
     let rods = channels.rods.iter().filter(|rod| shared.contains(&rod.row));
     open.extend(rods.map(|rod| format!("{}.force", rod.name)));
+    let at = Where { at: free.evaluation(), x: world, dim: model.dimension, t: free.time() };
+    for hold in &channels.holds {
+        let (columns, components) = (hold.columns(model.axes), hold.components(model.dimension));
+        let unique = free.exerted_are_unique(hold.is_moment(), |lambda| hold.exerted(lambda, at));
+        for (owner, unique) in hold.owners.iter().zip(unique) {
+            let columns = columns.iter().zip(components.clone()).filter(|(_, k)| !unique[*k]);
+            let columns: Vec<&str> = columns.map(|(column, _)| column.as_str()).collect();
+            if !columns.is_empty() {
+                open.push(format!("{owner}.{}", columns.join(" .")));
+            }
+        }
+    }
     open
 }
 
@@ -80,7 +92,9 @@ fn unforced_rows(model: &Model, recording: &Recording) -> Vec<usize> {
     let told = model.channels.told();
     let of_joints = told.joints.iter().find(|joint| joint.is_known).map(|joint| format!("{}.f{}", joint.name, &model.axes[..1]));
     let of_drives = told.efforts.first().map(|effort| format!("{}.effort", effort.name));
-    let name = of_joints.or(of_drives).or(told.rods.first().map(|rod| format!("{}.force", rod.name)));
+    let of_rods = told.rods.first().map(|rod| format!("{}.force", rod.name));
+    let of_others = || told.holds.iter().find_map(|hold| hold.acts(model.axes).next()).map(|(_, columns)| columns[0].clone());
+    let name = of_joints.or(of_drives).or(of_rods).or_else(of_others);
     let Some(column) = name.and_then(|name| recording.column(&name)) else { return Vec::new() };
     let names = model.channels.forces.iter().flat_map(|force| force.acts(model.axes)).flatten();
     let forces: Vec<&[f64]> = names.filter_map(|name| recording.column(&name)).collect();

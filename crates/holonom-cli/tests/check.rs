@@ -80,6 +80,38 @@ fn a_drive_is_named_and_not_the_shape_of_the_body_that_it_leads() {
     }
 }
 
+/// A table on four legs: which of them bears how much is open, along the upright alone, and what holds it to its place is not. Its largest forces are on
+/// the screen, and every column says what it is.
+#[test]
+fn forces_of_constraints_that_are_not_unique_are_named() {
+    let folder = folder();
+    let table = "[body.table]\nmass = 20\nshape = { box = [2, 1, 0.1] }\nposition = [0, 0, 1]\n\
+                 points = { a = [1, 0.5, -1], b = [-1, 0.5, -1], c = [-1, -0.5, -1], d = [1, -0.5, -1], pin = [0, 0, -1] }\n\
+                 [constraint]\na = { type = \"point-on-plane\", point = \"table.a\", normal = [0, 0, 1] }\n\
+                 b = { type = \"point-on-plane\", point = \"table.b\", normal = [0, 0, 1] }\n\
+                 c = { type = \"point-on-plane\", point = \"table.c\", normal = [0, 0, 1] }\n\
+                 d = { type = \"expression\", value = \"3*table.d.z\" }\n\
+                 pin = { type = \"point-on-line\", point = \"table.pin\", direction = [0, 0, 1] }\n\
+                 [simulation]\nend = 0.02\nstep = 0.01\n";
+    fs::write(folder.path().join("table.toml"), table).unwrap();
+    let open = "a.fz, b.fz, c.fz, d.table.d.fz";
+    let output = holonom(&folder, "run table.toml --out r");
+    let said = on_one_line(&text(&output.stderr));
+    assert!(said.contains(&format!(": one way of many is shown for {open} (")), "{said}");
+    assert!(on_one_line(&prints(&folder, "check table.toml", 0)).contains(&format!("not unique: {open}; all others are")));
+    // Each of them bears the same where nothing says otherwise.
+    let said = text(&output.stdout);
+    assert!(["a 49.05 N", "b 49.05 N", "c 49.05 N", "d.table.d 49.05 N"].iter().all(|peak| on_one_line(&said).contains(peak)), "{said}");
+    let told = fs::read_to_string(folder.path().join("r/columns.json")).unwrap();
+    for meaning in ["force of the plane on the point, along z of the world", "force of the constraint on this place, along z of the world"]
+    {
+        assert!(told.contains(meaning), "{told}");
+    }
+    // With three legs nothing is shared.
+    fs::write(folder.path().join("three.toml"), table.replace("d = { type = \"expression\", value = \"3*table.d.z\" }\n", "")).unwrap();
+    assert!(text(&holonom(&folder, "run three.toml").stderr).is_empty());
+}
+
 /// Forces that redundant constraints share are named by runs as by `check`.
 #[test]
 fn runs_name_the_forces_that_are_not_unique() {

@@ -7,6 +7,10 @@ use std::fs;
 use common::*;
 use serde_json::Value;
 
+/// What the constraints of the paper's pendulum exert.
+const OF_ROWS: &str = "inner-rod.force,outer-rod.force,straight.m1.fx,straight.m1.fy,straight.m1.fz,straight.m2.fx,straight.m2.fy,straight.m2.fz,\
+                       straight.m1.f,straight.m2.f";
+
 #[test]
 fn run_leaves_what_is_documented() {
     let folder = folder();
@@ -26,7 +30,7 @@ fn run_leaves_what_is_documented() {
     let (header, rows) = csv(results.join("trajectory.csv"));
     let of_points = "m1.x,m1.y,m1.z,m1.vx,m1.vy,m1.vz,m2.x,m2.y,m2.z,m2.vx,m2.vy,m2.vz";
     let accelerations = "m1.ax,m1.ay,m1.az,m2.ax,m2.ay,m2.az";
-    assert_eq!(header, format!("{COMMON},{of_points},{accelerations},inner-rod.force,outer-rod.force"));
+    assert_eq!(header, format!("{COMMON},{of_points},{accelerations},{OF_ROWS}"));
     assert_eq!(rows.len(), 21);
     assert_eq!(rows[0][0], 0.0);
     assert_eq!(&rows[0][11..17], [1.0, 0.0, 0.0, 0.0, 0.5, 0.0]);
@@ -154,7 +158,7 @@ fn output_says_which_points_and_rows() {
     let folder = folder();
     prints(&folder, &format!("run {PAPER} --end 0.5 --out a --set output.points=[\"m2\"] --set output.every=10"), 0);
     let (header, rows) = csv(folder.path().join("a/trajectory.csv"));
-    assert_eq!(header, format!("{COMMON},m2.x,m2.y,m2.z,m2.vx,m2.vy,m2.vz,m2.ax,m2.ay,m2.az,inner-rod.force,outer-rod.force"));
+    assert_eq!(header, format!("{COMMON},m2.x,m2.y,m2.z,m2.vx,m2.vy,m2.vz,m2.ax,m2.ay,m2.az,{OF_ROWS}"));
     assert_eq!((rows.len(), &rows[0][11..20]), (3, &[2.0, 0.0, 0.0, 0.0, 1.0, 0.0, -0.5, 0.0, -11.772][..]));
 
     prints(&folder, "run example:double-pendulum --end 0.1 --out b --set output.points=[\"m2\",\"m1\"]", 0);

@@ -232,7 +232,9 @@ function apart(groups: Group[]): Group[] {
 /** The channels that are called NAME.SOMETHING or NAME after one of the owners, by unit. */
 function ofOwners(channels: Channel[], owners: string[]): Group[] {
   const isOf = ({ name }: Channel, owner: string): boolean => name === owner || (name.startsWith(`${owner}.`) && !name.slice(owner.length + 1).includes("."));
-  const own = channels.filter((channel) => owners.some((owner) => isOf(channel, owner)));
+  const direct = channels.filter((channel) => owners.some((owner) => isOf(channel, owner)));
+  // A line that keeps many points straight has only columns of these, NAME.POINT.SOMETHING.
+  const own = direct.length > 0 ? direct : channels.filter(({ name }) => owners.some((owner) => name.startsWith(`${owner}.`)));
   const rank = (unit: string): number => (ORDER.indexOf(unit) + 1 || ORDER.length + 1);
   const units = [...new Set(own.map(({ unit }) => unit))].sort((a, b) => rank(a) - rank(b));
   return units.map((unit) => {

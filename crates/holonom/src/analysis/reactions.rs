@@ -16,6 +16,7 @@ pub struct Undetermined<'s> {
     spaces: Vec<Space>,
     at: Evaluation,
     x: Vec<f64>,
+    t: f64,
 }
 
 /// Multipliers that have no effect together.
@@ -59,7 +60,7 @@ pub fn undetermined<'s>(system: &'s System, x: &[f64], t: f64) -> Option<Undeter
     };
     let spaces = null_space(rows, &gram, NOTHING).into_iter().map(space).collect();
     system.evaluate_again(x, t, &mut at);
-    Some(Undetermined { system, spaces, at, x: x.to_vec() })
+    Some(Undetermined { system, spaces, at, x: x.to_vec(), t })
 }
 
 /// Products of all pairs of rows of n numbers each (rows × rows). Most numbers are zero, so that only rows that meet in one are multiplied.
@@ -95,6 +96,16 @@ impl<'s> Undetermined<'s> {
         self.system.in_world(&self.x)
     }
 
+    /// Values and slopes of all quantities there.
+    pub fn evaluation(&self) -> &Evaluation {
+        &self.at
+    }
+
+    /// The time of that, s.
+    pub fn time(&self) -> f64 {
+        self.t
+    }
+
     /// Number of independent combinations: the redundant rows.
     pub fn count(&self) -> usize {
         self.spaces.len()
@@ -124,6 +135,21 @@ impl<'s> Undetermined<'s> {
             for c in 0..3 {
                 unique[c] &= (force[c] + more.0[c] - none.0[c]).abs() <= scale;
                 unique[3 + c] &= (moment[c] + more.1[c] - none.1[c]).abs() <= scale * length;
+            }
+        }
+        unique
+    }
+}
+
+impl Undetermined<'_> {
+    /// Whether the components of forces, or of moments, are unique that follow from the multipliers of all rows, in which they are linear.
+    pub fn exerted_are_unique<F: AsRef<[[f64; 3]]>>(&self, are_moments: bool, exerted: impl Fn(&[f64]) -> F) -> Vec<[bool; 3]> {
+        let length = if are_moments { extent(self.system) } else { 1.0 };
+        let mut unique = vec![[true; 3]; exerted(&vec![0.0; self.system.constraints()]).as_ref().len()];
+        for space in &self.spaces {
+            let scale = SMALL * space.largest * length;
+            for (unique, exerted) in unique.iter_mut().zip(exerted(&space.lambda).as_ref()) {
+                unique.iter_mut().zip(exerted).for_each(|(unique, part)| *unique &= part.abs() <= scale);
             }
         }
         unique

@@ -19,8 +19,8 @@ use super::lengths::DrivenLength;
 use super::signals::Signals;
 use super::start::Target;
 use crate::record::{
-    Anchor, Line, LineKind, RecordedCoupling, RecordedForce, RecordedRod, RecordedTransmission, SceneAxis, SceneJoint, SceneLoad,
-    SceneWheels, Shows,
+    Acts, Anchor, Line, LineKind, RecordedCoupling, RecordedForce, RecordedHold, RecordedRod, RecordedTransmission, SceneAxis, SceneJoint,
+    SceneLoad, SceneWheels, Shows,
 };
 use crate::system::{Signal, SystemBuilder};
 
@@ -136,6 +136,8 @@ pub struct Assembly<'a> {
     pub(in crate::model) transmissions: Vec<RecordedTransmission>,
     /// Bars and constraints that keep a distance.
     pub(in crate::model) rods: Vec<RecordedRod>,
+    /// What other constraints exert; the rows of formulas are counted from the first of those.
+    pub(in crate::model) holds: Vec<RecordedHold>,
     /// Places, as they were written, whose distance bars and constraints keep as it is at the start.
     pub(in crate::model) kept_apart: Vec<[String; 2]>,
     /// Elements of beams.
@@ -200,6 +202,7 @@ impl<'a> Assembly<'a> {
             wheels_apart: Vec::new(),
             transmissions: Vec::new(),
             rods: Vec::new(),
+            holds: Vec::new(),
             kept_apart: Vec::new(),
             elastic: Vec::new(),
             forces: Vec::new(),
@@ -288,6 +291,11 @@ impl Assembly<'_> {
             self.forces.push(RecordedForce { name: name.to_string(), laws, loads, shows });
         }
         built
+    }
+
+    /// Has recorded what the rows of a constraint exert, from the `first` on.
+    pub(in crate::model) fn hold(&mut self, entry: &Entry<'_>, what: &'static str, first: usize, acts: Acts) {
+        self.holds.push(RecordedHold { owners: vec![entry.name.to_string()], what, rows: first..self.builder.rows(), acts });
     }
 
     /// Draws a line between two ends.

@@ -7,7 +7,8 @@ use super::bodies::frame::Frame;
 use super::unseen::OverTime;
 use super::{BarInfo, BodyInfo, Model, Output, PointInfo, Settings, joints};
 use crate::record::{
-    Channels, PointKind, RecordedEffort, RecordedJoint, RecordedPoint, RecordedTransmission, Scene, SceneBody, ScenePoint,
+    Acts, Channels, PointKind, RecordedEffort, RecordedHold, RecordedJoint, RecordedPoint, RecordedTransmission, Scene, SceneBody,
+    ScenePoint,
 };
 use crate::system::Place;
 
@@ -40,10 +41,12 @@ pub(super) fn finish(
         efforts,
         couplings,
         rods,
+        holds,
         forces,
         signals,
         ..
     } = assembly;
+    let first_custom = builder.rows();
     let place = |point: &assembly::PlacedPoint| point.end.place().expect("a point is a node");
     let kind = |point: &assembly::PlacedPoint| match (place(point), point.end.free) {
         (Place::Fixed(_), _) => PointKind::Fixed,
@@ -89,6 +92,7 @@ pub(super) fn finish(
             efforts: recorded_efforts(efforts),
             couplings,
             rods,
+            holds: recorded_holds(holds, first_custom),
             inputs: signals.inputs,
             ..channels
         }),
@@ -103,6 +107,14 @@ pub(super) fn finish(
 
 fn recorded_efforts(efforts: Vec<assembly::Effort>) -> Vec<RecordedEffort> {
     efforts.into_iter().map(|assembly::Effort { name, row, length, is_moment }| RecordedEffort { name, row, length, is_moment }).collect()
+}
+
+/// Rows of formulas come behind all others.
+fn recorded_holds(mut holds: Vec<RecordedHold>, first_custom: usize) -> Vec<RecordedHold> {
+    for hold in holds.iter_mut().filter(|hold| matches!(hold.acts, Acts::Formula(_))) {
+        hold.rows = hold.rows.start + first_custom..hold.rows.end + first_custom;
+    }
+    holds
 }
 
 /// Points, named points of bodies, and the forces of joints and what they bear of couplers.

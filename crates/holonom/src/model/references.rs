@@ -225,6 +225,15 @@ impl Assembly<'_> {
         End { terms: self.frames[body].point(at), start: at, free: true, point: None, body: Some(body), name: name.to_string() }
     }
 
+    /// The name of an end in columns, with the indices of what is repeated; none of a place of the world.
+    pub fn full_name(&self, end: &End) -> Option<String> {
+        let of_body = |body: usize| {
+            let body = &self.bodies[body].name;
+            split_place(&end.name).map_or_else(|| body.clone(), |(_, place)| format!("{body}.{place}"))
+        };
+        end.point.map(|point| self.points[point].name.clone()).or(end.body.map(of_body))
+    }
+
     fn named_end(&self, entry: &Entry<'_>, spot: Spot<'_>, name: &str) -> Read<End> {
         Ok(match self.named(entry, spot, name)? {
             Named::Point(k) => self.points[k].end.clone(),

@@ -128,6 +128,22 @@ impl Readings {
     }
 }
 
+impl Readings {
+    /// Names of the places of which it reads coordinates.
+    pub fn places(&self) -> &[String] {
+        &self.names[1]
+    }
+
+    /// Adds what a function of positions changes by with each of these places, whose slopes by what it reads these are.
+    pub fn spread_on_places(&self, slopes: &[f64], by_place: &mut [[f64; 3]]) {
+        for (leaf, slope) in self.leaves.iter().zip(slopes) {
+            if let Leaf::Place(k, axis, false) = *leaf {
+                by_place[k][axis] += slope;
+            }
+        }
+    }
+}
+
 /// Variables of a formula that are not put on the heap.
 pub(super) const ROOM: usize = 16;
 
@@ -269,7 +285,7 @@ impl<'a, 'b> Reader<'a, 'b> {
 /// Whether the column of a thing is a force, a moment, a power or an acceleration.
 fn is_of_all_that_acts(column: &str) -> bool {
     let of_axis = |first: &str| column.strip_prefix(first).is_some_and(|axis| ["x", "y", "z"].contains(&axis));
-    ["force", "effort", "power", "t", "alpha"].contains(&column) || ["a", "alpha", "f", "t", "r"].into_iter().any(of_axis)
+    ["force", "effort", "power", "f", "t", "alpha"].contains(&column) || ["a", "alpha", "f", "t", "r"].into_iter().any(of_axis)
 }
 
 impl Names for Reader<'_, '_> {

@@ -8,6 +8,7 @@ use nalgebra::UnitQuaternion;
 use super::body::RecordedBody;
 use super::force::RecordedForce;
 use super::heading::{Endings, Heading, Units};
+use super::hold::{RecordedHold, Where};
 use super::joint::{RecordedJoint, Wrench};
 use super::measure::{RecordedInput, RecordedMeasure};
 use super::recorder::{COLUMNS, Constraints, MEANINGS};
@@ -84,6 +85,8 @@ pub struct Channels {
     pub transmissions: Vec<RecordedTransmission>,
     /// Tension (N) of bars and of the constraints that keep a distance, that of a bar its mean over the length.
     pub rods: Vec<RecordedRod>,
+    /// Forces (N) or moments (N·m) of all other constraints.
+    pub holds: Vec<RecordedHold>,
     /// The coordinates of joints and bodies, as `hinge.angle`, that are angles (rad) and not displacements (m).
     pub angles: HashSet<String>,
     /// Formulas of the columns, each behind those that it reads.
@@ -155,7 +158,8 @@ impl Channels {
         let told = Some(self.told()).filter(|_| constraints != Constraints::Nothing);
         let of_joints = told.iter().flat_map(|told| {
             let joints = told.joints.iter().flat_map(|joint| joint.acts(axes));
-            joints.chain(told.transmissions.iter().map(|transmission| transmission.acts(axes)))
+            let holds = told.holds.iter().flat_map(|hold| hold.acts(axes).map(|(_, columns)| columns).collect::<Vec<_>>());
+            joints.chain(told.transmissions.iter().map(|transmission| transmission.acts(axes))).chain(holds)
         });
         of_forces.chain(of_joints).filter(|components| components.len() > 1).collect()
     }
@@ -259,7 +263,7 @@ impl Channels {
         }
     }
 
-    /// Force and moment of each joint on its second body, about its place there, what couplers exert, and tensions.
+    /// Force and moment of each joint on its second body, about its place there, what couplers exert, tensions, and forces of constraints.
     fn joint_headings(&self) -> Vec<Heading> {
         let couplings = self.told().couplings.iter().map(|RecordedCoupling { name, is_moment, .. }| {
             let (unit, what) = if *is_moment { ("N·m", "moment") } else { ("N", "force") };
@@ -275,7 +279,8 @@ impl Channels {
         });
         let of_joints = RecordedJoint::endings(&self.axes);
         let joints = self.told().joints.iter().flat_map(|joint| of_joints.of(&joint.name));
-        joints.chain(couplings).chain(pushes).chain(self.told().rods.iter().map(tension)).collect()
+        let holds = self.told().holds.iter().flat_map(|hold| hold.headings(&self.axes));
+        joints.chain(couplings).chain(pushes).chain(self.told().rods.iter().map(tension)).chain(holds).collect()
     }
 
     /// The multiplier of each row of the system, and the force of the constraints on each point that is a free node.
@@ -318,13 +323,15 @@ impl Channels {
         }
     }
 
-    /// Appends the columns of the forces of joints, couplers and rods at the time `t` (s); no numbers where bodies share nodes at the joint.
+    /// Appends the columns of the forces of joints, couplers, rods and other constraints at the time `t` (s); no numbers where bodies share nodes at
+    /// the joint.
     pub(super) fn joint_forces(&self, found: &Found<'_>, t: f64, row: &mut Vec<f64>) {
         let (dim, x) = (self.axes.len(), found.positions());
         let (first, components) = (row.len(), RecordedJoint::components(dim));
         let Some(told) = self.found_in(found) else {
             let told = self.told();
-            let others = told.couplings.len() + told.transmissions.len() * dim + told.rods.len();
+            let held = told.holds.iter().map(|hold| hold.width(dim)).sum::<usize>();
+            let others = told.couplings.len() + told.transmissions.len() * dim + told.rods.len() + held;
             row.extend(std::iter::repeat_n(f64::NAN, told.joints.len() * components.len() + others));
             return;
         };
@@ -346,6 +353,16 @@ impl Channels {
         row.extend(told.couplings.iter().map(|coupling| -share(coupling) * of(coupling.row)));
         pushes.iter().for_each(|push| row.extend_from_slice(&push.force.as_slice()[..dim]));
         row.extend(told.rods.iter().map(|rod| of(rod.row) * rod.length.at(t)[0]));
+        let held_at = Where { at: found.at, x: &x, dim, t };
+        for hold in &told.holds {
+            match found.reactions {
+                Some(reactions) => {
+                    let exerted = hold.exerted(&reactions.lambda, held_at);
+                    exerted.iter().for_each(|force| row.extend_from_slice(&force[hold.components(dim)]));
+                }
+                None => row.extend(std::iter::repeat_n(f64::NAN, hold.width(dim))),
+            }
+        }
     }
 
     /// What one of the transmissions of these channels does with this multiplier of its row, where `x` are the positions of all nodes.

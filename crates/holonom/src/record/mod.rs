@@ -6,6 +6,7 @@ mod channels;
 mod composer;
 mod force;
 mod heading;
+mod hold;
 mod joint;
 mod measure;
 mod peaks;
@@ -23,6 +24,8 @@ pub use channels::{Channels, RecordedCoupling, RecordedEffort, RecordedPoint, Re
 pub use composer::Composer;
 pub use force::{Along, Exerts, Lengths, RecordedForce, Shows};
 pub use heading::Heading;
+pub(crate) use hold::{Acts, Slopes, Straight};
+pub use hold::{Exerted, RecordedHold, Where};
 pub use joint::RecordedJoint;
 pub use measure::{Formula, RecordedInput, RecordedMeasure, Running, RunningValue};
 pub(crate) use measure::{MeasureReads, Series};

@@ -59,7 +59,7 @@ pub struct Peaks {
     pub drives: Vec<Peak>,
     /// Of what springs and other forces exert.
     pub forces: Vec<Peak>,
-    /// Of what joints, couplers, bars and rods transmit.
+    /// Of what joints, couplers, bars, rods and other constraints transmit.
     pub joints: Vec<Peak>,
     /// Of all measures, in the order of their columns.
     pub measures: Vec<Extremes>,
@@ -122,7 +122,9 @@ impl Peaks {
         let couplings = told.couplings.iter().filter_map(|coupling| peak(&coupling.name, &[format!("{}.effort", coupling.name)]));
         let pushes = told.transmissions.iter().filter_map(|transmission| peak(&transmission.name, &transmission.acts(&channels.axes)));
         let rods = told.rods.iter().filter_map(|rod| peak(&rod.name, &[format!("{}.force", rod.name)]));
-        let joints: Vec<Peak> = told.joints.iter().flat_map(joint).flatten().chain(couplings).chain(pushes).chain(rods).collect();
+        let holds = told.holds.iter().flat_map(|hold| hold.acts(&channels.axes).filter_map(|(owner, columns)| peak(owner, &columns)));
+        let joints: Vec<Peak> =
+            told.joints.iter().flat_map(joint).flatten().chain(couplings).chain(pushes).chain(rods).chain(holds).collect();
         let [span, reach] = span(&channels.axes, recording);
         let all = || drives.iter().chain(&forces).chain(&joints);
         // A force that acts across the whole mechanism is compared with moments.

@@ -7,7 +7,8 @@ use crate::model::fields::{Keys, List, Place};
 use crate::model::geometry::{cross, norm};
 use crate::model::key::Shape;
 use crate::model::straight;
-use crate::record::LineKind;
+use crate::record::{Acts, LineKind, RecordedHold, Straight};
+use crate::system::Quantity;
 
 /// keeps three or more points on a straight line by the cross products of the paper (§7), in space three with one redundant, or two where points slide
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -41,17 +42,44 @@ impl Element for Collinear {
     fn build(&self, assembly: &mut Assembly<'_>, entry: &Entry<'_>) -> Read<()> {
         let points = assembly.ends(entry, "points", &self.points, 3, usize::MAX)?;
         assembly.require_free(entry, "points", &points)?;
-        let mut quantities = Vec::new();
-        for triple in points.windows(3) {
+        let (mut parts, first) = (Vec::new(), assembly.builder.rows());
+        let (owners, numbers) = owners(assembly, entry, &points);
+        for (triple, numbers) in points.windows(3).zip(numbers.windows(3)) {
             check(assembly, entry, triple)?;
             let keep_lengths = triple.windows(2).all(|pair| assembly.keeps_apart(&pair[0], &pair[1]));
-            let [u, w] = [0, 1].map(|k| from_to(&triple[k], &triple[k + 1]));
-            quantities.extend(straight::parallel(assembly, [&u, &w], keep_lengths));
+            let ways = [0, 1].map(|k| from_to(&triple[k], &triple[k + 1]));
+            let quantities = straight::parallel(assembly, ways.each_ref().map(Vec::as_slice), keep_lengths);
+            // The first way goes from the first to the second, the second from there to the third.
+            let on = [(0, 0, -1.0), (1, 0, 1.0), (1, 1, -1.0), (2, 1, 1.0)];
+            let on = on.into_iter().filter_map(|(end, way, sign)| Some((numbers[end]?, way, sign))).collect();
+            parts.push(Straight { quantities, ways, on });
         }
+        let quantities: Vec<Quantity> = parts.iter().flat_map(|part| part.quantities.iter().copied()).collect();
         straight::hold(assembly, entry, &quantities);
+        assembly.holds.push(RecordedHold {
+            owners,
+            what: "force of the line on this place",
+            rows: first..assembly.builder.rows(),
+            acts: Acts::Straight(parts),
+        });
         assembly.draw(entry, LineKind::Guide, &points[0], &points[points.len() - 1]);
         Ok(())
     }
+}
+
+/// What the forces on places are called, each once, and which of them each place has: none where it is of the world.
+fn owners(assembly: &Assembly<'_>, entry: &Entry<'_>, points: &[End]) -> (Vec<String>, Vec<Option<usize>>) {
+    let mut owners: Vec<String> = Vec::new();
+    let numbers = points.iter().map(|end| {
+        let owner = format!("{}.{}", entry.name, assembly.full_name(end)?);
+        let number = owners.iter().position(|known| *known == owner).unwrap_or(owners.len());
+        if number == owners.len() {
+            owners.push(owner);
+        }
+        Some(number)
+    });
+    let numbers = numbers.collect();
+    (owners, numbers)
 }
 
 fn check(assembly: &Assembly<'_>, entry: &Entry<'_>, triple: &[End]) -> Read<()> {

@@ -11,6 +11,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Keys, Number};
 use crate::model::key::Shape;
 use crate::model::signals::{ROOM, Reader, Readings};
+use crate::record::{Acts, RecordedHold, Slopes};
 use crate::system::{CustomRows, Number as AnyNumber, Reading, SIZE};
 
 /// keeps a formula of positions and of time at zero
@@ -82,6 +83,14 @@ impl Element for Expression {
         assembly.check_start(entry, far, norm(&start), || {
             format!("the formula of `{}` is {} at the start, and not zero", entry.name, off[0])
         })?;
+        let owners = rows.readings.places().iter().map(|place| format!("{}.{place}", entry.name)).collect();
+        let row = assembly.builder.custom_rows_so_far();
+        assembly.holds.push(RecordedHold {
+            owners,
+            what: "force of the constraint on this place",
+            rows: row..row + 1,
+            acts: Acts::Formula(rows.clone()),
+        });
         assembly.builder.custom_rows(entry.name, &nodes, rows);
         Ok(())
     }
@@ -163,6 +172,17 @@ impl Held {
     fn along(&self, x: impl Iterator<Item = Dual2_64>, t: f64) -> Dual2_64 {
         let x: Moving<Dual2_64> = x.collect();
         self.value.evaluate(&self.variables(&x, Dual2_64::new(t, 1.0, 0.0)))
+    }
+}
+
+impl Slopes for Held {
+    fn by_place(&self, x: &[f64], t: f64, by_place: &mut [[f64; 3]]) {
+        let (nodes, dim) = (&self.readings.reading.nodes, self.readings.dim());
+        let own: Moving<f64> = nodes.iter().flat_map(|node| &x[node.index() * dim..(node.index() + 1) * dim]).copied().collect();
+        let variables = self.variables(&own, t);
+        let mut slopes: SmallVec<[f64; ROOM]> = SmallVec::from_elem(0.0, variables.len());
+        self.value.slopes(&variables, &mut slopes);
+        self.readings.spread_on_places(&slopes[1..], by_place);
     }
 }
 

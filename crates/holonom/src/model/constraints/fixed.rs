@@ -6,6 +6,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Place};
 use crate::model::geometry::unit;
 use crate::model::key::Shape;
+use crate::record::Acts;
 
 /// keeps a point where it starts, or two points as far apart and in the direction in which they start
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -40,11 +41,13 @@ impl Element for Fixed {
         let (key, [a, b]) = self.ends(assembly, entry)?;
         assembly.require_free(entry, key, &[a.clone(), b.clone()])?;
         let offset = difference(&a, &b);
-        let axes = assembly.axes.name.as_bytes();
+        let (first, axes) = (assembly.builder.rows(), assembly.axes.name.as_bytes());
         for (c, &axis) in axes.iter().enumerate() {
             let component = assembly.builder.linear(unit(c), &from_to(&a, &b));
             assembly.builder.constant_row(format!("{}[{}]", entry.name, char::from(axis)), component, offset[c]);
         }
+        let what = if key == "point" { "force of the constraint on the point" } else { "force of the constraint on the second point" };
+        assembly.hold(entry, what, first, Acts::Along((0..axes.len()).map(unit).collect()));
         Ok(())
     }
 }

@@ -6,6 +6,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Keys, List, Place};
 use crate::model::geometry::{dot, norm};
 use crate::model::key::Shape;
+use crate::record::Acts;
 
 /// keeps the directions of two pairs of points at a right angle
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -53,8 +54,10 @@ impl Element for Perpendicular {
             format!("the two directions are at {:.4}° at the start, not at 90°", (dot(u, w) / size).clamp(-1.0, 1.0).acos().to_degrees())
         };
         assembly.check_start(entry, dot(u, w), size, angle)?;
-        let product = assembly.builder.dot(&from_to(&a, &b), &from_to(&c, &d));
+        let (ways, first) = ([from_to(&a, &b), from_to(&c, &d)], assembly.builder.rows());
+        let product = assembly.builder.dot(&ways[0], &ways[1]);
         assembly.builder.constant_row(entry.name, product, 0.0);
+        assembly.hold(entry, "moment on the second pair of points", first, Acts::Square(ways));
         Ok(())
     }
 }

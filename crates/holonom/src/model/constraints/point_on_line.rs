@@ -7,7 +7,7 @@ use crate::model::fields::{Keys, List, Number, Place};
 use crate::model::geometry::{across, cross, dot, norm};
 use crate::model::key::Shape;
 use crate::model::straight;
-use crate::record::LineKind;
+use crate::record::{Acts, LineKind, Straight};
 
 /// keeps a point on a line of fixed direction, or on the line through two points
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -41,6 +41,9 @@ pub struct PointOnLine {
     pub line: Option<List<Place>>,
 }
 
+/// What is recorded of it.
+const ON_POINT: &str = "force of the line on the point";
+
 impl Element for PointOnLine {
     const NEEDS_OTHERS: bool = true;
 
@@ -73,10 +76,12 @@ impl PointOnLine {
         let off = across.iter().map(|&e| dot(e, d).powi(2)).sum::<f64>().sqrt();
         let size = norm(d).max(norm(point.start));
         assembly.check_start(entry, off, size, || format!("`{}` starts {off} m beside the line", point.name))?;
+        let first = assembly.builder.rows();
         for (row, &e) in across.iter().enumerate() {
             let component = assembly.builder.linear(e, &from_to(&through, &point));
             assembly.builder.constant_row(Assembly::row_name(entry, row, across.len()), component, 0.0);
         }
+        assembly.hold(entry, ON_POINT, first, Acts::Along(across));
         let (back, forth) =
             ([-1.0, 1.0].map(|s| fixed(std::array::from_fn(|c| through.start[c] + s * direction[c]), String::new()))).into();
         if through.point.is_none() {
@@ -97,8 +102,10 @@ impl PointOnLine {
         let (u, w) = (difference(&a, &b), difference(&a, &point));
         check(assembly, entry, [&point, &a, &b], norm(u), norm(cross(u, w)))?;
         let keep_lengths = [&b, &point].into_iter().all(|end| assembly.keeps_apart(&a, end));
-        let quantities = straight::parallel(assembly, [&from_to(&a, &b), &from_to(&a, &point)], keep_lengths);
+        let (ways, first) = ([from_to(&a, &b), from_to(&a, &point)], assembly.builder.rows());
+        let quantities = straight::parallel(assembly, ways.each_ref().map(Vec::as_slice), keep_lengths);
         straight::hold(assembly, entry, &quantities);
+        assembly.hold(entry, ON_POINT, first, Acts::Straight(vec![Straight { quantities, ways, on: vec![(0, 1, 1.0)] }]));
         assembly.draw(entry, LineKind::Guide, &a, &b);
         Ok(())
     }

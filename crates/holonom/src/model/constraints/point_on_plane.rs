@@ -6,6 +6,7 @@ use crate::model::fault::Read;
 use crate::model::fields::{Described, Keys, List, Number, Place};
 use crate::model::geometry::{dot, norm};
 use crate::model::key::Shape;
+use crate::record::Acts;
 
 /// keeps a point on a plane of fixed direction; not in planar models
 #[derive(Clone, Debug, PartialEq, Keys)]
@@ -59,7 +60,9 @@ impl Element for PointOnPlane {
         let size = norm(d).max(norm(point.start));
         assembly.check_start(entry, off, size, || format!("`{}` starts {} m off the plane", point.name, off.abs()))?;
         let height = assembly.builder.linear(normal, &from_to(&through, &point));
+        let first = assembly.builder.rows();
         assembly.builder.constant_row(entry.name, height, 0.0);
+        assembly.hold(entry, "force of the plane on the point", first, Acts::Along(vec![normal]));
         Ok(())
     }
 }

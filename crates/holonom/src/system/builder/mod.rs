@@ -407,6 +407,11 @@ impl SystemBuilder {
         self.events.push(event);
     }
 
+    /// Number of custom rows so far, which come behind the others.
+    pub(crate) fn custom_rows_so_far(&self) -> usize {
+        self.custom.iter().map(|entry| entry.rows.rows()).sum()
+    }
+
     /// Adds rows that are functions of the coordinates of `nodes` and of time.
     pub fn custom_rows(&mut self, name: impl Into<String>, nodes: &[NodeId], rows: Arc<dyn CustomRows>) {
         self.custom.push(CustomEntry { name: name.into(), nodes: nodes.to_vec(), rows });
