@@ -112,7 +112,7 @@ impl Recorder {
         self
     }
 
-    /// Has room for so many rows more, as far as they are not more than [`ROOM`] numbers: columns that grow are moved again and again.
+    /// Has room for so many rows more, up to some millions of numbers: columns that grow are moved again and again.
     pub fn expecting(mut self, rows: usize) -> Self {
         let recording = &mut self.rows.recording;
         recording.make_room(rows.min(ROOM / recording.columns().len()));
