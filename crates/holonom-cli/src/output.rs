@@ -163,6 +163,7 @@ pub(crate) fn simulate_kept(
         Some((mark, rows)) => recorder.resume(&mark).after(rows),
         None => recorder,
     };
+    // The start and the end may be beside the rows of nominal steps.
     let nominal = (end - simulation.state().t) / (step * every as f64);
     let recorder = recorder.expecting(nominal.min(1e9) as usize + 2);
     let is_real_time = simulation.method().settings.iterations.is_some();

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::model;
+use common::{column, model, near};
 use holonom::model::{Model, constraints};
 use holonom::record::Recording;
 
@@ -14,16 +14,6 @@ fn run_of(model: &Model, method: &str, end: f64) -> Recording {
 
 fn run(text: &str, end: f64) -> Recording {
     run_of(&model(text), "conserving-ggl", end)
-}
-
-#[track_caller]
-fn column<'a>(recording: &'a Recording, name: &str) -> &'a [f64] {
-    recording.column(name).unwrap_or_else(|| panic!("there is no column {name}"))
-}
-
-#[track_caller]
-fn near(name: &str, found: f64, expected: f64, share: f64) {
-    assert!((found - expected).abs() <= share * (1.0 + expected.abs()), "{name}: {found} and {expected} by hand");
 }
 
 /// The first row of some columns.

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{model, model_with_forces};
+use common::{column, model, model_with_forces, near};
 use holonom::model::{Model, constraints, drives, forces, joints};
 use holonom::record::{Constraints, Peaks, Recorder, Recording};
 use holonom::simulation::{Status, Verdict};
@@ -15,16 +15,6 @@ fn run_of(model: &Model, method: &str, end: f64) -> Recording {
 
 fn run(text: &str, end: f64) -> Recording {
     run_of(&model(text), "conserving-ggl", end)
-}
-
-#[track_caller]
-fn column<'a>(recording: &'a Recording, name: &str) -> &'a [f64] {
-    recording.column(name).unwrap_or_else(|| panic!("there is no column {name}"))
-}
-
-#[track_caller]
-fn near(name: &str, found: f64, expected: f64, share: f64) {
-    assert!((found - expected).abs() <= share * (1.0 + expected.abs()), "{name}: {found} and {expected} by hand");
 }
 
 /// A frame of many constraints, whose forces on its points are found twice.

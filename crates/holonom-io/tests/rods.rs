@@ -2,15 +2,11 @@
 
 mod common;
 
-use common::model;
+use common::{column, model};
 use holonom::record::Recording;
 
 fn run(text: &str, end: f64) -> Recording {
     common::run_every(&model(text), "conserving-ggl", 0.002, end, 1).1
-}
-
-fn column<'a>(recording: &'a Recording, name: &str) -> &'a [f64] {
-    recording.column(name).unwrap_or_else(|| panic!("there is no column {name}"))
 }
 
 /// What a rod of any length pulls its bob with is what gravity leaves of the bob's acceleration, also where the length is driven.

@@ -81,7 +81,7 @@ fn append_lines(
     Ok(())
 }
 
-/// Puts a number and a comma at the begin of a line, in which there is [`ROOM`]; says how many bytes they are. Most numbers have more than half as
+/// Puts a number and a comma at the beginning of a line, in which there is [`ROOM`]; says how many bytes they are. Most numbers have more than half as
 /// many, and two copies of sixteen, each of which the processor does at once, take less time than one of any length.
 fn put(number: &str, line: &mut [u8]) -> usize {
     let (number, length) = (number.as_bytes(), number.len());

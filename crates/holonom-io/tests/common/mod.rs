@@ -192,3 +192,15 @@ point = "bob"
 through = [0, 0, 0]
 direction = [1, 0, 0]
 "#;
+
+/// The values of a column that is there.
+#[track_caller]
+pub fn column<'a>(recording: &'a Recording, name: &str) -> &'a [f64] {
+    recording.column(name).unwrap_or_else(|| panic!("there is no column {name}"))
+}
+
+/// Asserts that a number is as by hand, but for this share.
+#[track_caller]
+pub fn near(name: &str, found: f64, expected: f64, share: f64) {
+    assert!((found - expected).abs() <= share * (1.0 + expected.abs()), "{name}: {found} and {expected} by hand");
+}

@@ -139,9 +139,7 @@ impl<'s> Undetermined<'s> {
         }
         unique
     }
-}
 
-impl Undetermined<'_> {
     /// Whether the components of forces, or of moments, are unique that follow from the multipliers of all rows, in which they are linear.
     pub fn exerted_are_unique<F: AsRef<[[f64; 3]]>>(&self, are_moments: bool, exerted: impl Fn(&[f64]) -> F) -> Vec<[bool; 3]> {
         let length = if are_moments { extent(self.system) } else { 1.0 };

@@ -126,9 +126,7 @@ impl Readings {
             }
         }
     }
-}
 
-impl Readings {
     /// Names of the places of which it reads coordinates.
     pub fn places(&self) -> &[String] {
         &self.names[1]

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 
 use super::heading::{Endings, Heading};
-use crate::system::{Evaluation, Quantity, Term, place_of};
+use crate::system::{Evaluation, Quantity, Term, cross, place_of};
 
 /// A constraint whose forces on places are recorded.
 #[derive(Clone)]
@@ -119,7 +119,7 @@ impl RecordedHold {
             Acts::Square(ways) => {
                 let [u, w] = ways.each_ref().map(|way| place_of(way, x, dim));
                 // The multiplier pulls the end of w along −u and its beginning along u.
-                add(&mut out[0], own[0], cross(u, w));
+                add(&mut out[0], own[0], cross(&u, &w));
             }
             Acts::Straight(parts) => {
                 let mut rest = own;
@@ -129,7 +129,7 @@ impl RecordedHold {
                     let axis = product(own, quantities, at, dim);
                     let [u, w] = ways.each_ref().map(|way| place_of(way, x, dim));
                     // Of axis · (u × w) the slope by u is w × axis, and that by w is axis × u.
-                    let forces = [cross(axis, w), cross(u, axis)];
+                    let forces = [cross(&axis, &w), cross(&u, &axis)];
                     on.iter().for_each(|&(force, way, sign)| add(&mut out[force], sign, forces[way]));
                 }
             }
@@ -162,8 +162,4 @@ fn product(lambda: &[f64], quantities: &[Quantity], at: &Evaluation, dim: usize)
 
 fn add(sum: &mut [f64; 3], factor: f64, part: [f64; 3]) {
     sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += factor * part);
-}
-
-fn cross(u: [f64; 3], w: [f64; 3]) -> [f64; 3] {
-    [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]]
 }

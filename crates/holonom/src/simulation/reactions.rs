@@ -435,31 +435,16 @@ pub(crate) fn wrench(
     about: [f64; 3],
     x: &[f64],
 ) -> ([f64; 3], [f64; 3]) {
-    match system.dim {
-        2 => wrench_in::<2>(system, rows, lambda, gradient, nodes, about, x),
-        _ => wrench_in::<3>(system, rows, lambda, gradient, nodes, about, x),
-    }
-}
-
-fn wrench_in<const D: usize>(
-    system: &System,
-    rows: Range<usize>,
-    lambda: &[f64],
-    gradient: &[f64],
-    nodes: &[(NodeId, bool)],
-    about: [f64; 3],
-    x: &[f64],
-) -> ([f64; 3], [f64; 3]) {
-    let (slots, gradient, x) = (&system.slots, gradient.as_chunks::<D>().0, x.as_chunks::<D>().0);
+    let (dim, slots) = (system.dim, &system.slots);
     let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
     for &(node, is_point) in nodes {
         let (mut push, mut arm) = ([0.0; 3], [0.0; 3]);
         for row in rows.clone() {
             for s in slots.rows[row].clone().filter(|&s| slots.nodes[s] as usize == node.index()) {
-                push.iter_mut().zip(&gradient[s]).for_each(|(push, g)| *push -= lambda[row] * g);
+                push.iter_mut().zip(&gradient[s * dim..(s + 1) * dim]).for_each(|(push, g)| *push -= lambda[row] * g);
             }
         }
-        (0..D).for_each(|c| arm[c] = x[node.index()][c] - if is_point { about[c] } else { 0.0 });
+        (0..dim).for_each(|c| arm[c] = x[node.index() * dim + c] - if is_point { about[c] } else { 0.0 });
         for c in 0..3 {
             let (i, j) = ((c + 1) % 3, (c + 2) % 3);
             force[c] += if is_point { push[c] } else { 0.0 };
